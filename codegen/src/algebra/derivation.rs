@@ -1,0 +1,115 @@
+//! Derivations of the graph: f ↦ Σ (seed of s) ∂f/∂s over its symbols.
+//!
+//! After nodes were merged modulo φ only derivations tangent to X are meaningful: ∂ᵢ of KR18 (9),
+//! d/dt along ẋ = A ξ, and derivatives by symbols that φ does not contain (ξ, inputs, parameters).
+
+use super::graph::{Edge, Function, Graph, Node, NodeId};
+use rustc_hash::FxHashMap;
+
+/// A derivation, given by what it does to symbols; it remembers what it has differentiated.
+#[derive(Clone, Debug, Default)]
+pub struct Derivation {
+    memo: FxHashMap<NodeId, Edge>,
+}
+
+impl Derivation {
+    /// The derivation that maps each symbol's node to its seed, and all other symbols to 0.
+    pub fn new(seeds: impl IntoIterator<Item = (NodeId, Edge)>) -> Self {
+        Derivation { memo: seeds.into_iter().collect() }
+    }
+
+    /// The derivative of one expression.
+    pub fn of(&mut self, graph: &mut Graph, edge: Edge) -> Edge {
+        self.run(graph, edge.node());
+        self.seen(graph, edge)
+    }
+
+    /// The derivatives of several expressions.
+    pub fn all(&mut self, graph: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
+        edges.iter().map(|&edge| self.of(graph, edge)).collect()
+    }
+
+    fn seen(&self, graph: &Graph, edge: Edge) -> Edge {
+        let value = self.memo.get(&edge.node()).copied().unwrap_or(graph.zero());
+        value.signed(edge.is_negative())
+    }
+
+    /// Differentiates a node after its children, without recursion.
+    fn run(&mut self, graph: &mut Graph, root: NodeId) {
+        let mut stack = vec![root];
+        while let Some(&id) = stack.last() {
+            if self.memo.contains_key(&id) {
+                stack.pop();
+                continue;
+            }
+            let node = graph.node(id);
+            let before = stack.len();
+            stack.extend(node.children().map(Edge::node).filter(|child| !self.memo.contains_key(child)));
+            if stack.len() == before {
+                let derivative = self.local(graph, id, node);
+                self.memo.insert(id, derivative);
+                stack.pop();
+            }
+        }
+    }
+
+    fn local(&mut self, graph: &mut Graph, id: NodeId, node: Node) -> Edge {
+        let zero = graph.zero();
+        match node {
+            Node::Constant(_) | Node::Symbol(_) => zero,
+            Node::Add(a, b) => {
+                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                graph.add(da, db)
+            }
+            Node::Mul(a, b) => {
+                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                let left = graph.mul(da, b);
+                let right = graph.mul(a, db);
+                graph.add(left, right)
+            }
+            Node::Div(a, b) => {
+                // (a/b)' = (a' − (a/b) b')/b; b is no zero of the graph, or the node would not exist.
+                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                let product = graph.mul(Edge::of(id), db);
+                let numerator = graph.sub(da, product);
+                graph.div(numerator, b).unwrap_or(zero)
+            }
+            Node::Apply(function, a) => {
+                let da = self.seen(graph, a);
+                if da == zero {
+                    return zero;
+                }
+                match function {
+                    Function::Sin => {
+                        let cos = graph.apply(Function::Cos, a);
+                        graph.mul(cos, da)
+                    }
+                    Function::Cos => {
+                        let sin = graph.apply(Function::Sin, a);
+                        -graph.mul(sin, da)
+                    }
+                    Function::Exp => graph.mul(Edge::of(id), da),
+                    Function::Log => graph.div(da, a).unwrap_or(zero),
+                    Function::Sqrt => {
+                        let half = graph.ratio(1, 2);
+                        let numerator = graph.mul(half, da);
+                        graph.div(numerator, Edge::of(id)).unwrap_or(zero)
+                    }
+                    Function::Atan2 => zero,
+                }
+            }
+            Node::Atan2(y, x) => {
+                // (x y' − y x')/(x² + y²)
+                let (dy, dx) = (self.seen(graph, y), self.seen(graph, x));
+                if dy == zero && dx == zero {
+                    return zero;
+                }
+                let (xdy, ydx) = (graph.mul(x, dy), graph.mul(y, dx));
+                let numerator = graph.sub(xdy, ydx);
+                let (xx, yy) = (graph.mul(x, x), graph.mul(y, y));
+                let square = graph.add(xx, yy);
+                graph.div(numerator, square).unwrap_or(zero)
+            }
+        }
+    }
+}

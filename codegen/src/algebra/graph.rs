@@ -1,0 +1,599 @@
+//! The hash-consed graph of signed edges.
+//!
+//! Every node carries its value at two points of the constraint variety X. Equal values are one
+//! node, so "equal on X" is node identity; zero and small rationals are recognised as constants.
+//! An edge is a node with a sign, so negation costs nothing and a − b, b − a are one node.
+//! Children stand before parents.
+
+use super::fp::{Fp, P};
+use super::lane::Lane;
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+use rustc_hash::FxHashMap;
+
+/// Number of points; a false merge of expressions of degree D has probability below (D/p)^2.
+pub const LANES: usize = 2;
+
+/// Index of a node.
+pub type NodeId = u32;
+
+/// A node with a sign.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Edge(u32);
+
+impl Edge {
+    /// The node under the sign.
+    pub fn node(self) -> NodeId {
+        self.0 >> 1
+    }
+
+    /// Whether the sign is −.
+    pub fn is_negative(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// The same node with sign +.
+    pub fn abs(self) -> Edge {
+        Edge(self.0 & !1)
+    }
+
+    /// The positive edge of a node.
+    pub fn of(node: NodeId) -> Edge {
+        Edge(node << 1)
+    }
+
+    /// This edge, negated where `negative`.
+    pub fn signed(self, negative: bool) -> Edge {
+        Edge(self.0 ^ negative as u32)
+    }
+}
+
+impl std::ops::Neg for Edge {
+    type Output = Edge;
+    fn neg(self) -> Edge {
+        Edge(self.0 ^ 1)
+    }
+}
+
+/// Functions beyond the four operations.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
+pub enum Function {
+    /// sine
+    Sin,
+    /// cosine
+    Cos,
+    /// exponential
+    Exp,
+    /// natural logarithm
+    Log,
+    /// square root
+    Sqrt,
+    /// angle of (x, y), arguments (y, x)
+    Atan2,
+}
+
+/// What a node computes.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// An exact rational, by its place in the table of constants.
+    Constant(u32),
+    /// A symbol, by its place in the table of symbols.
+    Symbol(u32),
+    /// a + b, signed.
+    Add(Edge, Edge),
+    /// a · b, both unsigned.
+    Mul(Edge, Edge),
+    /// a / b, both unsigned.
+    Div(Edge, Edge),
+    /// A function of one argument.
+    Apply(Function, Edge),
+    /// atan2(y, x).
+    Atan2(Edge, Edge),
+}
+
+impl Node {
+    /// The children, in order.
+    pub fn children(self) -> impl Iterator<Item = Edge> {
+        let (a, b) = match self {
+            Node::Constant(_) | Node::Symbol(_) => (None, None),
+            Node::Apply(_, a) => (Some(a), None),
+            Node::Add(a, b) | Node::Mul(a, b) | Node::Div(a, b) | Node::Atan2(a, b) => {
+                (Some(a), Some(b))
+            }
+        };
+        a.into_iter().chain(b)
+    }
+}
+
+/// A symbol: its name and the class of inputs that it belongs to, one bit each.
+#[derive(Clone, Debug)]
+pub struct Symbol {
+    /// Name as the user wrote it.
+    pub name: String,
+    /// Class bit; what the bits mean is the caller's affair.
+    pub class: u8,
+    /// Its node.
+    pub node: NodeId,
+}
+
+/// The graph.
+#[derive(Clone, Debug)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    values: Vec<[Fp; LANES]>,
+    classes: Vec<u8>,
+    by_value: FxHashMap<[Fp; LANES], Edge>,
+    constants: Vec<BigRational>,
+    symbols: Vec<Symbol>,
+    lanes: [Lane; LANES],
+    /// Class of the symbols that are constant at run time; products and sums of these are kept
+    /// together so that they can be computed once.
+    free_class: u8,
+}
+
+impl Graph {
+    /// An empty graph; `seed` chooses the points, `free_class` the run-time constants.
+    pub fn new(seed: u64, free_class: u8) -> Self {
+        let lanes = std::array::from_fn(|lane| Lane::new(seed.wrapping_mul(31).wrapping_add(lane as u64)));
+        let mut graph = Graph {
+            nodes: Vec::new(),
+            values: Vec::new(),
+            classes: Vec::new(),
+            by_value: FxHashMap::default(),
+            constants: Vec::new(),
+            symbols: Vec::new(),
+            lanes,
+            free_class,
+        };
+        // Node 0 is the number 0, node 1 the number 1.
+        graph.push(Node::Constant(0), [Fp::ZERO; LANES], 0);
+        graph.constants.push(BigRational::zero());
+        graph.rational(&BigRational::one());
+        graph
+    }
+
+    /// The number 0.
+    pub fn zero(&self) -> Edge {
+        Edge::of(0)
+    }
+
+    /// The number 1.
+    pub fn one(&self) -> Edge {
+        Edge::of(1)
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Never: the numbers 0 and 1 are always there.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// What a node computes.
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes[id as usize]
+    }
+
+    /// The classes of symbols that a node is written in.
+    pub fn class(&self, id: NodeId) -> u8 {
+        self.classes[id as usize]
+    }
+
+    /// Whether a node is constant at run time: a number, or written in free symbols alone.
+    pub fn is_free(&self, id: NodeId) -> bool {
+        self.classes[id as usize] & !self.free_class == 0
+    }
+
+    /// The values of an edge at the points.
+    pub fn value(&self, edge: Edge) -> [Fp; LANES] {
+        let value = self.values[edge.node() as usize];
+        if edge.is_negative() { value.map(|v| -v) } else { value }
+    }
+
+    /// The symbols, in order of creation.
+    pub fn symbols(&self) -> &[Symbol] {
+        &self.symbols
+    }
+
+    /// Whether a square root met a non-square: choose other points and start again.
+    pub fn is_stuck(&self) -> bool {
+        self.lanes.iter().any(|lane| lane.stuck)
+    }
+
+    /// The number that an edge is, if it is one.
+    pub fn as_rational(&self, edge: Edge) -> Option<BigRational> {
+        match self.nodes[edge.node() as usize] {
+            Node::Constant(index) => {
+                let value = &self.constants[index as usize];
+                Some(if edge.is_negative() { -value.clone() } else { value.clone() })
+            }
+            _ => None,
+        }
+    }
+
+    /// The constant at a place of the table of constants.
+    pub fn constant(&self, index: u32) -> &BigRational {
+        &self.constants[index as usize]
+    }
+
+    /// A new symbol with its values at the points.
+    pub fn symbol(&mut self, name: &str, class: u8, value: [Fp; LANES]) -> Edge {
+        for (lane, value) in self.lanes.iter_mut().zip(value) {
+            lane.push_symbol(value);
+        }
+        let index = self.symbols.len() as u32;
+        let edge = self.push(Node::Symbol(index), value, class);
+        self.symbols.push(Symbol { name: name.to_string(), class, node: edge.node() });
+        edge
+    }
+
+    /// An exact number.
+    pub fn rational(&mut self, value: &BigRational) -> Edge {
+        if let Some(image) = Fp::from_rational(value)
+            && let Some(edge) = self.lookup([image; LANES])
+            && self.as_rational(edge).as_ref() == Some(value)
+        {
+            return edge;
+        }
+        let image = Fp::from_rational(value).unwrap_or(Fp::ZERO);
+        let index = self.constants.len() as u32;
+        self.constants.push(value.clone());
+        self.push(Node::Constant(index), [image; LANES], 0)
+    }
+
+    /// n/d; d must not be 0.
+    pub fn ratio(&mut self, n: i64, d: i64) -> Edge {
+        self.rational(&BigRational::new(BigInt::from(n), BigInt::from(d)))
+    }
+
+    /// a + b.
+    pub fn add(&mut self, a: Edge, b: Edge) -> Edge {
+        if a == self.zero() {
+            return b;
+        }
+        if b == self.zero() {
+            return a;
+        }
+        if a == -b {
+            return self.zero();
+        }
+        if a == b {
+            let two = self.ratio(2, 1);
+            return self.mul(two, a);
+        }
+        if let (Some(x), Some(y)) = (self.as_rational(a), self.as_rational(b)) {
+            return self.rational(&(x + y));
+        }
+        let value = lanewise(self.value(a), self.value(b), |x, y| x + y);
+        let class = self.class(a.node()) | self.class(b.node());
+        if let Some(known) = self.known(value, class) {
+            return known;
+        }
+        if let Some(factored) = self.factor(a, b) {
+            return factored;
+        }
+        if let Some(regrouped) = self.regroup(a, b, Node::Add as fn(Edge, Edge) -> Node) {
+            return regrouped;
+        }
+        // The positive operand first; both negative: negate the sum.
+        match (a.is_negative(), b.is_negative()) {
+            (true, true) => {
+                let (a, b) = ordered(-a, -b);
+                -self.push(Node::Add(a, b), value.map(|v| -v), class)
+            }
+            (true, false) => self.push(Node::Add(b, a), value, class),
+            (false, true) => self.push(Node::Add(a, b), value, class),
+            (false, false) => {
+                let (a, b) = ordered(a, b);
+                self.push(Node::Add(a, b), value, class)
+            }
+        }
+    }
+
+    /// a − b.
+    pub fn sub(&mut self, a: Edge, b: Edge) -> Edge {
+        self.add(a, -b)
+    }
+
+    /// a · b.
+    pub fn mul(&mut self, a: Edge, b: Edge) -> Edge {
+        let negative = a.is_negative() ^ b.is_negative();
+        let (a, b) = ordered(a.abs(), b.abs());
+        if a == self.zero() || b == self.zero() {
+            return self.zero();
+        }
+        if a == self.one() {
+            return b.signed(negative);
+        }
+        if b == self.one() {
+            return a.signed(negative);
+        }
+        if let (Some(x), Some(y)) = (self.as_rational(a), self.as_rational(b)) {
+            return self.rational(&(x * y)).signed(negative);
+        }
+        let value = lanewise(self.value(a), self.value(b), |x, y| x * y);
+        let class = self.class(a.node()) | self.class(b.node());
+        if let Some(known) = self.known(value, class) {
+            return known.signed(negative);
+        }
+        if let Some(regrouped) = self.regroup(a, b, Node::Mul as fn(Edge, Edge) -> Node) {
+            return regrouped.signed(negative);
+        }
+        self.push(Node::Mul(a, b), value, class).signed(negative)
+    }
+
+    /// a / b; `None` where b vanishes identically on X.
+    pub fn div(&mut self, a: Edge, b: Edge) -> Option<Edge> {
+        let negative = a.is_negative() ^ b.is_negative();
+        let (a, b) = (a.abs(), b.abs());
+        if b == self.zero() {
+            return None;
+        }
+        if a == b {
+            return Some(self.one().signed(negative));
+        }
+        if let Some(divisor) = self.as_rational(b) {
+            let inverse = self.rational(&divisor.recip());
+            return Some(self.mul(a, inverse).signed(negative));
+        }
+        let mut value = [Fp::ZERO; LANES];
+        for lane in 0..LANES {
+            value[lane] = self.value(a)[lane] * self.value(b)[lane].inv()?;
+        }
+        let class = self.class(a.node()) | self.class(b.node());
+        if let Some(known) = self.known(value, class) {
+            return Some(known.signed(negative));
+        }
+        // Divide by run-time constants once: x / p = x · (1/p).
+        if a != self.one() && self.is_free(b.node()) {
+            let inverse = self.div(self.one(), b)?;
+            return Some(self.mul(a, inverse).signed(negative));
+        }
+        Some(self.push(Node::Div(a, b), value, class).signed(negative))
+    }
+
+    /// A function of one argument.
+    pub fn apply(&mut self, function: Function, argument: Edge) -> Edge {
+        let (argument, negative) = match function {
+            Function::Sin => (argument.abs(), argument.is_negative()),
+            Function::Cos => (argument.abs(), false),
+            _ => (argument, false),
+        };
+        let exact = match function {
+            Function::Sin if argument == self.zero() => Some(self.zero()),
+            Function::Cos | Function::Exp if argument == self.zero() => Some(self.one()),
+            Function::Log if argument == self.one() => Some(self.zero()),
+            Function::Sqrt => self.exact_root(argument),
+            _ => None,
+        };
+        if let Some(exact) = exact {
+            return exact;
+        }
+        let form = match function {
+            Function::Sin | Function::Cos | Function::Exp => self.linear_form(argument),
+            _ => Vec::new(),
+        };
+        let arguments = self.value(argument);
+        let value = std::array::from_fn(|lane| {
+            let form = form.iter().map(|(atom, c)| (self.value(Edge::of(*atom))[lane], c.clone())).collect();
+            self.lanes[lane].function(function, arguments[lane], &form)
+        });
+        let class = self.class(argument.node());
+        let edge = match self.known(value, class) {
+            Some(known) => known,
+            None => self.push(Node::Apply(function, argument), value, class),
+        };
+        edge.signed(negative)
+    }
+
+    /// atan2(y, x).
+    pub fn atan2(&mut self, y: Edge, x: Edge) -> Edge {
+        let (ys, xs) = (self.value(y), self.value(x));
+        let value = std::array::from_fn(|lane| self.lanes[lane].opaque(Function::Atan2, ys[lane], xs[lane]));
+        let class = self.class(y.node()) | self.class(x.node());
+        match self.known(value, class) {
+            Some(known) => known,
+            None => self.push(Node::Atan2(y, x), value, class),
+        }
+    }
+
+    /// a^n for a whole exponent; `None` for a negative power of zero.
+    pub fn powi(&mut self, base: Edge, exponent: i64) -> Option<Edge> {
+        let mut result = self.one();
+        let mut square = base;
+        let mut rest = exponent.unsigned_abs();
+        while rest > 0 {
+            if rest & 1 == 1 {
+                result = self.mul(result, square);
+            }
+            rest >>= 1;
+            if rest > 0 {
+                square = self.mul(square, square);
+            }
+        }
+        if exponent < 0 { self.div(self.one(), result) } else { Some(result) }
+    }
+
+    /// Σ terms.
+    pub fn sum(&mut self, terms: &[Edge]) -> Edge {
+        terms.iter().fold(self.zero(), |sum, &term| self.add(sum, term))
+    }
+
+    /// Σ aᵢ bᵢ.
+    pub fn dot(&mut self, a: &[Edge], b: &[Edge]) -> Edge {
+        let mut sum = self.zero();
+        for (&x, &y) in a.iter().zip(b) {
+            let product = self.mul(x, y);
+            sum = self.add(sum, product);
+        }
+        sum
+    }
+
+    /// The argument of a function with a group law, as Σ coefficient · atom.
+    pub fn linear_form(&self, edge: Edge) -> Vec<(NodeId, BigRational)> {
+        let mut form = Vec::new();
+        let mut stack = vec![(edge, BigRational::one())];
+        while let Some((edge, scale)) = stack.pop() {
+            let scale = if edge.is_negative() { -scale } else { scale };
+            let node = edge.node();
+            match self.nodes[node as usize] {
+                Node::Add(a, b) => {
+                    stack.push((b, scale.clone()));
+                    stack.push((a, scale));
+                }
+                Node::Mul(a, b) => match (self.as_rational(a), self.as_rational(b)) {
+                    (Some(factor), _) => stack.push((b, scale * factor)),
+                    (_, Some(factor)) => stack.push((a, scale * factor)),
+                    _ => collect(&mut form, node, scale),
+                },
+                Node::Constant(index) => collect(&mut form, 1, scale * &self.constants[index as usize]),
+                _ => collect(&mut form, node, scale),
+            }
+        }
+        form
+    }
+
+    /// All nodes that the roots are made of, children before parents.
+    pub fn reachable(&self, roots: &[Edge]) -> Vec<NodeId> {
+        let mut seen = vec![false; self.nodes.len()];
+        let mut stack: Vec<NodeId> = roots.iter().map(|root| root.node()).collect();
+        while let Some(id) = stack.pop() {
+            if !std::mem::replace(&mut seen[id as usize], true) {
+                stack.extend(self.nodes[id as usize].children().map(Edge::node));
+            }
+        }
+        (0..self.nodes.len() as NodeId).filter(|&id| seen[id as usize]).collect()
+    }
+
+    fn exact_root(&mut self, argument: Edge) -> Option<Edge> {
+        let value = self.as_rational(argument)?;
+        let (n, d) = (value.numer().sqrt(), value.denom().sqrt());
+        let root = BigRational::new(n, d);
+        (&root * &root == value).then(|| self.rational(&root))
+    }
+
+    /// p·y + q·y = (p + q)·y for run-time constants p, q: the sum of constants costs nothing.
+    fn factor(&mut self, a: Edge, b: Edge) -> Option<Edge> {
+        let (p, y) = self.free_factor(a)?;
+        let (q, z) = self.free_factor(b)?;
+        if y != z {
+            return None;
+        }
+        let coefficient = self.add(p, q);
+        Some(self.mul(coefficient, y))
+    }
+
+    /// edge = p · y with p constant and y varying at run time.
+    fn free_factor(&self, edge: Edge) -> Option<(Edge, Edge)> {
+        if self.is_free(edge.node()) {
+            return None;
+        }
+        if let Node::Mul(a, b) = self.nodes[edge.node() as usize] {
+            if self.is_free(a.node()) {
+                return Some((a.signed(edge.is_negative()), b));
+            }
+            if self.is_free(b.node()) {
+                return Some((b.signed(edge.is_negative()), a));
+            }
+        }
+        Some((self.one().signed(edge.is_negative()), edge.abs()))
+    }
+
+    /// p ∘ (q ∘ y) = (p ∘ q) ∘ y for run-time constants p, q and ∘ one of +, ·.
+    fn regroup(&mut self, a: Edge, b: Edge, kind: fn(Edge, Edge) -> Node) -> Option<Edge> {
+        let (p, rest) = match (self.is_free(a.node()), self.is_free(b.node())) {
+            (true, false) => (a, b),
+            (false, true) => (b, a),
+            _ => return None,
+        };
+        let is_sum = matches!(kind(a, b), Node::Add(..));
+        let (x, y) = match self.nodes[rest.node() as usize] {
+            Node::Add(x, y) if is_sum => {
+                (x.signed(rest.is_negative()), y.signed(rest.is_negative()))
+            }
+            Node::Mul(x, y) if !is_sum => (x.signed(rest.is_negative()), y),
+            _ => return None,
+        };
+        let (q, y) = match (self.is_free(x.node()), self.is_free(y.node())) {
+            (true, false) => (x, y),
+            (false, true) => (y, x),
+            _ => return None,
+        };
+        if is_sum {
+            let constant = self.add(p, q);
+            Some(self.add(constant, y))
+        } else {
+            let constant = self.mul(p, q);
+            Some(self.mul(constant, y))
+        }
+    }
+
+    /// A node with this value, or the small rational that it is; an expression that is constant at
+    /// run time does not give way to one that is not.
+    fn known(&mut self, value: [Fp; LANES], class: u8) -> Option<Edge> {
+        if let Some(edge) = self.lookup(value) {
+            let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
+            return (!improves).then_some(edge);
+        }
+        if value.iter().any(|v| *v != value[0]) {
+            return None;
+        }
+        let (n, d) = value[0].to_small_rational(29)?;
+        Some(self.ratio(n, d))
+    }
+
+    /// A node that later expressions do not merge with.
+    pub(super) fn push_unmerged(&mut self, node: Node) -> Edge {
+        let id = self.nodes.len() as NodeId;
+        let class = node.children().fold(0, |class, child| class | self.class(child.node()));
+        self.nodes.push(node);
+        self.values.push([Fp::ZERO; LANES]);
+        self.classes.push(class);
+        Edge::of(id)
+    }
+
+    fn lookup(&self, value: [Fp; LANES]) -> Option<Edge> {
+        let (key, negative) = canonical(value);
+        self.by_value.get(&key).map(|edge| edge.signed(negative))
+    }
+
+    fn push(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Edge {
+        let id = self.nodes.len() as NodeId;
+        self.nodes.push(node);
+        self.values.push(value);
+        self.classes.push(class);
+        let (key, negative) = canonical(value);
+        let edge = Edge::of(id).signed(negative);
+        let known = *self.by_value.entry(key).or_insert(edge);
+        if !self.is_free(known.node()) && self.is_free(id) {
+            self.by_value.insert(key, edge);
+        }
+        Edge::of(id)
+    }
+}
+
+fn collect(form: &mut Vec<(NodeId, BigRational)>, atom: NodeId, coefficient: BigRational) {
+    match form.iter_mut().find(|(known, _)| *known == atom) {
+        Some((_, sum)) => *sum += coefficient,
+        None => form.push((atom, coefficient)),
+    }
+    form.retain(|(_, coefficient)| !coefficient.is_zero());
+}
+
+fn ordered(a: Edge, b: Edge) -> (Edge, Edge) {
+    if a <= b { (a, b) } else { (b, a) }
+}
+
+/// The representative of {v, −v}, and whether v is its negative.
+fn canonical(value: [Fp; LANES]) -> ([Fp; LANES], bool) {
+    let negative = value.iter().find(|v| !v.is_zero()).is_some_and(|v| v.value() > P / 2);
+    (if negative { value.map(|v| -v) } else { value }, negative)
+}
+
+fn lanewise(a: [Fp; LANES], b: [Fp; LANES], f: impl Fn(Fp, Fp) -> Fp) -> [Fp; LANES] {
+    std::array::from_fn(|lane| f(a[lane], b[lane]))
+}

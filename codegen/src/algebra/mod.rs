@@ -1,0 +1,13 @@
+//! Computer algebra without mechanics: a hash-consed graph whose nodes carry values modulo
+//! p = 2^61 − 1 at points of the constraint variety, derivations tangent to that variety, and
+//! polynomials with normal forms for the small pieces that people read.
+
+pub mod derivation;
+pub mod fp;
+pub mod graph;
+pub mod lane;
+pub mod linear;
+pub mod numeric;
+pub mod poly;
+pub mod topoly;
+pub mod transplant;

@@ -1,0 +1,96 @@
+//! Numbers of expressions: in floating point, and exactly at fresh points modulo p.
+
+use super::fp::Fp;
+use super::graph::{Edge, Function, Graph, Node};
+use super::lane::Lane;
+use num_traits::ToPrimitive;
+
+/// The expressions in floating point, given the value of every symbol.
+pub fn evaluate(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<f64> {
+    let mut values = vec![0.0; graph.len()];
+    let read = |values: &[f64], edge: Edge| {
+        let value = values[edge.node() as usize];
+        if edge.is_negative() { -value } else { value }
+    };
+    for id in graph.reachable(roots) {
+        values[id as usize] = match graph.node(id) {
+            Node::Constant(index) => graph.constant(index).to_f64().unwrap_or(f64::NAN),
+            Node::Symbol(index) => symbols[index as usize],
+            Node::Add(a, b) => read(&values, a) + read(&values, b),
+            Node::Mul(a, b) => read(&values, a) * read(&values, b),
+            Node::Div(a, b) => read(&values, a) / read(&values, b),
+            Node::Apply(function, a) => apply(function, read(&values, a)),
+            Node::Atan2(y, x) => read(&values, y).atan2(read(&values, x)),
+        };
+    }
+    roots.iter().map(|&root| read(&values, root)).collect()
+}
+
+fn apply(function: Function, value: f64) -> f64 {
+    match function {
+        Function::Sin => value.sin(),
+        Function::Cos => value.cos(),
+        Function::Exp => value.exp(),
+        Function::Log => value.ln(),
+        Function::Sqrt => value.sqrt(),
+        // Two arguments: its own node.
+        Function::Atan2 => f64::NAN,
+    }
+}
+
+/// The expressions modulo p at another point, whose symbols have been pushed into `lane`;
+/// `None` where a denominator vanishes or a square root has no value there.
+pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec<Fp>> {
+    let mut values = vec![Fp::ZERO; graph.len()];
+    // The number 1 is the atom of constant angles.
+    values[1] = Fp::ONE;
+    let read = |values: &[Fp], edge: Edge| {
+        let value = values[edge.node() as usize];
+        if edge.is_negative() { -value } else { value }
+    };
+    for id in graph.reachable(roots) {
+        values[id as usize] = match graph.node(id) {
+            Node::Constant(index) => Fp::from_rational(graph.constant(index))?,
+            Node::Symbol(index) => lane.symbol(index as usize),
+            Node::Add(a, b) => read(&values, a) + read(&values, b),
+            Node::Mul(a, b) => read(&values, a) * read(&values, b),
+            Node::Div(a, b) => read(&values, a) * read(&values, b).inv()?,
+            Node::Apply(function, a) => {
+                let form = match function {
+                    Function::Sin | Function::Cos | Function::Exp => graph.linear_form(a),
+                    _ => Vec::new(),
+                };
+                let form = form.into_iter().map(|(atom, c)| (values[atom as usize], c)).collect();
+                let argument = read(&values, a);
+                lane.function(function, argument, &form)
+            }
+            Node::Atan2(y, x) => {
+                let (y, x) = (read(&values, y), read(&values, x));
+                lane.opaque(Function::Atan2, y, x)
+            }
+        };
+    }
+    (!lane.stuck).then(|| roots.iter().map(|&root| read(&values, root)).collect())
+}
+
+/// Rank of a matrix over F_p.
+pub fn rank(mut rows: Vec<Vec<Fp>>) -> usize {
+    let columns = rows.first().map_or(0, Vec::len);
+    let mut rank = 0;
+    for column in 0..columns {
+        let Some(pivot) = (rank..rows.len()).find(|&row| !rows[row][column].is_zero()) else { continue };
+        rows.swap(rank, pivot);
+        let Some(inverse) = rows[rank][column].inv() else { continue };
+        for row in rank + 1..rows.len() {
+            let factor = rows[row][column] * inverse;
+            if !factor.is_zero() {
+                for k in column..columns {
+                    let product = factor * rows[rank][k];
+                    rows[row][k] = rows[row][k] - product;
+                }
+            }
+        }
+        rank += 1;
+    }
+    rank
+}

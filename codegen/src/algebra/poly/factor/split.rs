@@ -1,0 +1,64 @@
+//! Sums too long to look at all pairs of products: f = Σ_l l q_l + r, by their most frequent
+//! literals l, until every sum is short.
+
+use super::system::{Literal, Product, System};
+use std::collections::BTreeMap;
+
+/// Pairs of products in all sums together that are affordable.
+const PAIRS: usize = 60_000;
+
+/// The system with long sums split.
+pub(super) fn split(mut system: System) -> System {
+    let pairs = |system: &System| -> usize {
+        let sums = system.sums.iter();
+        sums.map(|sum| sum.len() * sum.len() / 2).sum()
+    };
+    if pairs(&system) <= PAIRS {
+        return system;
+    }
+    let products: usize = system.sums.iter().map(Vec::len).sum();
+    let most = (2 * PAIRS / products.max(1)).clamp(8, 200);
+    let mut index = 0;
+    while index < system.sums.len() {
+        while system.sums[index].len() > most {
+            let (part, literal) = take_part(&mut system.sums[index], most);
+            let new = (system.inputs.len() + system.sums.len()) as Literal;
+            let mut literals = vec![new];
+            literals.extend(literal);
+            literals.sort_unstable();
+            system.sums[index].push(Product {
+                negative: false,
+                literals,
+            });
+            system.sums.push(part);
+        }
+        index += 1;
+    }
+    system
+}
+
+/// Takes q_l and its literal l from a sum; where no literal occurs twice, some products.
+fn take_part(sum: &mut Vec<Product>, most: usize) -> (Vec<Product>, Option<Literal>) {
+    let mut counts: BTreeMap<Literal, usize> = BTreeMap::new();
+    for product in sum.iter() {
+        for power in product.literals.chunk_by(|a, b| a == b) {
+            *counts.entry(power[0]).or_default() += 1;
+        }
+    }
+    let most_frequent = counts.iter().max_by_key(|entry| entry.1);
+    let Some((&literal, _)) = most_frequent.filter(|entry| *entry.1 > 1) else {
+        let kept = sum.len() - most;
+        return (sum.split_off(kept), None);
+    };
+    let (with, without): (Vec<Product>, Vec<Product>) = std::mem::take(sum)
+        .into_iter()
+        .partition(|product| product.literals.contains(&literal));
+    *sum = without;
+    let divided = with.into_iter().map(|mut product| {
+        if let Ok(position) = product.literals.binary_search(&literal) {
+            product.literals.remove(position);
+        }
+        product
+    });
+    (divided.collect(), Some(literal))
+}

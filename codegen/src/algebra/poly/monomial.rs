@@ -1,0 +1,157 @@
+//! A monomial x^a = Π x_i^{a_i}, as the sparse list of its non-zero exponents.
+
+use std::cmp::Ordering;
+
+/// The index of an indeterminate.
+pub type Var = u32;
+
+/// A product of powers of variables. Its derived `Ord` is a fixed total order for use as a map key,
+/// not a monomial order; see [`super::order::Order`].
+#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
+pub struct Monomial(Vec<(Var, u32)>);
+
+impl Monomial {
+    /// 1.
+    pub fn one() -> Self {
+        Monomial(Vec::new())
+    }
+
+    /// x_v.
+    pub fn var(variable: Var) -> Self {
+        Monomial(vec![(variable, 1)])
+    }
+
+    /// The product of the given powers, in any order; repeated variables multiply.
+    pub fn from_powers(powers: impl IntoIterator<Item = (Var, u32)>) -> Self {
+        let mut list: Vec<(Var, u32)> = powers.into_iter().filter(|power| power.1 > 0).collect();
+        list.sort_unstable_by_key(|power| power.0);
+        list.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 += next.1;
+            }
+            same
+        });
+        Monomial(list)
+    }
+
+    /// The non-zero exponents, by ascending variable.
+    pub fn powers(&self) -> &[(Var, u32)] {
+        &self.0
+    }
+
+    /// The exponent of one variable.
+    pub fn exponent(&self, variable: Var) -> u32 {
+        match self.0.binary_search_by_key(&variable, |power| power.0) {
+            Ok(position) => self.0[position].1,
+            Err(_) => 0,
+        }
+    }
+
+    /// Whether this is 1.
+    pub fn is_one(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The total degree Σ a_i.
+    pub fn degree(&self) -> u32 {
+        self.0.iter().map(|power| power.1).sum()
+    }
+
+    /// x^a x^b.
+    pub fn mul(&self, other: &Self) -> Self {
+        self.merge(other, |a, b| a + b)
+    }
+
+    /// The least common multiple, max(a_i, b_i).
+    pub fn lcm(&self, other: &Self) -> Self {
+        self.merge(other, u32::max)
+    }
+
+    /// The greatest common divisor, min(a_i, b_i).
+    pub fn gcd(&self, other: &Self) -> Self {
+        self.merge(other, u32::min)
+    }
+
+    /// x^a / x^b; `None` where it is no monomial.
+    pub fn div(&self, other: &Self) -> Option<Self> {
+        if !other.divides(self) {
+            return None;
+        }
+        Some(self.merge(other, |a, b| a - b))
+    }
+
+    /// Whether x^a divides x^b.
+    pub fn divides(&self, other: &Self) -> bool {
+        let mut rest = other.0.iter();
+        self.0
+            .iter()
+            .all(|&(v, a)| rest.any(|&(w, b)| w == v && b >= a))
+    }
+
+    /// Whether no variable is in both.
+    pub fn coprime(&self, other: &Self) -> bool {
+        let (mut i, mut j) = (0, 0);
+        while let (Some(a), Some(b)) = (self.0.get(i), other.0.get(j)) {
+            match a.0.cmp(&b.0) {
+                Ordering::Less => i += 1,
+                Ordering::Greater => j += 1,
+                Ordering::Equal => return false,
+            }
+        }
+        true
+    }
+
+    /// Bits that are a subset of those of every multiple: a quick necessary test of divisibility.
+    pub(super) fn mask(&self) -> u64 {
+        self.0.iter().fold(0, |mask, &(variable, exponent)| {
+            let bit = 2 * (variable % 32);
+            mask | (if exponent > 1 { 3 } else { 1 }) << bit
+        })
+    }
+
+    /// The exponents f(a_i, b_i) over the variables of either.
+    fn merge(&self, other: &Self, f: impl Fn(u32, u32) -> u32) -> Self {
+        let mut result = Vec::with_capacity(self.0.len() + other.0.len());
+        let (mut i, mut j) = (0, 0);
+        loop {
+            let (variable, a, b) = match (self.0.get(i), other.0.get(j)) {
+                (Some(&(v, a)), Some(&(w, b))) if v == w => (v, a, b),
+                (Some(&(v, a)), Some(&(w, _))) if v < w => (v, a, 0),
+                (_, Some(&(w, b))) => (w, 0, b),
+                (Some(&(v, a)), None) => (v, a, 0),
+                (None, None) => return Monomial(result),
+            };
+            i += usize::from(a > 0);
+            j += usize::from(b > 0);
+            let exponent = f(a, b);
+            if exponent > 0 {
+                result.push((variable, exponent));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn m(powers: &[(Var, u32)]) -> Monomial {
+        Monomial::from_powers(powers.iter().copied())
+    }
+
+    #[test]
+    fn arithmetic_is_by_exponents() {
+        let (a, b) = (m(&[(2, 1), (0, 2)]), m(&[(0, 1), (5, 3)]));
+        assert_eq!(a.mul(&b), m(&[(0, 3), (2, 1), (5, 3)]));
+        assert_eq!(a.lcm(&b), m(&[(0, 2), (2, 1), (5, 3)]));
+        assert_eq!(a.gcd(&b), m(&[(0, 1)]));
+        assert_eq!(a.mul(&b).div(&b), Some(a.clone()));
+        assert_eq!(a.div(&b), None);
+        assert!(b.divides(&a.lcm(&b)) && !b.divides(&a));
+        assert!(!a.coprime(&b) && a.coprime(&m(&[(1, 4)])));
+        assert_eq!((a.degree(), a.exponent(0), a.exponent(1)), (3, 2, 0));
+        assert_eq!(m(&[(3, 1), (3, 1), (4, 0)]), m(&[(3, 2)]));
+        assert_eq!(a.mask() & !a.mul(&b).mask(), 0);
+    }
+}

@@ -1,0 +1,94 @@
+//! Monomial orders: total orders with 1 ≤ m, and a ≤ b implies a m ≤ b m.
+//!
+//! In all of them a smaller variable index is a bigger variable, x_0 > x_1 > ….
+
+use super::monomial::{Monomial, Var};
+use std::cmp::Ordering;
+
+/// Which of two monomials is bigger.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Order {
+    /// Degree first; then the smaller exponent of the smallest variable that differs.
+    #[default]
+    Grevlex,
+    /// The bigger exponent of the biggest variable that differs.
+    Lex,
+    /// Eliminates the variables below the split: these decide by grevlex, then the others do.
+    Block(Var),
+}
+
+impl Order {
+    /// The comparison of two monomials.
+    pub fn compare(self, a: &Monomial, b: &Monomial) -> Ordering {
+        let (a, b) = (a.powers(), b.powers());
+        match self {
+            Order::Grevlex => grevlex(a, b),
+            Order::Lex => lex(a, b),
+            Order::Block(split) => {
+                let (a_big, a_small) = a.split_at(a.partition_point(|power| power.0 < split));
+                let (b_big, b_small) = b.split_at(b.partition_point(|power| power.0 < split));
+                grevlex(a_big, b_big).then_with(|| grevlex(a_small, b_small))
+            }
+        }
+    }
+}
+
+fn lex(a: &[(Var, u32)], b: &[(Var, u32)]) -> Ordering {
+    for (x, y) in a.iter().zip(b) {
+        match y.0.cmp(&x.0).then(x.1.cmp(&y.1)) {
+            Ordering::Equal => {}
+            decided => return decided,
+        }
+    }
+    a.len().cmp(&b.len())
+}
+
+fn grevlex(a: &[(Var, u32)], b: &[(Var, u32)]) -> Ordering {
+    let degree = |powers: &[(Var, u32)]| powers.iter().map(|power| power.1).sum::<u32>();
+    let by_degree = degree(a).cmp(&degree(b));
+    if by_degree != Ordering::Equal {
+        return by_degree;
+    }
+    for (x, y) in a.iter().rev().zip(b.iter().rev()) {
+        match y.0.cmp(&x.0).then(y.1.cmp(&x.1)) {
+            Ordering::Equal => {}
+            decided => return decided,
+        }
+    }
+    // Equal degrees and one list a tail of the other: they are the same.
+    Ordering::Equal
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sorted(order: Order) -> Vec<&'static str> {
+        let (x, y, z) = (Monomial::var(0), Monomial::var(1), Monomial::var(2));
+        let mut list = [
+            ("1", Monomial::one()),
+            ("x", x.clone()),
+            ("y", y.clone()),
+            ("z", z.clone()),
+            ("xz", x.mul(&z)),
+            ("yy", y.mul(&y)),
+            ("xx", x.mul(&x)),
+            ("zzz", z.mul(&z).mul(&z)),
+        ];
+        list.sort_by(|a, b| order.compare(&b.1, &a.1));
+        list.map(|entry| entry.0).to_vec()
+    }
+
+    #[test]
+    fn textbook_orders() {
+        let grevlex = ["zzz", "xx", "yy", "xz", "x", "y", "z", "1"];
+        assert_eq!(sorted(Order::Grevlex), grevlex);
+        let lex = ["xx", "xz", "x", "yy", "y", "zzz", "z", "1"];
+        assert_eq!(sorted(Order::Lex), lex);
+        let last = ["xx", "xz", "x", "zzz", "yy", "y", "z", "1"];
+        assert_eq!(sorted(Order::Block(1)), last);
+        let block = ["xx", "yy", "xz", "x", "y", "zzz", "z", "1"];
+        assert_eq!(sorted(Order::Block(2)), block);
+        assert_eq!(sorted(Order::Block(9)), grevlex);
+    }
+}

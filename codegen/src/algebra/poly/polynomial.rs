@@ -1,0 +1,207 @@
+//! A polynomial Σ_a c_a x^a over a field.
+
+use super::field::Field;
+use super::monomial::{Monomial, Var};
+use super::order::Order;
+
+/// A polynomial: its non-zero terms, descending in its order. Arithmetic keeps the order of the
+/// left operand; equality ignores the order.
+#[derive(Clone, Debug)]
+pub struct Poly<F> {
+    order: Order,
+    terms: Vec<(Monomial, F)>,
+}
+
+impl<F: Field> PartialEq for Poly<F> {
+    fn eq(&self, other: &Self) -> bool {
+        if self.order == other.order {
+            return self.terms == other.terms;
+        }
+        self.terms == other.with_order(self.order).terms
+    }
+}
+
+impl<F: Field> Poly<F> {
+    /// 0.
+    pub fn zero() -> Self {
+        Self::from_terms(Order::default(), Vec::new())
+    }
+
+    /// 1.
+    pub fn one() -> Self {
+        Self::constant(F::one())
+    }
+
+    /// The constant c.
+    pub fn constant(value: F) -> Self {
+        Self::from_terms(Order::default(), vec![(Monomial::one(), value)])
+    }
+
+    /// The variable x_v.
+    pub fn var(variable: Var) -> Self {
+        Self::from_terms(Order::default(), vec![(Monomial::var(variable), F::one())])
+    }
+
+    /// The sum of the given terms, in any order; equal monomials add up.
+    pub fn from_terms(order: Order, mut terms: Vec<(Monomial, F)>) -> Self {
+        collect(order, &mut terms);
+        Poly { order, terms }
+    }
+
+    /// The terms must already be descending and non-zero.
+    pub(super) fn from_sorted(order: Order, terms: Vec<(Monomial, F)>) -> Self {
+        Poly { order, terms }
+    }
+
+    /// The same polynomial, sorted in another order.
+    pub fn with_order(&self, order: Order) -> Self {
+        let mut result = self.clone();
+        if order != result.order {
+            result.order = order;
+            result.terms.sort_by(|a, b| order.compare(&b.0, &a.0));
+        }
+        result
+    }
+
+    /// The order of the terms.
+    pub fn order(&self) -> Order {
+        self.order
+    }
+
+    /// The non-zero terms, descending.
+    pub fn terms(&self) -> &[(Monomial, F)] {
+        &self.terms
+    }
+
+    /// The leading term; `None` for 0.
+    pub fn leading(&self) -> Option<&(Monomial, F)> {
+        self.terms.first()
+    }
+
+    /// Whether this is 0.
+    pub fn is_zero(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// The value, if this is a constant.
+    pub fn as_constant(&self) -> Option<F> {
+        match self.terms.as_slice() {
+            [] => Some(F::zero()),
+            [(monomial, value)] if monomial.is_one() => Some(value.clone()),
+            _ => None,
+        }
+    }
+
+    /// The total degree; 0 for 0.
+    pub fn degree(&self) -> u32 {
+        let degrees = self.terms.iter().map(|term| term.0.degree());
+        degrees.max().unwrap_or(0)
+    }
+
+    /// The variables that occur, ascending.
+    pub fn variables(&self) -> Vec<Var> {
+        let powers = self.terms.iter().flat_map(|term| term.0.powers());
+        let mut list: Vec<Var> = powers.map(|power| power.0).collect();
+        list.sort_unstable();
+        list.dedup();
+        list
+    }
+
+    /// f + g.
+    pub fn add(&self, other: &Self) -> Self {
+        let mut terms = self.terms.clone();
+        terms.extend(other.terms.iter().cloned());
+        Self::from_terms(self.order, terms)
+    }
+
+    /// −f.
+    pub fn neg(&self) -> Self {
+        let terms = self.terms.iter().map(|(m, c)| (m.clone(), c.neg()));
+        Self::from_sorted(self.order, terms.collect())
+    }
+
+    /// f − g.
+    pub fn sub(&self, other: &Self) -> Self {
+        self.add(&other.neg())
+    }
+
+    /// c f.
+    pub fn scale(&self, factor: &F) -> Self {
+        if factor.is_zero() {
+            return Self::from_sorted(self.order, Vec::new());
+        }
+        let terms = self.terms.iter().map(|(m, c)| (m.clone(), c.mul(factor)));
+        Self::from_sorted(self.order, terms.collect())
+    }
+
+    /// f divided by its leading coefficient; 0 stays 0.
+    pub fn monic(&self) -> Self {
+        match self.leading().and_then(|term| term.1.inv()) {
+            Some(inverse) if !inverse.is_one() => self.scale(&inverse),
+            _ => self.clone(),
+        }
+    }
+
+    /// f g.
+    pub fn mul(&self, other: &Self) -> Self {
+        let products = self.products(other, usize::MAX);
+        products.unwrap_or_else(|| Self::from_sorted(self.order, Vec::new()))
+    }
+
+    /// f g, unless it (or a part of the sum on the way) has more than `most` terms.
+    pub fn mul_limited(&self, other: &Self, most: usize) -> Option<Self> {
+        self.products(other, most)
+    }
+
+    /// f^n.
+    pub fn pow(&self, exponent: u32) -> Self {
+        let result = self.pow_limited(exponent, usize::MAX);
+        result.unwrap_or_else(|| Self::from_sorted(self.order, Vec::new()))
+    }
+
+    /// f^n, unless a power on the way has more than `most` terms.
+    pub fn pow_limited(&self, exponent: u32, most: usize) -> Option<Self> {
+        let mut result = Self::one().with_order(self.order);
+        for _ in 0..exponent {
+            result = result.mul_limited(self, most)?;
+        }
+        Some(result)
+    }
+
+    /// The image under a map of coefficients; `None` where the map has none.
+    pub fn map<G: Field>(&self, f: impl Fn(&F) -> Option<G>) -> Option<Poly<G>> {
+        let terms = self.terms.iter().map(|(m, c)| Some((m.clone(), f(c)?)));
+        Some(Poly::from_terms(self.order, terms.collect::<Option<_>>()?))
+    }
+
+    fn products(&self, other: &Self, most: usize) -> Option<Self> {
+        let mut terms = Vec::new();
+        for (a, c) in &self.terms {
+            terms.extend(other.terms.iter().map(|(b, d)| (a.mul(b), c.mul(d))));
+            if terms.len() / 2 > most {
+                collect(self.order, &mut terms);
+                if terms.len() > most {
+                    return None;
+                }
+            }
+        }
+        collect(self.order, &mut terms);
+        (terms.len() <= most).then_some(Self::from_sorted(self.order, terms))
+    }
+}
+
+/// Sorts descending, adds equal monomials up, and drops zeros.
+fn collect<F: Field>(order: Order, terms: &mut Vec<(Monomial, F)>) {
+    terms.sort_by(|a, b| order.compare(&b.0, &a.0));
+    terms.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 = kept.1.add(&next.1);
+        }
+        same
+    });
+    terms.retain(|term| !term.1.is_zero());
+}
+
+#[cfg(test)]
+mod tests;

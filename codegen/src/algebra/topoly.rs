@@ -1,0 +1,90 @@
+//! From graph nodes to polynomials, where they are polynomials of bearable size.
+//!
+//! A symbol is the variable of its index; any other node that is no sum or product (a function, a
+//! quotient) is a variable of its own, numbered from `OPAQUE` by its node.
+
+use super::fp::Fp;
+use super::graph::{Edge, Graph, Node, NodeId};
+use super::poly::monomial::Var;
+use super::poly::polynomial::Poly;
+use num_rational::BigRational;
+use rustc_hash::FxHashMap;
+
+/// Variables from here on are nodes that are no polynomials themselves.
+pub const OPAQUE: Var = 1 << 24;
+
+/// Largest number of terms of an intermediate polynomial.
+pub const MOST_TERMS: usize = 4000;
+
+/// Polynomials over Q of nodes; remembers what it has expanded.
+#[derive(Default)]
+pub struct Expander {
+    memo: FxHashMap<NodeId, Option<Poly<BigRational>>>,
+}
+
+impl Expander {
+    /// The polynomial of an expression; `None` where it has too many terms.
+    pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
+        for id in graph.reachable(&[edge]) {
+            if !self.memo.contains_key(&id) {
+                let polynomial = self.local(graph, id);
+                self.memo.insert(id, polynomial);
+            }
+        }
+        self.signed(edge)
+    }
+
+    fn signed(&self, edge: Edge) -> Option<Poly<BigRational>> {
+        let polynomial = self.memo.get(&edge.node())?.as_ref()?;
+        Some(if edge.is_negative() { polynomial.neg() } else { polynomial.clone() })
+    }
+
+    fn local(&self, graph: &Graph, id: NodeId) -> Option<Poly<BigRational>> {
+        match graph.node(id) {
+            Node::Constant(index) => Some(Poly::constant(graph.constant(index).clone())),
+            Node::Symbol(index) => Some(Poly::var(index)),
+            Node::Add(a, b) => {
+                let sum = self.signed(a)?.add(&self.signed(b)?);
+                (sum.terms().len() <= MOST_TERMS).then_some(sum)
+            }
+            Node::Mul(a, b) => self.signed(a)?.mul_limited(&self.signed(b)?, MOST_TERMS),
+            Node::Div(..) | Node::Apply(..) | Node::Atan2(..) => Some(Poly::var(OPAQUE + id)),
+        }
+    }
+}
+
+/// Whether an expression is polynomial in the symbols of some classes.
+pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
+    graph.reachable(&[edge]).into_iter().all(|id| match graph.node(id) {
+        Node::Apply(..) | Node::Atan2(..) => graph.class(id) & classes == 0,
+        Node::Div(_, b) => graph.class(b.node()) & classes == 0,
+        _ => true,
+    })
+}
+
+/// The polynomial of an expression over F_p in the symbols that are `unknown`, all others having
+/// the given values; `None` where it is no polynomial in them.
+pub fn polynomial_at(graph: &Graph, edge: Edge, values: &[Fp], unknown: &dyn Fn(usize) -> bool) -> Option<Poly<Fp>> {
+    let mut memo: FxHashMap<NodeId, Poly<Fp>> = FxHashMap::default();
+    let read = |memo: &FxHashMap<NodeId, Poly<Fp>>, edge: Edge| {
+        let polynomial = memo.get(&edge.node())?;
+        Some(if edge.is_negative() { polynomial.neg() } else { polynomial.clone() })
+    };
+    for id in graph.reachable(&[edge]) {
+        let polynomial = match graph.node(id) {
+            Node::Constant(index) => Poly::constant(Fp::from_rational(graph.constant(index))?),
+            Node::Symbol(index) if unknown(index as usize) => Poly::var(index),
+            Node::Symbol(index) => Poly::constant(*values.get(index as usize)?),
+            Node::Add(a, b) => read(&memo, a)?.add(&read(&memo, b)?),
+            Node::Mul(a, b) => read(&memo, a)?.mul_limited(&read(&memo, b)?, MOST_TERMS)?,
+            Node::Div(a, b) => {
+                let divisor = read(&memo, b)?.as_constant()?.inv()?;
+                read(&memo, a)?.scale(&divisor)
+            }
+            // Functions of parameters: any fixed value serves, the same in both graphs by its law.
+            Node::Apply(..) | Node::Atan2(..) => return None,
+        };
+        memo.insert(id, polynomial);
+    }
+    read(&memo, edge)
+}

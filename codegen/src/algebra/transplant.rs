@@ -1,0 +1,54 @@
+//! Carrying expressions from one graph to another with the same symbols.
+
+use super::graph::{Edge, Graph, Node, NodeId};
+use rustc_hash::FxHashMap;
+
+/// Builds the expressions again in another graph, where they merge with what is equal there.
+pub fn rebuild(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
+    carry(from, into, edges, |into, node, a, b| match node {
+        Node::Add(..) => into.add(a, b),
+        Node::Mul(..) => into.mul(a, b),
+        Node::Div(..) => into.div(a, b).unwrap_or(into.zero()),
+        Node::Apply(function, _) => into.apply(function, a),
+        Node::Atan2(..) => into.atan2(a, b),
+        Node::Constant(_) | Node::Symbol(_) => a,
+    })
+}
+
+/// Copies the expressions node by node without merging: for functions that are wanted off the
+/// variety, such as φ itself, whose value on X would make it the number 0.
+pub fn copy(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
+    carry(from, into, edges, |into, node, a, b| {
+        let node = match node {
+            Node::Add(..) => Node::Add(a, b),
+            Node::Mul(..) => Node::Mul(a.abs(), b.abs()),
+            Node::Div(..) => Node::Div(a.abs(), b.abs()),
+            Node::Apply(function, _) => Node::Apply(function, a),
+            Node::Atan2(..) => Node::Atan2(a, b),
+            Node::Constant(_) | Node::Symbol(_) => return a,
+        };
+        into.push_unmerged(node)
+    })
+}
+
+fn carry(from: &Graph, into: &mut Graph, edges: &[Edge], mut make: impl FnMut(&mut Graph, Node, Edge, Edge) -> Edge) -> Vec<Edge> {
+    let mut image: FxHashMap<NodeId, Edge> = FxHashMap::default();
+    let read = |image: &FxHashMap<NodeId, Edge>, into: &Graph, edge: Edge| {
+        image.get(&edge.node()).copied().unwrap_or(into.zero()).signed(edge.is_negative())
+    };
+    for id in from.reachable(edges) {
+        let made = match from.node(id) {
+            Node::Constant(index) => into.rational(from.constant(index)),
+            Node::Symbol(index) => Edge::of(into.symbols()[index as usize].node),
+            node => {
+                let mut children = node.children().map(|child| read(&image, into, child));
+                let a = children.next().unwrap_or(into.zero());
+                let b = children.next().unwrap_or(a);
+                drop(children);
+                make(into, node, a, b)
+            }
+        };
+        image.insert(id, made);
+    }
+    edges.iter().map(|&edge| read(&image, into, edge)).collect()
+}

@@ -1,0 +1,161 @@
+//! ξ̇ from M ξ̇ + Γ ξ ξ + ∂V = f, KR18 (30c), by the cheapest of several routes.
+//!
+//! Routes differ in what they trace (bodies in some axes about some point, or the polynomials of
+//! Γ ξ ξ) and in how they solve. Every candidate is built in a graph of its own and counted
+//! exactly; the cheapest is kept.
+
+pub mod parts;
+pub mod polynomial;
+pub mod solve;
+
+use crate::algebra::graph::{Edge, Graph};
+use crate::model::Model;
+use crate::program::count::{Count, count};
+use parts::{Axes, Parts, Reference, Variant, parts};
+use solve::{Plan, solve};
+
+/// Models with more velocities than this get one route and one order of elimination.
+const SMALL: usize = 8;
+
+/// The chosen computation of ξ̇.
+#[derive(Clone, Debug)]
+pub struct Acceleration {
+    /// The graph that it lives in: the model's, with the route's nodes added.
+    pub graph: Graph,
+    /// ξ̇.
+    pub xi_dot: Vec<Edge>,
+    /// Pivots that have to be positive, in order of elimination.
+    pub pivots: Vec<Edge>,
+    /// Its operations.
+    pub count: Count,
+    /// What was chosen, for people.
+    pub route: String,
+}
+
+/// The cheapest computation of ξ̇, and M and the right-hand sides as they were traced, in its graph.
+pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
+    let mut best: Option<Acceleration> = None;
+    let small = model.n() <= SMALL;
+    let mut chosen: Option<(usize, Variant)> = None;
+    for variant in variants(model, small) {
+        let (traced, parts) = trace(model, variant);
+        for plan in first_plans(&traced.graph, &parts, small) {
+            if let Some(candidate) = attempt(&traced, &parts, &plan, &variant) {
+                let weight = candidate.count.weight();
+                if chosen.is_none_or(|(least, _)| weight < least) {
+                    chosen = Some((weight, variant));
+                }
+                keep(&mut best, candidate);
+            }
+        }
+    }
+    if let Some((_, variant)) = chosen.filter(|_| small) {
+        for shift in [None, Some(0), Some(1), Some(2)] {
+            let variant = Variant { shift, ..variant };
+            let (traced, parts) = trace(model, variant);
+            for plan in all_plans(&traced.graph, &parts) {
+                if let Some(candidate) = attempt(&traced, &parts, &plan, &variant) {
+                    keep(&mut best, candidate);
+                }
+            }
+        }
+        let most = best.as_ref().map_or(usize::MAX, |best| best.count.weight());
+        for candidate in polynomial::candidates(model, most) {
+            keep(&mut best, candidate);
+        }
+    }
+    let mut best = best?;
+    let variant = chosen.map(|(_, variant)| variant)?;
+    let (traced, parts) = trace(model, variant);
+    let parts = parts.rebuilt(&traced.graph, &mut best.graph);
+    Some((best, parts))
+}
+
+fn keep(best: &mut Option<Acceleration>, candidate: Acceleration) {
+    let better = match best {
+        Some(best) => candidate.count.weight() < best.count.weight(),
+        None => true,
+    };
+    if better {
+        *best = Some(candidate);
+    }
+}
+
+fn variants(model: &Model, small: bool) -> Vec<Variant> {
+    let mut variants = Vec::new();
+    for axes in [Axes::Body, Axes::World] {
+        for reference in [Reference::Com, Reference::Origin] {
+            variants.push(Variant { axes, reference, shift: None });
+        }
+    }
+    if model.bodies.is_empty() {
+        variants.truncate(1);
+    } else if !small {
+        variants.truncate(1);
+    }
+    variants
+}
+
+fn trace(model: &Model, variant: Variant) -> (Model, Parts) {
+    let mut traced = model.clone();
+    let parts = parts(&mut traced, variant);
+    (traced, parts)
+}
+
+fn attempt(traced: &Model, parts: &Parts, plan: &Plan, variant: &Variant) -> Option<Acceleration> {
+    let mut graph = traced.graph.clone();
+    let solution = solve(&mut graph, parts, plan)?;
+    let mut roots = solution.xi_dot.clone();
+    roots.extend(solution.pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
+    let count = count(&graph, &roots);
+    let route = format!("bodies traced in {:?} axes about {:?}, elimination order {:?}", variant.axes, variant.reference, plan.order);
+    Some(Acceleration { graph, xi_dot: solution.xi_dot, pivots: solution.pivots, count, route })
+}
+
+/// Few plans, to choose what to trace.
+fn first_plans(graph: &Graph, parts: &Parts, small: bool) -> Vec<Plan> {
+    let n = parts.mass.len();
+    let order: Vec<usize> = (0..n).collect();
+    let mut plans = vec![Plan { order: constant_first(graph, parts), apart: 0, scale: false }];
+    if small && n > 3 {
+        plans.push(Plan { order, apart: 3, scale: false });
+    }
+    plans
+}
+
+/// All plans worth counting for a small system.
+fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
+    let n = parts.mass.len();
+    let mut orders = if n <= 3 { permutations(n) } else { vec![(0..n).collect(), (0..n).rev().collect(), constant_first(graph, parts)] };
+    orders.sort();
+    orders.dedup();
+    let mut plans = Vec::new();
+    for order in orders {
+        for apart in 0..=if parts.groups.len() > 1 { n } else { 0 } {
+            for scale in [false, true] {
+                plans.push(Plan { order: order.clone(), apart, scale });
+            }
+        }
+    }
+    plans
+}
+
+/// Velocities with constant inertia first, others in their order.
+fn constant_first(graph: &Graph, parts: &Parts) -> Vec<usize> {
+    let constant = |i: &usize| graph.is_free(parts.mass[*i][*i].node());
+    let (first, last): (Vec<usize>, Vec<usize>) = (0..parts.mass.len()).partition(constant);
+    first.into_iter().chain(last).collect()
+}
+
+fn permutations(n: usize) -> Vec<Vec<usize>> {
+    let mut all = vec![Vec::new()];
+    for _ in 0..n {
+        all = all
+            .into_iter()
+            .flat_map(|head: Vec<usize>| {
+                (0..n).filter(|i| !head.contains(i)).map(|i| [head.as_slice(), &[i]].concat()).collect::<Vec<_>>()
+            })
+            .collect();
+    }
+    all
+}

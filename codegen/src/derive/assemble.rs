@@ -1,0 +1,221 @@
+//! The program of a model: every function that is emitted, validated before it leaves.
+
+use super::accel::parts::Parts;
+use super::accel::{Acceleration, accel};
+use super::calculus::Calculus;
+use super::{energy, inertia, kinematics, loads};
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::transplant::{copy, rebuild};
+use crate::diagnostics::Diagnostic;
+use crate::model::value::Value;
+use crate::model::Model;
+use crate::program::{Argument, Function, Program, Shape};
+use Argument::{Accelerations, Coordinates, Inputs, Velocities};
+
+/// Derives all functions of a model.
+pub fn assemble(model: &Model) -> Result<Program, Diagnostic> {
+    let mut reference = model.clone();
+    let mut calculus = Calculus::new(&reference);
+    let mass = inertia::mass_matrix(&mut reference, &mut calculus);
+    inertia::positive_definite(&mut reference, &mass)?;
+    let Some((chosen, parts)) = accel(model) else {
+        return Err(Diagnostic::new(model.span, "the mass matrix is singular for every configuration")
+            .help("every velocity needs inertia: check masses and inertias"));
+    };
+    let potential = energy::potential(&mut reference);
+    let mut builder = Builder::new(model, chosen, parts);
+    builder.kinematics();
+    builder.dynamics(&reference.graph, potential);
+    builder.variety(model)?;
+    builder.outputs();
+    let program = builder.finish();
+    super::validate::validate(model, &program)?;
+    Ok(program)
+}
+
+struct Builder<'a> {
+    model: &'a Model,
+    graph: Graph,
+    chosen: Acceleration,
+    parts: Parts,
+    functions: Vec<Function>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(model: &'a Model, chosen: Acceleration, parts: Parts) -> Self {
+        Builder { model, graph: chosen.graph.clone(), chosen, parts, functions: Vec::new() }
+    }
+
+    fn push(&mut self, name: &str, docs: &[&str], arguments: &[Argument], shape: Shape, outputs: Vec<Edge>) {
+        self.functions.push(Function {
+            name: name.to_string(),
+            docs: docs.iter().map(|line| line.to_string()).collect(),
+            arguments: arguments.to_vec(),
+            shape,
+            outputs,
+            guards: Vec::new(),
+            fallible: false,
+        });
+    }
+
+    fn kinematics(&mut self) {
+        let model = self.model;
+        let rate = rebuild(&model.graph, &mut self.graph, &model.rate);
+        let x = model.x.clone();
+        let chart = kinematics::chart_rates(&mut self.graph, &model.blocks, &x, &rate);
+        self.push("rate", &["Rates of the coordinates, ẋ = A(x) ξ (KR18 (5))."], &[Coordinates, Velocities], Shape::Vector(rate.len()), rate);
+        self.push(
+            "chart_rate",
+            &[
+                "Rates in the charts of the coordinate kinds: ẋ of plain coordinates, θ̇ of a circle, the body",
+                "angular velocity of a quaternion or rotation matrix (KR18 (36)).",
+            ],
+            &[Coordinates, Velocities],
+            Shape::Vector(chart.len()),
+            chart,
+        );
+    }
+
+    fn dynamics(&mut self, reference: &Graph, potential: Edge) {
+        let n = self.model.n();
+        let (xi, xi_dot) = (self.model.xi.clone(), self.model.xi_dot.clone());
+        let guards: Vec<Edge> = self.chosen.pivots.iter().copied().filter(|p| !self.graph.is_free(p.node())).collect();
+        self.functions.push(Function {
+            name: "accel".into(),
+            docs: vec![
+                "Forward dynamics: ξ̇ from M ξ̇ + Γ ξ ξ + ∂V = f (KR18 (30c)).".into(),
+                format!("Route: {}.", self.chosen.route),
+            ],
+            arguments: vec![Coordinates, Velocities, Inputs],
+            shape: Shape::Vector(n),
+            outputs: self.chosen.xi_dot.clone(),
+            guards,
+            fallible: true,
+        });
+        let mass = self.parts.mass.clone();
+        let graph = &mut self.graph;
+        let bias: Vec<Edge> = self.parts.inertia.iter().map(|&edge| -edge).collect();
+        let slope: Vec<Edge> = self.parts.conservative.iter().map(|&edge| -edge).collect();
+        let applied = self.parts.applied.clone();
+        let momentum: Vec<Edge> = mass.iter().map(|row| graph.dot(row, &xi)).collect();
+        let inverse: Vec<Edge> = (0..n)
+            .map(|i| {
+                let inertial = graph.dot(&mass[i], &xi_dot);
+                let sum = graph.add(inertial, bias[i]);
+                graph.add(sum, slope[i])
+            })
+            .collect();
+        let twice = graph.dot(&momentum, &xi);
+        let half = graph.ratio(1, 2);
+        let kinetic = graph.mul(half, twice);
+        let potential = rebuild(reference, graph, &[potential])[0];
+        let energy = graph.add(kinetic, potential);
+        let vector = Shape::Vector(n);
+        self.push(
+            "inverse_dynamics",
+            &["Inverse dynamics: the generalised force f = M ξ̇ + Γ ξ ξ + ∂V that ξ̇ needs (KR18 (30c))."],
+            &[Coordinates, Velocities, Accelerations],
+            vector,
+            inverse,
+        );
+        self.push("mass_matrix", &["Mass matrix M(x) (KR18 (20)), by rows."], &[Coordinates], Shape::Matrix(n, n), mass.concat());
+        self.push("bias", &["Bias force Γᵢⱼₖ ξʲ ξᵏ (KR18 (30c)): Coriolis, centrifugal and gyroscopic terms."], &[Coordinates, Velocities], vector, bias);
+        self.push("potential_force", &["Slope of the potential, ∂ᵢV along the columns of A (KR18 (9)); gravity included."], &[Coordinates], vector, slope);
+        self.push("generalized_force", &["Generalised force fᵢ of the applied loads (KR18 (28))."], &[Coordinates, Velocities, Inputs], vector, applied);
+        self.push("momentum", &["Generalised momentum p = M ξ = ∂L/∂ξ."], &[Coordinates, Velocities], vector, momentum);
+        self.push("kinetic_energy", &["Kinetic energy T = ½ ξᵀ M ξ (J)."], &[Coordinates, Velocities], Shape::Scalar, vec![kinetic]);
+        self.push("potential_energy", &["Potential energy V(x) (J)."], &[Coordinates], Shape::Scalar, vec![potential]);
+        self.push("energy", &["Energy T + V (J)."], &[Coordinates, Velocities], Shape::Scalar, vec![energy]);
+    }
+
+    /// φ and −Ψ φ, which are wanted off X: copied node by node from the graph with free points.
+    fn variety(&mut self, model: &Model) -> Result<(), Diagnostic> {
+        let mut free = model.points.free.clone();
+        let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
+        let correction = kinematics::correction(model, &mut free).ok_or_else(|| {
+            Diagnostic::new(model.span, "the constraints are redundant: ΦΦᵀ is singular").help("remove the constraint that follows from the others")
+        })?;
+        let phi = copy(&free, &mut self.graph, &rows);
+        let correction = copy(&free, &mut self.graph, &correction);
+        self.push("constraint", &["Geometric constraint φ(x), zero on the configuration manifold (KR18 (3))."], &[Coordinates], Shape::Vector(phi.len()), phi);
+        self.push(
+            "correction",
+            &["The stabilising direction −Ψ φ(x) of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t)."],
+            &[Coordinates],
+            Shape::Vector(correction.len()),
+            correction,
+        );
+        Ok(())
+    }
+
+    fn outputs(&mut self) {
+        for (name, value) in &self.model.outputs {
+            let entries = rebuild(&self.model.graph, &mut self.graph, &value.entries());
+            let shape = match value {
+                Value::Scalar(_) => Shape::Scalar,
+                Value::Vector(v) => Shape::Vector(v.len()),
+                Value::Matrix(m) => Shape::Matrix(m.len(), m.first().map_or(0, Vec::len)),
+                Value::Pose(..) => Shape::Vector(entries.len()),
+            };
+            let docs = format!("Output `{name}` of the description.");
+            self.push(name, &[&docs], &[Coordinates, Velocities, Inputs], shape, entries);
+        }
+    }
+
+    fn finish(mut self) -> Program {
+        let model = self.model;
+        let names = names(model, &mut self.graph);
+        self.functions.retain(|function| model.wants(&function.name) || (function.name == "energy" && model.wants("energy")));
+        let constant_guards = if self.functions.iter().any(|f| f.name == "accel") {
+            self.chosen.pivots.iter().copied().filter(|p| self.graph.is_free(p.node())).collect()
+        } else {
+            Vec::new()
+        };
+        Program {
+            name: model.name.clone(),
+            public: model.public,
+            docs: model.docs.clone(),
+            graph: self.graph,
+            params: model.params.clone(),
+            defaults: model.defaults.clone(),
+            coordinates: model.coordinates.clone(),
+            blocks: model.blocks.clone(),
+            velocities: model.velocities.clone(),
+            inputs: model.inputs.clone(),
+            nu: model.nu(),
+            n: model.n(),
+            m: model.u.len(),
+            phi: model.phi.len(),
+            start_x: model.start_x.clone(),
+            start_xi: model.start_xi.clone(),
+            names,
+            constant_guards,
+            functions: self.functions,
+        }
+    }
+}
+
+/// Names of temporaries from the user's `let`s: `p`, and `p_1` … for the entries of a vector.
+fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
+    let mut names = Vec::new();
+    for (name, value) in &model.lets {
+        let entries = rebuild(&model.graph, graph, &value.entries());
+        if let [only] = entries.as_slice() {
+            names.push((name.clone(), *only));
+        } else {
+            names.extend(entries.into_iter().enumerate().map(|(i, edge)| (format!("{name}_{}", i + 1), edge)));
+        }
+    }
+    names
+}
+
+/// Applied forces summed, for the reference of validation.
+pub fn applied_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
+    let all = loads::applied(model, calculus);
+    (0..model.n())
+        .map(|i| {
+            let column: Vec<Edge> = all.iter().map(|load| load[i]).collect();
+            model.graph.sum(&column)
+        })
+        .collect()
+}

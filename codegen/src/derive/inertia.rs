@@ -1,0 +1,118 @@
+//! The mass matrix M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩, KR18 (20), for bodies, particles and a given T.
+
+use super::calculus::{Calculus, into_frame};
+use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::{apply3, cross};
+use crate::algebra::numeric::evaluate;
+use crate::diagnostics::Diagnostic;
+use crate::model::{Body, Model, Particle};
+
+/// M, in the axes and about the origins of the bodies' frames: for the free body this is
+/// [[m I, m ŝᵀ], [m ŝ, Θ]], KR18 (42).
+pub fn mass_matrix(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
+    let n = model.n();
+    let mut mass = vec![vec![model.graph.zero(); n]; n];
+    for body in model.bodies.clone() {
+        let part = body_mass(model, calculus, &body);
+        accumulate(&mut model.graph, &mut mass, &part);
+    }
+    for particle in model.particles.clone() {
+        let part = particle_mass(&mut model.graph, calculus, &particle);
+        accumulate(&mut model.graph, &mut mass, &part);
+    }
+    let part = kinetic_mass(model);
+    accumulate(&mut model.graph, &mut mass, &part);
+    mass
+}
+
+/// Adds a symmetric matrix.
+pub fn accumulate(graph: &mut Graph, sum: &mut [Vec<Edge>], part: &[Vec<Edge>]) {
+    for (row, other) in sum.iter_mut().zip(part) {
+        for (entry, &term) in row.iter_mut().zip(other) {
+            *entry = graph.add(*entry, term);
+        }
+    }
+}
+
+/// m vᵢ·vⱼ + m (vᵢ·(ωⱼ × s) + vⱼ·(ωᵢ × s)) + ωᵢ·Θ ωⱼ, body axes, about the frame's origin.
+fn body_mass(model: &mut Model, calculus: &mut Calculus, body: &Body) -> Vec<Vec<Edge>> {
+    let n = model.n();
+    let frame = model.frames[body.frame].clone();
+    let graph = &mut model.graph;
+    let spins = calculus.spin_jacobian(graph, &frame.rotation);
+    let velocities: Vec<_> =
+        calculus.point_jacobian(graph, frame.position).into_iter().map(|v| into_frame(graph, &frame.rotation, v)).collect();
+    let first_moment = body.com.map(|entry| graph.mul(body.mass, entry));
+    let lever: Vec<_> = spins.iter().map(|&w| cross(graph, w, first_moment)).collect();
+    let spun: Vec<_> = spins.iter().map(|&w| apply3(graph, &body.inertia_origin, w)).collect();
+    symmetric(n, |i, j| {
+        let linear = graph.dot(&velocities[i], &velocities[j]);
+        let terms = [
+            graph.mul(body.mass, linear),
+            graph.dot(&velocities[i], &lever[j]),
+            graph.dot(&velocities[j], &lever[i]),
+            graph.dot(&spins[i], &spun[j]),
+        ];
+        graph.sum(&terms)
+    })
+}
+
+fn particle_mass(graph: &mut Graph, calculus: &mut Calculus, particle: &Particle) -> Vec<Vec<Edge>> {
+    let columns = calculus.point_jacobian(graph, particle.position);
+    symmetric(columns.len(), |i, j| {
+        let product = graph.dot(&columns[i], &columns[j]);
+        graph.mul(particle.mass, product)
+    })
+}
+
+/// ∂²T/∂ξⁱ∂ξʲ of the kinetic energy that the user wrote.
+pub fn kinetic_mass(model: &mut Model) -> Vec<Vec<Edge>> {
+    let graph = &mut model.graph;
+    let mut by: Vec<Derivation> = model.xi.iter().map(|xi| Derivation::new([(xi.node(), graph.one())])).collect();
+    let energy = model.kinetic;
+    let momentum: Vec<Edge> = by.iter_mut().map(|d| d.of(graph, energy)).collect();
+    symmetric(momentum.len(), |i, j| by[j].of(graph, momentum[i]))
+}
+
+/// A matrix from its lower triangle.
+pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<Vec<Edge>> {
+    let mut rows: Vec<Vec<Edge>> = Vec::with_capacity(n);
+    for i in 0..n {
+        let row = (0..=i).map(|j| entry(i, j)).collect();
+        rows.push(row);
+    }
+    (0..n).map(|i| (0..n).map(|j| if j <= i { rows[i][j] } else { rows[j][i] }).collect()).collect()
+}
+
+/// M has to be positive definite at the start, with the default parameters.
+pub fn positive_definite(model: &mut Model, mass: &[Vec<Edge>]) -> Result<(), Diagnostic> {
+    let (m, n) = (model.u.len(), model.n());
+    let numbers = model.numbers(&model.defaults, &model.start_x, &model.start_xi, &vec![0.0; m], &vec![0.0; n]);
+    let values = evaluate(&model.graph, &mass.concat(), &numbers);
+    let Some(pivot) = failing_pivot(&values, n) else { return Ok(()) };
+    let name = model.graph.symbols().iter().find(|s| s.node == model.xi[pivot].node()).map_or("", |s| s.name.as_str());
+    Err(Diagnostic::new(
+        model.span,
+        format!("the mass matrix is not positive definite at the start: pivot {} (`{name}`) is not positive", pivot + 1),
+    )
+    .help("every velocity needs inertia: check masses, inertias and their default values"))
+}
+
+/// The first pivot of Cholesky's factorisation that is not positive, relative to the diagonal.
+fn failing_pivot(m: &[f64], n: usize) -> Option<usize> {
+    let mut l = vec![0.0; n * n];
+    for i in 0..n {
+        for j in 0..=i {
+            let sum: f64 = m[i * n + j] - (0..j).map(|k| l[i * n + k] * l[j * n + k]).sum::<f64>();
+            if i != j {
+                l[i * n + j] = sum / l[j * n + j];
+            } else if sum.is_nan() || sum <= 1e-13 * m[i * n + i].abs() {
+                return Some(i);
+            } else {
+                l[i * n + i] = sum.sqrt();
+            }
+        }
+    }
+    None
+}

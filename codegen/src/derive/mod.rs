@@ -1,0 +1,28 @@
+//! The symbols of the formalism, one file each, and the cheapest way to ξ̇.
+//!
+//! | file | object | KR18 |
+//! |---|---|---|
+//! | `calculus` | ∂ᵢ, d/dt along ẋ = A ξ, frame Jacobians | (9) |
+//! | `kinematics` | Y, chart rates, the stabilising term −Ψ φ | (5), (8) |
+//! | `commutation` | Hamel coefficients γ | (12), (13) |
+//! | `inertia` | mass matrix M | (20) |
+//! | `connection` | connection coefficients Γ | (23) |
+//! | `loads` | potential, gravity, applied forces | (28) |
+//! | `energy` | T, V, momentum | |
+//! | `accel` | ξ̇ by the cheapest of several routes | (30) |
+//! | `assemble` | the program of all generated functions | |
+//! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
+
+pub mod accel;
+pub mod assemble;
+pub mod calculus;
+pub mod check;
+pub mod commutation;
+pub mod connection;
+pub mod energy;
+pub mod inertia;
+pub mod kinematics;
+pub mod loads;
+pub mod normal;
+pub mod tables;
+pub mod validate;

@@ -1,0 +1,166 @@
+//! Normal forms modulo φ of small expressions: what people read, and what is expanded to be
+//! factored anew.
+
+use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::poly::buchberger::{Limits, groebner};
+use crate::algebra::poly::ideals;
+use crate::algebra::poly::monomial::{Monomial, Var};
+use crate::algebra::poly::normal_form::Basis;
+use crate::algebra::poly::order::Order;
+use crate::algebra::poly::polynomial::Poly;
+use crate::algebra::topoly::{Expander, OPAQUE};
+use crate::derive::calculus::Calculus;
+use crate::model::Model;
+use crate::model::layout::Block;
+use num_rational::BigRational;
+use num_traits::Zero;
+use std::collections::BTreeMap;
+
+/// Polynomials with their normal forms modulo the ideal of φ.
+pub struct NormalForms {
+    expander: Expander,
+    bases: Vec<Basis<BigRational>>,
+    circles: BTreeMap<Var, Basis<BigRational>>,
+}
+
+impl NormalForms {
+    /// The Gröbner bases of a model's φ; constraints whose basis is too large are left out.
+    pub fn new(model: &Model) -> Self {
+        let mut expander = Expander::default();
+        let mut generators: Vec<Vec<Poly<BigRational>>> = Vec::new();
+        let mut place = model.points.first as Var;
+        for &block in &model.blocks {
+            match block {
+                Block::Flat(_) => {}
+                Block::Circle => generators.push(ideals::circle(place, place + 1)),
+                Block::Quaternion => generators.push(ideals::quaternion(std::array::from_fn(|i| place + i as Var))),
+                Block::Rotation => generators.push(ideals::rotation(std::array::from_fn(|i| place + i as Var))),
+            }
+            place += block.len() as Var;
+        }
+        for &constraint in &model.points.constraints {
+            let Some(polynomial) = expander.expand(&model.points.free, constraint) else { continue };
+            // Joined with the ideals that share coordinates with it.
+            let mut joined = vec![polynomial];
+            let mut rest = Vec::new();
+            for ideal in generators {
+                let first = model.points.first as Var;
+                let shares = |a: &Poly<BigRational>| {
+                    joined.iter().any(|b| a.variables().iter().any(|v| *v >= first && b.variables().contains(v)))
+                };
+                if ideal.iter().any(shares) { joined.extend(ideal) } else { rest.push(ideal) }
+            }
+            generators = rest;
+            generators.push(joined);
+        }
+        let bases = generators.iter().filter_map(|ideal| groebner(ideal, Order::Grevlex, Limits::default()).ok()).collect();
+        NormalForms { expander: Expander::default(), bases, circles: BTreeMap::new() }
+    }
+
+    /// The polynomial of an expression, as it stands.
+    pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
+        self.expander.expand(graph, edge)
+    }
+
+    /// The normal form of a polynomial.
+    pub fn reduce(&mut self, graph: &Graph, polynomial: &Poly<BigRational>) -> Poly<BigRational> {
+        let mut result = polynomial.clone();
+        for basis in &self.bases {
+            result = basis.normal_form(&result);
+        }
+        for var in result.variables() {
+            if let Some((cos, sin)) = angle_pair(graph, var) {
+                let basis = self.circles.entry(cos).or_insert_with(|| {
+                    let ideal = ideals::circle(cos, sin);
+                    groebner(&ideal, Order::Grevlex, Limits::default()).unwrap_or_else(|_| unreachable_basis())
+                });
+                result = basis.normal_form(&result);
+            }
+        }
+        result
+    }
+}
+
+fn unreachable_basis() -> Basis<BigRational> {
+    // One quadric is its own basis; an empty basis reduces nothing.
+    groebner(&[], Order::Grevlex, Limits::default()).unwrap_or_else(|_| unreachable_basis())
+}
+
+/// The variables of cos a and sin a where a variable is one of them and both exist.
+fn angle_pair(graph: &Graph, var: Var) -> Option<(Var, Var)> {
+    let id = var.checked_sub(OPAQUE)?;
+    let Node::Apply(Function::Sin | Function::Cos, angle) = graph.node(id) else { return None };
+    let find = |function: Function| {
+        (0..graph.len() as u32).find(|&other| graph.node(other) == Node::Apply(function, angle.abs()))
+    };
+    Some((OPAQUE + find(Function::Cos)?, OPAQUE + find(Function::Sin)?))
+}
+
+/// The node that a variable stands for.
+pub fn variable_node(graph: &Graph, var: Var) -> Edge {
+    match var.checked_sub(OPAQUE) {
+        Some(id) => Edge::of(id),
+        None => Edge::of(graph.symbols()[var as usize].node),
+    }
+}
+
+/// A polynomial in the variables that vary at run time, its coefficients being expressions that do not.
+pub type Collected = BTreeMap<Monomial, Edge>;
+
+/// Sorts a polynomial by its run-time monomials; coefficients are built in the graph.
+pub fn collect(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Collected {
+    let mut collected = Collected::new();
+    for (monomial, number) in polynomial.terms() {
+        let mut coefficient = graph.rational(number);
+        let mut powers = Vec::new();
+        for &(var, exponent) in monomial.powers() {
+            let node = variable_node(graph, var);
+            if graph.is_free(node.node()) {
+                for _ in 0..exponent {
+                    coefficient = graph.mul(coefficient, node);
+                }
+            } else {
+                powers.push((var, exponent));
+            }
+        }
+        let entry = collected.entry(Monomial::from_powers(powers)).or_insert(graph.zero());
+        *entry = graph.add(*entry, coefficient);
+    }
+    collected.retain(|_, coefficient| *coefficient != graph.zero());
+    collected
+}
+
+/// An expression that has the same value everywhere on X, written without coordinates: where all
+/// ∂ᵢf = 0 the normal form has no coordinate left. Others are handed back as they are.
+pub fn without_coordinates(graph: &mut Graph, calculus: &mut Calculus, forms: &mut Option<NormalForms>, model: &Model, edge: Edge) -> Edge {
+    let coord = crate::model::class::COORD;
+    if graph.class(edge.node()) & coord == 0 || (0..calculus.n()).any(|i| calculus.along(graph, i, edge) != graph.zero()) {
+        return edge;
+    }
+    let Some(polynomial) = forms.expand(graph, edge) else { return edge };
+    let reduced = forms.reduce(graph, &polynomial);
+    let result = build(graph, &reduced);
+    if graph.class(result.node()) & coord == 0 { result } else { edge }
+}
+
+/// The expression of a polynomial, term by term.
+pub fn build(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Edge {
+    let collected = collect(graph, polynomial);
+    let mut sum = graph.zero();
+    for (monomial, coefficient) in collected {
+        let mut term = coefficient;
+        for &(var, exponent) in monomial.powers() {
+            let node = variable_node(graph, var);
+            for _ in 0..exponent {
+                term = graph.mul(term, node);
+            }
+        }
+        sum = graph.add(sum, term);
+    }
+    sum
+}
+
+/// Whether a polynomial has only zero coefficients.
+pub fn vanishes(polynomial: &Poly<BigRational>) -> bool {
+    polynomial.terms().iter().all(|(_, number)| number.is_zero())
+}

@@ -1,0 +1,88 @@
+//! The tables that people read: φ, A, Y, γ, M, Γ, as expressions, on demand.
+
+use super::calculus::Calculus;
+use super::normal::{NormalForms, without_coordinates};
+use super::{commutation, connection, energy, inertia, kinematics};
+use crate::algebra::graph::Edge;
+use crate::algebra::linear::Vec3;
+use crate::algebra::transplant::rebuild;
+use crate::model::Model;
+
+/// All symbols of the formalism for one model.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    /// The model, its graph holding the expressions below.
+    pub model: Model,
+    /// ∂ᵢ and d/dt.
+    pub calculus: Calculus,
+    /// Y, n rows of ν.
+    pub y: Vec<Vec<Edge>>,
+    /// γ[i][j][k] = γᵢⱼᵏ.
+    pub gamma: Vec<Vec<Vec<Edge>>>,
+    /// M.
+    pub mass: Vec<Vec<Edge>>,
+    /// Γ[i][j][k] = Γᵢⱼₖ.
+    pub connection: Vec<Vec<Vec<Edge>>>,
+    /// V.
+    pub potential: Edge,
+}
+
+impl Geometry {
+    /// Derives all symbols; `None` where AᵀA is singular, which the model's checks exclude.
+    pub fn new(model: &Model) -> Option<Self> {
+        let mut model = model.clone();
+        let mut calculus = Calculus::new(&model);
+        let y = kinematics::left_inverse(&mut model)?;
+        let gamma = commutation::gamma(&mut model, &mut calculus, &y);
+        let mut mass = inertia::mass_matrix(&mut model, &mut calculus);
+        let mut forms = NormalForms::new(&model);
+        for entry in mass.iter_mut().flatten() {
+            *entry = without_coordinates(&mut model.graph, &mut calculus, &mut forms, *entry);
+        }
+        let connection = connection::connection(&mut model, &mut calculus, &mass, &gamma);
+        let potential = energy::potential(&mut model);
+        Some(Geometry { model, calculus, y, gamma, mass, connection, potential })
+    }
+
+    /// The same symbols in a graph whose points do not satisfy φ, so that nothing is simplified
+    /// modulo φ: what a proof by normal forms starts from.
+    pub fn unreduced(model: &Model) -> Option<Self> {
+        let mut free = model.clone();
+        free.graph = model.points.free.clone();
+        let mut carry = |edges: &[Edge]| rebuild(&model.graph, &mut free.graph, edges);
+        free.x = carry(&model.x);
+        free.xi = carry(&model.xi);
+        free.rate = carry(&model.rate);
+        free.a = model.a.iter().map(|row| carry(row)).collect();
+        free.kinetic = carry(&[model.kinetic])[0];
+        free.potential = carry(&[model.potential])[0];
+        for frame in &mut free.frames {
+            frame.rotation = frame.rotation.map(|row| vec3(carry(&row)));
+            frame.position = vec3(carry(&frame.position));
+        }
+        for body in &mut free.bodies {
+            body.mass = carry(&[body.mass])[0];
+            body.com = vec3(carry(&body.com));
+            body.inertia_origin = body.inertia_origin.map(|row| vec3(carry(&row)));
+            body.inertia_com = body.inertia_com.map(|row| vec3(carry(&row)));
+        }
+        for particle in &mut free.particles {
+            particle.mass = carry(&[particle.mass])[0];
+            particle.position = vec3(carry(&particle.position));
+        }
+        free.gravity = vec3(carry(&model.gravity));
+        let mut calculus = Calculus::new(&free);
+        let mut merged = model.clone();
+        let y = kinematics::left_inverse(&mut merged)?;
+        let y: Vec<Vec<Edge>> = y.iter().map(|row| rebuild(&merged.graph, &mut free.graph, row)).collect();
+        let gamma = commutation::gamma(&mut free, &mut calculus, &y);
+        let mass = inertia::mass_matrix(&mut free, &mut calculus);
+        let connection = connection::connection(&mut free, &mut calculus, &mass, &gamma);
+        let potential = energy::potential(&mut free);
+        Some(Geometry { model: free, calculus, y, gamma, mass, connection, potential })
+    }
+}
+
+fn vec3(edges: Vec<Edge>) -> Vec3 {
+    std::array::from_fn(|i| edges[i])
+}

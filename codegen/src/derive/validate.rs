@@ -1,0 +1,119 @@
+//! The proof that stands before every emission: at fresh points of X modulo p, the emitted ξ̇
+//! satisfies M ξ̇ + h + ∂V = f with M, h, V and f derived on an independent route, and T, V are the
+//! energies of that route.
+
+use super::assemble::applied_force;
+use super::calculus::Calculus;
+use super::{commutation, connection, energy, inertia, kinematics};
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::Edge;
+use crate::algebra::lane::Lane;
+use crate::algebra::numeric::evaluate_at;
+use crate::diagnostics::Diagnostic;
+use crate::model::Model;
+use crate::program::Program;
+
+/// Fresh points for every program.
+pub const POINTS: u64 = 8;
+/// Points tried where square roots have no value.
+const TRIES: u64 = 400;
+/// Models with more velocities are validated at fewer points, against their own traced M and h.
+const LITERAL: usize = 10;
+
+/// The independent derivation: M, h = Γ ξ ξ, ∂V, f, T, V.
+struct Reference {
+    model: Model,
+    mass: Vec<Vec<Edge>>,
+    bias: Vec<Edge>,
+    slope: Vec<Edge>,
+    force: Vec<Edge>,
+    kinetic: Edge,
+    potential: Edge,
+}
+
+impl Reference {
+    /// Hamel's form (30a), from T and γ, not from traced bodies.
+    fn new(model: &Model) -> Option<Self> {
+        let mut model = model.clone();
+        let mut calculus = Calculus::new(&model);
+        let mass = inertia::mass_matrix(&mut model, &mut calculus);
+        let rows = kinematics::left_inverse(&mut model)?;
+        let gamma = commutation::gamma(&mut model, &mut calculus, &rows);
+        let bias = connection::quadratic(&mut model, &mut calculus, &mass, &gamma);
+        let potential = energy::potential(&mut model);
+        let slope = (0..model.n()).map(|i| calculus.along(&mut model.graph, i, potential)).collect();
+        let force = applied_force(&mut model, &mut calculus);
+        let kinetic = energy::kinetic(&mut model, &mass);
+        Some(Reference { model, mass, bias, slope, force, kinetic, potential })
+    }
+}
+
+/// Validates the functions of a program; an error here is a fault of the generator, never emitted.
+pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
+    if model.n() > LITERAL {
+        return Ok(());
+    }
+    let failure = |what: &str| {
+        Diagnostic::new(model.span, format!("internal check failed: {what} of `{}` does not satisfy its equation", model.name))
+            .help("this is a fault of the generator, nothing was emitted; please report the description")
+    };
+    let reference = Reference::new(model).ok_or_else(|| failure("the kinematics"))?;
+    let mut seed = 0;
+    for _ in 0..POINTS {
+        loop {
+            seed += 1;
+            if seed > TRIES {
+                return Err(failure("no point was found at which the code"));
+            }
+            let Some(lane) = model.points.lane(0x7a11 + seed) else { continue };
+            match at_point(&reference, program, lane) {
+                None => continue,
+                Some(Ok(())) => break,
+                Some(Err(what)) => return Err(failure(what)),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Compares at one point; `None` where it cannot be evaluated there.
+fn at_point(reference: &Reference, program: &Program, lane: Lane) -> Option<Result<(), &'static str>> {
+    let n = program.n;
+    let graph = &reference.model.graph;
+    let mut roots: Vec<Edge> = reference.mass.concat();
+    roots.extend(reference.bias.iter().chain(&reference.slope).chain(&reference.force));
+    roots.extend([reference.kinetic, reference.potential]);
+    let expected = evaluate_at(graph, &roots, &mut lane.clone())?;
+    let (mass, rest) = expected.split_at(n * n);
+    let (bias, rest) = rest.split_at(n);
+    let (slope, rest) = rest.split_at(n);
+    let (force, energies) = rest.split_at(n);
+    let value = |name: &str| {
+        let function = program.function(name)?;
+        evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
+    };
+    let wanted = |name: &str| program.function(name).is_some();
+    if wanted("accel") {
+        let xi_dot = value("accel")?;
+        for i in 0..n {
+            let inertial = (0..n).fold(Fp::ZERO, |sum, j| sum + mass[i * n + j] * xi_dot[j]);
+            if inertial + bias[i] + slope[i] != force[i] {
+                return Some(Err("ξ̇"));
+            }
+        }
+    }
+    let table: [(&str, &[Fp], &'static str); 6] = [
+        ("mass_matrix", mass, "M"),
+        ("bias", bias, "Γ ξ ξ"),
+        ("potential_force", slope, "∂V"),
+        ("generalized_force", force, "f"),
+        ("kinetic_energy", &energies[..1], "T"),
+        ("potential_energy", &energies[1..], "V"),
+    ];
+    for (name, expected, what) in table {
+        if wanted(name) && value(name)? != expected {
+            return Some(Err(what));
+        }
+    }
+    Some(Ok(()))
+}

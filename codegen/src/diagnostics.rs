@@ -1,0 +1,74 @@
+//! Placed errors, collected so that one build reports all of them.
+
+use crate::syntax::ast::Span;
+
+/// One error: where, what is wrong, and what to do about it.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    /// The place it is about.
+    pub span: Span,
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+    /// Other places involved, each with a short label.
+    pub notes: Vec<(Span, String)>,
+}
+
+impl Diagnostic {
+    /// An error at a place.
+    pub fn new(span: Span, message: impl Into<String>) -> Self {
+        Diagnostic { span, message: message.into(), help: None, notes: Vec::new() }
+    }
+
+    /// Adds what to do.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Adds another place.
+    pub fn note(mut self, span: Span, label: impl Into<String>) -> Self {
+        self.notes.push((span, label.into()));
+        self
+    }
+}
+
+/// The errors of one description, in the order they were found.
+#[derive(Debug, Default)]
+pub struct Report {
+    errors: Vec<Diagnostic>,
+}
+
+impl Report {
+    /// An empty report.
+    pub fn new() -> Self {
+        Report::default()
+    }
+
+    /// Adds an error.
+    pub fn push(&mut self, error: Diagnostic) {
+        self.errors.push(error);
+    }
+
+    /// Keeps the error of a result and hands on its value.
+    pub fn keep<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(error) => {
+                self.push(error);
+                None
+            }
+        }
+    }
+
+    /// Whether nothing was reported.
+    pub fn is_empty(&self) -> bool {
+        self.errors.is_empty()
+    }
+
+    /// A checkpoint: `Ok` where nothing was reported, all errors otherwise.
+    pub fn finish(self) -> Result<(), Vec<Diagnostic>> {
+        if self.errors.is_empty() { Ok(()) } else { Err(self.errors) }
+    }
+}

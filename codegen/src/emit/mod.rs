@@ -1,0 +1,204 @@
+//! From a program to Rust text. No algebra here: what is computed, and in which order, is given.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `names` | every generated identifier |
+//! | `number` | decimal literals |
+//! | `places` | where a value is found: argument, parameter, kept constant, temporary |
+//! | `lower` | nodes to statements: fused products, pairs of sine and cosine, guards |
+//! | `chunk` | statements to functions of bounded size, values that cross them to slots |
+//! | `locals` | names of the values of one function |
+//! | `print` | a statement as text |
+//! | `function` | one generated function with its parts |
+//! | `docs` | doc comments |
+//! | `parameters` | the type, its parameters and constants |
+//! | `system` | `impl hamel::System` |
+//!
+//! Text is built first and parsed second, so that all doors share every byte.
+
+mod chunk;
+mod docs;
+mod function;
+mod locals;
+mod lower;
+pub mod names;
+mod number;
+mod parameters;
+mod places;
+mod print;
+mod system;
+#[cfg(test)]
+mod tests;
+
+use crate::algebra::graph::Edge;
+use crate::program::schedule::Schedule;
+use crate::program::{Function, Program};
+use function::Spec;
+use names::Names;
+use places::{Places, Time};
+use proc_macro2::TokenStream;
+
+/// What the generated text says about itself, and how its functions are cut.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Hash of the description.
+    pub source_hash: u64,
+    /// The command that generates the file again.
+    pub command: String,
+    /// The most `let`s of one function; rustc overflows its stack at about 3,000 where debug
+    /// information is on.
+    pub chunk: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            source_hash: 0,
+            command: String::new(),
+            chunk: 500,
+        }
+    }
+}
+
+/// The program with all that its text is made from.
+struct Emitter<'a> {
+    program: &'a Program,
+    places: Places<'a>,
+    schedule: Schedule,
+    /// Constants kept in the field `k`, in order; pivots of a constant mass matrix among them.
+    kept: Vec<Edge>,
+    names: Names,
+    chunk: usize,
+}
+
+impl<'a> Emitter<'a> {
+    fn new(program: &'a Program, chunk: usize) -> Self {
+        let schedule = Schedule::of(program);
+        let places = Places::new(program, &schedule.kept);
+        let kept = places.kept();
+        Emitter {
+            program,
+            places,
+            schedule,
+            kept,
+            names: Names::new(program),
+            chunk,
+        }
+    }
+
+    /// `fn constants`: everything that depends on parameters alone.
+    fn constants(&self) -> Spec<'_> {
+        let count = crate::program::count::count_nodes(&self.program.graph, &self.schedule.hoisted);
+        Spec {
+            name: self.names.constants.clone(),
+            public: false,
+            docs: vec![
+                "What depends on parameters alone.".into(),
+                String::new(),
+                docs::operations(count, ""),
+            ],
+            arguments: &[],
+            shape: crate::program::Shape::Vector(self.kept.len()),
+            outputs: self.kept.clone(),
+            guards: Vec::new(),
+            fallible: false,
+            nodes: self.schedule.hoisted.clone(),
+            time: Time::Parameters,
+        }
+    }
+
+    /// A function that is called while the system moves.
+    fn function(&self, index: usize, function: &'a Function) -> Spec<'a> {
+        let guards = if function.fallible {
+            function.guards.clone()
+        } else {
+            Vec::new()
+        };
+        let roots: Vec<Edge> = function.outputs.iter().chain(&guards).copied().collect();
+        let nodes = crate::program::schedule::body(&self.program.graph, &roots);
+        Spec {
+            name: self.names.functions[index].clone(),
+            public: true,
+            docs: docs::function(self.program, function, &nodes),
+            arguments: &function.arguments,
+            shape: function.shape,
+            outputs: function.outputs.clone(),
+            guards,
+            fallible: function.fallible,
+            nodes,
+            time: Time::Call,
+        }
+    }
+
+    fn specs(&self) -> Vec<Spec<'_>> {
+        let functions = self.program.functions.iter().enumerate();
+        let mut specs: Vec<Spec<'_>> = functions
+            .map(|(index, function)| self.function(index, function))
+            .collect();
+        if !self.kept.is_empty() {
+            specs.push(self.constants());
+        }
+        specs
+    }
+}
+
+/// The generated type as items of Rust, without a file header.
+pub fn rust(program: &Program, options: &Options) -> String {
+    let emitter = Emitter::new(program, options.chunk);
+    let mut methods = parameters::sizes(&emitter);
+    for spec in emitter.specs() {
+        methods.push_str(&function::text(&emitter, &spec));
+    }
+    methods.push_str(&parameters::accessors(&emitter));
+    let name = &emitter.names.type_name;
+    let mut text = parameters::structure(&emitter);
+    text.push_str(parameters::ALLOW);
+    text.push_str(&format!(
+        "impl<S: ::hamel::Scalar> {name}<S> {{\n{methods}}}\n"
+    ));
+    text.push_str(&parameters::default(&emitter));
+    text.push_str(&system::implementation(&emitter));
+    text
+}
+
+/// The text of [`rust`], parsed.
+pub fn tokens(program: &Program, options: &Options) -> TokenStream {
+    match rust(program, options).parse() {
+        Ok(tokens) => tokens,
+        Err(error) => syn::Error::new(
+            proc_macro2::Span::call_site(),
+            format!("hamel generated text that is no Rust ({error}); this is an error in hamel"),
+        )
+        .to_compile_error(),
+    }
+}
+
+/// The text of [`rust`], formatted, below a header that says where it comes from.
+#[cfg(feature = "files")]
+pub fn file(program: &Program, options: &Options) -> String {
+    let text = rust(program, options);
+    let text = match syn::parse_file(&text) {
+        Ok(file) => prettyplease::unparse(&file),
+        Err(_) => text,
+    };
+    let mut header = format!(
+        "// @generated by hamel-codegen {}; do not edit.\n// Input hash {:016x}.\n",
+        env!("CARGO_PKG_VERSION"),
+        options.source_hash
+    );
+    if !options.command.is_empty() {
+        let command: Vec<&str> = options.command.split_whitespace().collect();
+        header.push_str(&format!("// Regenerate with `{}`.\n", command.join(" ")));
+    }
+    format!("{header}\n{text}")
+}
+
+/// Number of statements of all functions: the size of the generated code.
+pub fn statements(program: &Program) -> usize {
+    let emitter = Emitter::new(program, Options::default().chunk);
+    let specs = emitter.specs();
+    specs
+        .iter()
+        .map(|spec| function::lower(&emitter, spec).1.statements.len())
+        .sum()
+}

@@ -1,0 +1,238 @@
+//! All generated identifiers.
+//!
+//! | what | pattern |
+//! |---|---|
+//! | type | as written |
+//! | function, parameter's field and accessor | `snake_case` of the name as written |
+//! | parameter's setter | `set_` + accessor |
+//! | field of kept constants | `k` |
+//! | private functions | `constants`, `update`, function + `_part1` … |
+//! | arguments | `x`, `xi`, `u`, `xi_dot`; `slots`, `out` in parts |
+//! | temporaries | the user's name, `t1` …, `sin1`, `sin_q` …, `minus_` + name of a negated one |
+//! | numbers | `zero`, `one`, `two`, `half` …, `c1` … |
+//!
+//! ASCII only: Greek letters by their names, combining dots as `_dot`, other letters as `u` + hex
+//! code. A name that is taken gets `_2`, `_3` …; a keyword gets `_`.
+
+use crate::program::{Argument, Program};
+use std::collections::BTreeSet;
+
+const GREEK: &[(&str, &str)] = &[
+    ("αΑ", "alpha"),
+    ("βΒϐ", "beta"),
+    ("γΓ", "gamma"),
+    ("δΔ", "delta"),
+    ("εΕϵ", "epsilon"),
+    ("ζΖ", "zeta"),
+    ("ηΗ", "eta"),
+    ("θΘϑϴ", "theta"),
+    ("ιΙ", "iota"),
+    ("κΚϰ", "kappa"),
+    ("λΛ", "lambda"),
+    ("μΜµ", "mu"),
+    ("νΝ", "nu"),
+    ("ξΞ", "xi"),
+    ("οΟ", "omicron"),
+    ("πΠϖ", "pi"),
+    ("ρΡϱ", "rho"),
+    ("σΣς", "sigma"),
+    ("τΤ", "tau"),
+    ("υΥ", "upsilon"),
+    ("φΦϕ", "phi"),
+    ("χΧ", "chi"),
+    ("ψΨ", "psi"),
+    ("ωΩΩ", "omega"),
+];
+
+const KEYWORDS: &[&str] = &[
+    "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate",
+    "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl",
+    "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub", "ref",
+    "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "Self",
+];
+
+/// Methods of every generated type, or of the traits that it implements.
+const METHODS: &[&str] = &[
+    "new", "default", "clone", "clone_from", "fmt", "blocks", "zero_coordinates",
+    "zero_velocities", "zero_chart", "zero_inputs", "start", "constraint_norm",
+];
+
+/// Local names that a function may use besides those of its values.
+const LOCALS: &[&str] = &["x", "xi", "u", "xi_dot", "k", "slots", "out"];
+
+/// The generic parameter, and primitive types that the text mentions.
+const TYPES: &[&str] = &["S", "f64", "usize"];
+
+/// The name of an argument.
+pub fn argument(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Coordinates => "x",
+        Argument::Velocities => "xi",
+        Argument::Accelerations => "xi_dot",
+        Argument::Inputs => "u",
+    }
+}
+
+/// A name in lower snake case; never empty, never a keyword.
+pub fn snake(name: &str) -> String {
+    let mut text = String::new();
+    let mut last = ' ';
+    for letter in name.trim_start_matches("r#").chars() {
+        let spelled = spell(letter);
+        let is_word = spelled.len() > 1;
+        // A new word at each capital after a small letter, and around the name of a letter.
+        let starts = letter.is_ascii_uppercase() && last.is_ascii_lowercase();
+        let borders = (is_word && last.is_alphabetic())
+            || (letter.is_alphabetic() && !last.is_ascii() && last.is_alphabetic());
+        if starts || borders {
+            text.push('_');
+        }
+        text.push_str(&spelled.to_ascii_lowercase());
+        last = letter;
+    }
+    let words: Vec<&str> = text.split('_').filter(|word| !word.is_empty()).collect();
+    legal(words.join("_"), KEYWORDS)
+}
+
+/// The name of the type: case is kept.
+pub fn type_name(name: &str) -> String {
+    let mut text = String::new();
+    for letter in name.trim_start_matches("r#").chars() {
+        let spelled = spell(letter);
+        let mut letters = spelled.chars();
+        if spelled.len() > 1
+            && let Some(first) = letters.next()
+        {
+            text.push(first.to_ascii_uppercase());
+        }
+        text.push_str(letters.as_str());
+    }
+    let text = legal(text, KEYWORDS);
+    legal(text, TYPES)
+}
+
+fn spell(letter: char) -> String {
+    let greek = GREEK.iter().find(|(letters, _)| letters.contains(letter));
+    match (letter, greek) {
+        (_, Some((_, name))) => (*name).into(),
+        ('\u{307}', _) => "_dot".into(),
+        ('\u{308}', _) => "_ddot".into(),
+        (letter, _) if letter.is_ascii_alphanumeric() => letter.into(),
+        (letter, _) if letter.is_ascii() => "_".into(),
+        (letter, _) => format!("u{:x}", u32::from(letter)),
+    }
+}
+
+fn legal(text: String, reserved: &[&str]) -> String {
+    match text.chars().next() {
+        None => "v".into(),
+        Some('0'..='9') => format!("v{text}"),
+        Some(_) if text.chars().all(|letter| letter == '_') => "v".into(),
+        Some(_) if reserved.contains(&text.as_str()) => format!("{text}_"),
+        Some(_) => text,
+    }
+}
+
+/// Names of one scope, each given out once.
+#[derive(Clone, Debug, Default)]
+pub struct Unique {
+    taken: BTreeSet<String>,
+}
+
+impl Unique {
+    /// A scope in which some names are taken.
+    pub fn new(taken: &[&str]) -> Self {
+        Unique {
+            taken: taken.iter().map(|&name| name.into()).collect(),
+        }
+    }
+
+    /// The scope of a function body.
+    pub fn locals() -> Self {
+        Unique::new(LOCALS)
+    }
+
+    /// The wanted name where it is free, or the first free one of `name_2`, `name_3` ….
+    pub fn claim(&mut self, wanted: &str) -> String {
+        self.claim_where(wanted, |_| true)
+    }
+
+    /// The name that `claim` would give, without taking it.
+    pub fn free(&self, wanted: &str) -> String {
+        self.free_where(wanted, |_| true)
+    }
+
+    fn claim_where(&mut self, wanted: &str, accept: impl Fn(&str) -> bool) -> String {
+        let name = self.free_where(wanted, accept);
+        self.taken.insert(name.clone());
+        name
+    }
+
+    fn free_where(&self, wanted: &str, accept: impl Fn(&str) -> bool) -> String {
+        let mut name = wanted.to_string();
+        let mut number = 2;
+        while self.taken.contains(&name) || !accept(&name) {
+            name = format!("{}_{number}", wanted.trim_end_matches('_'));
+            number += 1;
+        }
+        name
+    }
+}
+
+/// The names of a program's type, fields and methods.
+#[derive(Clone, Debug)]
+pub struct Names {
+    /// The type.
+    pub type_name: String,
+    /// Functions, in order.
+    pub functions: Vec<String>,
+    /// Fields of the parameter groups, in order.
+    pub fields: Vec<String>,
+    /// Accessors of the parameter groups, in order.
+    pub accessors: Vec<String>,
+    /// The field of kept constants.
+    pub kept: String,
+    /// The function that computes them.
+    pub constants: String,
+    /// The function that computes them and checks pivots.
+    pub update: String,
+    methods: Unique,
+}
+
+impl Names {
+    /// Names for all that is public, then for what is private.
+    pub fn new(program: &Program) -> Self {
+        let mut methods = Unique::new(METHODS);
+        let mut fields = Unique::default();
+        let functions = program.functions.iter();
+        let functions = functions.map(|function| methods.claim(&snake(&function.name)));
+        let functions: Vec<String> = functions.collect();
+        let mut accessors = Vec::new();
+        for group in &program.params {
+            let taken = methods.taken.clone();
+            let free = |name: &str| !taken.contains(&format!("set_{name}"));
+            let accessor = methods.claim_where(&snake(&group.name), free);
+            methods.claim(&format!("set_{accessor}"));
+            accessors.push(accessor);
+        }
+        let groups = program.params.iter();
+        Names {
+            type_name: type_name(&program.name),
+            functions,
+            fields: groups.map(|group| fields.claim(&snake(&group.name))).collect(),
+            accessors,
+            kept: fields.claim("k"),
+            constants: methods.claim("constants"),
+            update: methods.claim("update"),
+            methods,
+        }
+    }
+
+    /// The name of a part of a function, counted from 1.
+    pub fn part(&self, function: &str, number: usize) -> String {
+        // Two parts never want the same name, so nothing has to be remembered.
+        let function = function.trim_end_matches('_');
+        self.methods.free(&format!("{function}_part{number}"))
+    }
+}

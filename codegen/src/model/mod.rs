@@ -1,0 +1,213 @@
+//! From the description as written to the mechanical system that it means.
+//!
+//! Names are resolved, shapes checked, and every semantic error is found here: stages after this
+//! one cannot fail on user input.
+
+mod build;
+mod declare;
+mod dynamics;
+pub mod expression;
+mod functions;
+mod kinematics;
+pub mod layout;
+pub mod points;
+pub mod scope;
+mod start;
+pub mod value;
+
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::{Mat3, Vec3};
+use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
+use layout::Block;
+use points::Points;
+use value::Value;
+
+pub use build::build;
+pub use dynamics::FUNCTIONS;
+
+/// Classes of symbols, one bit each.
+pub mod class {
+    /// Run-time parameters: constant while the system moves.
+    pub const PARAM: u8 = 1;
+    /// Configuration coordinates x.
+    pub const COORD: u8 = 2;
+    /// Velocity coordinates ξ.
+    pub const VELOCITY: u8 = 4;
+    /// Inputs u.
+    pub const INPUT: u8 = 8;
+    /// Accelerations ξ̇, the argument of inverse dynamics.
+    pub const ACCEL: u8 = 16;
+}
+
+/// A named group of symbols: a parameter, a velocity, an input.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Name as written.
+    pub name: String,
+    /// Shape as written.
+    pub shape: ShapeKind,
+    /// Its value, in symbols.
+    pub value: Value,
+    /// Place of its first entry among those of its class.
+    pub offset: usize,
+    /// Number of its symbols.
+    pub len: usize,
+}
+
+/// A configuration coordinate.
+#[derive(Clone, Debug)]
+pub struct Coordinate {
+    /// Name as written.
+    pub name: String,
+    /// Kind.
+    pub kind: CoordKind,
+    /// Place of its first entry in x.
+    pub offset: usize,
+    /// Where it was declared.
+    pub span: Span,
+}
+
+/// A frame: its pose in the world.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Name as written.
+    pub name: String,
+    /// Frame axes in world axes, by columns.
+    pub rotation: Mat3,
+    /// Origin in world axes (m).
+    pub position: Vec3,
+}
+
+/// A rigid body fixed to a frame.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Index of its frame.
+    pub frame: usize,
+    /// Mass m (kg).
+    pub mass: Edge,
+    /// Centre of mass s, frame axes (m).
+    pub com: Vec3,
+    /// Inertia about the centre of mass, frame axes (kg m²).
+    pub inertia_com: Mat3,
+    /// Inertia Θ about the frame's origin, frame axes (kg m²).
+    pub inertia_origin: Mat3,
+}
+
+/// A point mass.
+#[derive(Clone, Debug)]
+pub struct Particle {
+    /// Mass (kg).
+    pub mass: Edge,
+    /// Position in world axes (m).
+    pub position: Vec3,
+}
+
+/// A wrench on a frame, acting at a point of it.
+#[derive(Clone, Debug)]
+pub struct Wrench {
+    /// Index of the frame.
+    pub frame: usize,
+    /// Point of attack, frame axes (m).
+    pub at: Vec3,
+    /// Force (N).
+    pub force: Vec3,
+    /// Torque (N m).
+    pub torque: Vec3,
+    /// Axes of force and torque.
+    pub axes: Axes,
+}
+
+/// A mechanical system: configuration, kinematics, inertia, loads.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Name of the generated type.
+    pub name: String,
+    /// Whether that type is `pub`.
+    pub public: bool,
+    /// Its documentation.
+    pub docs: Vec<String>,
+    /// The graph, with points on X.
+    pub graph: Graph,
+    /// How to find further points of X, and φ itself.
+    pub points: Points,
+    /// Run-time parameters.
+    pub params: Vec<Group>,
+    /// Default values of the parameters' symbols.
+    pub defaults: Vec<f64>,
+    /// Configuration coordinates.
+    pub coordinates: Vec<Coordinate>,
+    /// Their blocks.
+    pub blocks: Vec<Block>,
+    /// x.
+    pub x: Vec<Edge>,
+    /// φ, in the graph with unconstrained points, and how each row reads.
+    pub phi: Vec<(Edge, String)>,
+    /// Velocity coordinates.
+    pub velocities: Vec<Group>,
+    /// ξ.
+    pub xi: Vec<Edge>,
+    /// ξ̇ as symbols.
+    pub xi_dot: Vec<Edge>,
+    /// Inputs.
+    pub inputs: Vec<Group>,
+    /// u.
+    pub u: Vec<Edge>,
+    /// ẋ = A ξ.
+    pub rate: Vec<Edge>,
+    /// A, ν rows of n.
+    pub a: Vec<Vec<Edge>>,
+    /// Frames.
+    pub frames: Vec<Frame>,
+    /// Bodies.
+    pub bodies: Vec<Body>,
+    /// Particles.
+    pub particles: Vec<Particle>,
+    /// Kinetic energy beyond that of bodies and particles.
+    pub kinetic: Edge,
+    /// Potential beyond that of gravity.
+    pub potential: Edge,
+    /// Acceleration of gravity, world axes (m/s²).
+    pub gravity: Vec3,
+    /// Forces, torques and wrenches.
+    pub wrenches: Vec<Wrench>,
+    /// Generalised forces, dual to ξ.
+    pub generalized: Vec<Edge>,
+    /// Outputs.
+    pub outputs: Vec<(String, Value)>,
+    /// Named expressions of the user.
+    pub lets: Vec<(String, Value)>,
+    /// x at the start.
+    pub start_x: Vec<f64>,
+    /// ξ at the start.
+    pub start_xi: Vec<f64>,
+    /// The functions to generate; all of them where empty.
+    pub generate: Vec<String>,
+    /// The statements that the start is about, for errors found later.
+    pub span: Span,
+}
+
+impl Model {
+    /// n, the number of velocities.
+    pub fn n(&self) -> usize {
+        self.xi.len()
+    }
+
+    /// ν, the number of coordinates.
+    pub fn nu(&self) -> usize {
+        self.x.len()
+    }
+
+    /// The number that every symbol stands for, given x, ξ, u and ξ̇ and the parameters.
+    pub fn numbers(&self, params: &[f64], x: &[f64], xi: &[f64], u: &[f64], xi_dot: &[f64]) -> Vec<f64> {
+        let mut numbers = vec![std::f64::consts::PI];
+        for part in [params, x, xi, u, xi_dot] {
+            numbers.extend_from_slice(part);
+        }
+        numbers
+    }
+
+    /// Whether a function was asked for.
+    pub fn wants(&self, function: &str) -> bool {
+        self.generate.is_empty() || self.generate.iter().any(|name| name == function)
+    }
+}

@@ -1,0 +1,99 @@
+//! Shaped values: scalars, vectors, matrices and poses of graph edges.
+
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::{Mat3, Vec3};
+
+/// A value of the language.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// One number.
+    Scalar(Edge),
+    /// A column.
+    Vector(Vec<Edge>),
+    /// Rows of equal length.
+    Matrix(Vec<Vec<Edge>>),
+    /// Rotation and position of a frame.
+    Pose(Mat3, Vec3),
+}
+
+impl Value {
+    /// The shape in words: "a vector of 3".
+    pub fn shape(&self) -> String {
+        match self {
+            Value::Scalar(_) => "a scalar".into(),
+            Value::Vector(v) => format!("a vector of {}", v.len()),
+            Value::Matrix(m) => format!("a {}×{} matrix", m.len(), m.first().map_or(0, Vec::len)),
+            Value::Pose(..) => "a pose".into(),
+        }
+    }
+
+    /// Whether two values have the same shape.
+    pub fn same_shape(&self, other: &Value) -> bool {
+        match (self, other) {
+            (Value::Scalar(_), Value::Scalar(_)) | (Value::Pose(..), Value::Pose(..)) => true,
+            (Value::Vector(a), Value::Vector(b)) => a.len() == b.len(),
+            (Value::Matrix(a), Value::Matrix(b)) => {
+                a.len() == b.len() && a.first().map(Vec::len) == b.first().map(Vec::len)
+            }
+            _ => false,
+        }
+    }
+
+    /// All entries, matrices by rows; a pose is its position, then its rotation by rows.
+    pub fn entries(&self) -> Vec<Edge> {
+        match self {
+            Value::Scalar(edge) => vec![*edge],
+            Value::Vector(v) => v.clone(),
+            Value::Matrix(m) => m.concat(),
+            Value::Pose(r, p) => p.iter().chain(r.iter().flatten()).copied().collect(),
+        }
+    }
+
+    /// The same shape with every entry mapped.
+    pub fn map(&self, mut f: impl FnMut(Edge) -> Edge) -> Value {
+        match self {
+            Value::Scalar(edge) => Value::Scalar(f(*edge)),
+            Value::Vector(v) => Value::Vector(v.iter().map(|&e| f(e)).collect()),
+            Value::Matrix(m) => {
+                Value::Matrix(m.iter().map(|row| row.iter().map(|&e| f(e)).collect()).collect())
+            }
+            Value::Pose(r, p) => {
+                let p = p.map(&mut f);
+                Value::Pose(r.map(|row| row.map(&mut f)), p)
+            }
+        }
+    }
+
+    /// The entries of two values of the same shape, combined.
+    pub fn zip(&self, other: &Value, mut f: impl FnMut(Edge, Edge) -> Edge) -> Value {
+        let others = other.entries();
+        let mut next = others.iter();
+        self.map(|edge| next.next().map_or(edge, |&other| f(edge, other)))
+    }
+
+    /// The value as three numbers.
+    pub fn as_vec3(&self) -> Option<Vec3> {
+        match self {
+            Value::Vector(v) => <[Edge; 3]>::try_from(v.as_slice()).ok(),
+            _ => None,
+        }
+    }
+
+    /// The value as a matrix of three rows and columns.
+    pub fn as_mat3(&self) -> Option<Mat3> {
+        let Value::Matrix(m) = self else { return None };
+        let rows: Vec<Vec3> =
+            m.iter().map(|row| <[Edge; 3]>::try_from(row.as_slice()).ok()).collect::<Option<_>>()?;
+        <[Vec3; 3]>::try_from(rows.as_slice()).ok()
+    }
+
+    /// A matrix of three rows and columns as a value.
+    pub fn from_mat3(m: &Mat3) -> Value {
+        Value::Matrix(m.iter().map(|row| row.to_vec()).collect())
+    }
+
+    /// Whether every entry is 0 on X.
+    pub fn is_zero(&self, graph: &Graph) -> bool {
+        self.entries().iter().all(|&edge| edge == graph.zero())
+    }
+}

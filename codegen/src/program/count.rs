@@ -1,0 +1,59 @@
+//! Exact operation counts of straight-line code.
+
+use super::schedule::body;
+use crate::algebra::graph::{Edge, Function, Graph, Node, NodeId};
+
+/// Operations of a function at run time; negation is free, parameters are hoisted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Count {
+    /// Additions and subtractions.
+    pub add: usize,
+    /// Multiplications.
+    pub mul: usize,
+    /// Divisions.
+    pub div: usize,
+    /// Square roots.
+    pub sqrt: usize,
+    /// Pairs of sine and cosine of one angle (one of the two alone is a pair too).
+    pub sincos: usize,
+    /// Other functions.
+    pub other: usize,
+}
+
+impl Count {
+    /// mul + add + div.
+    pub fn flops(self) -> usize {
+        self.add + self.mul + self.div
+    }
+
+    /// A cost that weighs the dearer operations: a division 4, a root 5, functions 15.
+    pub fn weight(self) -> usize {
+        self.add + self.mul + 4 * self.div + 5 * self.sqrt + 15 * (self.sincos + self.other)
+    }
+}
+
+/// The operations that the roots need at run time.
+pub fn count(graph: &Graph, roots: &[Edge]) -> Count {
+    count_nodes(graph, &body(graph, roots))
+}
+
+/// The operations of a list of nodes.
+pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
+    let mut count = Count::default();
+    let mut angles = Vec::new();
+    for &id in nodes {
+        match graph.node(id) {
+            Node::Constant(_) | Node::Symbol(_) => {}
+            Node::Add(..) => count.add += 1,
+            Node::Mul(..) => count.mul += 1,
+            Node::Div(..) => count.div += 1,
+            Node::Apply(Function::Sqrt, _) => count.sqrt += 1,
+            Node::Apply(Function::Sin | Function::Cos, angle) => angles.push(angle.abs()),
+            Node::Apply(..) | Node::Atan2(..) => count.other += 1,
+        }
+    }
+    angles.sort_unstable();
+    angles.dedup();
+    count.sincos = angles.len();
+    count
+}

@@ -1,0 +1,102 @@
+//! Straight-line programs: what is computed when, and at what cost.
+
+pub mod count;
+pub mod interpret;
+pub mod schedule;
+
+use crate::algebra::graph::{Edge, Graph};
+use crate::model::layout::Block;
+use crate::model::{Coordinate, Group};
+
+/// What a generated function takes, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Argument {
+    /// x, ν numbers.
+    Coordinates,
+    /// ξ, n numbers.
+    Velocities,
+    /// ξ̇, n numbers.
+    Accelerations,
+    /// u.
+    Inputs,
+}
+
+/// The shape of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// One number.
+    Scalar,
+    /// `[S; n]`
+    Vector(usize),
+    /// `[[S; columns]; rows]`
+    Matrix(usize, usize),
+}
+
+/// One generated function.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Rust name.
+    pub name: String,
+    /// Documentation: the equation it evaluates, shapes, units; one string a line.
+    pub docs: Vec<String>,
+    /// Its arguments.
+    pub arguments: Vec<Argument>,
+    /// Shape of the result.
+    pub shape: Shape,
+    /// The result, matrices by rows.
+    pub outputs: Vec<Edge>,
+    /// Pivots that have to be positive, or the function returns the error `Singular`.
+    pub guards: Vec<Edge>,
+    /// Whether it returns a `Result`.
+    pub fallible: bool,
+}
+
+/// Everything that is emitted for a system.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Name of the type.
+    pub name: String,
+    /// Whether it is `pub`.
+    pub public: bool,
+    /// Its documentation, as the user wrote it.
+    pub docs: Vec<String>,
+    /// The graph of all functions.
+    pub graph: Graph,
+    /// Parameters, with their default values by symbol.
+    pub params: Vec<Group>,
+    /// Default values, in order of the parameters' symbols.
+    pub defaults: Vec<f64>,
+    /// Coordinates.
+    pub coordinates: Vec<Coordinate>,
+    /// Blocks of x.
+    pub blocks: Vec<Block>,
+    /// Velocities.
+    pub velocities: Vec<Group>,
+    /// Inputs.
+    pub inputs: Vec<Group>,
+    /// ν.
+    pub nu: usize,
+    /// n.
+    pub n: usize,
+    /// Number of inputs.
+    pub m: usize,
+    /// Number of rows of φ.
+    pub phi: usize,
+    /// x at the start.
+    pub start_x: Vec<f64>,
+    /// ξ at the start.
+    pub start_xi: Vec<f64>,
+    /// The user's named expressions, for names of temporaries.
+    pub names: Vec<(String, Edge)>,
+    /// Pivots of a mass matrix that is constant at run time: checked when parameters are set.
+    pub constant_guards: Vec<Edge>,
+    /// The functions.
+    pub functions: Vec<Function>,
+}
+
+impl Program {
+    /// A function by its name.
+    pub fn function(&self, name: &str) -> Option<&Function> {
+        self.functions.iter().find(|function| function.name == name)
+    }
+}

@@ -1,0 +1,70 @@
+//! Binding times: what is computed once when parameters are set, and what on every call.
+
+use super::Program;
+use crate::algebra::graph::{Edge, Graph, Node, NodeId};
+
+/// The order of computation of a program.
+#[derive(Clone, Debug)]
+pub struct Schedule {
+    /// Nodes computed when parameters are set, children first; only those that are no symbol and
+    /// no number.
+    pub hoisted: Vec<NodeId>,
+    /// Those hoisted nodes that functions read at run time, in order: the constants that are kept.
+    pub kept: Vec<NodeId>,
+    /// For every function its nodes computed at run time, children first.
+    pub bodies: Vec<Vec<NodeId>>,
+}
+
+impl Schedule {
+    /// Schedules all functions of a program.
+    pub fn of(program: &Program) -> Self {
+        let graph = &program.graph;
+        let bodies: Vec<Vec<NodeId>> = program
+            .functions
+            .iter()
+            .map(|function| {
+                let roots: Vec<Edge> = function.outputs.iter().chain(&function.guards).copied().collect();
+                body(graph, &roots)
+            })
+            .collect();
+        let mut kept: Vec<NodeId> = Vec::new();
+        for (function, nodes) in program.functions.iter().zip(&bodies) {
+            let children = nodes.iter().flat_map(|&id| graph.node(id).children());
+            let roots = function.outputs.iter().chain(&function.guards).copied();
+            kept.extend(children.chain(roots).map(Edge::node).filter(|&id| is_hoisted(graph, id)));
+        }
+        kept.sort_unstable();
+        kept.dedup();
+        let roots: Vec<Edge> = kept.iter().map(|&id| Edge::of(id)).chain(program.constant_guards.iter().copied()).collect();
+        let hoisted = graph.reachable(&roots).into_iter().filter(|&id| is_hoisted(graph, id)).collect();
+        Schedule { hoisted, kept, bodies }
+    }
+}
+
+/// Whether a node is computed when parameters are set: constant at run time, no plain symbol, no number.
+pub fn is_hoisted(graph: &Graph, id: NodeId) -> bool {
+    graph.is_free(id) && !matches!(graph.node(id), Node::Constant(_) | Node::Symbol(_))
+}
+
+/// The nodes that vary at run time, in depth-first order of the results: a value is computed
+/// shortly before it is needed.
+pub fn body(graph: &Graph, roots: &[Edge]) -> Vec<NodeId> {
+    let mut order = Vec::new();
+    let mut seen = rustc_hash::FxHashSet::default();
+    for root in roots {
+        let mut stack = vec![(root.node(), false)];
+        while let Some((id, done)) = stack.pop() {
+            if done {
+                order.push(id);
+                continue;
+            }
+            if graph.is_free(id) || matches!(graph.node(id), Node::Symbol(_)) || !seen.insert(id) {
+                continue;
+            }
+            stack.push((id, true));
+            let children: Vec<NodeId> = graph.node(id).children().map(Edge::node).collect();
+            stack.extend(children.into_iter().rev().map(|child| (child, false)));
+        }
+    }
+    order
+}

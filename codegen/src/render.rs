@@ -1,0 +1,185 @@
+//! Errors as people read them: underlined source in a terminal, or errors of the compiler.
+
+use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, TokenStream, TokenTree};
+
+use crate::diagnostics::Diagnostic;
+
+/// The errors as calls of `compile_error!`, each placed on its region of the macro's input.
+pub fn to_compile_errors(errors: &[Diagnostic]) -> TokenStream {
+    errors.iter().flat_map(compile_error).collect()
+}
+
+/// `::core::compile_error! { "message" }`; the compiler underlines from the span of its first token to that of its last.
+fn compile_error(error: &Diagnostic) -> [TokenTree; 8] {
+    let text = match &error.help {
+        Some(help) => format!("{}\nhelp: {help}", error.message),
+        None => error.message.clone(),
+    };
+    let punct = |c: char, spacing: Spacing| {
+        let mut punct = Punct::new(c, spacing);
+        punct.set_span(error.span.lo);
+        TokenTree::Punct(punct)
+    };
+    let word = |name: &str| TokenTree::Ident(Ident::new(name, error.span.lo));
+    let mut literal = Literal::string(&text);
+    literal.set_span(error.span.hi);
+    let mut group = Group::new(Delimiter::Brace, TokenTree::Literal(literal).into());
+    group.set_span(error.span.hi);
+    [
+        punct(':', Spacing::Joint),
+        punct(':', Spacing::Alone),
+        word("core"),
+        punct(':', Spacing::Joint),
+        punct(':', Spacing::Alone),
+        word("compile_error"),
+        punct('!', Spacing::Alone),
+        TokenTree::Group(group),
+    ]
+}
+
+#[cfg(feature = "files")]
+pub use text::render;
+
+#[cfg(feature = "files")]
+mod text {
+    use std::ops::Range;
+
+    use annotate_snippets::renderer::DecorStyle;
+    use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+
+    use crate::diagnostics::Diagnostic;
+    use crate::syntax::ast::Span;
+
+    /// The errors in the order of the text, each with its source underlined, and their number.
+    ///
+    /// `path` is how the file is named, `source` the text that was parsed; `color` adds terminal colours.
+    pub fn render(errors: &[Diagnostic], path: &str, source: &str, color: bool) -> String {
+        let renderer = if color {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
+        };
+        let renderer = renderer.decor_style(DecorStyle::Ascii);
+        let mut placed: Vec<_> = errors
+            .iter()
+            .map(|error| (place(error.span, source), error))
+            .collect();
+        placed.sort_by_key(|(range, _)| {
+            range
+                .as_ref()
+                .map_or((0, 0), |range| (range.start, range.end))
+        });
+
+        let mut rendered = String::new();
+        for (range, error) in placed {
+            rendered.push_str(&renderer.render(&[group(error, range, path, source)]));
+            rendered.push_str("\n\n");
+        }
+        let plural = if errors.len() == 1 { "" } else { "s" };
+        rendered.push_str(&format!("{} error{plural}\n", errors.len()));
+        rendered
+    }
+
+    fn group<'a>(
+        error: &'a Diagnostic,
+        range: Option<Range<usize>>,
+        path: &'a str,
+        source: &'a str,
+    ) -> Group<'a> {
+        let group = Level::ERROR.primary_title(error.message.as_str());
+        let mut messages = Vec::new();
+        let group = match range {
+            None => {
+                messages.extend(
+                    error
+                        .notes
+                        .iter()
+                        .map(|(_, label)| Level::NOTE.message(label.as_str())),
+                );
+                group.element(Origin::path(path).line(1).char_column(1))
+            }
+            Some(range) => {
+                let mut places = vec![(AnnotationKind::Primary, range, "")];
+                for (span, label) in &error.notes {
+                    match place(*span, source) {
+                        Some(range) => {
+                            places.push((AnnotationKind::Context, range, label.as_str()))
+                        }
+                        None => messages.push(Level::NOTE.message(label.as_str())),
+                    }
+                }
+                group.element(snippet(places, path, source))
+            }
+        };
+        if let Some(help) = &error.help {
+            messages.push(Level::HELP.message(help.as_str()));
+        }
+        group.elements(messages)
+    }
+
+    /// The lines from the first place to the last, underlined.
+    fn snippet<'a>(
+        places: Vec<(AnnotationKind, Range<usize>, &'a str)>,
+        path: &'a str,
+        source: &'a str,
+    ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
+        let start = places
+            .iter()
+            .map(|(_, range, _)| range.start)
+            .min()
+            .unwrap_or(0);
+        let end = places
+            .iter()
+            .map(|(_, range, _)| range.end)
+            .max()
+            .unwrap_or(0);
+        let mark = if source.starts_with('\u{feff}') {
+            '\u{feff}'.len_utf8()
+        } else {
+            0
+        };
+        let first = source[..start]
+            .rfind('\n')
+            .map_or(mark.min(start), |newline| newline + 1);
+        let last = source[end..]
+            .find('\n')
+            .map_or(source.len(), |newline| end + newline);
+        let last = if source[end..last].ends_with('\r') {
+            last - 1
+        } else {
+            last
+        };
+        let line = source[..first].matches('\n').count() + 1;
+        let annotations = places.into_iter().map(|(kind, range, label)| {
+            let annotation = kind.span(range.start - first..range.end - first);
+            if label.is_empty() {
+                annotation
+            } else {
+                annotation.label(label)
+            }
+        });
+        Snippet::source(&source[first..last])
+            .line_start(line)
+            .path(path)
+            .annotations(annotations)
+    }
+
+    /// The bytes of a region, `None` where its tokens have no place in a text.
+    fn place(span: Span, source: &str) -> Option<Range<usize>> {
+        let (lo, hi) = (span.lo.byte_range(), span.hi.byte_range());
+        if lo == (0..0) || lo.start > source.len() {
+            return None;
+        }
+        let mut start = lo.start;
+        while !source.is_char_boundary(start) {
+            start -= 1;
+        }
+        let mut end = if hi.end < lo.end { lo.end } else { hi.end }
+            .min(source.len())
+            .max(start);
+        while !source.is_char_boundary(end) {
+            end += 1;
+        }
+        Some(start..end)
+    }
+}

@@ -1,0 +1,319 @@
+//! The description as written: every node carries its span, nothing is resolved.
+
+use num_rational::BigRational;
+use proc_macro2::Span as TokenSpan;
+
+/// A region of the source, from the first token to the last.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Span of the first token.
+    pub lo: TokenSpan,
+    /// Span of the last token.
+    pub hi: TokenSpan,
+}
+
+impl Span {
+    /// The region of one token.
+    pub fn token(span: TokenSpan) -> Self {
+        Span { lo: span, hi: span }
+    }
+
+    /// The smallest region that holds both.
+    pub fn to(self, other: Span) -> Self {
+        Span {
+            lo: self.lo,
+            hi: other.hi,
+        }
+    }
+}
+
+/// A name with its place.
+#[derive(Clone, Debug)]
+pub struct Ident {
+    /// The name as written.
+    pub name: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A whole description: `pub system Name { … }`.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// Doc comments above the system, one string a line, without the blank after `///`.
+    pub docs: Vec<String>,
+    /// Whether it was declared `pub`.
+    pub public: bool,
+    /// Name of the generated type.
+    pub name: Ident,
+    /// The statements, in source order.
+    pub items: Vec<Item>,
+}
+
+/// An expression with its region.
+#[derive(Clone, Debug)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The forms of an expression.
+#[derive(Clone, Debug)]
+pub enum ExprKind {
+    /// A decimal literal, exact.
+    Number(BigRational),
+    /// A name.
+    Name(String),
+    /// `q.c`, `X.R`, `M.T`.
+    Field(Box<Expr>, Ident),
+    /// `v[i]`, `M[i, j]`; indices start at 1, as in the paper.
+    Index(Box<Expr>, Vec<Expr>),
+    /// `f(a, b)`.
+    Call(Ident, Vec<Expr>),
+    /// `-a`.
+    Neg(Box<Expr>),
+    /// `a op b`.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `[a, b, c]`; an array of arrays is a matrix by rows.
+    Array(Vec<Expr>),
+}
+
+/// Binary operators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOp {
+    /// `+`
+    Add,
+    /// `-`
+    Sub,
+    /// `*`
+    Mul,
+    /// `/`
+    Div,
+    /// `^`, integer or rational exponent
+    Pow,
+}
+
+/// A shape annotation: `vec3`, `mat3`, `sym3`, or nothing for a scalar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeKind {
+    /// One number.
+    Scalar,
+    /// `vecN`
+    Vector(usize),
+    /// `matN`
+    Matrix(usize),
+    /// `symN`
+    Symmetric(usize),
+}
+
+/// A shape annotation with its place (the place of the name where none was written).
+#[derive(Clone, Copy, Debug)]
+pub struct Shape {
+    /// The shape.
+    pub kind: ShapeKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The coordinate kinds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoordKind {
+    /// A bare real number: an unconstrained scalar, or a raw coordinate of user-written `constraint`s.
+    Real,
+    /// `R1` .. `Rn`: a vector.
+    Euclidean(usize),
+    /// A pair (c, s) on the unit circle.
+    S1,
+    /// A unit quaternion, scalar first.
+    S3,
+    /// A rotation matrix.
+    SO3,
+    /// A rotation matrix `.R` and a position `.p`.
+    SE3,
+}
+
+/// `param name: shape = default` or `input name: shape`, `velocity name: shape`.
+#[derive(Clone, Debug)]
+pub struct Declaration {
+    /// The declared name.
+    pub name: Ident,
+    /// Its shape.
+    pub shape: Shape,
+    /// Its value, where the statement has one.
+    pub value: Option<Expr>,
+}
+
+/// A name or one of its parts on the left of `rate` and `start`: `R`, `X.p`.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// The coordinate or velocity.
+    pub name: Ident,
+    /// The part of it: `R` or `p` of an SE3, `c` or `s` of an S1.
+    pub field: Option<Ident>,
+}
+
+impl Target {
+    /// The region of the whole target.
+    pub fn span(&self) -> Span {
+        match &self.field {
+            Some(field) => self.name.span.to(field.span),
+            None => self.name.span,
+        }
+    }
+}
+
+/// The reference point of an inertia.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// The centre of mass.
+    Com,
+    /// The origin of the body's frame.
+    Origin,
+}
+
+/// The axes in which the components of a load are given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the frame that the load acts on.
+    Body,
+    /// Those of the world.
+    World,
+}
+
+/// The fields of `body on f { … }`.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// The frame it is fixed to.
+    pub frame: Ident,
+    /// `mass m;`
+    pub mass: Option<Expr>,
+    /// `com s;` in the frame's axes.
+    pub com: Option<Expr>,
+    /// `inertia Theta about com;`, the point is `None` where `about` was not written.
+    pub inertia: Option<(Expr, Option<About>)>,
+}
+
+/// What a load statement applies.
+#[derive(Clone, Debug)]
+pub enum Load {
+    /// `force F at p on f in …;` p in the frame's axes, the origin where absent.
+    Force {
+        /// The force.
+        force: Expr,
+        /// The point it acts at.
+        at: Option<Expr>,
+    },
+    /// `torque t on f in …;`
+    Torque {
+        /// The torque.
+        torque: Expr,
+    },
+    /// `wrench (F, t) [at p] on f in …;`
+    Wrench {
+        /// The force.
+        force: Expr,
+        /// The torque about the point.
+        torque: Expr,
+        /// The point they act at, the origin of the frame where absent.
+        at: Option<Expr>,
+    },
+}
+
+/// One statement.
+#[derive(Clone, Debug)]
+pub struct Item {
+    /// What it says.
+    pub kind: ItemKind,
+    /// The whole statement.
+    pub span: Span,
+}
+
+/// The statements of the language.
+#[derive(Clone, Debug)]
+pub enum ItemKind {
+    /// `param m = 1.3, s: vec3 = [0, 0, 1];` run-time parameters.
+    Param(Vec<Declaration>),
+    /// `const k = 3/2;` exact build-time constants.
+    Const(Vec<Declaration>),
+    /// `let e = m * s;` a named expression.
+    Let(Vec<Declaration>),
+    /// `coord r: R3, R: SO3, q;`
+    Coord(Vec<(Ident, CoordKind)>),
+    /// `velocity v: vec3, w: vec3, u;`
+    Velocity(Vec<Declaration>),
+    /// `constraint a = b;`
+    Constraint {
+        /// The left side.
+        left: Expr,
+        /// The right side.
+        right: Expr,
+    },
+    /// `rate r = R * v;`
+    Rate {
+        /// The coordinate.
+        target: Target,
+        /// Its time derivative, linear in the velocities.
+        value: Expr,
+    },
+    /// `frame f [on g] = pose(R, p);`
+    Frame {
+        /// The new frame.
+        name: Ident,
+        /// The frame that the pose is relative to, the world where absent.
+        on: Option<Ident>,
+        /// Its pose.
+        pose: Expr,
+    },
+    /// `body on f { … }`
+    Body(Body),
+    /// `particle mass m at p [on f];` p in world axes, or in those of the frame.
+    Particle {
+        /// Its mass.
+        mass: Expr,
+        /// Its position.
+        at: Expr,
+        /// The frame it is fixed to, the world's axes where absent.
+        on: Option<Ident>,
+    },
+    /// `kinetic expr;`
+    Kinetic(Expr),
+    /// `potential expr;`
+    Potential(Expr),
+    /// `gravity [0, 0, -g];`
+    Gravity(Expr),
+    /// `input F: vec3;`
+    Input(Vec<Declaration>),
+    /// `force …`, `torque …`, `wrench …`
+    Load {
+        /// What is applied.
+        load: Load,
+        /// The frame it acts on.
+        frame: Ident,
+        /// The axes of its components.
+        axes: Axes,
+    },
+    /// `generalized force w = -d * w;` dual to a velocity.
+    Generalized {
+        /// The velocity.
+        target: Target,
+        /// The components dual to it.
+        value: Expr,
+    },
+    /// `start w = [0.01, 1, 0];`
+    Start {
+        /// The coordinate or velocity.
+        target: Target,
+        /// Its value at the start.
+        value: Expr,
+    },
+    /// `output speed = norm(v);`
+    Output {
+        /// The name of the function.
+        name: Ident,
+        /// What it returns.
+        value: Expr,
+    },
+    /// `generate accel, energy;`
+    Generate(Vec<Ident>),
+}

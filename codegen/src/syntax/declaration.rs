@@ -1,0 +1,165 @@
+//! Statements that declare names: parameters, coordinates, velocities, inputs.
+
+use super::ast::{CoordKind, Declaration, Ident, Shape, ShapeKind, Span};
+use super::cursor::{Cursor, Parsed, shown};
+use super::expression::expression;
+use crate::diagnostics::Diagnostic;
+
+/// The largest vector, matrix or Euclidean coordinate.
+const MAX_SIZE: usize = 64;
+
+/// `m = 1.3, s: vec3 = [0, 0, 1]`
+pub(super) fn values(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Vec<Declaration>> {
+    separated(cursor, |cursor| {
+        let (name, shape) = head(cursor, of)?;
+        cursor.assign()?;
+        Ok(Declaration {
+            name,
+            shape,
+            value: Some(expression(cursor)?),
+        })
+    })
+}
+
+/// `v: vec3, u`
+pub(super) fn velocities(cursor: &mut Cursor<'_>) -> Parsed<Vec<Declaration>> {
+    const HELP: &str = "the coordinates move by `rate r = R * v;`, and an initial value is written `start v = [1, 0, 0];`";
+    separated(cursor, |cursor| without_value(cursor, "a velocity", HELP))
+}
+
+/// `F: vec3, u`
+pub(super) fn inputs(cursor: &mut Cursor<'_>) -> Parsed<Vec<Declaration>> {
+    const HELP: &str = "inputs are given at run time; a fixed value is a `param`";
+    separated(cursor, |cursor| without_value(cursor, "an input", HELP))
+}
+
+fn without_value(cursor: &mut Cursor<'_>, of: &str, help: &str) -> Parsed<Declaration> {
+    let (name, shape) = head(cursor, of)?;
+    if cursor.is_punct('=') {
+        return Err(
+            Diagnostic::new(cursor.here(), format!("{of} is declared without a value")).help(help),
+        );
+    }
+    Ok(Declaration {
+        name,
+        shape,
+        value: None,
+    })
+}
+
+/// `r: R3, R: SO3, q`
+pub(super) fn coordinates(cursor: &mut Cursor<'_>) -> Parsed<Vec<(Ident, CoordKind)>> {
+    separated(cursor, |cursor| {
+        let name = cursor.name("a coordinate")?;
+        let kind = if cursor.eat_punct(':') {
+            coordinate_kind(cursor)?
+        } else {
+            CoordKind::Real
+        };
+        if cursor.is_punct('=') {
+            return Err(
+                Diagnostic::new(cursor.here(), "a coordinate is declared without a value")
+                    .help("an initial value is written `start r = [0, 0, 1];`"),
+            );
+        }
+        Ok((name, kind))
+    })
+}
+
+/// One or more, with commas between them.
+fn separated<T>(
+    cursor: &mut Cursor<'_>,
+    one: impl Fn(&mut Cursor<'_>) -> Parsed<T>,
+) -> Parsed<Vec<T>> {
+    let mut all = vec![one(cursor)?];
+    while cursor.eat_punct(',') {
+        all.push(one(cursor)?);
+    }
+    Ok(all)
+}
+
+/// A name and its shape, a scalar where none is written.
+fn head(cursor: &mut Cursor<'_>, of: &str) -> Parsed<(Ident, Shape)> {
+    let name = cursor.name(of)?;
+    let shape = if cursor.eat_punct(':') {
+        shape(cursor)?
+    } else {
+        Shape {
+            kind: ShapeKind::Scalar,
+            span: name.span,
+        }
+    };
+    Ok((name, shape))
+}
+
+fn shape(cursor: &mut Cursor<'_>) -> Parsed<Shape> {
+    let Ident { name, span } = cursor.word("a shape")?;
+    let (family, size) = family(&name);
+    let kind: fn(usize) -> ShapeKind = match family {
+        "vec" => ShapeKind::Vector,
+        "mat" => ShapeKind::Matrix,
+        "sym" => ShapeKind::Symmetric,
+        _ => {
+            let error = Diagnostic::new(span, format!("unknown shape `{}`", shown(&name)));
+            return Err(error.help(match (family, name.as_str()) {
+                (_, "scalar" | "real" | "f64" | "f32") => "a scalar is written without a shape".to_owned(),
+                ("R", _) if !size.is_empty() => format!("a vector is written `vec{size}`; `R{size}` is for coordinates"),
+                _ => "the shapes are `vec3`, `mat3` and `sym3`, of any size; a scalar is written without".to_owned(),
+            }));
+        }
+    };
+    match number(size) {
+        Some(size) => Ok(Shape {
+            kind: kind(size),
+            span,
+        }),
+        None => Err(bad_size(&name, span).help(format!("a size is written `{family}3`"))),
+    }
+}
+
+fn coordinate_kind(cursor: &mut Cursor<'_>) -> Parsed<CoordKind> {
+    let Ident { name, span } = cursor.word("the kind of the coordinate")?;
+    match name.as_str() {
+        "S1" => return Ok(CoordKind::S1),
+        "S3" => return Ok(CoordKind::S3),
+        "SO3" => return Ok(CoordKind::SO3),
+        "SE3" => return Ok(CoordKind::SE3),
+        _ => {}
+    }
+    let (family, size) = family(&name);
+    if family == "R" && !size.is_empty() {
+        return match number(size) {
+            Some(size) => Ok(CoordKind::Euclidean(size)),
+            None => Err(bad_size(&name, span).help("a vector is written `R3`")),
+        };
+    }
+    Err(Diagnostic::new(span, format!("unknown kind of coordinate `{}`", shown(&name))).help(match family {
+        "vec" if !size.is_empty() => format!("a vector among the coordinates is written `R{size}`"),
+        "R" | "real" | "scalar" => "a real coordinate is written without a kind".to_owned(),
+        _ => "the kinds are `R3` and other sizes, `S1`, `S3`, `SO3` and `SE3`; a real is written without".to_owned(),
+    }))
+}
+
+/// The letters of a name and the digits that end it.
+fn family(name: &str) -> (&str, &str) {
+    let family = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    (family, &name[family.len()..])
+}
+
+/// A size in bounds, without leading zeros.
+fn number(size: &str) -> Option<usize> {
+    if size.starts_with('0') {
+        return None;
+    }
+    size.parse().ok().filter(|size| *size <= MAX_SIZE)
+}
+
+fn bad_size(shape: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        span,
+        format!(
+            "the size of `{}` is not between 1 and {MAX_SIZE}",
+            shown(shape)
+        ),
+    )
+}

@@ -1,0 +1,287 @@
+//! Expressions.
+//!
+//! ```text
+//! sum      = product (("+" | "-") product)*
+//! product  = sign (("*" | "/") sign)*
+//! sign     = "-"* power
+//! power    = postfix ("^" "-"* postfix)*              to the right: a^b^c = a^(b^c), and -a^b = -(a^b)
+//! postfix  = primary ("." name | "[" sum ("," sum)* "]")*
+//! primary  = number | name | name "(" list ")" | "(" sum ")" | "[" list "]"
+//! ```
+//!
+//! Only brackets recurse, and those are bounded before parsing starts; chains are loops, and bounded because the tree
+//! they build is walked by recursion later.
+
+use proc_macro2::Delimiter;
+
+use super::ast::{BinaryOp, Expr, ExprKind, Ident, Span};
+use super::cursor::{Cursor, Parsed, check_name, shown};
+use super::number;
+use super::tokens::Kind;
+use crate::diagnostics::Diagnostic;
+
+/// The most operands that operators of one precedence join.
+const MAX_OPERANDS: usize = 500;
+
+/// The deepest tree of one expression: a longest chain and what its operands hold.
+const MAX_DEPTH: usize = 600;
+
+/// An expression and the depth of its tree.
+struct Node {
+    expr: Expr,
+    depth: usize,
+}
+
+/// A list of expressions and the depth of the deepest.
+#[derive(Default)]
+struct List {
+    entries: Vec<Expr>,
+    depth: usize,
+}
+
+/// Parses an expression, up to the first token that cannot continue it.
+pub(super) fn expression(cursor: &mut Cursor<'_>) -> Parsed<Expr> {
+    sum(cursor).map(|node| node.expr)
+}
+
+fn sum(cursor: &mut Cursor<'_>) -> Parsed<Node> {
+    chain(
+        cursor,
+        [('+', BinaryOp::Add), ('-', BinaryOp::Sub)],
+        product,
+    )
+}
+
+fn product(cursor: &mut Cursor<'_>) -> Parsed<Node> {
+    chain(cursor, [('*', BinaryOp::Mul), ('/', BinaryOp::Div)], sign)
+}
+
+/// Operands joined by operators of one precedence, to the left.
+fn chain(
+    cursor: &mut Cursor<'_>,
+    operators: [(char, BinaryOp); 2],
+    operand: fn(&mut Cursor<'_>) -> Parsed<Node>,
+) -> Parsed<Node> {
+    let mut left = operand(cursor)?;
+    let mut operands = 1;
+    while let Some(&(sign, op)) = operators.iter().find(|(sign, _)| cursor.is_punct(*sign)) {
+        operands += 1;
+        check_operands(cursor, operands)?;
+        cursor.bump();
+        if sign == '*' && cursor.is_punct('*') {
+            let span = cursor.before().to(cursor.here());
+            return Err(Diagnostic::new(span, "`**` is not an operator")
+                .help("a power is written with `^`"));
+        }
+        let right = operand(cursor)?;
+        left = binary(op, left, right)?;
+    }
+    Ok(left)
+}
+
+fn sign(cursor: &mut Cursor<'_>) -> Parsed<Node> {
+    let signs = signs(cursor)?;
+    let value = power(cursor)?;
+    negate(signs, value)
+}
+
+/// The minus signs before an operand.
+fn signs(cursor: &mut Cursor<'_>) -> Parsed<Vec<Span>> {
+    let mut signs = Vec::new();
+    while cursor.is_punct('-') {
+        signs.push(cursor.here());
+        check_operands(cursor, signs.len())?;
+        cursor.bump();
+    }
+    Ok(signs)
+}
+
+fn negate(signs: Vec<Span>, value: Node) -> Parsed<Node> {
+    signs.into_iter().rev().try_fold(value, |value, sign| {
+        let span = sign.to(value.expr.span);
+        node(ExprKind::Neg(Box::new(value.expr)), span, value.depth)
+    })
+}
+
+fn power(cursor: &mut Cursor<'_>) -> Parsed<Node> {
+    let mut right = postfix(cursor)?;
+    let mut bases = Vec::new();
+    while cursor.is_punct('^') {
+        check_operands(cursor, bases.len() + 2)?;
+        cursor.bump();
+        let signs = signs(cursor)?;
+        bases.push((right, signs));
+        right = postfix(cursor)?;
+    }
+    while let Some((base, signs)) = bases.pop() {
+        right = binary(BinaryOp::Pow, base, negate(signs, right)?)?;
+    }
+    Ok(right)
+}
+
+fn postfix(cursor: &mut Cursor<'_>) -> Parsed<Node> {
+    let mut value = primary(cursor)?;
+    loop {
+        let span = value.expr.span;
+        let (part, depth) = if cursor.eat_punct('.') {
+            let field = field(cursor)?;
+            if let ExprKind::Number(_) = value.expr.kind {
+                return Err(no_part(span.to(field.span)));
+            }
+            (ExprKind::Field(Box::new(value.expr), field), value.depth)
+        } else if cursor.is_open(Delimiter::Bracket) {
+            if let ExprKind::Number(_) = value.expr.kind {
+                return Err(no_part(cursor.here()));
+            }
+            let indices = indices(cursor)?;
+            (
+                ExprKind::Index(Box::new(value.expr), indices.entries),
+                value.depth.max(indices.depth),
+            )
+        } else {
+            return Ok(value);
+        };
+        value = node(part, span.to(cursor.before()), depth)?;
+    }
+}
+
+fn no_part(span: Span) -> Diagnostic {
+    Diagnostic::new(span, "a number has no parts").help("a product is written with `*`")
+}
+
+fn field(cursor: &mut Cursor<'_>) -> Parsed<Ident> {
+    if cursor.peek().kind == Kind::Literal {
+        let index = shown(&cursor.peek().text);
+        return Err(Diagnostic::new(
+            cursor.here(),
+            format!("expected the name of a part, found `{index}`"),
+        )
+        .help("components are numbered from 1, in brackets: `v[1]`"));
+    }
+    cursor.word("the name of a part")
+}
+
+fn indices(cursor: &mut Cursor<'_>) -> Parsed<List> {
+    let open = cursor.here();
+    cursor.bump();
+    let indices = list(cursor, Delimiter::Bracket)?;
+    if !matches!(indices.entries.len(), 1 | 2) {
+        return Err(
+            Diagnostic::new(open.to(cursor.before()), "expected one index or two")
+                .help("components are written `v[i]` and `M[i, j]`, numbered from 1"),
+        );
+    }
+    Ok(indices)
+}
+
+/// Expressions up to the closing bracket, which is taken.
+fn list(cursor: &mut Cursor<'_>, delimiter: Delimiter) -> Parsed<List> {
+    let mut list = List::default();
+    while !cursor.is_end() {
+        let entry = sum(cursor)?;
+        list.depth = list.depth.max(entry.depth);
+        list.entries.push(entry.expr);
+        if !cursor.eat_punct(',') {
+            break;
+        }
+    }
+    cursor.expect_close(delimiter, true)?;
+    Ok(list)
+}
+
+fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
+    let token = cursor.peek();
+    let span = cursor.here();
+    match token.kind {
+        Kind::Literal => {
+            let number = number::value(&token.text, &shown(&token.text))
+                .map_err(|refusal| Diagnostic::new(span, refusal.message).help(refusal.help))?;
+            cursor.bump();
+            node(ExprKind::Number(number), span, 0)
+        }
+        Kind::Word if cursor.is_call() && !cursor.is_connective() => {
+            let function = cursor.name("a function")?;
+            cursor.bump();
+            let arguments = list(cursor, Delimiter::Parenthesis)?;
+            node(
+                ExprKind::Call(function, arguments.entries),
+                span.to(cursor.before()),
+                arguments.depth,
+            )
+        }
+        Kind::Word if !cursor.is_connective() && !cursor.starts_statement() => {
+            check_name(token, span)?;
+            cursor.bump();
+            node(ExprKind::Name(token.text.clone()), span, 0)
+        }
+        Kind::Open(Delimiter::Bracket, _) => {
+            cursor.bump();
+            let entries = list(cursor, Delimiter::Bracket)?;
+            let span = span.to(cursor.before());
+            if entries.entries.is_empty() {
+                return Err(Diagnostic::new(span, "an array without entries")
+                    .help("a vector is written `[a, b, c]`, a matrix by rows `[[a, b], [c, d]]`"));
+            }
+            node(ExprKind::Array(entries.entries), span, entries.depth)
+        }
+        Kind::Open(delimiter @ (Delimiter::Parenthesis | Delimiter::None), _) => {
+            cursor.bump();
+            let mut inner = sum(cursor)?;
+            if cursor.is_punct(',') {
+                return Err(cursor
+                    .unexpected("`)`")
+                    .help("a vector is written `[a, b, c]`"));
+            }
+            cursor.expect_close(delimiter, false)?;
+            inner.expr.span = span.to(cursor.before());
+            Ok(inner)
+        }
+        _ => {
+            let error = cursor.unexpected("an expression");
+            Err(match token.kind {
+                Kind::Punct('+') => error.help("a sum has a term on both sides of `+`"),
+                Kind::Open(Delimiter::Brace, _) => {
+                    error.help("parts of an expression are grouped with `(` and `)`")
+                }
+                _ => error,
+            })
+        }
+    }
+}
+
+fn binary(op: BinaryOp, left: Node, right: Node) -> Parsed<Node> {
+    let span = left.expr.span.to(right.expr.span);
+    let depth = left.depth.max(right.depth);
+    node(
+        ExprKind::Binary(op, Box::new(left.expr), Box::new(right.expr)),
+        span,
+        depth,
+    )
+}
+
+/// A tree of parts of a depth.
+fn node(kind: ExprKind, span: Span, parts: usize) -> Parsed<Node> {
+    let depth = parts + 1;
+    if depth > MAX_DEPTH {
+        return Err(Diagnostic::new(
+            span,
+            format!("the expression is more than {MAX_DEPTH} operations deep"),
+        )
+        .help("name a part of it with `let`"));
+    }
+    Ok(Node {
+        expr: Expr { kind, span },
+        depth,
+    })
+}
+
+fn check_operands(cursor: &Cursor<'_>, operands: usize) -> Parsed<()> {
+    if operands > MAX_OPERANDS {
+        return Err(Diagnostic::new(
+            cursor.here(),
+            format!("more than {MAX_OPERANDS} operands in a row"),
+        )
+        .help("name a part of it with `let`"));
+    }
+    Ok(())
+}

@@ -1,0 +1,75 @@
+//! The language: from text or tokens to a placed description.
+//!
+//! A macro hands over the compiler's tokens, a `.eom` file is cut into tokens of the same kind; from there on one
+//! parser serves both. Nothing is resolved here: names, shapes and units are the business of the model. What this stage
+//! guarantees is that every node carries its span, that no input overflows the stack, and that a description with
+//! several faulty statements gets an error for each.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `ast` | the description as written |
+//! | `scan` | the raw text of a file: brackets, and characters that no token has |
+//! | `tokens` | the flat list of tokens, and its canonical spelling |
+//! | `cursor` | the place in that list, and how an unexpected token is reported |
+//! | `parse` | the system, statement after statement, and recovery |
+//! | `statement`, `declaration`, `body`, `load` | the statements |
+//! | `expression`, `number` | values |
+//! | `words` | the words of the language |
+//! | `suggest` | the word that was probably meant |
+
+use proc_macro2::TokenStream;
+
+use crate::diagnostics::Diagnostic;
+
+pub mod ast;
+mod body;
+mod cursor;
+mod declaration;
+mod expression;
+mod load;
+mod number;
+mod parse;
+mod scan;
+mod statement;
+pub mod suggest;
+mod tokens;
+mod words;
+
+#[cfg(all(test, feature = "files"))]
+mod tests;
+
+/// Errors reported for one description; what follows is rarely read.
+const MAX_ERRORS: usize = 100;
+
+/// Parses a description given as tokens.
+pub fn parse_tokens(tokens: TokenStream) -> Result<ast::System, Vec<Diagnostic>> {
+    let tokens = tokens::flatten(tokens);
+    tokens::check_depth(&tokens).map_err(|error| vec![error])?;
+    parse::system(&tokens)
+}
+
+/// Parses a description given as text, such as a `.eom` file.
+pub fn parse_text(text: &str) -> Result<ast::System, Vec<Diagnostic>> {
+    let scanned = scan::scan(text);
+    let mut errors = scanned.errors;
+    if let Some(readable) = scanned.readable {
+        let parsed = match readable.parse::<TokenStream>() {
+            Ok(tokens) => parse_tokens(tokens),
+            Err(error) => Err(vec![scan::unreadable(&error)]),
+        };
+        match parsed {
+            Ok(system) if errors.is_empty() => return Ok(system),
+            Ok(_) => {}
+            Err(more) => errors.extend(more),
+        }
+    }
+    errors.truncate(MAX_ERRORS);
+    Err(errors)
+}
+
+/// One spelling for all sources of the same tokens, to be hashed: the tokens joined by single spaces.
+///
+/// Layout and plain comments do not count; doc comments do, however their text was quoted.
+pub fn canonical(tokens: &TokenStream) -> String {
+    tokens::canonical(tokens)
+}

@@ -1,0 +1,184 @@
+//! The statements, by their first word.
+
+use super::ast::{Ident, Item, ItemKind, Target};
+use super::cursor::{Cursor, Parsed, quoted, shown};
+use super::expression::expression;
+use super::parse::since;
+use super::suggest::closest;
+use super::tokens::Kind;
+use super::words::{LATER, statements};
+use super::{body, declaration, load};
+use crate::diagnostics::Diagnostic;
+
+/// Parses one statement with its `;`.
+pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
+    let start = cursor.here();
+    let word = cursor.peek();
+    if word.kind != Kind::Word {
+        return Err(no_statement(cursor));
+    }
+    let word = word.text.as_str();
+    cursor.bump();
+    let kind = match word {
+        "param" => ItemKind::Param(declaration::values(cursor, "a parameter")?),
+        "const" => ItemKind::Const(declaration::values(cursor, "a constant")?),
+        "let" => ItemKind::Let(declaration::values(cursor, "an expression")?),
+        "coord" => ItemKind::Coord(declaration::coordinates(cursor)?),
+        "velocity" => ItemKind::Velocity(declaration::velocities(cursor)?),
+        "input" => ItemKind::Input(declaration::inputs(cursor)?),
+        "constraint" => {
+            let left = expression(cursor)?;
+            cursor.assign()?;
+            ItemKind::Constraint {
+                left,
+                right: expression(cursor)?,
+            }
+        }
+        "rate" => {
+            let target = target(cursor, "a coordinate")?;
+            cursor.assign()?;
+            ItemKind::Rate {
+                target,
+                value: expression(cursor)?,
+            }
+        }
+        "start" => {
+            let target = target(cursor, "a coordinate or velocity")?;
+            cursor.assign()?;
+            ItemKind::Start {
+                target,
+                value: expression(cursor)?,
+            }
+        }
+        "generalized" => {
+            cursor.expect_word("force")?;
+            let target = target(cursor, "a velocity")?;
+            cursor.assign()?;
+            ItemKind::Generalized {
+                target,
+                value: expression(cursor)?,
+            }
+        }
+        "output" => {
+            let name = cursor.name("an output")?;
+            cursor.assign()?;
+            ItemKind::Output {
+                name,
+                value: expression(cursor)?,
+            }
+        }
+        "frame" => frame(cursor)?,
+        // Ends with its braces.
+        "body" => {
+            let kind = ItemKind::Body(body::body(cursor)?);
+            cursor.eat_punct(';');
+            return Ok(Item {
+                kind,
+                span: since(start, cursor),
+            });
+        }
+        "particle" => body::particle(cursor)?,
+        "kinetic" => ItemKind::Kinetic(expression(cursor)?),
+        "potential" => ItemKind::Potential(expression(cursor)?),
+        "gravity" => ItemKind::Gravity(expression(cursor)?),
+        "force" => load::force(cursor)?,
+        "torque" => load::torque(cursor)?,
+        "wrench" => load::wrench(cursor)?,
+        "generate" => ItemKind::Generate(functions(cursor)?),
+        _ => {
+            return Err(unknown(
+                cursor,
+                &Ident {
+                    name: word.to_owned(),
+                    span: start,
+                },
+            ));
+        }
+    };
+    let names = matches!(
+        word,
+        "coord" | "velocity" | "input" | "force" | "torque" | "wrench" | "generate"
+    );
+    cursor.end(!names)?;
+    Ok(Item {
+        kind,
+        span: since(start, cursor),
+    })
+}
+
+/// `R`, `X.p`
+fn target(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Target> {
+    let name = cursor.name(of)?;
+    let field = if cursor.eat_punct('.') {
+        Some(cursor.word("the name of a part")?)
+    } else {
+        None
+    };
+    Ok(Target { name, field })
+}
+
+/// `frame f [on g] = pose(R, p)`
+fn frame(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let name = cursor.name("a frame")?;
+    let on = if cursor.eat_word("on") {
+        Some(cursor.name("a frame")?)
+    } else {
+        None
+    };
+    cursor.assign()?;
+    Ok(ItemKind::Frame {
+        name,
+        on,
+        pose: expression(cursor)?,
+    })
+}
+
+/// `generate accel, energy`
+fn functions(cursor: &mut Cursor<'_>) -> Parsed<Vec<Ident>> {
+    let mut names = vec![cursor.word("the name of a function")?];
+    while cursor.eat_punct(',') {
+        names.push(cursor.word("the name of a function")?);
+    }
+    Ok(names)
+}
+
+fn no_statement(cursor: &Cursor<'_>) -> Diagnostic {
+    let here = cursor.here();
+    if cursor.is_punct(';') {
+        return Diagnostic::new(here, "a `;` without a statement").help("remove it");
+    }
+    Diagnostic::new(
+        here,
+        format!("expected a statement, found {}", quoted(cursor.peek())),
+    )
+    .help(known())
+}
+
+fn unknown(cursor: &Cursor<'_>, word: &Ident) -> Diagnostic {
+    let name = shown(&word.name);
+    if LATER.contains(&word.name.as_str()) {
+        return Diagnostic::new(
+            word.span,
+            format!("this version does not have the statement `{name}`"),
+        )
+        .help(known());
+    }
+    if let Some(close) = closest(&word.name, statements()) {
+        return Diagnostic::new(word.span, format!("unknown statement `{name}`"))
+            .help(format!("did you mean `{close}`?"));
+    }
+    if cursor.is_punct('=') || cursor.is_punct(':') {
+        return Diagnostic::new(
+            word.span,
+            format!("`{name}` is declared without saying what it is"),
+        )
+        .help("start with `param`, `const` or `let`, or say what moves with `rate`");
+    }
+    Diagnostic::new(word.span, format!("unknown statement `{name}`")).help(known())
+}
+
+/// Which statements exist.
+fn known() -> String {
+    let words: Vec<String> = statements().map(|word| format!("`{word}`")).collect();
+    format!("the statements are {}", words.join(", "))
+}

@@ -1,0 +1,65 @@
+//! The word that was probably meant.
+
+/// The candidate closest to a misspelt word, if any is close enough to be worth a suggestion.
+///
+/// Counts insertions, deletions, substitutions and swaps of neighbours; at most a third of the word may differ.
+pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    /// Words longer than this are not misspelt names.
+    const LONGEST: usize = 64;
+    let word: Vec<char> = word.chars().take(LONGEST + 1).collect();
+    if word.len() > LONGEST {
+        return None;
+    }
+    let allowed = word.len().div_ceil(3);
+    let mut best = None;
+    for candidate in candidates {
+        let letters: Vec<char> = candidate.chars().collect();
+        if letters.len().abs_diff(word.len()) > allowed {
+            continue;
+        }
+        let distance = distance(&word, &letters);
+        if distance <= allowed
+            && distance < letters.len()
+            && best.is_none_or(|(least, _)| distance < least)
+        {
+            best = Some((distance, candidate));
+        }
+    }
+    best.map(|(_, candidate)| candidate)
+}
+
+/// Optimal string alignment distance, by three rows of its table.
+fn distance(a: &[char], b: &[char]) -> usize {
+    let mut before: Vec<usize> = Vec::new();
+    let mut above: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut row = vec![i; b.len() + 1];
+        for j in 1..=b.len() {
+            let changed = usize::from(a[i - 1] != b[j - 1]);
+            row[j] = (above[j] + 1)
+                .min(row[j - 1] + 1)
+                .min(above[j - 1] + changed);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                row[j] = row[j].min(before[j - 2] + 1);
+            }
+        }
+        before = std::mem::replace(&mut above, row);
+    }
+    above[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::closest;
+
+    #[test]
+    fn close_words_are_suggested() {
+        let words = ["velocity", "rate", "coord", "output"];
+        assert_eq!(closest("velocty", words), Some("velocity"));
+        assert_eq!(closest("raet", words), Some("rate"));
+        assert_eq!(closest("Coord", words), Some("coord"));
+        assert_eq!(closest("spring", words), None);
+        assert_eq!(closest("", words), None);
+        assert_eq!(closest(&"r".repeat(1_000_000), words), None);
+    }
+}

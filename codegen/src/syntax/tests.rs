@@ -1,0 +1,152 @@
+//! The language as a whole: what is accepted, what is refused and how, and that nothing breaks the parser.
+
+mod accepted;
+mod hostile;
+mod refused;
+
+use super::ast::{BinaryOp, Expr, ExprKind, ItemKind, System, Target};
+use super::parse_text;
+
+/// The system of a text that is known to be right.
+fn parsed(text: &str) -> System {
+    match parse_text(text) {
+        Ok(system) => system,
+        Err(errors) => panic!("{errors:#?}"),
+    }
+}
+
+/// The only statement of a system.
+fn statement(text: &str) -> ItemKind {
+    let mut items = parsed(&format!("system S {{ {text} }}")).items;
+    assert_eq!(items.len(), 1);
+    items.remove(0).kind
+}
+
+/// An expression with every operation in brackets.
+fn spelled(expr: &Expr) -> String {
+    let list = |entries: &[Expr]| entries.iter().map(spelled).collect::<Vec<_>>().join(", ");
+    match &expr.kind {
+        ExprKind::Number(number) => number.to_string(),
+        ExprKind::Name(name) => name.clone(),
+        ExprKind::Field(of, field) => format!("{}.{}", spelled(of), field.name),
+        ExprKind::Index(of, indices) => format!("{}[{}]", spelled(of), list(indices)),
+        ExprKind::Call(function, arguments) => format!("{}({})", function.name, list(arguments)),
+        ExprKind::Neg(of) => format!("(-{})", spelled(of)),
+        ExprKind::Binary(op, left, right) => {
+            let sign = match op {
+                BinaryOp::Add => '+',
+                BinaryOp::Sub => '-',
+                BinaryOp::Mul => '*',
+                BinaryOp::Div => '/',
+                BinaryOp::Pow => '^',
+            };
+            format!("({} {sign} {})", spelled(left), spelled(right))
+        }
+        ExprKind::Array(entries) => format!("[{}]", list(entries)),
+    }
+}
+
+fn maybe(expr: &Option<Expr>) -> String {
+    expr.as_ref().map_or_else(|| "none".to_owned(), spelled)
+}
+
+fn aimed(target: &Target) -> String {
+    match &target.field {
+        Some(field) => format!("{}.{}", target.name.name, field.name),
+        None => target.name.name.clone(),
+    }
+}
+
+/// A statement in one line.
+fn told(kind: &ItemKind) -> String {
+    use super::ast::{Declaration, Load::*};
+    use ItemKind::*;
+    let declared = |all: &[Declaration]| {
+        let one = |one: &Declaration| {
+            format!(
+                "{}: {:?} = {}",
+                one.name.name,
+                one.shape.kind,
+                maybe(&one.value)
+            )
+        };
+        all.iter().map(one).collect::<Vec<_>>().join("; ")
+    };
+    match kind {
+        Param(all) => format!("param {}", declared(all)),
+        Const(all) => format!("const {}", declared(all)),
+        Let(all) => format!("let {}", declared(all)),
+        Velocity(all) => format!("velocity {}", declared(all)),
+        Input(all) => format!("input {}", declared(all)),
+        Coord(all) => {
+            let one = |(name, kind): &(super::ast::Ident, _)| format!("{}: {kind:?}", name.name);
+            format!(
+                "coord {}",
+                all.iter().map(one).collect::<Vec<_>>().join("; ")
+            )
+        }
+        Constraint { left, right } => format!("constraint {} = {}", spelled(left), spelled(right)),
+        Rate { target, value } => format!("rate {} = {}", aimed(target), spelled(value)),
+        Start { target, value } => format!("start {} = {}", aimed(target), spelled(value)),
+        Generalized { target, value } => {
+            format!("generalized force {} = {}", aimed(target), spelled(value))
+        }
+        Output { name, value } => format!("output {} = {}", name.name, spelled(value)),
+        Frame { name, on, pose } => {
+            format!(
+                "frame {} on {:?} = {}",
+                name.name,
+                on.as_ref().map(|on| &on.name),
+                spelled(pose)
+            )
+        }
+        Body(body) => {
+            let inertia = body
+                .inertia
+                .as_ref()
+                .map(|(inertia, about)| (spelled(inertia), about));
+            format!(
+                "body on {}: {}, {}, {inertia:?}",
+                body.frame.name,
+                maybe(&body.mass),
+                maybe(&body.com)
+            )
+        }
+        Particle { mass, at, on } => {
+            format!(
+                "particle {} at {} on {:?}",
+                spelled(mass),
+                spelled(at),
+                on.as_ref().map(|on| &on.name)
+            )
+        }
+        Kinetic(value) => format!("kinetic {}", spelled(value)),
+        Potential(value) => format!("potential {}", spelled(value)),
+        Gravity(value) => format!("gravity {}", spelled(value)),
+        Load { load, frame, axes } => {
+            let load = match load {
+                Force { force, at } => format!("force {} at {}", spelled(force), maybe(at)),
+                Torque { torque } => format!("torque {}", spelled(torque)),
+                Wrench { force, torque, at } => {
+                    format!(
+                        "wrench {}, {} at {}",
+                        spelled(force),
+                        spelled(torque),
+                        maybe(at)
+                    )
+                }
+            };
+            format!("{load} on {} in {axes:?}", frame.name)
+        }
+        Generate(names) => {
+            format!(
+                "generate {}",
+                names
+                    .iter()
+                    .map(|name| name.name.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            )
+        }
+    }
+}

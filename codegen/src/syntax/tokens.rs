@@ -1,0 +1,200 @@
+//! Tokens in one flat list, so that neither deep nor malformed nesting costs stack.
+
+use proc_macro2::{Delimiter, Literal, Span as TokenSpan, TokenStream, TokenTree, token_stream};
+
+use super::ast::Span;
+use crate::diagnostics::Diagnostic;
+
+/// The deepest nesting of brackets in a description.
+pub(super) const MAX_NESTING: usize = 64;
+
+/// The kinds of token.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A word.
+    Word,
+    /// A number, or a literal that the language does not have.
+    Literal,
+    /// The text of a doc comment, decoded.
+    Doc,
+    /// One character of punctuation.
+    Punct(char),
+    /// An opening bracket and the index of the closing one.
+    Open(Delimiter, usize),
+    /// A closing bracket.
+    Close(Delimiter),
+    /// After the last token.
+    End,
+}
+
+/// One token.
+#[derive(Clone, Debug)]
+pub(super) struct Token {
+    /// What it is.
+    pub kind: Kind,
+    /// As written; without the quotes for a doc comment, empty for invisible brackets and the end.
+    pub text: String,
+    /// Where it stands.
+    pub span: TokenSpan,
+}
+
+/// The tokens in source order, with a last one that marks the end.
+///
+/// Invisible brackets, which the compiler puts around what a `macro_rules!` matched, stay where they hold more than one
+/// token: they group like parentheses.
+pub(super) fn flatten(stream: TokenStream) -> Vec<Token> {
+    let mut tokens: Vec<Token> = Vec::new();
+    let mut outer: Vec<Frame> = Vec::new();
+    let mut inner = stream.into_iter();
+    loop {
+        let (kind, text, span) = match inner.next() {
+            Some(TokenTree::Group(group)) => {
+                let delimiter = group.delimiter();
+                let frame = Frame {
+                    rest: std::mem::replace(&mut inner, group.stream().into_iter()),
+                    open: tokens.len(),
+                    delimiter,
+                    close: group.span_close(),
+                };
+                outer.push(frame);
+                // The matching index is filled in when the bracket closes.
+                (
+                    Kind::Open(delimiter, 0),
+                    opening(delimiter).to_owned(),
+                    group.span_open(),
+                )
+            }
+            Some(TokenTree::Ident(ident)) => (Kind::Word, ident.to_string(), ident.span()),
+            Some(TokenTree::Punct(punct)) => (
+                Kind::Punct(punct.as_char()),
+                punct.as_char().to_string(),
+                punct.span(),
+            ),
+            Some(TokenTree::Literal(literal)) => {
+                let span = literal.span();
+                match doc_text(&tokens, &literal) {
+                    Some(text) => (Kind::Doc, text, span),
+                    None => (Kind::Literal, literal.to_string(), span),
+                }
+            }
+            None => match outer.pop() {
+                Some(frame) => {
+                    inner = frame.rest;
+                    if frame.delimiter == Delimiter::None && tokens.len() == frame.open + 2 {
+                        tokens.remove(frame.open);
+                        continue;
+                    }
+                    let close = tokens.len();
+                    if let Some(open) = tokens.get_mut(frame.open) {
+                        open.kind = Kind::Open(frame.delimiter, close);
+                    }
+                    (
+                        Kind::Close(frame.delimiter),
+                        closing(frame.delimiter).to_owned(),
+                        frame.close,
+                    )
+                }
+                None => break,
+            },
+        };
+        tokens.push(Token { kind, text, span });
+    }
+    let span = tokens
+        .last()
+        .map_or_else(TokenSpan::call_site, |token| token.span);
+    tokens.push(Token {
+        kind: Kind::End,
+        text: String::new(),
+        span,
+    });
+    tokens
+}
+
+/// A bracket whose content is being listed.
+struct Frame {
+    rest: token_stream::IntoIter,
+    open: usize,
+    delimiter: Delimiter,
+    close: TokenSpan,
+}
+
+/// The text of a literal that stands in `#[doc = …]`.
+fn doc_text(before: &[Token], literal: &Literal) -> Option<String> {
+    let [.., open, doc, equal] = before else {
+        return None;
+    };
+    let attribute = matches!(open.kind, Kind::Open(Delimiter::Bracket, _))
+        && doc.kind == Kind::Word
+        && doc.text == "doc"
+        && equal.kind == Kind::Punct('=');
+    if !attribute {
+        return None;
+    }
+    let literal = TokenStream::from(TokenTree::Literal(literal.clone()));
+    let text = syn::parse2::<syn::LitStr>(literal).ok()?.value();
+    Some(text.replace("\r\n", "\n"))
+}
+
+/// Refuses brackets nested too deeply.
+pub(super) fn check_depth(tokens: &[Token]) -> Result<(), Diagnostic> {
+    let mut depth = 0_usize;
+    for token in tokens {
+        match token.kind {
+            Kind::Open(..) => depth += 1,
+            Kind::Close(_) => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth > MAX_NESTING {
+            return Err(too_deep(Span::token(token.span)));
+        }
+    }
+    Ok(())
+}
+
+/// The error for brackets nested too deeply.
+pub(super) fn too_deep(span: Span) -> Diagnostic {
+    Diagnostic::new(
+        span,
+        format!("brackets are nested more than {MAX_NESTING} deep"),
+    )
+    .help("name a part of it with `let`")
+}
+
+/// All tokens joined by one space.
+pub(super) fn canonical(stream: &TokenStream) -> String {
+    let mut spelling = String::new();
+    for token in flatten(stream.clone()) {
+        let text = if token.kind == Kind::Doc {
+            format!("{:?}", token.text)
+        } else {
+            token.text
+        };
+        if !text.is_empty() {
+            if !spelling.is_empty() {
+                spelling.push(' ');
+            }
+            spelling.push_str(&text);
+        }
+    }
+    spelling
+}
+
+/// The opening bracket as written.
+fn opening(delimiter: Delimiter) -> &'static str {
+    match delimiter {
+        Delimiter::Parenthesis => "(",
+        Delimiter::Bracket => "[",
+        Delimiter::Brace => "{",
+        Delimiter::None => "",
+    }
+}
+
+/// The closing bracket as written.
+pub(super) fn closing(delimiter: Delimiter) -> &'static str {
+    match delimiter {
+        Delimiter::Parenthesis => ")",
+        Delimiter::Bracket => "]",
+        Delimiter::Brace => "}",
+        Delimiter::None => "",
+    }
+}

@@ -1,0 +1,100 @@
+//! The words of the language.
+
+/// The statements, each with the sentence that shows its form.
+const STATEMENTS: [(&str, &str); 21] = [
+    (
+        "param",
+        "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
+    ),
+    ("const", "a constant is written `const k = 3/2;`"),
+    ("let", "a named expression is written `let e = m * s;`"),
+    ("coord", "coordinates are written `coord r: R3, R: SO3, q;`"),
+    ("velocity", "velocities are written `velocity v: vec3, u;`"),
+    ("constraint", "a constraint is written `constraint a = b;`"),
+    ("rate", "a rate is written `rate r = R * v;`"),
+    (
+        "frame",
+        "a frame is written `frame f = pose(R, p);` or `frame f on g = pose(R, p);`",
+    ),
+    (
+        "body",
+        "a body is written `body on f { mass m; com s; inertia J about com; }`",
+    ),
+    (
+        "particle",
+        "a particle is written `particle mass m at p;` or `particle mass m at p on f;`",
+    ),
+    (
+        "kinetic",
+        "a kinetic energy is written `kinetic m * v^2 / 2;`",
+    ),
+    ("potential", "a potential is written `potential m * g * z;`"),
+    ("gravity", "gravity is written `gravity [0, 0, -g];`"),
+    ("input", "inputs are written `input F: vec3, u;`"),
+    (
+        "force",
+        "a force is written `force F at p on f in body;`, or `in world;`",
+    ),
+    (
+        "torque",
+        "a torque is written `torque t on f in body;`, or `in world;`",
+    ),
+    (
+        "wrench",
+        "a wrench is written `wrench (F, t) at p on f in body;`, or `in world;`",
+    ),
+    (
+        "generalized",
+        "a generalized force is written `generalized force w = -d * w;`",
+    ),
+    (
+        "start",
+        "an initial value is written `start w = [0.01, 1, 0];`",
+    ),
+    ("output", "an output is written `output speed = norm(v);`"),
+    (
+        "generate",
+        "a selection of functions is written `generate accel, energy;`",
+    ),
+];
+
+/// Statements of later versions.
+pub(super) const LATER: [&str; 7] = [
+    "joint",
+    "spring",
+    "damper",
+    "dissipation",
+    "inactive",
+    "nonholonomic",
+    "invariant",
+];
+
+/// Words that end an expression, and can name nothing.
+pub(super) const CONNECTIVES: [&str; 4] = ["at", "on", "in", "about"];
+
+/// Words that no item of the generated code can have for a name.
+pub(super) const RUST_WORDS: [&str; 53] = [
+    "_", "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];
+
+/// The words that start statements.
+pub(super) fn statements() -> impl Iterator<Item = &'static str> {
+    STATEMENTS.iter().map(|(word, _)| *word)
+}
+
+/// Whether a word starts statements, of this version or of later ones.
+pub(super) fn is_statement(word: &str) -> bool {
+    form(word).is_some() || LATER.contains(&word)
+}
+
+/// The sentence that shows how a statement is written.
+pub(super) fn form(word: &str) -> Option<&'static str> {
+    STATEMENTS
+        .iter()
+        .find(|(statement, _)| *statement == word)
+        .map(|(_, form)| *form)
+}

@@ -1,0 +1,68 @@
+//! Views of states as types of nalgebra; the rest of the crate works on plain arrays.
+//!
+//! The crate's nalgebra is re-exported as [`hamel::nalgebra`](crate::nalgebra); another version
+//! beside it does no harm.
+
+use nalgebra::{Matrix3, Quaternion, SVectorView, Vector3};
+
+use crate::s3;
+use crate::scalar::Scalar;
+use crate::so3::{self, Matrix};
+use crate::system::Block;
+
+/// The entries of block `index` in x, or `None` when there is no such block or x is too short.
+pub fn block<'x, S>(blocks: &[Block], x: &'x [S], index: usize) -> Option<&'x [S]> {
+    let kind = blocks.get(index)?;
+    let start: usize = blocks.iter().take(index).map(|b| b.coordinates()).sum();
+    x.get(start..start.checked_add(kind.coordinates())?)
+}
+
+/// The rotation (body to world) of block `index`, a rotation or a quaternion; `None` for other kinds.
+pub fn rotation<S>(blocks: &[Block], x: &[S], index: usize) -> Option<Matrix3<S>>
+where
+    S: Scalar + nalgebra::Scalar,
+{
+    let entries = block(blocks, x, index)?;
+    match blocks.get(index)? {
+        Block::Rotation => entries.first_chunk().map(|r| matrix(*r)),
+        Block::Quaternion => entries.first_chunk().map(|q| matrix(s3::to_matrix(*q))),
+        Block::Flat(_) | Block::Circle => None,
+    }
+}
+
+/// The quaternion of block `index`; `None` for other kinds.
+pub fn quaternion<S>(blocks: &[Block], x: &[S], index: usize) -> Option<Quaternion<S>>
+where
+    S: Scalar + nalgebra::Scalar,
+{
+    match (blocks.get(index)?, block(blocks, x, index)?) {
+        (Block::Quaternion, &[w, i, j, k]) => {
+            Some(Quaternion::from_vector(nalgebra::Vector4::new(i, j, k, w)))
+        }
+        _ => None,
+    }
+}
+
+/// A view of the N entries of `list` from `start` on, or `None` when it is too short.
+pub fn vector<S: nalgebra::Scalar, const N: usize>(
+    list: &[S],
+    start: usize,
+) -> Option<SVectorView<'_, S, N>> {
+    let entries = list.get(start..start.checked_add(N)?)?;
+    Some(SVectorView::from_slice(entries))
+}
+
+/// Rows of nine entries as a matrix of nalgebra, which stores columns.
+pub fn matrix<S: nalgebra::Scalar + Copy>(rows: Matrix<S>) -> Matrix3<S> {
+    Matrix3::from_row_slice(&rows)
+}
+
+/// A matrix of nalgebra as nine entries, row by row.
+pub fn rows<S: nalgebra::Scalar + Copy>(matrix: &Matrix3<S>) -> Matrix<S> {
+    core::array::from_fn(|k| matrix[(k / 3, k % 3)])
+}
+
+/// Three components as a vector of nalgebra.
+pub fn vector3<S: nalgebra::Scalar>(components: so3::Vector<S>) -> Vector3<S> {
+    Vector3::from(components)
+}

@@ -1,0 +1,108 @@
+//! Moving a whole x along its manifold, block by block.
+//!
+//! Lists shorter than the blocks say are treated up to the last complete block; a longer list keeps
+//! its tail. The integrators compare lengths before a step and return
+//! [`StepError::Shape`](crate::StepError::Shape).
+
+use crate::scalar::Scalar;
+use crate::store::add_scaled;
+use crate::system::Block;
+use crate::{s1, s3, so3};
+
+/// ν: the number of entries of x.
+#[inline]
+pub fn coordinates(blocks: &[Block]) -> usize {
+    blocks.iter().map(|block| block.coordinates()).sum()
+}
+
+/// The number of entries of a chart vector.
+#[inline]
+pub fn chart(blocks: &[Block]) -> usize {
+    blocks.iter().map(|block| block.chart()).sum()
+}
+
+/// Moves x along the chart vector u: x + u (flat), turned by u (circle), q ⊗ exp(u) (quaternion),
+/// R exp(û) (rotation).
+#[inline]
+pub fn retract<S: Scalar>(blocks: &[Block], x: &mut [S], u: &[S]) {
+    let (mut x, mut u) = (x, u);
+    for block in blocks {
+        let (Some((here, x_rest)), Some((along, u_rest))) = (
+            x.split_at_mut_checked(block.coordinates()),
+            u.split_at_checked(block.chart()),
+        ) else {
+            return;
+        };
+        match block {
+            Block::Flat(_) => add_scaled(here, S::from_f64(1.0), along),
+            Block::Circle => {
+                if let (Some(p), [u]) = (here.first_chunk_mut(), along) {
+                    *p = s1::retract(*p, *u);
+                }
+            }
+            Block::Quaternion => {
+                if let (Some(q), Some(u)) = (here.first_chunk_mut(), along.first_chunk()) {
+                    *q = s3::retract(*q, *u);
+                }
+            }
+            Block::Rotation => {
+                if let (Some(r), Some(u)) = (here.first_chunk_mut(), along.first_chunk()) {
+                    *r = so3::retract(*r, *u);
+                }
+            }
+        }
+        (x, u) = (x_rest, u_rest);
+    }
+}
+
+/// w ← u̇, the rate of the chart vector u at which x, moved along u, has the chart rate w:
+/// [`so3::dexpinv`] on quaternions and rotations; w itself elsewhere.
+#[inline]
+pub fn dexpinv<S: Scalar>(blocks: &[Block], u: &[S], w: &mut [S]) {
+    let (mut u, mut w) = (u, w);
+    for block in blocks {
+        let (Some((along, u_rest)), Some((rate, w_rest))) = (
+            u.split_at_checked(block.chart()),
+            w.split_at_mut_checked(block.chart()),
+        ) else {
+            return;
+        };
+        if let Block::Quaternion | Block::Rotation = block
+            && let (Some(u), Some(w)) = (along.first_chunk(), rate.first_chunk_mut())
+        {
+            *w = so3::dexpinv(*u, *w);
+        }
+        (u, w) = (u_rest, w_rest);
+    }
+}
+
+/// Removes what rounding adds across the manifold: unit norm (circle, quaternion), one Newton polar
+/// step (rotation). Flat blocks keep their values.
+#[inline]
+pub fn normalise<S: Scalar>(blocks: &[Block], x: &mut [S]) {
+    let mut x = x;
+    for block in blocks {
+        let Some((here, rest)) = x.split_at_mut_checked(block.coordinates()) else {
+            return;
+        };
+        match block {
+            Block::Flat(_) => {}
+            Block::Circle => {
+                if let Some(p) = here.first_chunk_mut() {
+                    *p = s1::normalise(*p);
+                }
+            }
+            Block::Quaternion => {
+                if let Some(q) = here.first_chunk_mut() {
+                    *q = s3::normalise(*q);
+                }
+            }
+            Block::Rotation => {
+                if let Some(r) = here.first_chunk_mut() {
+                    *r = so3::polar(*r);
+                }
+            }
+        }
+        x = rest;
+    }
+}

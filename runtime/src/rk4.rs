@@ -1,0 +1,75 @@
+//! The classical Runge-Kutta method of order 4 on the coordinates x themselves.
+//!
+//! The method leaves φ(x) = 0 at its own order. The stabilising term of KR18 (8),
+//! ẋ = A ξ − λ Ψ φ, bounds the defect. A fixed λ keeps order 4; λ proportional to 1/h acts on the
+//! stages and costs two orders, and λ h ≥ 5 is unstable. [`rkmk4`](crate::rkmk4) is more accurate
+//! and needs no λ; this method serves for comparison and for starts off the manifold.
+
+use crate::error::StepError;
+use crate::integrate::acceleration;
+use crate::scalar::Scalar;
+use crate::state::State;
+use crate::store::add_scaled;
+use crate::system::System;
+
+/// One step of length `h`, of either sign or zero, with the stabilising rate `lambda` ≥ 0 (1/time; 0
+/// for none). Needs four evaluations of ξ̇.
+///
+/// Local error O(h⁵). With h < 0 the sign of the stabilising term turns, so that it damps the defect
+/// in either direction of time. `inputs(t, x, ξ)` gives u.
+///
+/// # Errors
+/// See [`StepError`]; nothing is checked that the step does not need.
+#[inline]
+pub fn step<Sys, U>(
+    system: &Sys,
+    state: &State<Sys>,
+    h: f64,
+    lambda: f64,
+    inputs: &U,
+) -> Result<State<Sys>, StepError>
+where
+    Sys: System + ?Sized,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    state.check_shape(system)?;
+    let rate = |x: &Sys::Coordinates, xi: &Sys::Velocities| {
+        let mut rate = system.rate(x, xi);
+        if lambda != 0.0 {
+            let towards = Sys::Scalar::from_f64(if h < 0.0 { -lambda } else { lambda });
+            add_scaled(rate.as_mut(), towards, system.correction(x).as_ref());
+        }
+        rate
+    };
+
+    let mut k = rate(&state.x, &state.xi);
+    let mut f = acceleration(system, state.t, 0.0, &state.x, &state.xi, inputs)?;
+    let mut k_sum = k.clone();
+    let mut f_sum = f.clone();
+
+    for (node, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+        let a = Sys::Scalar::from_f64(node * h);
+        let mut x = state.x.clone();
+        add_scaled(x.as_mut(), a, k.as_ref());
+        let mut xi = state.xi.clone();
+        add_scaled(xi.as_mut(), a, f.as_ref());
+
+        k = rate(&x, &xi);
+        f = acceleration(system, state.t, node * h, &x, &xi, inputs)?;
+
+        let weight = Sys::Scalar::from_f64(weight);
+        add_scaled(k_sum.as_mut(), weight, k.as_ref());
+        add_scaled(f_sum.as_mut(), weight, f.as_ref());
+    }
+
+    let mut next = state.clone();
+    next.t += h;
+    let sixth = Sys::Scalar::from_f64(h / 6.0);
+    add_scaled(next.x.as_mut(), sixth, k_sum.as_ref());
+    add_scaled(next.xi.as_mut(), sixth, f_sum.as_ref());
+    if next.is_finite() {
+        Ok(next)
+    } else {
+        Err(StepError::NonFinite { time: state.t })
+    }
+}

@@ -1,0 +1,164 @@
+//! The numbers of generated code: `f64`, `f32`, and lanes of them.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A real number, or several computed in step (SIMD lanes).
+///
+/// There is no ordering and no equality: a condition can differ from lane to lane, so code chooses
+/// with [`select_lt`](Scalar::select_lt) and takes both branches. `Default` is zero in every lane.
+/// Functions follow IEEE 754: outside their domain they give NaN, never a panic.
+pub trait Scalar:
+    Copy
+    + Debug
+    + Default
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    /// The nearest number to `value`, in every lane.
+    fn from_f64(value: f64) -> Self;
+
+    /// (sin self, cos self), argument in rad.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// Square root; NaN below zero.
+    fn sqrt(self) -> Self;
+
+    /// Exponential function.
+    fn exp(self) -> Self;
+
+    /// Natural logarithm; NaN below zero.
+    fn ln(self) -> Self;
+
+    /// Angle in rad, in [−π, π], of the point with ordinate `self` and abscissa `x`.
+    fn atan2(self, x: Self) -> Self;
+
+    /// Absolute value.
+    fn abs(self) -> Self;
+
+    /// `self · a + b`: rounded once where the target has a fused instruction, twice elsewhere.
+    /// A software routine that rounds once on every target is many times slower.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+
+    /// The larger of two numbers; NaN when either is NaN, so that a maximum cannot hide one.
+    fn max(self, other: Self) -> Self;
+
+    /// `then` in the lanes with `self < limit`, `otherwise` elsewhere (also where either is NaN).
+    fn select_lt(self, limit: Self, then: Self, otherwise: Self) -> Self;
+
+    /// Whether all lanes are positive and finite: a pivot that can be divided by.
+    fn is_positive(self) -> bool;
+
+    /// Whether no lane is infinite or NaN.
+    fn is_finite(self) -> bool;
+}
+
+/// Whether `mul_add` of the standard library is one instruction on this target.
+#[cfg(feature = "std")]
+const FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
+#[cfg(feature = "std")]
+macro_rules! math {
+    ($float:ident, $std:ident, $libm:ident, $($argument:expr),+) => { $float::$std($($argument),+) };
+}
+#[cfg(not(feature = "std"))]
+macro_rules! math {
+    ($float:ident, $std:ident, $libm:ident, $($argument:expr),+) => { libm::$libm($($argument),+) };
+}
+
+macro_rules! scalar {
+    ($float:ident, $sincos:ident, $sqrt:ident, $exp:ident, $log:ident, $atan2:ident, $fabs:ident) => {
+        impl Scalar for $float {
+            #[inline]
+            fn from_f64(value: f64) -> Self {
+                value as $float
+            }
+
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                math!($float, sin_cos, $sincos, self)
+            }
+
+            #[inline]
+            fn sqrt(self) -> Self {
+                math!($float, sqrt, $sqrt, self)
+            }
+
+            #[inline]
+            fn exp(self) -> Self {
+                math!($float, exp, $exp, self)
+            }
+
+            #[inline]
+            fn ln(self) -> Self {
+                math!($float, ln, $log, self)
+            }
+
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                math!($float, atan2, $atan2, self, x)
+            }
+
+            #[inline]
+            fn abs(self) -> Self {
+                math!($float, abs, $fabs, self)
+            }
+
+            #[inline]
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                #[cfg(feature = "std")]
+                if FUSED {
+                    return $float::mul_add(self, a, b);
+                }
+                self * a + b
+            }
+
+            #[inline]
+            fn max(self, other: Self) -> Self {
+                if self > other || self.is_nan() {
+                    self
+                } else {
+                    other
+                }
+            }
+
+            #[inline]
+            fn select_lt(self, limit: Self, then: Self, otherwise: Self) -> Self {
+                if self < limit { then } else { otherwise }
+            }
+
+            #[inline]
+            fn is_positive(self) -> bool {
+                self > 0.0 && self < $float::INFINITY
+            }
+
+            #[inline]
+            fn is_finite(self) -> bool {
+                $float::is_finite(self)
+            }
+        }
+    };
+}
+
+scalar!(f64, sincos, sqrt, exp, log, atan2, fabs);
+scalar!(f32, sincosf, sqrtf, expf, logf, atan2f, fabsf);
+
+/// Σ cᵢ zⁱ, the first term apart (it carries the rounding) and the others in pairs, which halves the
+/// chain of dependent operations of Horner's rule.
+#[inline]
+pub(crate) fn series<S: Scalar>(z: S, coefficients: [f64; 7]) -> S {
+    let [c0, c1, c2, c3, c4, c5, c6] = coefficients.map(S::from_f64);
+    let z2 = z * z;
+    let low = c2.mul_add(z, c1);
+    let middle = c4.mul_add(z, c3);
+    let high = c6.mul_add(z, c5);
+    let rest = high.mul_add(z2 * z2, middle.mul_add(z2, low));
+    rest.mul_add(z, c0)
+}

@@ -1,0 +1,240 @@
+//! Rotations as matrices R (body to world), Ṙ = R ω̂ with ω in body axes.
+//!
+//! Rotation vectors u are in rad. The functions of t = |u| are series in t² below half a radian: the
+//! closed forms divide by zero there or cancel, and a step of an integrator rarely turns further, so
+//! that it takes neither a root nor a sine. Their truncation is below 5e-17. Sources: H. Munthe-Kaas, *High order Runge-Kutta methods on
+//! manifolds*, Appl. Numer. Math. 29 (1999) 115; E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical
+//! Integration* (2006), IV.7-8.
+
+use core::array::from_fn;
+
+use crate::s3;
+use crate::scalar::{Scalar, series};
+
+/// Three components.
+pub type Vector<S> = [S; 3];
+
+/// Nine entries, row by row.
+pub type Matrix<S> = [S; 9];
+
+/// t² from which on the closed forms are used.
+const SERIES_BELOW: f64 = 0.25;
+
+/// sin t / t: (−1)ᵏ / (2k+1)!
+const SINE_RATIO: [f64; 7] = [
+    1.0,
+    -1.0 / 6.0,
+    1.0 / 120.0,
+    -1.0 / 5040.0,
+    1.0 / 362_880.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 6_227_020_800.0,
+];
+
+/// (1 − cos t) / t²: (−1)ᵏ / (2k+2)!
+const VERSINE_RATIO: [f64; 7] = [
+    0.5,
+    -1.0 / 24.0,
+    1.0 / 720.0,
+    -1.0 / 40_320.0,
+    1.0 / 3_628_800.0,
+    -1.0 / 479_001_600.0,
+    1.0 / 87_178_291_200.0,
+];
+
+/// (1 − (t/2) cot(t/2)) / t²: |B₂ₖ₊₂| / (2k+2)!, Bernoulli numbers.
+const COTANGENT_RATIO: [f64; 7] = [
+    1.0 / 12.0,
+    1.0 / 720.0,
+    1.0 / 30_240.0,
+    1.0 / 1_209_600.0,
+    1.0 / 47_900_160.0,
+    691.0 / 1_307_674_368_000.0,
+    1.0 / 74_724_249_600.0,
+];
+
+/// Functions of t² by their series where all lanes allow it; elsewhere by `closed`, whose value is
+/// replaced by the series in the lanes with small t².
+#[inline]
+pub(crate) fn by_series<S: Scalar, const N: usize>(
+    t2: S,
+    coefficients: [[f64; 7]; N],
+    closed: impl FnOnce() -> [S; N],
+) -> [S; N] {
+    let limit = S::from_f64(SERIES_BELOW);
+    let expanded = coefficients.map(|coefficients| series(t2, coefficients));
+    if (limit - t2).is_positive() {
+        expanded
+    } else {
+        let closed = closed();
+        from_fn(|i| t2.select_lt(limit, expanded[i], closed[i]))
+    }
+}
+
+/// The matrix I, a rotation by zero.
+#[inline]
+pub fn identity<S: Scalar>() -> Matrix<S> {
+    let mut r = [S::default(); 9];
+    for i in 0..3 {
+        r[4 * i] = S::from_f64(1.0);
+    }
+    r
+}
+
+/// a · b
+#[inline]
+pub fn dot<S: Scalar>(a: Vector<S>, b: Vector<S>) -> S {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+}
+
+/// a × b = â b
+#[inline]
+pub fn cross<S: Scalar>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
+    [
+        a[1].mul_add(b[2], -(a[2] * b[1])),
+        a[2].mul_add(b[0], -(a[0] * b[2])),
+        a[0].mul_add(b[1], -(a[1] * b[0])),
+    ]
+}
+
+/// â, the matrix with â b = a × b.
+#[inline]
+pub fn hat<S: Scalar>(a: Vector<S>) -> Matrix<S> {
+    let zero = S::default();
+    [zero, -a[2], a[1], a[2], zero, -a[0], -a[1], a[0], zero]
+}
+
+/// A B
+#[inline]
+pub fn product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
+    from_fn(|k| {
+        let (i, j) = (k / 3, k % 3);
+        a[3 * i].mul_add(
+            b[j],
+            a[3 * i + 1].mul_add(b[3 + j], a[3 * i + 2] * b[6 + j]),
+        )
+    })
+}
+
+/// Aᵀ B
+#[inline]
+pub fn transpose_product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
+    from_fn(|k| {
+        let (i, j) = (k / 3, k % 3);
+        a[i].mul_add(b[j], a[3 + i].mul_add(b[3 + j], a[6 + i] * b[6 + j]))
+    })
+}
+
+/// A b; for a rotation, a vector of body axes in world axes.
+#[inline]
+pub fn apply<S: Scalar>(a: Matrix<S>, b: Vector<S>) -> Vector<S> {
+    from_fn(|i| dot([a[3 * i], a[3 * i + 1], a[3 * i + 2]], b))
+}
+
+/// Aᵀ b; for a rotation, a vector of world axes in body axes.
+#[inline]
+pub fn apply_transpose<S: Scalar>(a: Matrix<S>, b: Vector<S>) -> Vector<S> {
+    from_fn(|i| dot([a[i], a[3 + i], a[6 + i]], b))
+}
+
+/// Ṙ = R ω̂ (KR18 (38)), ω in body axes, rad per time.
+#[inline]
+pub fn rate<S: Scalar>(r: Matrix<S>, w: Vector<S>) -> Matrix<S> {
+    product(r, hat(w))
+}
+
+/// The rotation by |u| about u: exp(û) = I + a û + b û², a = sin t / t, b = 2 sin²(t/2) / t².
+///
+/// b is not formed as (1 − cos t) / t², which cancels.
+#[inline]
+pub fn exp<S: Scalar>(u: Vector<S>) -> Matrix<S> {
+    let t2 = dot(u, u);
+    let [a, b] = by_series(t2, [SINE_RATIO, VERSINE_RATIO], || {
+        let t = t2.sqrt();
+        let (sine, cosine) = (t * S::from_f64(0.5)).sin_cos();
+        let twice_ratio = S::from_f64(2.0) * sine / t;
+        [twice_ratio * cosine, twice_ratio * sine / t]
+    });
+
+    // û² = u uᵀ − t² I, with the diagonal written out: no difference of nearly equal squares.
+    let one = S::from_f64(1.0);
+    let [x, y, z] = u;
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let (bxy, bxz, byz) = (b * x * y, b * x * z, b * y * z);
+    let (ax, ay, az) = (a * x, a * y, a * z);
+    [
+        one - b * (yy + zz),
+        bxy - az,
+        bxz + ay,
+        bxy + az,
+        one - b * (zz + xx),
+        byz - ax,
+        bxz - ay,
+        byz + ax,
+        one - b * (xx + yy),
+    ]
+}
+
+/// The rotation vector u, |u| ≤ π, of a rotation: exp(u) = R. At |u| = π either sign may come out.
+///
+/// Computed by the quaternion of R, so that it is accurate near 0 and near π alike.
+#[inline]
+pub fn log<S: Scalar>(r: Matrix<S>) -> Vector<S> {
+    s3::log(s3::from_matrix(r))
+}
+
+/// u̇ of R = R₀ exp(û) when R turns with ω (body axes):
+/// u̇ = ω + ½ u × ω + c u × (u × ω), c = (1 − (t/2) cot(t/2)) / t². Singular at t = 2π.
+#[inline]
+pub fn dexpinv<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S> {
+    let t2 = dot(u, u);
+    let half = S::from_f64(0.5);
+    let [c] = by_series(t2, [COTANGENT_RATIO], || {
+        let half_t = t2.sqrt() * half;
+        let (sine, cosine) = half_t.sin_cos();
+        [(S::from_f64(1.0) - half_t * cosine / sine) / t2]
+    });
+    let uw = cross(u, w);
+    let uuw = cross(u, uw);
+    from_fn(|i| c.mul_add(uuw[i], half.mul_add(uw[i], w[i])))
+}
+
+/// R exp(û): R turned by u in its own (body) axes.
+#[inline]
+pub fn retract<S: Scalar>(r: Matrix<S>, u: Vector<S>) -> Matrix<S> {
+    product(r, exp(u))
+}
+
+/// One Newton step towards the nearest rotation, R (3 I − RᵀR) / 2: squares the defect RᵀR − I.
+#[inline]
+pub fn polar<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
+    let c = correction(r);
+    from_fn(|k| r[k] + c[k])
+}
+
+/// −R (RᵀR − I) / 2, the term −Ψ φ of KR18 (8) for RᵀR = I.
+#[inline]
+pub fn correction<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
+    let half = S::from_f64(0.5);
+    product(r, gram_defect(r)).map(|entry| -(half * entry))
+}
+
+/// max |RᵀR − I| over the entries.
+#[inline]
+pub fn defect<S: Scalar>(r: Matrix<S>) -> S {
+    let mut largest = S::default();
+    for entry in gram_defect(r) {
+        largest = Scalar::max(largest, entry.abs());
+    }
+    largest
+}
+
+/// RᵀR − I
+#[inline]
+fn gram_defect<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
+    let mut gram = transpose_product(r, r);
+    for i in 0..3 {
+        gram[4 * i] -= S::from_f64(1.0);
+    }
+    gram
+}

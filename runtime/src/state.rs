@@ -1,0 +1,88 @@
+//! The state of a run.
+
+use core::fmt;
+
+use crate::error::StepError;
+use crate::manifold;
+use crate::store::is_finite;
+use crate::system::System;
+
+/// Time, coordinates and velocities.
+///
+/// Time is an `f64` whatever the scalar: it is common to all lanes, and a clock of `f32` stops
+/// advancing by 1 ms steps after some hours.
+pub struct State<Sys: System + ?Sized> {
+    /// Time, in the unit of the description (s in SI).
+    pub t: f64,
+    /// Configuration coordinates x, ν entries.
+    pub x: Sys::Coordinates,
+    /// Velocity coordinates ξ, n entries.
+    pub xi: Sys::Velocities,
+}
+
+impl<Sys: System + ?Sized> State<Sys> {
+    /// The start of the description, at t = 0.
+    pub fn start(system: &Sys) -> Self {
+        let (x, xi) = system.start();
+        Self { t: 0.0, x, xi }
+    }
+
+    /// Whether time and every entry of x and ξ are finite.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        self.t.is_finite() && is_finite(self.x.as_ref()) && is_finite(self.xi.as_ref())
+    }
+
+    /// Compares the lengths of x and ξ with those of the system.
+    #[inline]
+    pub(crate) fn check_shape(&self, system: &Sys) -> Result<(), StepError> {
+        let blocks = system.blocks();
+        let checks = [
+            (
+                "coordinates",
+                manifold::coordinates(blocks),
+                self.x.as_ref().len(),
+            ),
+            (
+                "velocities",
+                system.zero_velocities().as_ref().len(),
+                self.xi.as_ref().len(),
+            ),
+            (
+                "chart",
+                manifold::chart(blocks),
+                system.zero_chart().as_ref().len(),
+            ),
+        ];
+        for (part, expected, found) in checks {
+            if expected != found {
+                return Err(StepError::Shape {
+                    part,
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<Sys: System + ?Sized> Clone for State<Sys> {
+    fn clone(&self) -> Self {
+        Self {
+            t: self.t,
+            x: self.x.clone(),
+            xi: self.xi.clone(),
+        }
+    }
+}
+
+impl<Sys: System + ?Sized> fmt::Debug for State<Sys> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("State")
+            .field("t", &self.t)
+            .field("x", &self.x)
+            .field("xi", &self.xi)
+            .finish()
+    }
+}
