@@ -18,7 +18,12 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error at a place.
     pub fn new(span: Span, message: impl Into<String>) -> Self {
-        Diagnostic { span, message: message.into(), help: None, notes: Vec::new() }
+        Diagnostic {
+            span,
+            message: message.into(),
+            help: None,
+            notes: Vec::new(),
+        }
     }
 
     /// Adds what to do.
@@ -69,6 +74,10 @@ impl Report {
 
     /// A checkpoint: `Ok` where nothing was reported, all errors otherwise.
     pub fn finish(self) -> Result<(), Vec<Diagnostic>> {
-        if self.errors.is_empty() { Ok(()) } else { Err(self.errors) }
+        if self.errors.is_empty() {
+            Ok(())
+        } else {
+            Err(self.errors)
+        }
     }
 }

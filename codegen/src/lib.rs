@@ -1,12 +1,35 @@
-//! Symbolic generator of equations of motion in redundant coordinates and quasi-velocities.
+//! Symbolic generator of equations of motion in redundant coordinates and quasi-velocities, after
+//! M. Konz and J. Rudolph, *Redundant configuration coordinates and nonholonomic velocity
+//! coordinates in analytical mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414 (KR18).
 //!
-//! `text/tokens → ast → model → derivation → program → Rust tokens | tables | interpreter`; one
-//! module a stage, see ARCHITECTURE.md.
+//! `text/tokens → ast → model → derivation → program → Rust | tables | interpreter`, one module a
+//! stage. Dependencies point one way:
+//!
+//! | module | owns |
+//! |---|---|
+//! | [`syntax`] | grammar and spans |
+//! | [`algebra`] | expression graph, polynomials, normal forms; no mechanics |
+//! | [`model`] | names, shapes, every semantic error |
+//! | [`derive`] | the symbols of the formalism, ξ̇ by the cheapest route, validation |
+//! | [`program`] | binding times, operation counts, interpretation |
+//! | [`emit`] | Rust text; no algebra |
+//! | [`tables`] | what people read |
+//! | [`generate`], [`expand()`], [`Builder`] | the doors |
 
 pub mod algebra;
+#[cfg(feature = "files")]
+pub mod builder;
 pub mod derive;
 pub mod diagnostics;
+pub mod emit;
+mod expand;
+pub mod generate;
 pub mod model;
 pub mod program;
 pub mod render;
 pub mod syntax;
+pub mod tables;
+
+#[cfg(feature = "files")]
+pub use builder::{BuildError, Builder};
+pub use expand::{MACRO_STATEMENTS, expand};

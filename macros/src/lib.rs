@@ -1,10 +1,11 @@
-//! The proc macro door of hamel: a shell over `hamel_codegen::expand`.
+//! The proc macro door of hamel: a shell over [`hamel_codegen::expand`].
 
 use proc_macro::TokenStream;
 
-/// Derives and expands the equations of motion of the described system.
+/// Derives the equations of motion of the described system and expands to a Rust type with them.
 ///
-/// The grammar is that of `.eom` files; see the `hamel` crate for an example.
+/// The grammar is that of `.eom` files; errors are placed in the description. The expansion names
+/// `::hamel`, so the crate `hamel` has to be a dependency.
 #[proc_macro]
 pub fn rigid_eom(input: TokenStream) -> TokenStream {
     hamel_codegen::expand(input.into()).into()

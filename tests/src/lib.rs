@@ -1,0 +1,7 @@
+//! Generated systems of `models/`, by the build script, and what the tests share.
+
+#![deny(warnings)]
+
+pub mod chain;
+
+include!(concat!(env!("OUT_DIR"), "/models.rs"));

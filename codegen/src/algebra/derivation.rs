@@ -15,7 +15,9 @@ pub struct Derivation {
 impl Derivation {
     /// The derivation that maps each symbol's node to its seed, and all other symbols to 0.
     pub fn new(seeds: impl IntoIterator<Item = (NodeId, Edge)>) -> Self {
-        Derivation { memo: seeds.into_iter().collect() }
+        Derivation {
+            memo: seeds.into_iter().collect(),
+        }
     }
 
     /// The derivative of one expression.
@@ -44,7 +46,11 @@ impl Derivation {
             }
             let node = graph.node(id);
             let before = stack.len();
-            stack.extend(node.children().map(Edge::node).filter(|child| !self.memo.contains_key(child)));
+            stack.extend(
+                node.children()
+                    .map(Edge::node)
+                    .filter(|child| !self.memo.contains_key(child)),
+            );
             if stack.len() == before {
                 let derivative = self.local(graph, id, node);
                 self.memo.insert(id, derivative);

@@ -135,7 +135,8 @@ pub struct Graph {
 impl Graph {
     /// An empty graph; `seed` chooses the points, `free_class` the run-time constants.
     pub fn new(seed: u64, free_class: u8) -> Self {
-        let lanes = std::array::from_fn(|lane| Lane::new(seed.wrapping_mul(31).wrapping_add(lane as u64)));
+        let lanes =
+            std::array::from_fn(|lane| Lane::new(seed.wrapping_mul(31).wrapping_add(lane as u64)));
         let mut graph = Graph {
             nodes: Vec::new(),
             values: Vec::new(),
@@ -191,7 +192,11 @@ impl Graph {
     /// The values of an edge at the points.
     pub fn value(&self, edge: Edge) -> [Fp; LANES] {
         let value = self.values[edge.node() as usize];
-        if edge.is_negative() { value.map(|v| -v) } else { value }
+        if edge.is_negative() {
+            value.map(|v| -v)
+        } else {
+            value
+        }
     }
 
     /// The symbols, in order of creation.
@@ -209,7 +214,11 @@ impl Graph {
         match self.nodes[edge.node() as usize] {
             Node::Constant(index) => {
                 let value = &self.constants[index as usize];
-                Some(if edge.is_negative() { -value.clone() } else { value.clone() })
+                Some(if edge.is_negative() {
+                    -value.clone()
+                } else {
+                    value.clone()
+                })
             }
             _ => None,
         }
@@ -227,7 +236,11 @@ impl Graph {
         }
         let index = self.symbols.len() as u32;
         let edge = self.push(Node::Symbol(index), value, class);
-        self.symbols.push(Symbol { name: name.to_string(), class, node: edge.node() });
+        self.symbols.push(Symbol {
+            name: name.to_string(),
+            class,
+            node: edge.node(),
+        });
         edge
     }
 
@@ -379,7 +392,10 @@ impl Graph {
         };
         let arguments = self.value(argument);
         let value = std::array::from_fn(|lane| {
-            let form = form.iter().map(|(atom, c)| (self.value(Edge::of(*atom))[lane], c.clone())).collect();
+            let form = form
+                .iter()
+                .map(|(atom, c)| (self.value(Edge::of(*atom))[lane], c.clone()))
+                .collect();
             self.lanes[lane].function(function, arguments[lane], &form)
         });
         let class = self.class(argument.node());
@@ -393,7 +409,9 @@ impl Graph {
     /// atan2(y, x).
     pub fn atan2(&mut self, y: Edge, x: Edge) -> Edge {
         let (ys, xs) = (self.value(y), self.value(x));
-        let value = std::array::from_fn(|lane| self.lanes[lane].opaque(Function::Atan2, ys[lane], xs[lane]));
+        let value = std::array::from_fn(|lane| {
+            self.lanes[lane].opaque(Function::Atan2, ys[lane], xs[lane])
+        });
         let class = self.class(y.node()) | self.class(x.node());
         match self.known(value, class) {
             Some(known) => known,
@@ -415,12 +433,18 @@ impl Graph {
                 square = self.mul(square, square);
             }
         }
-        if exponent < 0 { self.div(self.one(), result) } else { Some(result) }
+        if exponent < 0 {
+            self.div(self.one(), result)
+        } else {
+            Some(result)
+        }
     }
 
     /// Σ terms.
     pub fn sum(&mut self, terms: &[Edge]) -> Edge {
-        terms.iter().fold(self.zero(), |sum, &term| self.add(sum, term))
+        terms
+            .iter()
+            .fold(self.zero(), |sum, &term| self.add(sum, term))
     }
 
     /// Σ aᵢ bᵢ.
@@ -450,7 +474,9 @@ impl Graph {
                     (_, Some(factor)) => stack.push((a, scale * factor)),
                     _ => collect(&mut form, node, scale),
                 },
-                Node::Constant(index) => collect(&mut form, 1, scale * &self.constants[index as usize]),
+                Node::Constant(index) => {
+                    collect(&mut form, 1, scale * &self.constants[index as usize])
+                }
                 _ => collect(&mut form, node, scale),
             }
         }
@@ -466,7 +492,9 @@ impl Graph {
                 stack.extend(self.nodes[id as usize].children().map(Edge::node));
             }
         }
-        (0..self.nodes.len() as NodeId).filter(|&id| seen[id as usize]).collect()
+        (0..self.nodes.len() as NodeId)
+            .filter(|&id| seen[id as usize])
+            .collect()
     }
 
     fn exact_root(&mut self, argument: Edge) -> Option<Edge> {
@@ -549,7 +577,9 @@ impl Graph {
     /// A node that later expressions do not merge with.
     pub(super) fn push_unmerged(&mut self, node: Node) -> Edge {
         let id = self.nodes.len() as NodeId;
-        let class = node.children().fold(0, |class, child| class | self.class(child.node()));
+        let class = node
+            .children()
+            .fold(0, |class, child| class | self.class(child.node()));
         self.nodes.push(node);
         self.values.push([Fp::ZERO; LANES]);
         self.classes.push(class);
@@ -590,7 +620,10 @@ fn ordered(a: Edge, b: Edge) -> (Edge, Edge) {
 
 /// The representative of {v, −v}, and whether v is its negative.
 fn canonical(value: [Fp; LANES]) -> ([Fp; LANES], bool) {
-    let negative = value.iter().find(|v| !v.is_zero()).is_some_and(|v| v.value() > P / 2);
+    let negative = value
+        .iter()
+        .find(|v| !v.is_zero())
+        .is_some_and(|v| v.value() > P / 2);
     (if negative { value.map(|v| -v) } else { value }, negative)
 }
 

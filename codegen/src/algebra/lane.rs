@@ -30,7 +30,11 @@ pub struct Lane {
 impl Lane {
     /// A point without symbols yet.
     pub fn new(seed: u64) -> Self {
-        Lane { seed, symbols: Vec::new(), stuck: false }
+        Lane {
+            seed,
+            symbols: Vec::new(),
+            stuck: false,
+        }
     }
 
     /// Adds the next symbol.
@@ -75,18 +79,27 @@ impl Lane {
     }
 
     fn angle(&self, form: &LinearForm) -> (Fp, Fp) {
-        form.iter().fold((Fp::ONE, Fp::ZERO), |total, (atom, coefficient)| {
-            let (base, count, parts) = split(*atom, coefficient);
-            let point = circle_point(&mut self.draw(64 + parts, base, Fp::ONE));
-            rotate(total, power(point, count))
-        })
+        form.iter()
+            .fold((Fp::ONE, Fp::ZERO), |total, (atom, coefficient)| {
+                let (base, count, parts) = split(*atom, coefficient);
+                let point = circle_point(&mut self.draw(64 + parts, base, Fp::ONE));
+                rotate(total, power(point, count))
+            })
     }
 
     fn exp(&self, form: &LinearForm) -> Fp {
         form.iter().fold(Fp::ONE, |total, (atom, coefficient)| {
             let (base, count, parts) = split(*atom, coefficient);
-            let magnitude = self.draw(96 + parts, base, Fp::ONE).element().pow(count.unsigned_abs());
-            total * if count < 0 { magnitude.inv().unwrap_or(Fp::ONE) } else { magnitude }
+            let magnitude = self
+                .draw(96 + parts, base, Fp::ONE)
+                .element()
+                .pow(count.unsigned_abs());
+            total
+                * if count < 0 {
+                    magnitude.inv().unwrap_or(Fp::ONE)
+                } else {
+                    magnitude
+                }
         })
     }
 }
@@ -95,12 +108,23 @@ impl Lane {
 /// multiple of a part, c·atom is a base of its own.
 fn split(atom: Fp, coefficient: &BigRational) -> (Fp, i64, u64) {
     let parts = coefficient * BigRational::from_integer(BigInt::from(PARTS));
-    let whole = parts.is_integer().then(|| parts.to_integer().to_i64()).flatten();
+    let whole = parts
+        .is_integer()
+        .then(|| parts.to_integer().to_i64())
+        .flatten();
     let (base, count, parts) = match whole {
         Some(count) => (atom, count, 1),
-        None => (atom * Fp::from_rational(coefficient).unwrap_or(Fp::ONE), 1, 0),
+        None => (
+            atom * Fp::from_rational(coefficient).unwrap_or(Fp::ONE),
+            1,
+            0,
+        ),
     };
-    if base.value() > P / 2 { (-base, -count, parts) } else { (base, count, parts) }
+    if base.value() > P / 2 {
+        (-base, -count, parts)
+    } else {
+        (base, count, parts)
+    }
 }
 
 /// A random point (c, s) of the unit circle: ((1 − t²), 2t)/(1 + t²); 1 + t² ≠ 0 as p ≡ 3 mod 4.

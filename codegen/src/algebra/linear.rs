@@ -14,7 +14,9 @@ pub fn zero3(graph: &Graph) -> Vec3 {
 
 /// I ∈ R³ˣ³.
 pub fn identity3(graph: &Graph) -> Mat3 {
-    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { graph.one() } else { graph.zero() }))
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| if i == j { graph.one() } else { graph.zero() })
+    })
 }
 
 /// a + b.
@@ -81,12 +83,18 @@ pub fn multiply(graph: &mut Graph, a: &[Vec<Edge>], b: &[Vec<Edge>]) -> Vec<Vec<
 /// Mᵀ for a matrix as rows.
 pub fn transpose(m: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
     let columns = m.first().map_or(0, Vec::len);
-    (0..columns).map(|j| m.iter().map(|row| row[j]).collect()).collect()
+    (0..columns)
+        .map(|j| m.iter().map(|row| row[j]).collect())
+        .collect()
 }
 
 /// (A)⁻¹ B for symmetric A whose leading minors do not vanish on X (positive definite on the
 /// reals), by Gauss without exchange of rows; `None` where a pivot is identically zero.
-pub fn solve_symmetric(graph: &mut Graph, a: &[Vec<Edge>], b: &[Vec<Edge>]) -> Option<Vec<Vec<Edge>>> {
+pub fn solve_symmetric(
+    graph: &mut Graph,
+    a: &[Vec<Edge>],
+    b: &[Vec<Edge>],
+) -> Option<Vec<Vec<Edge>>> {
     let n = a.len();
     let (mut a, mut b) = (a.to_vec(), b.to_vec());
     for k in 0..n {

@@ -60,7 +60,10 @@ pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec
                     Function::Sin | Function::Cos | Function::Exp => graph.linear_form(a),
                     _ => Vec::new(),
                 };
-                let form = form.into_iter().map(|(atom, c)| (values[atom as usize], c)).collect();
+                let form = form
+                    .into_iter()
+                    .map(|(atom, c)| (values[atom as usize], c))
+                    .collect();
                 let argument = read(&values, a);
                 lane.function(function, argument, &form)
             }
@@ -78,9 +81,13 @@ pub fn rank(mut rows: Vec<Vec<Fp>>) -> usize {
     let columns = rows.first().map_or(0, Vec::len);
     let mut rank = 0;
     for column in 0..columns {
-        let Some(pivot) = (rank..rows.len()).find(|&row| !rows[row][column].is_zero()) else { continue };
+        let Some(pivot) = (rank..rows.len()).find(|&row| !rows[row][column].is_zero()) else {
+            continue;
+        };
         rows.swap(rank, pivot);
-        let Some(inverse) = rows[rank][column].inv() else { continue };
+        let Some(inverse) = rows[rank][column].inv() else {
+            continue;
+        };
         for row in rank + 1..rows.len() {
             let factor = rows[row][column] * inverse;
             if !factor.is_zero() {

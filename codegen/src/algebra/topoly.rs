@@ -36,7 +36,11 @@ impl Expander {
 
     fn signed(&self, edge: Edge) -> Option<Poly<BigRational>> {
         let polynomial = self.memo.get(&edge.node())?.as_ref()?;
-        Some(if edge.is_negative() { polynomial.neg() } else { polynomial.clone() })
+        Some(if edge.is_negative() {
+            polynomial.neg()
+        } else {
+            polynomial.clone()
+        })
     }
 
     fn local(&self, graph: &Graph, id: NodeId) -> Option<Poly<BigRational>> {
@@ -55,20 +59,32 @@ impl Expander {
 
 /// Whether an expression is polynomial in the symbols of some classes.
 pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
-    graph.reachable(&[edge]).into_iter().all(|id| match graph.node(id) {
-        Node::Apply(..) | Node::Atan2(..) => graph.class(id) & classes == 0,
-        Node::Div(_, b) => graph.class(b.node()) & classes == 0,
-        _ => true,
-    })
+    graph
+        .reachable(&[edge])
+        .into_iter()
+        .all(|id| match graph.node(id) {
+            Node::Apply(..) | Node::Atan2(..) => graph.class(id) & classes == 0,
+            Node::Div(_, b) => graph.class(b.node()) & classes == 0,
+            _ => true,
+        })
 }
 
 /// The polynomial of an expression over F_p in the symbols that are `unknown`, all others having
 /// the given values; `None` where it is no polynomial in them.
-pub fn polynomial_at(graph: &Graph, edge: Edge, values: &[Fp], unknown: &dyn Fn(usize) -> bool) -> Option<Poly<Fp>> {
+pub fn polynomial_at(
+    graph: &Graph,
+    edge: Edge,
+    values: &[Fp],
+    unknown: &dyn Fn(usize) -> bool,
+) -> Option<Poly<Fp>> {
     let mut memo: FxHashMap<NodeId, Poly<Fp>> = FxHashMap::default();
     let read = |memo: &FxHashMap<NodeId, Poly<Fp>>, edge: Edge| {
         let polynomial = memo.get(&edge.node())?;
-        Some(if edge.is_negative() { polynomial.neg() } else { polynomial.clone() })
+        Some(if edge.is_negative() {
+            polynomial.neg()
+        } else {
+            polynomial.clone()
+        })
     };
     for id in graph.reachable(&[edge]) {
         let polynomial = match graph.node(id) {

@@ -31,10 +31,19 @@ pub fn copy(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
     })
 }
 
-fn carry(from: &Graph, into: &mut Graph, edges: &[Edge], mut make: impl FnMut(&mut Graph, Node, Edge, Edge) -> Edge) -> Vec<Edge> {
+fn carry(
+    from: &Graph,
+    into: &mut Graph,
+    edges: &[Edge],
+    mut make: impl FnMut(&mut Graph, Node, Edge, Edge) -> Edge,
+) -> Vec<Edge> {
     let mut image: FxHashMap<NodeId, Edge> = FxHashMap::default();
     let read = |image: &FxHashMap<NodeId, Edge>, into: &Graph, edge: Edge| {
-        image.get(&edge.node()).copied().unwrap_or(into.zero()).signed(edge.is_negative())
+        image
+            .get(&edge.node())
+            .copied()
+            .unwrap_or(into.zero())
+            .signed(edge.is_negative())
     };
     for id in from.reachable(edges) {
         let made = match from.node(id) {

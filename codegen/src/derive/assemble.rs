@@ -7,8 +7,8 @@ use super::{energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
-use crate::model::value::Value;
 use crate::model::Model;
+use crate::model::value::Value;
 use crate::program::{Argument, Function, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
@@ -19,8 +19,11 @@ pub fn assemble(model: &Model) -> Result<Program, Diagnostic> {
     let mass = inertia::mass_matrix(&mut reference, &mut calculus);
     inertia::positive_definite(&mut reference, &mass)?;
     let Some((chosen, parts)) = accel(model) else {
-        return Err(Diagnostic::new(model.span, "the mass matrix is singular for every configuration")
-            .help("every velocity needs inertia: check masses and inertias"));
+        return Err(Diagnostic::new(
+            model.span,
+            "the mass matrix is singular for every configuration",
+        )
+        .help("every velocity needs inertia: check masses and inertias"));
     };
     let potential = energy::potential(&mut reference);
     let mut builder = Builder::new(model, chosen, parts);
@@ -43,10 +46,23 @@ struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     fn new(model: &'a Model, chosen: Acceleration, parts: Parts) -> Self {
-        Builder { model, graph: chosen.graph.clone(), chosen, parts, functions: Vec::new() }
+        Builder {
+            model,
+            graph: chosen.graph.clone(),
+            chosen,
+            parts,
+            functions: Vec::new(),
+        }
     }
 
-    fn push(&mut self, name: &str, docs: &[&str], arguments: &[Argument], shape: Shape, outputs: Vec<Edge>) {
+    fn push(
+        &mut self,
+        name: &str,
+        docs: &[&str],
+        arguments: &[Argument],
+        shape: Shape,
+        outputs: Vec<Edge>,
+    ) {
         self.functions.push(Function {
             name: name.to_string(),
             docs: docs.iter().map(|line| line.to_string()).collect(),
@@ -63,7 +79,13 @@ impl<'a> Builder<'a> {
         let rate = rebuild(&model.graph, &mut self.graph, &model.rate);
         let x = model.x.clone();
         let chart = kinematics::chart_rates(&mut self.graph, &model.blocks, &x, &rate);
-        self.push("rate", &["Rates of the coordinates, ẋ = A(x) ξ (KR18 (5))."], &[Coordinates, Velocities], Shape::Vector(rate.len()), rate);
+        self.push(
+            "rate",
+            &["Rates of the coordinates, ẋ = A(x) ξ (KR18 (5))."],
+            &[Coordinates, Velocities],
+            Shape::Vector(rate.len()),
+            rate,
+        );
         self.push(
             "chart_rate",
             &[
@@ -79,7 +101,13 @@ impl<'a> Builder<'a> {
     fn dynamics(&mut self, reference: &Graph, potential: Edge) {
         let n = self.model.n();
         let (xi, xi_dot) = (self.model.xi.clone(), self.model.xi_dot.clone());
-        let guards: Vec<Edge> = self.chosen.pivots.iter().copied().filter(|p| !self.graph.is_free(p.node())).collect();
+        let guards: Vec<Edge> = self
+            .chosen
+            .pivots
+            .iter()
+            .copied()
+            .filter(|p| !self.graph.is_free(p.node()))
+            .collect();
         self.functions.push(Function {
             name: "accel".into(),
             docs: vec![
@@ -118,14 +146,62 @@ impl<'a> Builder<'a> {
             vector,
             inverse,
         );
-        self.push("mass_matrix", &["Mass matrix M(x) (KR18 (20)), by rows."], &[Coordinates], Shape::Matrix(n, n), mass.concat());
-        self.push("bias", &["Bias force Γᵢⱼₖ ξʲ ξᵏ (KR18 (30c)): Coriolis, centrifugal and gyroscopic terms."], &[Coordinates, Velocities], vector, bias);
-        self.push("potential_force", &["Slope of the potential, ∂ᵢV along the columns of A (KR18 (9)); gravity included."], &[Coordinates], vector, slope);
-        self.push("generalized_force", &["Generalised force fᵢ of the applied loads (KR18 (28))."], &[Coordinates, Velocities, Inputs], vector, applied);
-        self.push("momentum", &["Generalised momentum p = M ξ = ∂L/∂ξ."], &[Coordinates, Velocities], vector, momentum);
-        self.push("kinetic_energy", &["Kinetic energy T = ½ ξᵀ M ξ (J)."], &[Coordinates, Velocities], Shape::Scalar, vec![kinetic]);
-        self.push("potential_energy", &["Potential energy V(x) (J)."], &[Coordinates], Shape::Scalar, vec![potential]);
-        self.push("energy", &["Energy T + V (J)."], &[Coordinates, Velocities], Shape::Scalar, vec![energy]);
+        self.push(
+            "mass_matrix",
+            &["Mass matrix M(x) (KR18 (20)), by rows."],
+            &[Coordinates],
+            Shape::Matrix(n, n),
+            mass.concat(),
+        );
+        self.push(
+            "bias",
+            &["Bias force Γᵢⱼₖ ξʲ ξᵏ (KR18 (30c)): Coriolis, centrifugal and gyroscopic terms."],
+            &[Coordinates, Velocities],
+            vector,
+            bias,
+        );
+        self.push(
+            "potential_force",
+            &["Slope of the potential, ∂ᵢV along the columns of A (KR18 (9)); gravity included."],
+            &[Coordinates],
+            vector,
+            slope,
+        );
+        self.push(
+            "generalized_force",
+            &["Generalised force fᵢ of the applied loads (KR18 (28))."],
+            &[Coordinates, Velocities, Inputs],
+            vector,
+            applied,
+        );
+        self.push(
+            "momentum",
+            &["Generalised momentum p = M ξ = ∂L/∂ξ."],
+            &[Coordinates, Velocities],
+            vector,
+            momentum,
+        );
+        self.push(
+            "kinetic_energy",
+            &["Kinetic energy T = ½ ξᵀ M ξ (J)."],
+            &[Coordinates, Velocities],
+            Shape::Scalar,
+            vec![kinetic],
+        );
+        self.push(
+            "potential_energy",
+            &["Potential energy V(x) (J)."],
+            &[Coordinates],
+            Shape::Scalar,
+            vec![potential],
+        );
+        self.push(
+            "energy",
+            &["Energy T + V (J)."],
+            &[Coordinates, Velocities],
+            Shape::Scalar,
+            vec![energy],
+        );
     }
 
     /// φ and −Ψ φ, which are wanted off X: copied node by node from the graph with free points.
@@ -133,11 +209,18 @@ impl<'a> Builder<'a> {
         let mut free = model.points.free.clone();
         let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
         let correction = kinematics::correction(model, &mut free).ok_or_else(|| {
-            Diagnostic::new(model.span, "the constraints are redundant: ΦΦᵀ is singular").help("remove the constraint that follows from the others")
+            Diagnostic::new(model.span, "the constraints are redundant: ΦΦᵀ is singular")
+                .help("remove the constraint that follows from the others")
         })?;
         let phi = copy(&free, &mut self.graph, &rows);
         let correction = copy(&free, &mut self.graph, &correction);
-        self.push("constraint", &["Geometric constraint φ(x), zero on the configuration manifold (KR18 (3))."], &[Coordinates], Shape::Vector(phi.len()), phi);
+        self.push(
+            "constraint",
+            &["Geometric constraint φ(x), zero on the configuration manifold (KR18 (3))."],
+            &[Coordinates],
+            Shape::Vector(phi.len()),
+            phi,
+        );
         self.push(
             "correction",
             &["The stabilising direction −Ψ φ(x) of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t)."],
@@ -158,16 +241,29 @@ impl<'a> Builder<'a> {
                 Value::Pose(..) => Shape::Vector(entries.len()),
             };
             let docs = format!("Output `{name}` of the description.");
-            self.push(name, &[&docs], &[Coordinates, Velocities, Inputs], shape, entries);
+            self.push(
+                name,
+                &[&docs],
+                &[Coordinates, Velocities, Inputs],
+                shape,
+                entries,
+            );
         }
     }
 
     fn finish(mut self) -> Program {
         let model = self.model;
         let names = names(model, &mut self.graph);
-        self.functions.retain(|function| model.wants(&function.name) || (function.name == "energy" && model.wants("energy")));
+        self.functions.retain(|function| {
+            model.wants(&function.name) || (function.name == "energy" && model.wants("energy"))
+        });
         let constant_guards = if self.functions.iter().any(|f| f.name == "accel") {
-            self.chosen.pivots.iter().copied().filter(|p| self.graph.is_free(p.node())).collect()
+            self.chosen
+                .pivots
+                .iter()
+                .copied()
+                .filter(|p| self.graph.is_free(p.node()))
+                .collect()
         } else {
             Vec::new()
         };
@@ -203,7 +299,12 @@ fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
         if let [only] = entries.as_slice() {
             names.push((name.clone(), *only));
         } else {
-            names.extend(entries.into_iter().enumerate().map(|(i, edge)| (format!("{name}_{}", i + 1), edge)));
+            names.extend(
+                entries
+                    .into_iter()
+                    .enumerate()
+                    .map(|(i, edge)| (format!("{name}_{}", i + 1), edge)),
+            );
         }
     }
     names

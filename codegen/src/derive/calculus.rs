@@ -16,10 +16,24 @@ pub struct Calculus {
 impl Calculus {
     /// The derivations ∂₁ … ∂ₙ and d/dt.
     pub fn new(model: &Model) -> Self {
-        let direction = |i: usize| Derivation::new(model.x.iter().zip(&model.a).map(|(x, row)| (x.node(), row[i])));
+        let direction = |i: usize| {
+            Derivation::new(
+                model
+                    .x
+                    .iter()
+                    .zip(&model.a)
+                    .map(|(x, row)| (x.node(), row[i])),
+            )
+        };
         Calculus {
             directions: (0..model.n()).map(direction).collect(),
-            time: Derivation::new(model.x.iter().zip(&model.rate).map(|(x, &rate)| (x.node(), rate))),
+            time: Derivation::new(
+                model
+                    .x
+                    .iter()
+                    .zip(&model.rate)
+                    .map(|(x, &rate)| (x.node(), rate)),
+            ),
         }
     }
 
@@ -45,7 +59,9 @@ impl Calculus {
 
     /// ∂ᵢ p for all i, world axes.
     pub fn point_jacobian(&mut self, graph: &mut Graph, point: Vec3) -> Vec<Vec3> {
-        (0..self.n()).map(|i| point.map(|entry| self.along(graph, i, entry))).collect()
+        (0..self.n())
+            .map(|i| point.map(|entry| self.along(graph, i, entry)))
+            .collect()
     }
 
     /// The columns of the body angular velocity, vee(Rᵀ ∂ᵢR), for all i.

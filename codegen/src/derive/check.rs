@@ -58,7 +58,11 @@ struct Sides {
 pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
     let Some(mut geometry) = Geometry::new(model) else {
         let verdict = Verdict::Failed("Y could not be derived".into());
-        return vec![Identity { label: "(6)", equation: "Y A = I", verdict }];
+        return vec![Identity {
+            label: "(6)",
+            equation: "Y A = I",
+            verdict,
+        }];
     };
     let mut all = geometric(&mut geometry);
     all.extend(motion(&mut geometry, program));
@@ -72,7 +76,11 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
                 None if proofs.hold(index) => Verdict::Proved,
                 None => Verdict::Checked,
             };
-            Identity { label: sides.label, equation: sides.equation, verdict }
+            Identity {
+                label: sides.label,
+                equation: sides.equation,
+                verdict,
+            }
         })
         .collect()
 }
@@ -94,11 +102,17 @@ struct Proofs {
 
 impl Proofs {
     fn new(model: &Model) -> Self {
-        let mut proofs = Proofs { graph: model.graph.clone(), forms: NormalForms::new(model), sides: Vec::new() };
+        let mut proofs = Proofs {
+            graph: model.graph.clone(),
+            forms: NormalForms::new(&model.points),
+            sides: Vec::new(),
+        };
         if model.n() > MOST_PROVED {
             return proofs;
         }
-        let Some(mut geometry) = Geometry::unreduced(model) else { return proofs };
+        let Some(mut geometry) = Geometry::unreduced(model) else {
+            return proofs;
+        };
         proofs.sides = geometric(&mut geometry);
         proofs.graph = geometry.model.graph;
         proofs
@@ -106,13 +120,18 @@ impl Proofs {
 
     /// Whether every difference of an identity lies in the ideal of φ.
     fn hold(&mut self, index: usize) -> bool {
-        let Some(sides) = self.sides.get(index) else { return false };
+        let Some(sides) = self.sides.get(index) else {
+            return false;
+        };
         let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
         if self.graph.reachable(&roots).len() > MOST_NODES {
             return false;
         }
         sides.left.iter().zip(&sides.right).all(|(&left, &right)| {
-            let (Some(a), Some(b)) = (self.forms.expand(&self.graph, left), self.forms.expand(&self.graph, right)) else {
+            let (Some(a), Some(b)) = (
+                self.forms.expand(&self.graph, left),
+                self.forms.expand(&self.graph, right),
+            ) else {
                 return false;
             };
             self.forms.reduce(&self.graph, &a.sub(&b)).is_zero()
@@ -132,9 +151,19 @@ fn kinematic(geometry: &mut Geometry) -> Vec<Sides> {
             right.push(if i == j { graph.one() } else { graph.zero() });
         }
     }
-    let inverse = Sides { label: "(6)", equation: "Y A = I", left, right };
+    let inverse = Sides {
+        label: "(6)",
+        equation: "Y A = I",
+        left,
+        right,
+    };
     let from_rows = gamma_from_rows(&mut geometry.model, &geometry.y);
-    let same = Sides { label: "(12) = (13)", equation: "γ from A and γ from Y agree", left: flat(&geometry.gamma), right: flat(&from_rows) };
+    let same = Sides {
+        label: "(12) = (13)",
+        equation: "γ from A and γ from Y agree",
+        left: flat(&geometry.gamma),
+        right: flat(&from_rows),
+    };
     vec![inverse, tangent(geometry), same]
 }
 
@@ -142,10 +171,15 @@ fn kinematic(geometry: &mut Geometry) -> Vec<Sides> {
 fn tangent(geometry: &mut Geometry) -> Sides {
     let mut free = geometry.model.points.free.clone();
     let first = geometry.model.points.first;
-    let x: Vec<Edge> = (first..first + geometry.model.nu()).map(|i| Edge::of(free.symbols()[i].node)).collect();
+    let x: Vec<Edge> = (first..first + geometry.model.nu())
+        .map(|i| Edge::of(free.symbols()[i].node))
+        .collect();
     let mut left = Vec::new();
     for (row, _) in geometry.model.phi.clone() {
-        let slopes: Vec<Edge> = x.iter().map(|x| Derivation::new([(x.node(), free.one())]).of(&mut free, row)).collect();
+        let slopes: Vec<Edge> = x
+            .iter()
+            .map(|x| Derivation::new([(x.node(), free.one())]).of(&mut free, row))
+            .collect();
         let slopes = rebuild(&free, &mut geometry.model.graph, &slopes);
         for i in 0..geometry.model.n() {
             let column: Vec<Edge> = geometry.model.a.iter().map(|row| row[i]).collect();
@@ -153,7 +187,12 @@ fn tangent(geometry: &mut Geometry) -> Sides {
         }
     }
     let right = vec![geometry.model.graph.zero(); left.len()];
-    Sides { label: "(6)", equation: "Φ A = 0", left, right }
+    Sides {
+        label: "(6)",
+        equation: "Φ A = 0",
+        left,
+        right,
+    }
 }
 
 /// Σ over cyclic i, j, k of ∂ᵢγⱼₖˡ + γⱼₖˢ γᵢₛˡ = 0.
@@ -181,7 +220,12 @@ fn jacobi(geometry: &mut Geometry) -> Vec<Sides> {
             }
         }
     }
-    vec![Sides { label: "Jacobi", equation: "Σ cyclic ∂ᵢγⱼₖˡ + γⱼₖˢ γᵢₛˡ = 0", left, right }]
+    vec![Sides {
+        label: "Jacobi",
+        equation: "Σ cyclic ∂ᵢγⱼₖˡ + γⱼₖˢ γᵢₛˡ = 0",
+        left,
+        right,
+    }]
 }
 
 /// (21a) and (21b).
@@ -190,16 +234,32 @@ fn metric(geometry: &mut Geometry) -> Vec<Sides> {
     let graph = &mut geometry.model.graph;
     let (mass, gamma, connection) = (&geometry.mass, &geometry.gamma, &geometry.connection);
     let mut sides = [
-        Sides { label: "(21a)", equation: "∂ₖM_ij = Γᵢⱼₖ + Γⱼᵢₖ", left: Vec::new(), right: Vec::new() },
-        Sides { label: "(21b)", equation: "γₖⱼˢ M_si = Γᵢⱼₖ − Γᵢₖⱼ", left: Vec::new(), right: Vec::new() },
+        Sides {
+            label: "(21a)",
+            equation: "∂ₖM_ij = Γᵢⱼₖ + Γⱼᵢₖ",
+            left: Vec::new(),
+            right: Vec::new(),
+        },
+        Sides {
+            label: "(21b)",
+            equation: "γₖⱼˢ M_si = Γᵢⱼₖ − Γᵢₖⱼ",
+            left: Vec::new(),
+            right: Vec::new(),
+        },
     ];
     for i in 0..n {
         for j in 0..n {
             for k in 0..n {
-                sides[0].left.push(geometry.calculus.along(graph, k, mass[i][j]));
-                sides[0].right.push(graph.add(connection[i][j][k], connection[j][i][k]));
+                sides[0]
+                    .left
+                    .push(geometry.calculus.along(graph, k, mass[i][j]));
+                sides[0]
+                    .right
+                    .push(graph.add(connection[i][j][k], connection[j][i][k]));
                 sides[1].left.push(graph.dot(&gamma[k][j], &mass[i]));
-                sides[1].right.push(graph.sub(connection[i][j][k], connection[i][k][j]));
+                sides[1]
+                    .right
+                    .push(graph.sub(connection[i][j][k], connection[i][k][j]));
             }
         }
     }
@@ -208,13 +268,20 @@ fn metric(geometry: &mut Geometry) -> Vec<Sides> {
 
 /// The emitted ξ̇ in (30c), (30a) = (30c), and d/dt (T + V) = fᵢ ξⁱ.
 fn motion(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
-    let Some(accel) = program.function("accel") else { return Vec::new() };
+    let Some(accel) = program.function("accel") else {
+        return Vec::new();
+    };
     let n = geometry.model.n();
     let xi = geometry.model.xi.clone();
     let xi_dot = rebuild(&program.graph, &mut geometry.model.graph, &accel.outputs);
     let mut calculus = Calculus::new(&geometry.model);
     let applied = super::assemble::applied_force(&mut geometry.model, &mut calculus);
-    let hamel = super::connection::quadratic(&mut geometry.model, &mut calculus, &geometry.mass, &geometry.gamma);
+    let hamel = super::connection::quadratic(
+        &mut geometry.model,
+        &mut calculus,
+        &geometry.mass,
+        &geometry.gamma,
+    );
     let graph = &mut geometry.model.graph;
     let (mut literal, mut forces) = (Vec::new(), Vec::new());
     for i in 0..n {
@@ -231,7 +298,11 @@ fn motion(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
         forces.push(graph.add(sum, slope));
     }
     // Ė = Dᵗ(T + V) at ξ̇ = 0, plus p·ξ̇.
-    let momentum: Vec<Edge> = geometry.mass.iter().map(|row| graph.dot(row, &xi)).collect();
+    let momentum: Vec<Edge> = geometry
+        .mass
+        .iter()
+        .map(|row| graph.dot(row, &xi))
+        .collect();
     let twice = graph.dot(&momentum, &xi);
     let half = graph.ratio(1, 2);
     let kinetic = graph.mul(half, twice);
@@ -241,9 +312,24 @@ fn motion(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
     let change = graph.add(drift, gain);
     let power = graph.dot(&applied, &xi);
     vec![
-        Sides { label: "(30a) = (30c)", equation: "ṗᵢ + γᵢⱼᵏ ξʲ pₖ − ∂ᵢT = Γᵢⱼₖ ξʲ ξᵏ at ξ̇ = 0", left: hamel, right: literal },
-        Sides { label: "(30c)", equation: "M ξ̇ + Γ ξ ξ + ∂V = f for the emitted ξ̇", left: forces, right: applied },
-        Sides { label: "power", equation: "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇", left: vec![change], right: vec![power] },
+        Sides {
+            label: "(30a) = (30c)",
+            equation: "ṗᵢ + γᵢⱼᵏ ξʲ pₖ − ∂ᵢT = Γᵢⱼₖ ξʲ ξᵏ at ξ̇ = 0",
+            left: hamel,
+            right: literal,
+        },
+        Sides {
+            label: "(30c)",
+            equation: "M ξ̇ + Γ ξ ξ + ∂V = f for the emitted ξ̇",
+            left: forces,
+            right: applied,
+        },
+        Sides {
+            label: "power",
+            equation: "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇",
+            left: vec![change],
+            right: vec![power],
+        },
     ]
 }
 
@@ -257,8 +343,12 @@ fn at_points(model: &Model, graph: &Graph, sides: &Sides) -> Option<String> {
     let (mut found, mut seed) = (0, 0);
     while found < POINTS && seed < TRIES {
         seed += 1;
-        let Some(mut lane) = model.points.lane(0xc4ec + seed) else { continue };
-        let Some(values) = evaluate_at(graph, &roots, &mut lane) else { continue };
+        let Some(mut lane) = model.points.lane(0xc4ec + seed) else {
+            continue;
+        };
+        let Some(values) = evaluate_at(graph, &roots, &mut lane) else {
+            continue;
+        };
         let (left, right) = values.split_at(sides.left.len());
         if let Some(entry) = (0..left.len()).find(|&entry| left[entry] != right[entry]) {
             return Some(format!("entry {} of {} differs", entry + 1, left.len()));

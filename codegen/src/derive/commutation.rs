@@ -36,7 +36,15 @@ pub fn gamma(model: &mut Model, calculus: &mut Calculus, y: &[Vec<Edge>]) -> Vec
 pub fn gamma_from_rows(model: &mut Model, y: &[Vec<Edge>]) -> Vec<Vec<Vec<Edge>>> {
     let (n, zero) = (model.n(), model.graph.zero());
     let mut directions: Vec<Derivation> = (0..n)
-        .map(|i| Derivation::new(model.x.iter().zip(&model.a).map(|(x, row)| (x.node(), row[i]))))
+        .map(|i| {
+            Derivation::new(
+                model
+                    .x
+                    .iter()
+                    .zip(&model.a)
+                    .map(|(x, row)| (x.node(), row[i])),
+            )
+        })
         .collect();
     let mut gamma = vec![vec![vec![zero; n]; n]; n];
     for k in 0..n {

@@ -5,16 +5,35 @@ use crate::algebra::graph::Edge;
 use crate::model::Model;
 
 /// Γ[i][j][k] = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si).
-pub fn connection(model: &mut Model, calculus: &mut Calculus, mass: &[Vec<Edge>], gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<Vec<Edge>>> {
+pub fn connection(
+    model: &mut Model,
+    calculus: &mut Calculus,
+    mass: &[Vec<Edge>],
+    gamma: &[Vec<Vec<Edge>>],
+) -> Vec<Vec<Vec<Edge>>> {
     let n = model.n();
     let graph = &mut model.graph;
     let half = graph.ratio(1, 2);
     // change[k][i][j] = ∂ₖM_ij; lowered[i][j][k] = γᵢⱼˢ M_sk
-    let change: Vec<Vec<Vec<Edge>>> =
-        (0..n).map(|k| mass.iter().map(|row| row.iter().map(|&entry| calculus.along(graph, k, entry)).collect()).collect()).collect();
+    let change: Vec<Vec<Vec<Edge>>> = (0..n)
+        .map(|k| {
+            mass.iter()
+                .map(|row| {
+                    row.iter()
+                        .map(|&entry| calculus.along(graph, k, entry))
+                        .collect()
+                })
+                .collect()
+        })
+        .collect();
     let lowered: Vec<Vec<Vec<Edge>>> = gamma
         .iter()
-        .map(|plane| plane.iter().map(|row| (0..n).map(|k| graph.dot(row, &mass[k])).collect()).collect())
+        .map(|plane| {
+            plane
+                .iter()
+                .map(|row| (0..n).map(|k| graph.dot(row, &mass[k])).collect())
+                .collect()
+        })
         .collect();
     (0..n)
         .map(|i| {
@@ -22,7 +41,14 @@ pub fn connection(model: &mut Model, calculus: &mut Calculus, mass: &[Vec<Edge>]
                 .map(|j| {
                     (0..n)
                         .map(|k| {
-                            let terms = [change[k][i][j], change[j][i][k], -change[i][j][k], lowered[i][j][k], lowered[i][k][j], -lowered[j][k][i]];
+                            let terms = [
+                                change[k][i][j],
+                                change[j][i][k],
+                                -change[i][j][k],
+                                lowered[i][j][k],
+                                lowered[i][k][j],
+                                -lowered[j][k][i],
+                            ];
                             let sum = graph.sum(&terms);
                             graph.mul(half, sum)
                         })
@@ -35,7 +61,12 @@ pub fn connection(model: &mut Model, calculus: &mut Calculus, mass: &[Vec<Edge>]
 
 /// hᵢ = Γᵢⱼₖ ξʲ ξᵏ without forming Γ: Ṁ_ij ξʲ − ½ ∂ᵢM_jk ξʲ ξᵏ + γᵢⱼˢ ξʲ p_s with p = M ξ (the
 /// antisymmetric term of (23) drops out); this is Hamel's form of KR18 (30a).
-pub fn quadratic(model: &mut Model, calculus: &mut Calculus, mass: &[Vec<Edge>], gamma: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
+pub fn quadratic(
+    model: &mut Model,
+    calculus: &mut Calculus,
+    mass: &[Vec<Edge>],
+    gamma: &[Vec<Vec<Edge>>],
+) -> Vec<Edge> {
     let n = model.n();
     let graph = &mut model.graph;
     let xi = model.xi.clone();

@@ -14,7 +14,12 @@ pub fn potential(model: &mut Model) -> Edge {
         let arm = apply3(graph, &frame.rotation, body.com);
         points.push((body.mass, add3(graph, frame.position, arm)));
     }
-    points.extend(model.particles.iter().map(|particle| (particle.mass, particle.position)));
+    points.extend(
+        model
+            .particles
+            .iter()
+            .map(|particle| (particle.mass, particle.position)),
+    );
     for (mass, point) in points {
         let weight = model.gravity.map(|g| graph.mul(mass, g));
         let work = graph.dot(&weight, &point);

@@ -41,11 +41,20 @@ fn body_mass(model: &mut Model, calculus: &mut Calculus, body: &Body) -> Vec<Vec
     let frame = model.frames[body.frame].clone();
     let graph = &mut model.graph;
     let spins = calculus.spin_jacobian(graph, &frame.rotation);
-    let velocities: Vec<_> =
-        calculus.point_jacobian(graph, frame.position).into_iter().map(|v| into_frame(graph, &frame.rotation, v)).collect();
+    let velocities: Vec<_> = calculus
+        .point_jacobian(graph, frame.position)
+        .into_iter()
+        .map(|v| into_frame(graph, &frame.rotation, v))
+        .collect();
     let first_moment = body.com.map(|entry| graph.mul(body.mass, entry));
-    let lever: Vec<_> = spins.iter().map(|&w| cross(graph, w, first_moment)).collect();
-    let spun: Vec<_> = spins.iter().map(|&w| apply3(graph, &body.inertia_origin, w)).collect();
+    let lever: Vec<_> = spins
+        .iter()
+        .map(|&w| cross(graph, w, first_moment))
+        .collect();
+    let spun: Vec<_> = spins
+        .iter()
+        .map(|&w| apply3(graph, &body.inertia_origin, w))
+        .collect();
     symmetric(n, |i, j| {
         let linear = graph.dot(&velocities[i], &velocities[j]);
         let terms = [
@@ -58,7 +67,11 @@ fn body_mass(model: &mut Model, calculus: &mut Calculus, body: &Body) -> Vec<Vec
     })
 }
 
-fn particle_mass(graph: &mut Graph, calculus: &mut Calculus, particle: &Particle) -> Vec<Vec<Edge>> {
+fn particle_mass(
+    graph: &mut Graph,
+    calculus: &mut Calculus,
+    particle: &Particle,
+) -> Vec<Vec<Edge>> {
     let columns = calculus.point_jacobian(graph, particle.position);
     symmetric(columns.len(), |i, j| {
         let product = graph.dot(&columns[i], &columns[j]);
@@ -69,7 +82,11 @@ fn particle_mass(graph: &mut Graph, calculus: &mut Calculus, particle: &Particle
 /// ∂²T/∂ξⁱ∂ξʲ of the kinetic energy that the user wrote.
 pub fn kinetic_mass(model: &mut Model) -> Vec<Vec<Edge>> {
     let graph = &mut model.graph;
-    let mut by: Vec<Derivation> = model.xi.iter().map(|xi| Derivation::new([(xi.node(), graph.one())])).collect();
+    let mut by: Vec<Derivation> = model
+        .xi
+        .iter()
+        .map(|xi| Derivation::new([(xi.node(), graph.one())]))
+        .collect();
     let energy = model.kinetic;
     let momentum: Vec<Edge> = by.iter_mut().map(|d| d.of(graph, energy)).collect();
     symmetric(momentum.len(), |i, j| by[j].of(graph, momentum[i]))
@@ -82,16 +99,35 @@ pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<V
         let row = (0..=i).map(|j| entry(i, j)).collect();
         rows.push(row);
     }
-    (0..n).map(|i| (0..n).map(|j| if j <= i { rows[i][j] } else { rows[j][i] }).collect()).collect()
+    (0..n)
+        .map(|i| {
+            (0..n)
+                .map(|j| if j <= i { rows[i][j] } else { rows[j][i] })
+                .collect()
+        })
+        .collect()
 }
 
 /// M has to be positive definite at the start, with the default parameters.
 pub fn positive_definite(model: &mut Model, mass: &[Vec<Edge>]) -> Result<(), Diagnostic> {
     let (m, n) = (model.u.len(), model.n());
-    let numbers = model.numbers(&model.defaults, &model.start_x, &model.start_xi, &vec![0.0; m], &vec![0.0; n]);
+    let numbers = model.numbers(
+        &model.defaults,
+        &model.start_x,
+        &model.start_xi,
+        &vec![0.0; m],
+        &vec![0.0; n],
+    );
     let values = evaluate(&model.graph, &mass.concat(), &numbers);
-    let Some(pivot) = failing_pivot(&values, n) else { return Ok(()) };
-    let name = model.graph.symbols().iter().find(|s| s.node == model.xi[pivot].node()).map_or("", |s| s.name.as_str());
+    let Some(pivot) = failing_pivot(&values, n) else {
+        return Ok(());
+    };
+    let name = model
+        .graph
+        .symbols()
+        .iter()
+        .find(|s| s.node == model.xi[pivot].node())
+        .map_or("", |s| s.name.as_str());
     Err(Diagnostic::new(
         model.span,
         format!("the mass matrix is not positive definite at the start: pivot {} (`{name}`) is not positive", pivot + 1),

@@ -25,18 +25,30 @@ pub fn left_inverse(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
     let (n, nu) = (model.n(), model.nu());
     let graph = &mut model.graph;
     let columns = transpose(&model.a);
-    let b_columns: Vec<Vec<Edge>> = columns.iter().map(|column| chart_rates(graph, &model.blocks, &model.x, column)).collect();
+    let b_columns: Vec<Vec<Edge>> = columns
+        .iter()
+        .map(|column| chart_rates(graph, &model.blocks, &model.x, column))
+        .collect();
     if b_columns[0].len() == n {
         let b = transpose(&b_columns);
         let c_columns: Vec<Vec<Edge>> = (0..nu)
             .map(|alpha| {
-                let unit: Vec<Edge> = (0..nu).map(|beta| if alpha == beta { graph.one() } else { graph.zero() }).collect();
+                let unit: Vec<Edge> = (0..nu)
+                    .map(|beta| {
+                        if alpha == beta {
+                            graph.one()
+                        } else {
+                            graph.zero()
+                        }
+                    })
+                    .collect();
                 chart_rates(graph, &model.blocks, &model.x, &unit)
             })
             .collect();
         let c = transpose(&c_columns);
         let gram = multiply(graph, &b_columns, &b);
-        let orthogonal = (0..n).all(|i| (0..n).all(|j| gram[i][j] == if i == j { graph.one() } else { graph.zero() }));
+        let orthogonal = (0..n)
+            .all(|i| (0..n).all(|j| gram[i][j] == if i == j { graph.one() } else { graph.zero() }));
         if orthogonal {
             return Some(multiply(graph, &b_columns, &c));
         }
@@ -58,7 +70,9 @@ fn substitute(graph: &mut Graph, b: &[Vec<Edge>], c: &[Vec<Edge>]) -> Option<Vec
     for _ in 0..n {
         let zero = graph.zero();
         let open = |row: &[Edge], solution: &[Option<Vec<Edge>>]| -> Vec<usize> {
-            (0..n).filter(|&j| row[j] != zero && solution[j].is_none()).collect()
+            (0..n)
+                .filter(|&j| row[j] != zero && solution[j].is_none())
+                .collect()
         };
         let row = (0..n).find(|&i| !used[i] && open(&b[i], &solution).len() == 1)?;
         let unknown = open(&b[row], &solution)[0];
@@ -87,7 +101,9 @@ fn substitute(graph: &mut Graph, b: &[Vec<Edge>], c: &[Vec<Edge>]) -> Option<Vec
 /// Φ = ∂φ/∂x for constraints that the user wrote. `None` where those are redundant.
 pub fn correction(model: &Model, free: &mut Graph) -> Option<Vec<Edge>> {
     let first = model.points.first;
-    let x: Vec<Edge> = (first..first + model.nu()).map(|index| Edge::of(free.symbols()[index].node)).collect();
+    let x: Vec<Edge> = (first..first + model.nu())
+        .map(|index| Edge::of(free.symbols()[index].node))
+        .collect();
     let half = free.ratio(1, 2);
     let mut correction = vec![free.zero(); x.len()];
     let mut place = 0;
@@ -128,7 +144,11 @@ pub fn correction(model: &Model, free: &mut Graph) -> Option<Vec<Edge>> {
     }
     let jacobian: Vec<Vec<Edge>> = rows
         .iter()
-        .map(|&row| x.iter().map(|x| Derivation::new([(x.node(), free.one())]).of(free, row)).collect())
+        .map(|&row| {
+            x.iter()
+                .map(|x| Derivation::new([(x.node(), free.one())]).of(free, row))
+                .collect()
+        })
         .collect();
     let gram = multiply(free, &jacobian, &transpose(&jacobian));
     let right: Vec<Vec<Edge>> = rows.iter().map(|&row| vec![row]).collect();

@@ -22,7 +22,11 @@ pub fn wrench(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Ve
                 .into_iter()
                 .zip(spins)
                 .map(|(v, w)| {
-                    let v = if pure_torque { [zero; 3] } else { into_frame(graph, &frame.rotation, v) };
+                    let v = if pure_torque {
+                        [zero; 3]
+                    } else {
+                        into_frame(graph, &frame.rotation, v)
+                    };
                     let (force, turn) = (graph.dot(&v, &wrench.force), graph.dot(&w, &torque));
                     graph.add(force, turn)
                 })
@@ -48,7 +52,9 @@ pub fn wrench(model: &mut Model, calculus: &mut Calculus, wrench: &Wrench) -> Ve
 
 /// −∂ᵢV of everything but gravity on bodies, which has routes of its own.
 pub fn potential(model: &mut Model, calculus: &mut Calculus, potential: Edge) -> Vec<Edge> {
-    (0..model.n()).map(|i| -calculus.along(&mut model.graph, i, potential)).collect()
+    (0..model.n())
+        .map(|i| -calculus.along(&mut model.graph, i, potential))
+        .collect()
 }
 
 /// Applied forces fᵢᴱ, one vector for every load: wrenches, then generalised forces.
@@ -57,7 +63,11 @@ pub fn applied(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
     for load in model.wrenches.clone() {
         loads.push(wrench(model, calculus, &load));
     }
-    if model.generalized.iter().any(|&edge| edge != model.graph.zero()) {
+    if model
+        .generalized
+        .iter()
+        .any(|&edge| edge != model.graph.zero())
+    {
         loads.push(model.generalized.clone());
     }
     loads

@@ -10,51 +10,76 @@ use crate::algebra::poly::order::Order;
 use crate::algebra::poly::polynomial::Poly;
 use crate::algebra::topoly::{Expander, OPAQUE};
 use crate::derive::calculus::Calculus;
-use crate::model::Model;
 use crate::model::layout::Block;
+use crate::model::points::Points;
 use num_rational::BigRational;
-use num_traits::Zero;
 use std::collections::BTreeMap;
 
-/// Polynomials with their normal forms modulo the ideal of φ.
+/// Polynomials with their normal forms modulo the ideal of φ; one instance serves one graph, which
+/// may grow.
 pub struct NormalForms {
     expander: Expander,
+    angles: Angles,
     bases: Vec<Basis<BigRational>>,
-    circles: BTreeMap<Var, Basis<BigRational>>,
+    circles: BTreeMap<Var, Option<Basis<BigRational>>>,
 }
 
 impl NormalForms {
-    /// The Gröbner bases of a model's φ; constraints whose basis is too large are left out.
-    pub fn new(model: &Model) -> Self {
+    /// The Gröbner bases of φ; constraints whose basis is too large are left out.
+    pub fn new(points: &Points) -> Self {
         let mut expander = Expander::default();
         let mut generators: Vec<Vec<Poly<BigRational>>> = Vec::new();
-        let mut place = model.points.first as Var;
-        for &block in &model.blocks {
+        let mut place = points.first as Var;
+        for &block in &points.blocks {
             match block {
                 Block::Flat(_) => {}
                 Block::Circle => generators.push(ideals::circle(place, place + 1)),
-                Block::Quaternion => generators.push(ideals::quaternion(std::array::from_fn(|i| place + i as Var))),
-                Block::Rotation => generators.push(ideals::rotation(std::array::from_fn(|i| place + i as Var))),
+                Block::Quaternion => {
+                    generators.push(ideals::quaternion(std::array::from_fn(|i| {
+                        place + i as Var
+                    })))
+                }
+                Block::Rotation => {
+                    generators.push(ideals::rotation(std::array::from_fn(|i| place + i as Var)))
+                }
             }
             place += block.len() as Var;
         }
-        for &constraint in &model.points.constraints {
-            let Some(polynomial) = expander.expand(&model.points.free, constraint) else { continue };
+        for &constraint in &points.constraints {
+            let Some(polynomial) = expander.expand(&points.free, constraint) else {
+                continue;
+            };
             // Joined with the ideals that share coordinates with it.
             let mut joined = vec![polynomial];
             let mut rest = Vec::new();
             for ideal in generators {
-                let first = model.points.first as Var;
+                let first = points.first as Var;
                 let shares = |a: &Poly<BigRational>| {
-                    joined.iter().any(|b| a.variables().iter().any(|v| *v >= first && b.variables().contains(v)))
+                    joined.iter().any(|b| {
+                        a.variables()
+                            .iter()
+                            .any(|v| *v >= first && b.variables().contains(v))
+                    })
                 };
-                if ideal.iter().any(shares) { joined.extend(ideal) } else { rest.push(ideal) }
+                if ideal.iter().any(shares) {
+                    joined.extend(ideal)
+                } else {
+                    rest.push(ideal)
+                }
             }
             generators = rest;
             generators.push(joined);
         }
-        let bases = generators.iter().filter_map(|ideal| groebner(ideal, Order::Grevlex, Limits::default()).ok()).collect();
-        NormalForms { expander: Expander::default(), bases, circles: BTreeMap::new() }
+        let bases = generators
+            .iter()
+            .filter_map(|ideal| groebner(ideal, Order::Grevlex, Limits::default()).ok())
+            .collect();
+        NormalForms {
+            expander: Expander::default(),
+            angles: Angles::default(),
+            bases,
+            circles: BTreeMap::new(),
+        }
     }
 
     /// The polynomial of an expression, as it stands.
@@ -69,11 +94,12 @@ impl NormalForms {
             result = basis.normal_form(&result);
         }
         for var in result.variables() {
-            if let Some((cos, sin)) = angle_pair(graph, var) {
-                let basis = self.circles.entry(cos).or_insert_with(|| {
-                    let ideal = ideals::circle(cos, sin);
-                    groebner(&ideal, Order::Grevlex, Limits::default()).unwrap_or_else(|_| unreachable_basis())
-                });
+            if let Some((cos, sin)) = self.angles.pair(graph, var) {
+                let ideal =
+                    || groebner(&ideals::circle(cos, sin), Order::Grevlex, Limits::default()).ok();
+                let Some(basis) = self.circles.entry(cos).or_insert_with(ideal) else {
+                    continue;
+                };
                 result = basis.normal_form(&result);
             }
         }
@@ -81,19 +107,31 @@ impl NormalForms {
     }
 }
 
-fn unreachable_basis() -> Basis<BigRational> {
-    // One quadric is its own basis; an empty basis reduces nothing.
-    groebner(&[], Order::Grevlex, Limits::default()).unwrap_or_else(|_| unreachable_basis())
+/// The nodes of sin a and cos a, by angle; the graph is scanned once as it grows.
+#[derive(Default)]
+struct Angles {
+    scanned: u32,
+    known: BTreeMap<Edge, [Option<Var>; 2]>,
 }
 
-/// The variables of cos a and sin a where a variable is one of them and both exist.
-fn angle_pair(graph: &Graph, var: Var) -> Option<(Var, Var)> {
-    let id = var.checked_sub(OPAQUE)?;
-    let Node::Apply(Function::Sin | Function::Cos, angle) = graph.node(id) else { return None };
-    let find = |function: Function| {
-        (0..graph.len() as u32).find(|&other| graph.node(other) == Node::Apply(function, angle.abs()))
-    };
-    Some((OPAQUE + find(Function::Cos)?, OPAQUE + find(Function::Sin)?))
+impl Angles {
+    /// The variables of cos a and sin a where a variable is one of them and both exist.
+    fn pair(&mut self, graph: &Graph, var: Var) -> Option<(Var, Var)> {
+        let Node::Apply(Function::Sin | Function::Cos, angle) =
+            graph.node(var.checked_sub(OPAQUE)?)
+        else {
+            return None;
+        };
+        for id in self.scanned..graph.len() as u32 {
+            if let Node::Apply(function @ (Function::Sin | Function::Cos), angle) = graph.node(id) {
+                self.known.entry(angle.abs()).or_default()[(function == Function::Sin) as usize]
+                    .get_or_insert(OPAQUE + id);
+            }
+        }
+        self.scanned = graph.len() as u32;
+        let [cos, sin] = self.known.get(&angle.abs())?;
+        Some(((*cos)?, (*sin)?))
+    }
 }
 
 /// The node that a variable stands for.
@@ -123,7 +161,9 @@ pub fn collect(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Collected {
                 powers.push((var, exponent));
             }
         }
-        let entry = collected.entry(Monomial::from_powers(powers)).or_insert(graph.zero());
+        let entry = collected
+            .entry(Monomial::from_powers(powers))
+            .or_insert(graph.zero());
         *entry = graph.add(*entry, coefficient);
     }
     collected.retain(|_, coefficient| *coefficient != graph.zero());
@@ -132,15 +172,31 @@ pub fn collect(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Collected {
 
 /// An expression that has the same value everywhere on X, written without coordinates: where all
 /// ∂ᵢf = 0 the normal form has no coordinate left. Others are handed back as they are.
-pub fn without_coordinates(graph: &mut Graph, calculus: &mut Calculus, forms: &mut Option<NormalForms>, model: &Model, edge: Edge) -> Edge {
+/// The bases are found when they are first needed.
+pub fn without_coordinates(
+    graph: &mut Graph,
+    calculus: &mut Calculus,
+    points: &Points,
+    forms: &mut Option<NormalForms>,
+    edge: Edge,
+) -> Edge {
     let coord = crate::model::class::COORD;
-    if graph.class(edge.node()) & coord == 0 || (0..calculus.n()).any(|i| calculus.along(graph, i, edge) != graph.zero()) {
+    if graph.class(edge.node()) & coord == 0
+        || (0..calculus.n()).any(|i| calculus.along(graph, i, edge) != graph.zero())
+    {
         return edge;
     }
-    let Some(polynomial) = forms.expand(graph, edge) else { return edge };
+    let forms = forms.get_or_insert_with(|| NormalForms::new(points));
+    let Some(polynomial) = forms.expand(graph, edge) else {
+        return edge;
+    };
     let reduced = forms.reduce(graph, &polynomial);
     let result = build(graph, &reduced);
-    if graph.class(result.node()) & coord == 0 { result } else { edge }
+    if graph.class(result.node()) & coord == 0 {
+        result
+    } else {
+        edge
+    }
 }
 
 /// The expression of a polynomial, term by term.
@@ -158,9 +214,4 @@ pub fn build(graph: &mut Graph, polynomial: &Poly<BigRational>) -> Edge {
         sum = graph.add(sum, term);
     }
     sum
-}
-
-/// Whether a polynomial has only zero coefficients.
-pub fn vanishes(polynomial: &Poly<BigRational>) -> bool {
-    polynomial.terms().iter().all(|(_, number)| number.is_zero())
 }

@@ -1,7 +1,7 @@
 //! The tables that people read: φ, A, Y, γ, M, Γ, as expressions, on demand.
 
 use super::calculus::Calculus;
-use super::normal::{NormalForms, without_coordinates};
+use super::normal::without_coordinates;
 use super::{commutation, connection, energy, inertia, kinematics};
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::Vec3;
@@ -35,13 +35,27 @@ impl Geometry {
         let y = kinematics::left_inverse(&mut model)?;
         let gamma = commutation::gamma(&mut model, &mut calculus, &y);
         let mut mass = inertia::mass_matrix(&mut model, &mut calculus);
-        let mut forms = NormalForms::new(&model);
+        let mut forms = None;
         for entry in mass.iter_mut().flatten() {
-            *entry = without_coordinates(&mut model.graph, &mut calculus, &mut forms, *entry);
+            *entry = without_coordinates(
+                &mut model.graph,
+                &mut calculus,
+                &model.points,
+                &mut forms,
+                *entry,
+            );
         }
         let connection = connection::connection(&mut model, &mut calculus, &mass, &gamma);
         let potential = energy::potential(&mut model);
-        Some(Geometry { model, calculus, y, gamma, mass, connection, potential })
+        Some(Geometry {
+            model,
+            calculus,
+            y,
+            gamma,
+            mass,
+            connection,
+            potential,
+        })
     }
 
     /// The same symbols in a graph whose points do not satisfy φ, so that nothing is simplified
@@ -74,12 +88,23 @@ impl Geometry {
         let mut calculus = Calculus::new(&free);
         let mut merged = model.clone();
         let y = kinematics::left_inverse(&mut merged)?;
-        let y: Vec<Vec<Edge>> = y.iter().map(|row| rebuild(&merged.graph, &mut free.graph, row)).collect();
+        let y: Vec<Vec<Edge>> = y
+            .iter()
+            .map(|row| rebuild(&merged.graph, &mut free.graph, row))
+            .collect();
         let gamma = commutation::gamma(&mut free, &mut calculus, &y);
         let mass = inertia::mass_matrix(&mut free, &mut calculus);
         let connection = connection::connection(&mut free, &mut calculus, &mass, &gamma);
         let potential = energy::potential(&mut free);
-        Some(Geometry { model: free, calculus, y, gamma, mass, connection, potential })
+        Some(Geometry {
+            model: free,
+            calculus,
+            y,
+            gamma,
+            mass,
+            connection,
+            potential,
+        })
     }
 }
 

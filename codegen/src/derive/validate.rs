@@ -17,8 +17,6 @@ use crate::program::Program;
 pub const POINTS: u64 = 8;
 /// Points tried where square roots have no value.
 const TRIES: u64 = 400;
-/// Models with more velocities are validated at fewer points, against their own traced M and h.
-const LITERAL: usize = 10;
 
 /// The independent derivation: M, h = Γ ξ ξ, ∂V, f, T, V.
 struct Reference {
@@ -41,21 +39,36 @@ impl Reference {
         let gamma = commutation::gamma(&mut model, &mut calculus, &rows);
         let bias = connection::quadratic(&mut model, &mut calculus, &mass, &gamma);
         let potential = energy::potential(&mut model);
-        let slope = (0..model.n()).map(|i| calculus.along(&mut model.graph, i, potential)).collect();
+        let slope = (0..model.n())
+            .map(|i| calculus.along(&mut model.graph, i, potential))
+            .collect();
         let force = applied_force(&mut model, &mut calculus);
         let kinetic = energy::kinetic(&mut model, &mass);
-        Some(Reference { model, mass, bias, slope, force, kinetic, potential })
+        Some(Reference {
+            model,
+            mass,
+            bias,
+            slope,
+            force,
+            kinetic,
+            potential,
+        })
     }
 }
 
 /// Validates the functions of a program; an error here is a fault of the generator, never emitted.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    if model.n() > LITERAL {
-        return Ok(());
-    }
     let failure = |what: &str| {
-        Diagnostic::new(model.span, format!("internal check failed: {what} of `{}` does not satisfy its equation", model.name))
-            .help("this is a fault of the generator, nothing was emitted; please report the description")
+        Diagnostic::new(
+            model.span,
+            format!(
+                "internal check failed: {what} of `{}` does not satisfy its equation",
+                model.name
+            ),
+        )
+        .help(
+            "this is a fault of the generator, nothing was emitted; please report the description",
+        )
     };
     let reference = Reference::new(model).ok_or_else(|| failure("the kinematics"))?;
     let mut seed = 0;
@@ -65,7 +78,9 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             if seed > TRIES {
                 return Err(failure("no point was found at which the code"));
             }
-            let Some(lane) = model.points.lane(0x7a11 + seed) else { continue };
+            let Some(lane) = model.points.lane(0x7a11 + seed) else {
+                continue;
+            };
             match at_point(&reference, program, lane) {
                 None => continue,
                 Some(Ok(())) => break,
@@ -77,11 +92,21 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
 }
 
 /// Compares at one point; `None` where it cannot be evaluated there.
-fn at_point(reference: &Reference, program: &Program, lane: Lane) -> Option<Result<(), &'static str>> {
+fn at_point(
+    reference: &Reference,
+    program: &Program,
+    lane: Lane,
+) -> Option<Result<(), &'static str>> {
     let n = program.n;
     let graph = &reference.model.graph;
     let mut roots: Vec<Edge> = reference.mass.concat();
-    roots.extend(reference.bias.iter().chain(&reference.slope).chain(&reference.force));
+    roots.extend(
+        reference
+            .bias
+            .iter()
+            .chain(&reference.slope)
+            .chain(&reference.force),
+    );
     roots.extend([reference.kinetic, reference.potential]);
     let expected = evaluate_at(graph, &roots, &mut lane.clone())?;
     let (mass, rest) = expected.split_at(n * n);

@@ -48,13 +48,18 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
     for (index, statement) in body.statements.iter().enumerate() {
         let fresh = |seen: &FxHashSet<NodeId>| -> BTreeSet<NodeId> {
             let read = statement.operation.operands().filter(is_number);
-            read.map(Edge::node).filter(|node| !seen.contains(node)).collect()
+            read.map(Edge::node)
+                .filter(|node| !seen.contains(node))
+                .collect()
         };
         let mut new = fresh(&seen);
         let cost = usize::from(statement.is_let());
         if lets + cost + new.len() > limit {
             let numbers = std::mem::take(&mut numbers);
-            parts.push(Part { statements: start..index, numbers });
+            parts.push(Part {
+                statements: start..index,
+                numbers,
+            });
             seen.clear();
             (start, lets, new) = (index, 1, fresh(&seen));
         }
@@ -66,16 +71,28 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
     let mut whole = parts.is_empty();
     if whole {
         // A single body binds the numbers among its results too.
-        let results = body.outputs.iter().filter(|edge| is_number(edge)).map(|edge| edge.node());
+        let results = body
+            .outputs
+            .iter()
+            .filter(|edge| is_number(edge))
+            .map(|edge| edge.node());
         let results: Vec<NodeId> = results.filter(|&node| seen.insert(node)).collect();
         whole = lets + results.len() <= limit;
         numbers.extend(results.into_iter().filter(|_| whole));
     }
     if whole || start < end {
-        parts.push(Part { statements: start..end, numbers });
+        parts.push(Part {
+            statements: start..end,
+            numbers,
+        });
     }
     let (slots, size) = slots(body, &parts);
-    Plan { whole, parts, slots, size }
+    Plan {
+        whole,
+        parts,
+        slots,
+        size,
+    }
 }
 
 /// Slots by liveness: one is used again after the last part that reads its value.

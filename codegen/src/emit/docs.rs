@@ -17,7 +17,11 @@ pub fn comment(lines: &[String]) -> String {
     let mut text = String::new();
     for line in lines.iter().flat_map(|line| line.split(['\n', '\r'])) {
         let line = line.trim_end();
-        let space = if line.is_empty() || line.starts_with(' ') { "" } else { " " };
+        let space = if line.is_empty() || line.starts_with(' ') {
+            ""
+        } else {
+            " "
+        };
         text.push_str(&format!("///{space}{line}\n"));
     }
     text
@@ -34,7 +38,9 @@ pub fn operations(count: Count, end: &str) -> String {
         (count.other, "other functions"),
     ];
     let nonzero = counts.iter().filter(|(number, _)| *number > 0);
-    let list: Vec<String> = nonzero.map(|(number, name)| format!("{number} {name}")).collect();
+    let list: Vec<String> = nonzero
+        .map(|(number, name)| format!("{number} {name}"))
+        .collect();
     if list.is_empty() {
         "No operations.".into()
     } else {
@@ -49,13 +55,21 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
         lines.push(format!("`{}`.", function.name));
     }
     let count = count_nodes(&program.graph, nodes);
-    let hoisted = if program.params.is_empty() { "" } else { "; parameters hoisted" };
+    let hoisted = if program.params.is_empty() {
+        ""
+    } else {
+        "; parameters hoisted"
+    };
     lines.extend([String::new(), operations(count, hoisted)]);
     if !function.arguments.is_empty() {
         lines.push(String::new());
     }
     for &argument in &function.arguments {
-        let prefix = if argument == Argument::Accelerations { "derivatives of " } else { "" };
+        let prefix = if argument == Argument::Accelerations {
+            "derivatives of "
+        } else {
+            ""
+        };
         let size = numbers(length(program, argument));
         lines.push(format!(
             "- `{}`: {size}, {prefix}`[{}]`",
@@ -72,20 +86,27 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
     lines.extend([String::new(), format!("Returns {result}.")]);
     if function.fallible {
         lines.extend([String::new(), "# Errors".into()]);
-        lines.push("`Singular` where a pivot of the mass matrix is not positive and finite.".into());
+        lines
+            .push("`Singular` where a pivot of the mass matrix is not positive and finite.".into());
     }
     lines
 }
 
 fn numbers(n: usize) -> String {
-    if n == 1 { "1 number".into() } else { format!("{n} numbers") }
+    if n == 1 {
+        "1 number".into()
+    } else {
+        format!("{n} numbers")
+    }
 }
 
 /// The names that an argument consists of, those of a vector as a range.
 pub fn groups(program: &Program, argument: Argument) -> Vec<String> {
     match argument {
         Argument::Coordinates => program.coordinates.iter().flat_map(coordinate).collect(),
-        Argument::Velocities | Argument::Accelerations => program.velocities.iter().map(group).collect(),
+        Argument::Velocities | Argument::Accelerations => {
+            program.velocities.iter().map(group).collect()
+        }
         Argument::Inputs => program.inputs.iter().map(group).collect(),
     }
 }
@@ -98,7 +119,10 @@ fn coordinate(coordinate: &Coordinate) -> Vec<String> {
         CoordKind::S1 => vec![format!("{name}.c"), format!("{name}.s")],
         CoordKind::S3 => vec![vector(name, 4)],
         CoordKind::SO3 => vec![matrix(name, 3)],
-        CoordKind::SE3 => vec![vector(&format!("{name}.p"), 3), matrix(&format!("{name}.R"), 3)],
+        CoordKind::SE3 => vec![
+            vector(&format!("{name}.p"), 3),
+            matrix(&format!("{name}.R"), 3),
+        ],
     }
 }
 
@@ -111,7 +135,11 @@ fn group(group: &Group) -> String {
 }
 
 fn vector(name: &str, n: usize) -> String {
-    if n == 1 { format!("{name}[1]") } else { format!("{name}[1..{n}]") }
+    if n == 1 {
+        format!("{name}[1]")
+    } else {
+        format!("{name}[1..{n}]")
+    }
 }
 
 fn matrix(name: &str, n: usize) -> String {

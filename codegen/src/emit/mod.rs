@@ -11,7 +11,9 @@
 //! | `print` | a statement as text |
 //! | `function` | one generated function with its parts |
 //! | `docs` | doc comments |
-//! | `parameters` | the type, its parameters and constants |
+//! | `parts` | a function that is cut |
+//! | `structure` | the type: fields, sizes, constructor, defaults |
+//! | `parameters` | accessors, and the constants kept for parameters |
 //! | `system` | `impl hamel::System` |
 //!
 //! Text is built first and parsed second, so that all doors share every byte.
@@ -24,8 +26,10 @@ mod lower;
 pub mod names;
 mod number;
 mod parameters;
+mod parts;
 mod places;
 mod print;
+mod structure;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -145,18 +149,18 @@ impl<'a> Emitter<'a> {
 /// The generated type as items of Rust, without a file header.
 pub fn rust(program: &Program, options: &Options) -> String {
     let emitter = Emitter::new(program, options.chunk);
-    let mut methods = parameters::sizes(&emitter);
+    let mut methods = structure::sizes(&emitter);
     for spec in emitter.specs() {
         methods.push_str(&function::text(&emitter, &spec));
     }
     methods.push_str(&parameters::accessors(&emitter));
     let name = &emitter.names.type_name;
-    let mut text = parameters::structure(&emitter);
-    text.push_str(parameters::ALLOW);
+    let mut text = structure::structure(&emitter);
+    text.push_str(structure::ALLOW);
     text.push_str(&format!(
         "impl<S: ::hamel::Scalar> {name}<S> {{\n{methods}}}\n"
     ));
-    text.push_str(&parameters::default(&emitter));
+    text.push_str(&structure::default(&emitter));
     text.push_str(&system::implementation(&emitter));
     text
 }

@@ -54,8 +54,18 @@ const KEYWORDS: &[&str] = &[
 
 /// Methods of every generated type, or of the traits that it implements.
 const METHODS: &[&str] = &[
-    "new", "default", "clone", "clone_from", "fmt", "blocks", "zero_coordinates",
-    "zero_velocities", "zero_chart", "zero_inputs", "start", "constraint_norm",
+    "new",
+    "default",
+    "clone",
+    "clone_from",
+    "fmt",
+    "blocks",
+    "zero_coordinates",
+    "zero_velocities",
+    "zero_chart",
+    "zero_inputs",
+    "start",
+    "constraint_norm",
 ];
 
 /// Local names that a function may use besides those of its values.
@@ -220,7 +230,9 @@ impl Names {
         Names {
             type_name: type_name(&program.name),
             functions,
-            fields: groups.map(|group| fields.claim(&snake(&group.name))).collect(),
+            fields: groups
+                .map(|group| fields.claim(&snake(&group.name)))
+                .collect(),
             accessors,
             kept: fields.claim("k"),
             constants: methods.claim("constants"),

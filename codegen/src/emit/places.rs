@@ -50,8 +50,11 @@ impl<'a> Places<'a> {
     pub fn new(program: &'a Program, kept: &[NodeId]) -> Self {
         let graph = &program.graph;
         let mut kept = kept.to_vec();
-        let mut index: FxHashMap<NodeId, usize> =
-            kept.iter().enumerate().map(|(i, &node)| (node, i)).collect();
+        let mut index: FxHashMap<NodeId, usize> = kept
+            .iter()
+            .enumerate()
+            .map(|(i, &node)| (node, i))
+            .collect();
         for guard in &program.constant_guards {
             let node = guard.node();
             if is_hoisted(graph, node) && !index.contains_key(&node) {

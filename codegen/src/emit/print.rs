@@ -71,13 +71,21 @@ impl Printer<'_> {
     /// A value with its sign, as an operand.
     pub fn signed(&mut self, edge: Edge) -> String {
         let value = self.value(edge.node());
-        if edge.is_negative() { format!("-{value}") } else { value }
+        if edge.is_negative() {
+            format!("-{value}")
+        } else {
+            value
+        }
     }
 
     /// A value with its sign, as the receiver of a method.
     fn receiver(&mut self, edge: Edge) -> String {
         let value = self.signed(edge);
-        if edge.is_negative() { format!("({value})") } else { value }
+        if edge.is_negative() {
+            format!("({value})")
+        } else {
+            value
+        }
     }
 
     /// A result that is written by itself: a number stands as a literal.

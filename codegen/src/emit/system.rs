@@ -1,7 +1,7 @@
 //! `impl hamel::System`, where all that it consists of was generated.
 
 use super::function::zeros;
-use super::{Emitter, docs, names, number, parameters};
+use super::{Emitter, docs, names, number, structure};
 use crate::program::{Argument, Shape};
 
 const X: Argument = Argument::Coordinates;
@@ -12,7 +12,11 @@ const U: Argument = Argument::Inputs;
 const METHODS: &[(&str, &[Argument], &str)] = &[
     ("rate", &[X, XI], "Self::Coordinates"),
     ("chart_rate", &[X, XI], "Self::Chart"),
-    ("accel", &[X, XI, U], "::core::result::Result<Self::Velocities, ::hamel::Singular>"),
+    (
+        "accel",
+        &[X, XI, U],
+        "::core::result::Result<Self::Velocities, ::hamel::Singular>",
+    ),
     ("correction", &[X], "Self::Coordinates"),
     ("constraint", &[X], "S"),
     ("kinetic_energy", &[X, XI], "S"),
@@ -22,27 +26,46 @@ const METHODS: &[(&str, &[Argument], &str)] = &[
 /// The implementation; nothing where a function is missing.
 pub fn implementation(emitter: &Emitter) -> String {
     let program = emitter.program;
-    let Some(methods) = METHODS.iter().map(|row| method(emitter, row)).collect::<Option<String>>() else {
+    let Some(methods) = METHODS
+        .iter()
+        .map(|row| method(emitter, row))
+        .collect::<Option<String>>()
+    else {
         return String::new();
     };
     let chart: usize = program.blocks.iter().map(|block| block.dimension()).sum();
-    let sizes = [("Coordinates", program.nu), ("Velocities", program.n), ("Chart", chart), ("Inputs", program.m)];
-    let types: String = sizes.iter().map(|(name, n)| format!("type {name} = [S; {n}];\n")).collect();
+    let sizes = [
+        ("Coordinates", program.nu),
+        ("Velocities", program.n),
+        ("Chart", chart),
+        ("Inputs", program.m),
+    ];
+    let types: String = sizes
+        .iter()
+        .map(|(name, n)| format!("type {name} = [S; {n}];\n"))
+        .collect();
     let zeros: String = sizes
         .iter()
         .map(|(name, n)| {
             let value = zeros(Shape::Vector(*n));
-            format!("fn zero_{}(&self) -> Self::{name} {{\n{value}\n}}\n\n", name.to_ascii_lowercase())
+            format!(
+                "fn zero_{}(&self) -> Self::{name} {{\n{value}\n}}\n\n",
+                name.to_ascii_lowercase()
+            )
         })
         .collect();
-    let blocks: Vec<String> = program.blocks.iter().map(|&block| docs::block(block)).collect();
+    let blocks: Vec<String> = program
+        .blocks
+        .iter()
+        .map(|&block| docs::block(block))
+        .collect();
     let [x, xi] = [&program.start_x, &program.start_xi].map(|start| {
         let entries: Vec<String> = start.iter().map(|&value| number::scalar(value)).collect();
         entries.join(", ")
     });
     format!(
         "{}impl<S: ::hamel::Scalar> ::hamel::System for {}<S> {{\ntype Scalar = S;\n{types}\nfn blocks(&self) -> &[::hamel::Block] {{\n&[{}]\n}}\n\n{zeros}fn start(&self) -> (Self::Coordinates, Self::Velocities) {{\n([{x}], [{xi}])\n}}\n\n{methods}}}\n",
-        parameters::ALLOW_TRAIT,
+        structure::ALLOW_TRAIT,
         emitter.names.type_name,
         blocks.join(", ")
     )
@@ -50,15 +73,27 @@ pub fn implementation(emitter: &Emitter) -> String {
 
 fn method(emitter: &Emitter, row: &(&str, &[Argument], &str)) -> Option<String> {
     let &(name, arguments, result) = row;
-    let index = emitter.program.functions.iter().position(|function| function.name == name)?;
+    let index = emitter
+        .program
+        .functions
+        .iter()
+        .position(|function| function.name == name)?;
     let function = &emitter.program.functions[index];
     let generated = &emitter.names.functions[index];
-    if !function.arguments.iter().all(|argument| arguments.contains(argument)) {
+    if !function
+        .arguments
+        .iter()
+        .all(|argument| arguments.contains(argument))
+    {
         return None;
     }
     let given = arguments.iter().map(|argument| {
         let used = function.arguments.contains(argument);
-        let name = if used { names::argument(*argument) } else { "_" };
+        let name = if used {
+            names::argument(*argument)
+        } else {
+            "_"
+        };
         let of = match argument {
             Argument::Coordinates => "Coordinates",
             Argument::Inputs => "Inputs",
@@ -67,13 +102,21 @@ fn method(emitter: &Emitter, row: &(&str, &[Argument], &str)) -> Option<String> 
         format!("{name}: &Self::{of}")
     });
     let signature = given.collect::<Vec<_>>().join(", ");
-    let values: Vec<&str> = function.arguments.iter().map(|&argument| names::argument(argument)).collect();
+    let values: Vec<&str> = function
+        .arguments
+        .iter()
+        .map(|&argument| names::argument(argument))
+        .collect();
     let call = format!("self.{generated}({})", values.join(", "));
-    if name != "accel" && function.fallible || name == "constraint" && function.shape == Shape::Scalar {
+    if name != "accel" && function.fallible
+        || name == "constraint" && function.shape == Shape::Scalar
+    {
         return None;
     }
     Some(match name {
-        "accel" if !function.fallible => format!("fn accel(&self, {signature}) -> {result} {{\nOk({call})\n}}\n\n"),
+        "accel" if !function.fallible => {
+            format!("fn accel(&self, {signature}) -> {result} {{\nOk({call})\n}}\n\n")
+        }
         "constraint" => format!(
             "fn constraint_norm(&self, {signature}) -> {result} {{\nlet mut norm = S::default();\nfor value in {call} {{\nnorm = norm.max(value.abs());\n}}\nnorm\n}}\n\n"
         ),

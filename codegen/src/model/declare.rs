@@ -27,7 +27,13 @@ pub struct Declared {
 }
 
 /// Declares everything, in the order pi, parameters, x, ξ, u, ξ̇, and defines the constants.
-pub fn declare(system: &System, graph: &mut Graph, next: &mut NextValue, scope: &mut Scope, report: &mut Report) -> Declared {
+pub fn declare(
+    system: &System,
+    graph: &mut Graph,
+    next: &mut NextValue,
+    scope: &mut Scope,
+    report: &mut Report,
+) -> Declared {
     let mut declared = Declared::default();
     let value = next(graph);
     graph.symbol("pi", 0, value);
@@ -38,19 +44,44 @@ pub fn declare(system: &System, graph: &mut Graph, next: &mut NextValue, scope: 
             }
         }
     }
-    let groups = |graph: &mut Graph, next: &mut NextValue, scope: &mut Scope, report: &mut Report, list: &[Declaration], kind, class, all: &mut Vec<Group>, edges: &mut Vec<Edge>| {
+    let groups = |graph: &mut Graph,
+                  next: &mut NextValue,
+                  scope: &mut Scope,
+                  report: &mut Report,
+                  list: &[Declaration],
+                  kind,
+                  class,
+                  all: &mut Vec<Group>,
+                  edges: &mut Vec<Edge>| {
         for declaration in list {
             let name = &declaration.name;
-            let (value, symbols) = symbols_of(graph, next, &name.name, declaration.shape.kind, class);
+            let (value, symbols) =
+                symbols_of(graph, next, &name.name, declaration.shape.kind, class);
             scope.define(name, kind, Some(value.clone()), report);
-            all.push(Group { name: name.name.clone(), shape: declaration.shape.kind, value, offset: edges.len(), len: symbols.len() });
+            all.push(Group {
+                name: name.name.clone(),
+                shape: declaration.shape.kind,
+                value,
+                offset: edges.len(),
+                len: symbols.len(),
+            });
             edges.extend(symbols);
         }
     };
     let mut params = Vec::new();
     for item in &system.items {
         if let ItemKind::Param(list) = &item.kind {
-            groups(graph, next, scope, report, list, NameKind::Param, class::PARAM, &mut declared.params, &mut params);
+            groups(
+                graph,
+                next,
+                scope,
+                report,
+                list,
+                NameKind::Param,
+                class::PARAM,
+                &mut declared.params,
+                &mut params,
+            );
         }
     }
     for item in &system.items {
@@ -64,40 +95,96 @@ pub fn declare(system: &System, graph: &mut Graph, next: &mut NextValue, scope: 
                         graph.symbol(entry, class::COORD, value)
                     })
                     .collect();
-                scope.define(name, NameKind::Coord(*kind), Some(coordinate_value(*kind, &entries)), report);
+                scope.define(
+                    name,
+                    NameKind::Coord(*kind),
+                    Some(coordinate_value(*kind, &entries)),
+                    report,
+                );
                 declared.x.extend(entries);
-                declared.coordinates.push(Coordinate { name: name.name.clone(), kind: *kind, offset, span: name.span });
+                declared.coordinates.push(Coordinate {
+                    name: name.name.clone(),
+                    kind: *kind,
+                    offset,
+                    span: name.span,
+                });
             }
         }
     }
     for item in &system.items {
         if let ItemKind::Velocity(list) = &item.kind {
-            groups(graph, next, scope, report, list, NameKind::Velocity, class::VELOCITY, &mut declared.velocities, &mut declared.xi);
+            groups(
+                graph,
+                next,
+                scope,
+                report,
+                list,
+                NameKind::Velocity,
+                class::VELOCITY,
+                &mut declared.velocities,
+                &mut declared.xi,
+            );
         }
     }
     for item in &system.items {
         if let ItemKind::Input(list) = &item.kind {
-            groups(graph, next, scope, report, list, NameKind::Input, class::INPUT, &mut declared.inputs, &mut declared.u);
+            groups(
+                graph,
+                next,
+                scope,
+                report,
+                list,
+                NameKind::Input,
+                class::INPUT,
+                &mut declared.inputs,
+                &mut declared.u,
+            );
         }
     }
-    let names: Vec<String> = graph.symbols().iter().filter(|s| s.class == class::VELOCITY).map(|s| s.name.clone()).collect();
+    let names: Vec<String> = graph
+        .symbols()
+        .iter()
+        .filter(|s| s.class == class::VELOCITY)
+        .map(|s| s.name.clone())
+        .collect();
     for name in names {
         let value = next(graph);
-        declared.xi_dot.push(graph.symbol(&format!("d_{name}"), class::ACCEL, value));
+        declared
+            .xi_dot
+            .push(graph.symbol(&format!("d_{name}"), class::ACCEL, value));
     }
     declared
 }
 
-fn define_const(declaration: &Declaration, graph: &mut Graph, scope: &mut Scope, report: &mut Report) {
+fn define_const(
+    declaration: &Declaration,
+    graph: &mut Graph,
+    scope: &mut Scope,
+    report: &mut Report,
+) {
     let value = match &declaration.value {
         Some(expr) => {
-            let value = Evaluator { graph, scope, report }.value(expr);
+            let value = Evaluator {
+                graph,
+                scope,
+                report,
+            }
+            .value(expr);
             value.filter(|value| {
-                let constant = value.entries().iter().all(|edge| graph.class(edge.node()) == 0);
+                let constant = value
+                    .entries()
+                    .iter()
+                    .all(|edge| graph.class(edge.node()) == 0);
                 if !constant {
                     report.push(
-                        Diagnostic::new(expr.span, format!("`{}` is no constant: it depends on symbols", declaration.name.name))
-                            .help(format!("write `let {} = …;`", declaration.name.name)),
+                        Diagnostic::new(
+                            expr.span,
+                            format!(
+                                "`{}` is no constant: it depends on symbols",
+                                declaration.name.name
+                            ),
+                        )
+                        .help(format!("write `let {} = …;`", declaration.name.name)),
                     );
                 }
                 constant && shape_fits(declaration, value, report)
@@ -105,8 +192,11 @@ fn define_const(declaration: &Declaration, graph: &mut Graph, scope: &mut Scope,
         }
         None => {
             report.push(
-                Diagnostic::new(declaration.name.span, format!("`{}` has no value", declaration.name.name))
-                    .help(format!("write `const {} = 1;`", declaration.name.name)),
+                Diagnostic::new(
+                    declaration.name.span,
+                    format!("`{}` has no value", declaration.name.name),
+                )
+                .help(format!("write `const {} = 1;`", declaration.name.name)),
             );
             None
         }
@@ -124,10 +214,21 @@ pub fn shape_fits(declaration: &Declaration, value: &Value, report: &mut Report)
         }
     };
     if !fits {
-        let span = declaration.value.as_ref().map_or(declaration.name.span, |value| value.span);
+        let span = declaration
+            .value
+            .as_ref()
+            .map_or(declaration.name.span, |value| value.span);
         report.push(
-            Diagnostic::new(span, format!("`{}` was declared as {}, its value is {}", declaration.name.name, shape_words(declaration.shape.kind), value.shape()))
-                .note(declaration.shape.span, "declared here"),
+            Diagnostic::new(
+                span,
+                format!(
+                    "`{}` was declared as {}, its value is {}",
+                    declaration.name.name,
+                    shape_words(declaration.shape.kind),
+                    value.shape()
+                ),
+            )
+            .note(declaration.shape.span, "declared here"),
         );
     }
     fits
@@ -142,7 +243,13 @@ pub fn shape_words(shape: ShapeKind) -> String {
     }
 }
 
-fn symbols_of(graph: &mut Graph, next: &mut NextValue, name: &str, shape: ShapeKind, class: u8) -> (Value, Vec<Edge>) {
+fn symbols_of(
+    graph: &mut Graph,
+    next: &mut NextValue,
+    name: &str,
+    shape: ShapeKind,
+    class: u8,
+) -> (Value, Vec<Edge>) {
     let mut symbols = Vec::new();
     let mut new = |graph: &mut Graph, name: String| {
         let value = next(graph);
@@ -152,10 +259,20 @@ fn symbols_of(graph: &mut Graph, next: &mut NextValue, name: &str, shape: ShapeK
     };
     let value = match shape {
         ShapeKind::Scalar => Value::Scalar(new(graph, name.to_string())),
-        ShapeKind::Vector(n) => Value::Vector((1..=n).map(|i| new(graph, format!("{name}[{i}]"))).collect()),
-        ShapeKind::Matrix(n) => {
-            Value::Matrix((1..=n).map(|i| (1..=n).map(|j| new(graph, format!("{name}[{i},{j}]"))).collect()).collect())
-        }
+        ShapeKind::Vector(n) => Value::Vector(
+            (1..=n)
+                .map(|i| new(graph, format!("{name}[{i}]")))
+                .collect(),
+        ),
+        ShapeKind::Matrix(n) => Value::Matrix(
+            (1..=n)
+                .map(|i| {
+                    (1..=n)
+                        .map(|j| new(graph, format!("{name}[{i},{j}]")))
+                        .collect()
+                })
+                .collect(),
+        ),
         ShapeKind::Symmetric(n) => {
             let mut rows = vec![vec![graph.zero(); n]; n];
             for i in 0..n {

@@ -13,8 +13,18 @@ use crate::syntax::ast::{self, About, Expr, Ident, ItemKind, Load, Span, System,
 
 /// The functions that `generate` can name, beside outputs.
 pub const FUNCTIONS: &[&str] = &[
-    "rate", "accel", "inverse_dynamics", "mass_matrix", "bias", "potential_force", "generalized_force", "momentum",
-    "kinetic_energy", "potential_energy", "energy", "constraint",
+    "rate",
+    "accel",
+    "inverse_dynamics",
+    "mass_matrix",
+    "bias",
+    "potential_force",
+    "generalized_force",
+    "momentum",
+    "kinetic_energy",
+    "potential_energy",
+    "energy",
+    "constraint",
 ];
 
 /// Everything but the kinematics.
@@ -31,7 +41,14 @@ pub struct Dynamics {
 }
 
 /// Reads the statements about inertia and loads.
-pub fn read(system: &System, graph: &mut Graph, scope: &Scope, frames: &[Frame], declared: &Declared, report: &mut Report) -> Dynamics {
+pub fn read(
+    system: &System,
+    graph: &mut Graph,
+    scope: &Scope,
+    frames: &[Frame],
+    declared: &Declared,
+    report: &mut Report,
+) -> Dynamics {
     let zero = graph.zero();
     let mut dynamics = Dynamics {
         bodies: Vec::new(),
@@ -47,7 +64,15 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, frames: &[Frame],
     let mut gravity: Option<Span> = None;
     let mut has_inertia = false;
     for item in &system.items {
-        let mut reader = Reader { evaluator: Evaluator { graph, scope, report }, frames, declared };
+        let mut reader = Reader {
+            evaluator: Evaluator {
+                graph,
+                scope,
+                report,
+            },
+            frames,
+            declared,
+        };
         match &item.kind {
             ItemKind::Body(body) => {
                 has_inertia = true;
@@ -55,7 +80,9 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, frames: &[Frame],
             }
             ItemKind::Particle { mass, at, on } => {
                 has_inertia = true;
-                dynamics.particles.extend(reader.particle(mass, at, on.as_ref()));
+                dynamics
+                    .particles
+                    .extend(reader.particle(mass, at, on.as_ref()));
             }
             ItemKind::Kinetic(expr) => {
                 has_inertia = true;
@@ -70,7 +97,11 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, frames: &[Frame],
             }
             ItemKind::Gravity(expr) => {
                 if let Some(first) = gravity {
-                    report.push(Diagnostic::new(item.span, "gravity is given twice").help("remove one of the two").note(first, "first given here"));
+                    report.push(
+                        Diagnostic::new(item.span, "gravity is given twice")
+                            .help("remove one of the two")
+                            .note(first, "first given here"),
+                    );
                     continue;
                 }
                 gravity = Some(item.span);
@@ -78,7 +109,9 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, frames: &[Frame],
                     dynamics.gravity = value;
                 }
             }
-            ItemKind::Load { load, frame, axes } => dynamics.wrenches.extend(reader.load(load, frame, *axes)),
+            ItemKind::Load { load, frame, axes } => {
+                dynamics.wrenches.extend(reader.load(load, frame, *axes))
+            }
             ItemKind::Generalized { target, value } => {
                 if let Some((offset, entries)) = reader.generalized(target, value) {
                     for (place, edge) in entries.into_iter().enumerate() {
@@ -87,12 +120,19 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, frames: &[Frame],
                     }
                 }
             }
-            ItemKind::Output { name, value } => dynamics.outputs.extend(reader.output(name, value, &dynamics.outputs)),
+            ItemKind::Output { name, value } => {
+                dynamics
+                    .outputs
+                    .extend(reader.output(name, value, &dynamics.outputs))
+            }
             _ => {}
         }
     }
     if !has_inertia {
-        report.push(Diagnostic::new(system.name.span, "the system has no inertia").help("write `body on f { mass m; … }`, `particle mass m at p;` or `kinetic …;`"));
+        report.push(
+            Diagnostic::new(system.name.span, "the system has no inertia")
+                .help("write `body on f { mass m; … }`, `particle mass m at p;` or `kinetic …;`"),
+        );
     }
     for item in &system.items {
         if let ItemKind::Generate(names) = &item.kind {
@@ -102,17 +142,31 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, frames: &[Frame],
     dynamics
 }
 
-fn generate(names: &[Ident], outputs: &[(String, Value)], all: &mut Vec<String>, report: &mut Report) {
+fn generate(
+    names: &[Ident],
+    outputs: &[(String, Value)],
+    all: &mut Vec<String>,
+    report: &mut Report,
+) {
     for name in names {
-        let known = FUNCTIONS.iter().copied().chain(outputs.iter().map(|(name, _)| name.as_str()));
+        let known = FUNCTIONS
+            .iter()
+            .copied()
+            .chain(outputs.iter().map(|(name, _)| name.as_str()));
         if known.clone().any(|known| known == name.name) {
             all.push(name.name.clone());
             continue;
         }
-        let error = Diagnostic::new(name.span, format!("`generate` does not know `{}`", name.name));
+        let error = Diagnostic::new(
+            name.span,
+            format!("`generate` does not know `{}`", name.name),
+        );
         report.push(match closest(&name.name, known) {
             Some(near) => error.help(format!("did you mean `{near}`?")),
-            None => error.help(format!("functions are {}, and the outputs by their names", FUNCTIONS.join(", "))),
+            None => error.help(format!(
+                "functions are {}, and the outputs by their names",
+                FUNCTIONS.join(", ")
+            )),
         });
     }
 }
@@ -125,7 +179,9 @@ struct Reader<'a, 'b> {
 
 impl Reader<'_, '_> {
     fn class_of(&self, value: &Value) -> u8 {
-        value.entries().iter().fold(0, |class, edge| class | self.evaluator.graph.class(edge.node()))
+        value.entries().iter().fold(0, |class, edge| {
+            class | self.evaluator.graph.class(edge.node())
+        })
     }
 
     /// Whether a value is made of parameters and constants alone; reports it where not.
@@ -133,7 +189,10 @@ impl Reader<'_, '_> {
         if self.class_of(value) & !class::PARAM == 0 {
             return Some(());
         }
-        self.evaluator.error(Diagnostic::new(span, format!("{what} has to be constant")).help("it may depend on parameters and constants alone"))
+        self.evaluator.error(
+            Diagnostic::new(span, format!("{what} has to be constant"))
+                .help("it may depend on parameters and constants alone"),
+        )
     }
 
     fn constant_scalar(&mut self, expr: &Expr, what: &str) -> Option<Edge> {
@@ -169,7 +228,12 @@ impl Reader<'_, '_> {
             // Its own definition was in error.
             Some(entry) if entry.kind == NameKind::Frame => None,
             _ => {
-                let error = self.evaluator.scope.unknown(name.span, &name.name, "frame", |kind| kind == NameKind::Frame);
+                let error = self
+                    .evaluator
+                    .scope
+                    .unknown(name.span, &name.name, "frame", |kind| {
+                        kind == NameKind::Frame
+                    });
                 self.evaluator.error(error)
             }
         }
@@ -179,7 +243,9 @@ impl Reader<'_, '_> {
         let frame = self.frame(&body.frame);
         let mass = match &body.mass {
             Some(expr) => self.constant_scalar(expr, "a mass"),
-            None => self.evaluator.error(Diagnostic::new(span, "this body has no mass").help("write `mass m;`")),
+            None => self
+                .evaluator
+                .error(Diagnostic::new(span, "this body has no mass").help("write `mass m;`")),
         };
         let com = match &body.com {
             Some(expr) => self.constant_vec3(expr, "a centre of mass"),
@@ -187,7 +253,11 @@ impl Reader<'_, '_> {
         };
         let inertia = match &body.inertia {
             Some((expr, about)) => self.inertia(expr).map(|m| (m, *about, expr.span)),
-            None => Some((identity3(self.evaluator.graph).map(|row| row.map(|_| self.evaluator.graph.zero())), Some(About::Com), span)),
+            None => Some((
+                identity3(self.evaluator.graph).map(|row| row.map(|_| self.evaluator.graph.zero())),
+                Some(About::Com),
+                span,
+            )),
         };
         let (frame, mass, com, (inertia, about, place)) = (frame?, mass?, com?, inertia?);
         let centred = com.iter().all(|&edge| edge == self.evaluator.graph.zero());
@@ -207,33 +277,63 @@ impl Reader<'_, '_> {
         let steiner: Mat3 = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let product = graph.mul(com[i], com[j]);
-                let entry = if i == j { graph.sub(square, product) } else { -product };
+                let entry = if i == j {
+                    graph.sub(square, product)
+                } else {
+                    -product
+                };
                 graph.mul(mass, entry)
             })
         });
         let shifted = |graph: &mut Graph, sign: bool| -> Mat3 {
-            std::array::from_fn(|i| std::array::from_fn(|j| graph.add(inertia[i][j], steiner[i][j].signed(sign))))
+            std::array::from_fn(|i| {
+                std::array::from_fn(|j| graph.add(inertia[i][j], steiner[i][j].signed(sign)))
+            })
         };
         let (inertia_com, inertia_origin) = match about {
             About::Com => (inertia, shifted(graph, false)),
             About::Origin => (shifted(graph, true), inertia),
         };
-        Some(Body { frame, mass, com, inertia_com, inertia_origin })
+        Some(Body {
+            frame,
+            mass,
+            com,
+            inertia_com,
+            inertia_origin,
+        })
     }
 
     fn inertia(&mut self, expr: &Expr) -> Option<Mat3> {
         let value = self.evaluator.value(expr)?;
         let Some(matrix) = value.as_mat3() else {
             return self.evaluator.error(
-                Diagnostic::new(expr.span, format!("an inertia has to be a 3×3 matrix, this is {}", value.shape())).help("write `diag(Ix, Iy, Iz)` or a `sym3` parameter"),
+                Diagnostic::new(
+                    expr.span,
+                    format!(
+                        "an inertia has to be a 3×3 matrix, this is {}",
+                        value.shape()
+                    ),
+                )
+                .help("write `diag(Ix, Iy, Iz)` or a `sym3` parameter"),
             );
         };
         self.constant(&value, expr.span, "an inertia")?;
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if matrix[i][j] != matrix[j][i] {
                 return self.evaluator.error(
-                    Diagnostic::new(expr.span, format!("this inertia is not symmetric: entries [{},{}] and [{},{}] differ", i + 1, j + 1, j + 1, i + 1))
-                        .help("declare it `sym3`, or write the same value on both sides of the diagonal"),
+                    Diagnostic::new(
+                        expr.span,
+                        format!(
+                            "this inertia is not symmetric: entries [{},{}] and [{},{}] differ",
+                            i + 1,
+                            j + 1,
+                            j + 1,
+                            i + 1
+                        ),
+                    )
+                    .help(
+                        "declare it `sym3`, or write the same value on both sides of the diagonal",
+                    ),
                 );
             }
         }
@@ -248,10 +348,15 @@ impl Reader<'_, '_> {
             None => None,
         };
         let (mass, mut position) = (mass?, position?);
-        self.configuration(&Value::Vector(position.to_vec()), at.span, "the position of a particle")?;
+        self.configuration(
+            &Value::Vector(position.to_vec()),
+            at.span,
+            "the position of a particle",
+        )?;
         if let Some(index) = frame {
             let frame = &self.frames[index];
-            let moved = crate::algebra::linear::apply3(self.evaluator.graph, &frame.rotation, position);
+            let moved =
+                crate::algebra::linear::apply3(self.evaluator.graph, &frame.rotation, position);
             position = crate::algebra::linear::add3(self.evaluator.graph, frame.position, moved);
         }
         Some(Particle { mass, position })
@@ -271,21 +376,26 @@ impl Reader<'_, '_> {
             for &b in xi {
                 let entry = Derivation::new([(b.node(), graph.one())]).of(graph, momentum);
                 for &c in xi {
-                    free &= Derivation::new([(c.node(), graph.one())]).of(graph, entry) == graph.zero();
+                    free &=
+                        Derivation::new([(c.node(), graph.one())]).of(graph, entry) == graph.zero();
                 }
             }
         }
         let double = graph.add(energy, energy);
         if !free || twice != double {
             return self.evaluator.error(
-                Diagnostic::new(expr.span, "this kinetic energy is not quadratic in the velocities")
-                    .help("T = ½ ξᵀ M(x) ξ: every term has exactly two velocities as factors"),
+                Diagnostic::new(
+                    expr.span,
+                    "this kinetic energy is not quadratic in the velocities",
+                )
+                .help("T = ½ ξᵀ M(x) ξ: every term has exactly two velocities as factors"),
             );
         }
         let class = graph.class(energy.node());
         if class & !(class::PARAM | class::COORD | class::VELOCITY) != 0 {
             return self.evaluator.error(
-                Diagnostic::new(expr.span, "a kinetic energy may not depend on inputs").help("it is a function of coordinates, velocities and parameters"),
+                Diagnostic::new(expr.span, "a kinetic energy may not depend on inputs")
+                    .help("it is a function of coordinates, velocities and parameters"),
             );
         }
         Some(energy)
@@ -297,38 +407,81 @@ impl Reader<'_, '_> {
         let (force, torque, at) = match load {
             Load::Force { force, at } => (self.evaluator.vec3(force, "a force"), Some(zero), at),
             Load::Torque { torque } => (Some(zero), self.evaluator.vec3(torque, "a torque"), &None),
-            Load::Wrench { force, torque, at } => (self.evaluator.vec3(force, "a force"), self.evaluator.vec3(torque, "a torque"), at),
+            Load::Wrench { force, torque, at } => (
+                self.evaluator.vec3(force, "a force"),
+                self.evaluator.vec3(torque, "a torque"),
+                at,
+            ),
         };
         let at = match at {
-            Some(point) => self.evaluator.vec3(point, "a point of attack").and_then(|p| {
-                self.configuration(&Value::Vector(p.to_vec()), point.span, "a point of attack")?;
-                Some(p)
-            }),
+            Some(point) => self
+                .evaluator
+                .vec3(point, "a point of attack")
+                .and_then(|p| {
+                    self.configuration(
+                        &Value::Vector(p.to_vec()),
+                        point.span,
+                        "a point of attack",
+                    )?;
+                    Some(p)
+                }),
             None => Some(zero),
         };
-        Some(Wrench { frame: index?, at: at?, force: force?, torque: torque?, axes })
+        Some(Wrench {
+            frame: index?,
+            at: at?,
+            force: force?,
+            torque: torque?,
+            axes,
+        })
     }
 
     fn generalized(&mut self, target: &Target, value: &Expr) -> Option<(usize, Vec<Edge>)> {
-        let group = self.declared.velocities.iter().find(|group| group.name == target.name.name && target.field.is_none());
+        let group = self
+            .declared
+            .velocities
+            .iter()
+            .find(|group| group.name == target.name.name && target.field.is_none());
         let force = self.evaluator.value(value);
         let Some(group) = group else {
-            let error = self.evaluator.scope.unknown(target.name.span, &target.name.name, "velocity", |kind| kind == NameKind::Velocity);
+            let error = self.evaluator.scope.unknown(
+                target.name.span,
+                &target.name.name,
+                "velocity",
+                |kind| kind == NameKind::Velocity,
+            );
             return self.evaluator.error(error);
         };
         let force = force?;
         if !force.same_shape(&group.value) {
             let wanted = group.value.shape();
-            return self.evaluator.wrong_shape(value.span, &format!("the generalized force of `{}`", group.name), &wanted, &force);
+            return self.evaluator.wrong_shape(
+                value.span,
+                &format!("the generalized force of `{}`", group.name),
+                &wanted,
+                &force,
+            );
         }
         Some((group.offset, force.entries()))
     }
 
-    fn output(&mut self, name: &Ident, value: &Expr, outputs: &[(String, Value)]) -> Option<(String, Value)> {
+    fn output(
+        &mut self,
+        name: &Ident,
+        value: &Expr,
+        outputs: &[(String, Value)],
+    ) -> Option<(String, Value)> {
         let result = self.evaluator.value(value)?;
-        let taken = FUNCTIONS.contains(&name.name.as_str()) || outputs.iter().any(|(known, _)| *known == name.name);
+        let taken = FUNCTIONS.contains(&name.name.as_str())
+            || outputs.iter().any(|(known, _)| *known == name.name);
         if taken {
-            return self.evaluator.error(Diagnostic::new(name.span, format!("there is already a function `{}`", name.name)).help("choose another name for this output"));
+            return self.evaluator.error(
+                Diagnostic::new(
+                    name.span,
+                    format!("there is already a function `{}`", name.name),
+                )
+                .help("choose another name for this output"),
+            );
         }
         Some((name.name.clone(), result))
     }

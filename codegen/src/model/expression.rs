@@ -60,8 +60,17 @@ impl Evaluator<'_> {
     }
 
     /// Reports a wrong shape.
-    pub fn wrong_shape<T>(&mut self, span: Span, what: &str, wanted: &str, found: &Value) -> Option<T> {
-        self.error(Diagnostic::new(span, format!("{what} has to be {wanted}, this is {}", found.shape())))
+    pub fn wrong_shape<T>(
+        &mut self,
+        span: Span,
+        what: &str,
+        wanted: &str,
+        found: &Value,
+    ) -> Option<T> {
+        self.error(Diagnostic::new(
+            span,
+            format!("{what} has to be {wanted}, this is {}", found.shape()),
+        ))
     }
 
     /// Reports an error.
@@ -73,20 +82,38 @@ impl Evaluator<'_> {
     fn name(&mut self, name: &str, span: Span) -> Option<Value> {
         match self.scope.get(name) {
             Some(entry) if entry.kind == NameKind::Output => self.error(
-                Diagnostic::new(span, format!("`{name}` is an output, which other expressions cannot use"))
-                    .help(format!("name the expression with `let` and use that, also in `output {name}`")),
+                Diagnostic::new(
+                    span,
+                    format!("`{name}` is an output, which other expressions cannot use"),
+                )
+                .help(format!(
+                    "name the expression with `let` and use that, also in `output {name}`"
+                )),
             ),
             Some(entry) => entry.value.clone(),
             None if name == "world" => {
                 let graph = &*self.graph;
-                Some(Value::Pose(crate::algebra::linear::identity3(graph), [graph.zero(); 3]))
+                Some(Value::Pose(
+                    crate::algebra::linear::identity3(graph),
+                    [graph.zero(); 3],
+                ))
             }
             None if name == "pi" => {
-                let known = self.graph.symbols().iter().find(|s| s.name == "pi").map(|s| s.node);
+                let known = self
+                    .graph
+                    .symbols()
+                    .iter()
+                    .find(|s| s.name == "pi")
+                    .map(|s| s.node);
                 known.map(|node| Value::Scalar(Edge::of(node)))
             }
             None => {
-                let error = self.scope.unknown(span, name, "parameter, constant, coordinate, velocity, input or expression", |_| true);
+                let error = self.scope.unknown(
+                    span,
+                    name,
+                    "parameter, constant, coordinate, velocity, input or expression",
+                    |_| true,
+                );
                 self.error(error)
             }
         }
@@ -122,8 +149,14 @@ impl Evaluator<'_> {
         let places = places.into_iter().collect::<Option<Vec<usize>>>()?;
         let out_of_range = |this: &mut Self, place: usize, length: usize| {
             this.error(
-                Diagnostic::new(span, format!("index {place} is out of range, {} has {length}", value.shape()))
-                    .help(format!("indices run from 1 to {length}, as in the paper")),
+                Diagnostic::new(
+                    span,
+                    format!(
+                        "index {place} is out of range, {} has {length}",
+                        value.shape()
+                    ),
+                )
+                .help(format!("indices run from 1 to {length}, as in the paper")),
             )
         };
         match (&value, places.as_slice()) {
@@ -143,19 +176,30 @@ impl Evaluator<'_> {
                 None => out_of_range(self, *i, m.len()),
             },
             _ => self.error(
-                Diagnostic::new(span, format!("{} cannot take {} indices", value.shape(), places.len()))
-                    .help("a vector takes one index, a matrix one (a row) or two"),
+                Diagnostic::new(
+                    span,
+                    format!("{} cannot take {} indices", value.shape(), places.len()),
+                )
+                .help("a vector takes one index, a matrix one (a row) or two"),
             ),
         }
     }
 
     fn place(&mut self, index: &Expr) -> Option<usize> {
         let edge = self.scalar(index, "an index")?;
-        let number = self.graph.as_rational(edge).filter(|n| n.is_integer()).and_then(|n| n.to_integer().to_usize());
+        let number = self
+            .graph
+            .as_rational(edge)
+            .filter(|n| n.is_integer())
+            .and_then(|n| n.to_integer().to_usize());
         match number {
             Some(place) => Some(place),
             None => self.error(
-                Diagnostic::new(index.span, "an index has to be a whole number known at build time").help("indices start at 1"),
+                Diagnostic::new(
+                    index.span,
+                    "an index has to be a whole number known at build time",
+                )
+                .help("indices start at 1"),
             ),
         }
     }
@@ -164,47 +208,97 @@ impl Evaluator<'_> {
         let values: Vec<Option<Value>> = items.iter().map(|item| self.value(item)).collect();
         let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
         let first = values.first()?;
-        if let Some((item, other)) = items.iter().zip(&values).find(|(_, v)| !v.same_shape(first)) {
+        if let Some((item, other)) = items
+            .iter()
+            .zip(&values)
+            .find(|(_, v)| !v.same_shape(first))
+        {
             return self.error(
-                Diagnostic::new(item.span, format!("this entry is {}, the first is {}", other.shape(), first.shape()))
-                    .help("entries of a vector are scalars, entries of a matrix are rows of equal length"),
+                Diagnostic::new(
+                    item.span,
+                    format!(
+                        "this entry is {}, the first is {}",
+                        other.shape(),
+                        first.shape()
+                    ),
+                )
+                .help(
+                    "entries of a vector are scalars, entries of a matrix are rows of equal length",
+                ),
             );
         }
         match first {
-            Value::Scalar(_) => Some(Value::Vector(values.iter().flat_map(Value::entries).collect())),
+            Value::Scalar(_) => Some(Value::Vector(
+                values.iter().flat_map(Value::entries).collect(),
+            )),
             Value::Vector(_) => Some(Value::Matrix(values.iter().map(Value::entries).collect())),
             _ => self.error(
-                Diagnostic::new(span, format!("an array of {} is no vector and no matrix", first.shape().trim_start_matches("a ")))
-                    .help("entries of a vector are scalars, entries of a matrix are rows of equal length"),
+                Diagnostic::new(
+                    span,
+                    format!(
+                        "an array of {} is no vector and no matrix",
+                        first.shape().trim_start_matches("a ")
+                    ),
+                )
+                .help(
+                    "entries of a vector are scalars, entries of a matrix are rows of equal length",
+                ),
             ),
         }
     }
 
-    fn binary(&mut self, op: BinaryOp, a: Value, b: Value, left: &Expr, right: &Expr, span: Span) -> Option<Value> {
+    fn binary(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        left: &Expr,
+        right: &Expr,
+        span: Span,
+    ) -> Option<Value> {
         let graph = &mut *self.graph;
         let result = match op {
             BinaryOp::Add | BinaryOp::Sub => {
                 if !a.same_shape(&b) || matches!(a, Value::Pose(..)) {
-                    let (verb, word) = if op == BinaryOp::Add { ("add", "to") } else { ("subtract", "from") };
-                    let (first, second) = if op == BinaryOp::Add { (&a, &b) } else { (&b, &a) };
+                    let (verb, word) = if op == BinaryOp::Add {
+                        ("add", "to")
+                    } else {
+                        ("subtract", "from")
+                    };
+                    let (first, second) = if op == BinaryOp::Add {
+                        (&a, &b)
+                    } else {
+                        (&b, &a)
+                    };
                     return self.error(
-                        Diagnostic::new(span, format!("cannot {verb} {} {word} {}", first.shape(), second.shape()))
-                            .help("both sides need the same shape"),
+                        Diagnostic::new(
+                            span,
+                            format!("cannot {verb} {} {word} {}", first.shape(), second.shape()),
+                        )
+                        .help("both sides need the same shape"),
                     );
                 }
-                if op == BinaryOp::Add { a.zip(&b, |x, y| graph.add(x, y)) } else { a.zip(&b, |x, y| graph.sub(x, y)) }
+                if op == BinaryOp::Add {
+                    a.zip(&b, |x, y| graph.add(x, y))
+                } else {
+                    a.zip(&b, |x, y| graph.sub(x, y))
+                }
             }
             BinaryOp::Mul => return self.product(a, b, span),
             BinaryOp::Div => {
                 let Value::Scalar(divisor) = b else {
                     return self.error(
-                        Diagnostic::new(right.span, format!("cannot divide by {}", b.shape())).help("divide by a scalar"),
+                        Diagnostic::new(right.span, format!("cannot divide by {}", b.shape()))
+                            .help("divide by a scalar"),
                     );
                 };
                 if divisor == graph.zero() {
                     return self.error(
-                        Diagnostic::new(right.span, "division by something that is identically zero")
-                            .help("this is 0 for every configuration that satisfies the constraint"),
+                        Diagnostic::new(
+                            right.span,
+                            "division by something that is identically zero",
+                        )
+                        .help("this is 0 for every configuration that satisfies the constraint"),
                     );
                 }
                 a.map(|edge| graph.div(edge, divisor).unwrap_or(edge))
@@ -217,10 +311,15 @@ impl Evaluator<'_> {
     /// The value, unless one of its numbers has grown beyond all use.
     fn bounded(&mut self, value: Value, span: Span) -> Option<Value> {
         let large = |edge: &Edge| {
-            self.graph.as_rational(*edge).is_some_and(|n| n.numer().bits().max(n.denom().bits()) > LARGEST_NUMBER)
+            self.graph
+                .as_rational(*edge)
+                .is_some_and(|n| n.numer().bits().max(n.denom().bits()) > LARGEST_NUMBER)
         };
         if value.entries().iter().any(large) {
-            return self.error(Diagnostic::new(span, "this number has too many digits").help("scale the units of the model"));
+            return self.error(
+                Diagnostic::new(span, "this number has too many digits")
+                    .help("scale the units of the model"),
+            );
         }
         Some(value)
     }
@@ -229,12 +328,18 @@ impl Evaluator<'_> {
         let graph = &mut *self.graph;
         let columns = |m: &[Vec<Edge>]| m.first().map_or(0, Vec::len);
         let result = match (&a, &b) {
-            (Value::Scalar(k), Value::Scalar(_) | Value::Vector(_) | Value::Matrix(_)) => b.map(|edge| graph.mul(*k, edge)),
-            (Value::Vector(_) | Value::Matrix(_), Value::Scalar(k)) => a.map(|edge| graph.mul(edge, *k)),
+            (Value::Scalar(k), Value::Scalar(_) | Value::Vector(_) | Value::Matrix(_)) => {
+                b.map(|edge| graph.mul(*k, edge))
+            }
+            (Value::Vector(_) | Value::Matrix(_), Value::Scalar(k)) => {
+                a.map(|edge| graph.mul(edge, *k))
+            }
             (Value::Matrix(m), Value::Vector(v)) if columns(m) == v.len() => {
                 Value::Vector(m.iter().map(|row| graph.dot(row, v)).collect())
             }
-            (Value::Matrix(m), Value::Matrix(n)) if columns(m) == n.len() => Value::Matrix(multiply(graph, m, n)),
+            (Value::Matrix(m), Value::Matrix(n)) if columns(m) == n.len() => {
+                Value::Matrix(multiply(graph, m, n))
+            }
             (Value::Pose(r, p), Value::Pose(r2, p2)) => {
                 let moved = apply3(graph, r, *p2);
                 Value::Pose(multiply3(graph, r, r2), add3(graph, *p, moved))
@@ -246,12 +351,21 @@ impl Evaluator<'_> {
             }
             _ => {
                 let help = match (&a, &b) {
-                    (Value::Vector(_), Value::Vector(_)) => "write `dot(a, b)`, `cross(a, b)` or `outer(a, b)`",
-                    (Value::Vector(_), Value::Matrix(_)) => "write the matrix first, transposed: `M.T * v`",
+                    (Value::Vector(_), Value::Vector(_)) => {
+                        "write `dot(a, b)`, `cross(a, b)` or `outer(a, b)`"
+                    }
+                    (Value::Vector(_), Value::Matrix(_)) => {
+                        "write the matrix first, transposed: `M.T * v`"
+                    }
                     _ => "the columns of the left have to be as many as the rows of the right",
                 };
-                return self
-                    .error(Diagnostic::new(span, format!("cannot multiply {} by {}", a.shape(), b.shape())).help(help));
+                return self.error(
+                    Diagnostic::new(
+                        span,
+                        format!("cannot multiply {} by {}", a.shape(), b.shape()),
+                    )
+                    .help(help),
+                );
             }
         };
         self.bounded(result, span)
@@ -270,11 +384,17 @@ impl Evaluator<'_> {
         };
         let Some(exponent) = exponent else {
             return self.error(
-                Diagnostic::new(right.span, "an exponent has to be a rational number known at build time")
-                    .help("for other powers write `exp(b * log(a))`"),
+                Diagnostic::new(
+                    right.span,
+                    "an exponent has to be a rational number known at build time",
+                )
+                .help("for other powers write `exp(b * log(a))`"),
             );
         };
-        let whole = exponent.is_integer().then(|| exponent.to_integer().to_i64()).flatten();
+        let whole = exponent
+            .is_integer()
+            .then(|| exponent.to_integer().to_i64())
+            .flatten();
         if base == self.graph.zero() && !exponent.is_positive() {
             return self.error(
                 Diagnostic::new(left.span, "division by something that is identically zero")
@@ -283,18 +403,34 @@ impl Evaluator<'_> {
         }
         let twice = &exponent + &exponent;
         let result = if let Some(n) = whole.filter(|n| n.abs() <= LARGEST_EXPONENT) {
-            let bits = self.graph.as_rational(base).map_or(0, |n| n.numer().bits().max(n.denom().bits()));
+            let bits = self
+                .graph
+                .as_rational(base)
+                .map_or(0, |n| n.numer().bits().max(n.denom().bits()));
             if bits.saturating_mul(n.unsigned_abs()) > 2 * LARGEST_NUMBER {
-                return self.error(Diagnostic::new(left.span, "this power has too many digits").help("scale the units of the model"));
+                return self.error(
+                    Diagnostic::new(left.span, "this power has too many digits")
+                        .help("scale the units of the model"),
+                );
             }
             self.graph.powi(base, n)
-        } else if let Some(n) = twice.is_integer().then(|| twice.to_integer().to_i64()).flatten().filter(|n| n.abs() <= LARGEST_EXPONENT) {
+        } else if let Some(n) = twice
+            .is_integer()
+            .then(|| twice.to_integer().to_i64())
+            .flatten()
+            .filter(|n| n.abs() <= LARGEST_EXPONENT)
+        {
             let root = self.graph.apply(Function::Sqrt, base);
             self.graph.powi(root, n)
         } else if exponent.is_zero() {
             Some(self.graph.one())
-        } else if exponent.abs() > BigRational::one() * BigRational::from_integer(LARGEST_EXPONENT.into()) {
-            return self.error(Diagnostic::new(right.span, "this exponent is too large").help(format!("exponents reach to {LARGEST_EXPONENT}")));
+        } else if exponent.abs()
+            > BigRational::one() * BigRational::from_integer(LARGEST_EXPONENT.into())
+        {
+            return self.error(
+                Diagnostic::new(right.span, "this exponent is too large")
+                    .help(format!("exponents reach to {LARGEST_EXPONENT}")),
+            );
         } else {
             let factor = self.graph.rational(&exponent);
             let log = self.graph.apply(Function::Log, base);

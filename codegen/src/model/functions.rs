@@ -4,17 +4,28 @@ use super::expression::Evaluator;
 use super::scope::{RESERVED, closest};
 use super::value::Value;
 use crate::algebra::graph::{Edge, Function, Graph};
-use crate::algebra::linear::{Mat3, Vec3, apply3, cross, identity3, multiply3, transpose, transpose3};
+use crate::algebra::linear::{
+    Mat3, Vec3, apply3, cross, identity3, multiply3, transpose, transpose3,
+};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{Expr, Ident, Span};
 
 impl Evaluator<'_> {
     /// A call; wrong names, counts and shapes are reported.
     pub fn call(&mut self, function: &Ident, arguments: &[Expr], span: Span) -> Option<Value> {
-        let values: Vec<Option<Value>> = arguments.iter().map(|argument| self.value(argument)).collect();
+        let values: Vec<Option<Value>> = arguments
+            .iter()
+            .map(|argument| self.value(argument))
+            .collect();
         let Some(usage) = usage(&function.name) else {
-            let error = Diagnostic::new(function.span, format!("no function is called `{}`", function.name));
-            let known = RESERVED.iter().copied().filter(|name| usage_of(name).is_some());
+            let error = Diagnostic::new(
+                function.span,
+                format!("no function is called `{}`", function.name),
+            );
+            let known = RESERVED
+                .iter()
+                .copied()
+                .filter(|name| usage_of(name).is_some());
             return match closest(&function.name, known) {
                 Some(known) => self.error(error.help(format!("did you mean `{known}`?"))),
                 None => self.error(error.help("functions are sin, cos, tan, atan2, sqrt, exp, log, dot, cross, norm, hat, vee, transpose, trace, diag, outer, identity, rotx, roty, rotz, rpy, axis_angle, rot, qmul, pose, inverse")),
@@ -26,8 +37,19 @@ impl Evaluator<'_> {
             Err(Fault::Usage) => {
                 let found: Vec<String> = values.iter().map(Value::shape).collect();
                 self.error(
-                    Diagnostic::new(span, format!("`{}` cannot take {}", function.name, if found.is_empty() { "no argument".into() } else { found.join(" and ") }))
-                        .help(format!("write {usage}")),
+                    Diagnostic::new(
+                        span,
+                        format!(
+                            "`{}` cannot take {}",
+                            function.name,
+                            if found.is_empty() {
+                                "no argument".into()
+                            } else {
+                                found.join(" and ")
+                            }
+                        ),
+                    )
+                    .help(format!("write {usage}")),
                 )
             }
             Err(Fault::Why(message, help)) => self.error(Diagnostic::new(span, message).help(help)),
@@ -62,7 +84,9 @@ fn usage_of(name: &str) -> Option<&'static str> {
         "trace" => "`trace(M)` of a square matrix",
         "diag" => "`diag(a, b, c)` of scalars or `diag(v)` of a vector",
         "identity" => "`identity(n)` with n from 1 to 64",
-        "rotx" | "roty" | "rotz" => "`rotx(angle)`, `rotx(c, s)` or `rotx(q)` with an S1 coordinate q, and so roty and rotz",
+        "rotx" | "roty" | "rotz" => {
+            "`rotx(angle)`, `rotx(c, s)` or `rotx(q)` with an S1 coordinate q, and so roty and rotz"
+        }
         "rpy" => "`rpy(roll, pitch, yaw)` of scalars",
         "axis_angle" => "`axis_angle(axis, angle)` of a unit vector of 3 and a scalar",
         "rot" => "`rot(q)` of a unit quaternion, scalar first",
@@ -79,20 +103,28 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
         ("sin", [Scalar(a)]) => Scalar(graph.apply(Function::Sin, *a)),
         ("cos", [Scalar(a)]) => Scalar(graph.apply(Function::Cos, *a)),
         ("tan", [Scalar(a)]) => {
-            let (s, c) = (graph.apply(Function::Sin, *a), graph.apply(Function::Cos, *a));
+            let (s, c) = (
+                graph.apply(Function::Sin, *a),
+                graph.apply(Function::Cos, *a),
+            );
             Scalar(graph.div(s, c).ok_or(Fault::Usage)?)
         }
         ("exp", [Scalar(a)]) => Scalar(graph.apply(Function::Exp, *a)),
         ("log", [Scalar(a)]) if *a == graph.zero() => {
-            return Err(Fault::Why("logarithm of something that is identically zero".into(), "the argument has to be positive".into()));
+            return Err(Fault::Why(
+                "logarithm of something that is identically zero".into(),
+                "the argument has to be positive".into(),
+            ));
         }
         ("log", [Scalar(a)]) => Scalar(graph.apply(Function::Log, *a)),
         ("sqrt", [Scalar(a)]) => Scalar(root(graph, *a)?),
         ("atan2", [Scalar(y), Scalar(x)]) => Scalar(graph.atan2(*y, *x)),
         ("dot", [Vector(a), Vector(b)]) if a.len() == b.len() => Scalar(graph.dot(a, b)),
-        ("outer", [Vector(a), Vector(b)]) => {
-            Matrix(a.iter().map(|&x| b.iter().map(|&y| graph.mul(x, y)).collect()).collect())
-        }
+        ("outer", [Vector(a), Vector(b)]) => Matrix(
+            a.iter()
+                .map(|&x| b.iter().map(|&y| graph.mul(x, y)).collect())
+                .collect(),
+        ),
         ("norm", [Vector(a)]) => {
             let square = graph.dot(a, a);
             Scalar(root(graph, square)?)
@@ -103,18 +135,29 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
             Scalar(graph.sum(&diagonal))
         }
         ("diag", [Vector(v)]) => diagonal(graph, v),
-        ("diag", scalars) if !scalars.is_empty() && scalars.iter().all(|v| matches!(v, Scalar(_))) => {
+        ("diag", scalars)
+            if !scalars.is_empty() && scalars.iter().all(|v| matches!(v, Scalar(_))) =>
+        {
             let entries: Vec<Edge> = scalars.iter().flat_map(Value::entries).collect();
             diagonal(graph, &entries)
         }
         ("identity", [Scalar(n)]) => {
-            let size = graph.as_rational(*n).filter(|n| n.is_integer()).map(|n| n.to_integer());
-            let size = size.and_then(|n| usize::try_from(n).ok()).filter(|n| (1..=64).contains(n)).ok_or(Fault::Usage)?;
+            let size = graph
+                .as_rational(*n)
+                .filter(|n| n.is_integer())
+                .map(|n| n.to_integer());
+            let size = size
+                .and_then(|n| usize::try_from(n).ok())
+                .filter(|n| (1..=64).contains(n))
+                .ok_or(Fault::Usage)?;
             diagonal(graph, &vec![graph.one(); size])
         }
         ("rotx" | "roty" | "rotz", _) => {
             let (c, s) = match values {
-                [Scalar(a)] => (graph.apply(Function::Cos, *a), graph.apply(Function::Sin, *a)),
+                [Scalar(a)] => (
+                    graph.apply(Function::Cos, *a),
+                    graph.apply(Function::Sin, *a),
+                ),
                 [Scalar(c), Scalar(s)] => (*c, *s),
                 [Vector(v)] if v.len() == 2 => (v[0], v[1]),
                 _ => return Err(Fault::Usage),
@@ -128,7 +171,10 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
         }
         ("rpy", [Scalar(r), Scalar(p), Scalar(y)]) => {
             let turns = [(0, *r), (1, *p), (2, *y)].map(|(axis, angle)| {
-                let (c, s) = (graph.apply(Function::Cos, angle), graph.apply(Function::Sin, angle));
+                let (c, s) = (
+                    graph.apply(Function::Cos, angle),
+                    graph.apply(Function::Sin, angle),
+                );
                 turn(graph, axis, c, s)
             });
             let last = multiply3(graph, &turns[2], &turns[1]);
@@ -138,7 +184,9 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
             let axis = axis.as_vec3().ok_or(Fault::Usage)?;
             axis_angle(graph, axis, *angle)?
         }
-        ("rot", [Vector(q)]) if q.len() == 4 => Value::from_mat3(&quaternion_matrix(graph, [q[0], q[1], q[2], q[3]])),
+        ("rot", [Vector(q)]) if q.len() == 4 => {
+            Value::from_mat3(&quaternion_matrix(graph, [q[0], q[1], q[2], q[3]]))
+        }
         ("qmul", [Vector(p), Vector(q)]) if p.len() == 4 && q.len() == 4 => {
             let (u, v) = ([p[1], p[2], p[3]], [q[1], q[2], q[3]]);
             let (scalars, dot) = (graph.mul(p[0], q[0]), graph.dot(&u, &v));
@@ -167,10 +215,15 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
         ("vee", [w]) => {
             let w = w.as_mat3().ok_or(Fault::Usage)?;
             let half = graph.ratio(1, 2);
-            Vector([(2, 1), (0, 2), (1, 0)].iter().map(|&(i, j)| {
-                let difference = graph.sub(w[i][j], w[j][i]);
-                graph.mul(half, difference)
-            }).collect())
+            Vector(
+                [(2, 1), (0, 2), (1, 0)]
+                    .iter()
+                    .map(|&(i, j)| {
+                        let difference = graph.sub(w[i][j], w[j][i]);
+                        graph.mul(half, difference)
+                    })
+                    .collect(),
+            )
         }
         _ => return Err(Fault::Usage),
     };
@@ -178,15 +231,29 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
 }
 
 fn root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {
-    if graph.as_rational(square).is_some_and(|n| n < num_traits::Zero::zero()) {
-        return Err(Fault::Why("square root of a negative number".into(), "check the sign of the argument".into()));
+    if graph
+        .as_rational(square)
+        .is_some_and(|n| n < num_traits::Zero::zero())
+    {
+        return Err(Fault::Why(
+            "square root of a negative number".into(),
+            "check the sign of the argument".into(),
+        ));
     }
     Ok(graph.apply(Function::Sqrt, square))
 }
 
 fn diagonal(graph: &Graph, entries: &[Edge]) -> Value {
     let n = entries.len();
-    Value::Matrix((0..n).map(|i| (0..n).map(|j| if i == j { entries[i] } else { graph.zero() }).collect()).collect())
+    Value::Matrix(
+        (0..n)
+            .map(|i| {
+                (0..n)
+                    .map(|j| if i == j { entries[i] } else { graph.zero() })
+                    .collect()
+            })
+            .collect(),
+    )
 }
 
 /// ŵ, with ŵ a = w × a.
@@ -214,7 +281,10 @@ fn axis_angle(graph: &mut Graph, axis: Vec3, angle: Edge) -> Result<Value, Fault
             "divide it by its length: `axis_angle(a / norm(a), angle)`".into(),
         ));
     }
-    let (c, s) = (graph.apply(Function::Cos, angle), graph.apply(Function::Sin, angle));
+    let (c, s) = (
+        graph.apply(Function::Cos, angle),
+        graph.apply(Function::Sin, angle),
+    );
     let versine = graph.sub(graph.one(), c);
     let n = hat(graph, axis);
     let square = multiply3(graph, &n, &n);
@@ -241,7 +311,11 @@ pub fn quaternion_matrix(graph: &mut Graph, q: [Edge; 4]) -> Mat3 {
             let (outer, turn) = (graph.mul(v[i], v[j]), graph.mul(w, skew[i][j]));
             let sum = graph.add(outer, turn);
             let double = graph.mul(two, sum);
-            if i == j { graph.add(base, double) } else { double }
+            if i == j {
+                graph.add(base, double)
+            } else {
+                double
+            }
         })
     })
 }

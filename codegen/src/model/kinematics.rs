@@ -1,11 +1,11 @@
 //! Rates: ẋ = A ξ, linear in ξ and tangent to φ = 0, with as many velocities as dim X.
 
+use super::class;
 use super::declare::{Declared, coordinate_value, size};
 use super::expression::Evaluator;
 use super::points::Points;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
-use super::class;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, LANES};
@@ -21,11 +21,21 @@ pub struct Kinematics {
 }
 
 /// Reads all `rate` statements.
-pub fn read(system: &System, graph: &mut Graph, scope: &Scope, points: &Points, phi: &[(Edge, String)], declared: &Declared, report: &mut Report) -> Option<Kinematics> {
+pub fn read(
+    system: &System,
+    graph: &mut Graph,
+    scope: &Scope,
+    points: &Points,
+    phi: &[(Edge, String)],
+    declared: &Declared,
+    report: &mut Report,
+) -> Option<Kinematics> {
     let mut rate: Vec<Option<(Edge, Span)>> = vec![None; declared.x.len()];
     let mut complete = true;
     for item in &system.items {
-        let ItemKind::Rate { target, value } = &item.kind else { continue };
+        let ItemKind::Rate { target, value } = &item.kind else {
+            continue;
+        };
         let done = read_rate(target, value, graph, scope, declared, &mut rate, report);
         complete &= done.is_some();
     }
@@ -34,7 +44,11 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, points: &Points, 
         if complete && entries.iter().any(Option::is_none) {
             complete = false;
             report.push(
-                Diagnostic::new(coordinate.span, format!("coordinate `{}` has no rate", coordinate.name)).help(rate_help(&coordinate.name, coordinate.kind)),
+                Diagnostic::new(
+                    coordinate.span,
+                    format!("coordinate `{}` has no rate", coordinate.name),
+                )
+                .help(rate_help(&coordinate.name, coordinate.kind)),
             );
         }
     }
@@ -44,19 +58,43 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, points: &Points, 
     let (rate, spans): (Vec<Edge>, Vec<Span>) = rate.into_iter().flatten().unzip();
     let a = linear_part(graph, &rate, &spans, declared, report)?;
     let jacobian = jacobian(points, graph, phi, declared);
-    check_tangent(graph, &a, &spans, phi, jacobian.as_deref(), declared, report)?;
+    check_tangent(
+        graph,
+        &a,
+        &spans,
+        phi,
+        jacobian.as_deref(),
+        declared,
+        report,
+    )?;
     check_count(system, graph, &a, jacobian.as_deref(), declared, report)?;
     Some(Kinematics { rate, a })
 }
 
-fn read_rate(target: &Target, value: &Expr, graph: &mut Graph, scope: &Scope, declared: &Declared, rate: &mut [Option<(Edge, Span)>], report: &mut Report) -> Option<()> {
+fn read_rate(
+    target: &Target,
+    value: &Expr,
+    graph: &mut Graph,
+    scope: &Scope,
+    declared: &Declared,
+    rate: &mut [Option<(Edge, Span)>],
+    report: &mut Report,
+) -> Option<()> {
     let found = part(target, scope, declared, report);
-    let value_of = Evaluator { graph, scope, report }.value(value);
+    let value_of = Evaluator {
+        graph,
+        scope,
+        report,
+    }
+    .value(value);
     let (range, wanted) = found?;
     let mut entries = value_of?;
     // A scalar rate of an S1 coordinate is its angular velocity: (c, s)' = (−s, c) ω.
     if let (Value::Scalar(w), Value::Vector(x)) = (&entries, &wanted)
-        && declared.coordinates.iter().any(|c| c.kind == CoordKind::S1 && c.offset == range.start && x.len() == 2)
+        && declared
+            .coordinates
+            .iter()
+            .any(|c| c.kind == CoordKind::S1 && c.offset == range.start && x.len() == 2)
     {
         let (c, s) = (x[0], x[1]);
         entries = Value::Vector(vec![-graph.mul(s, *w), graph.mul(c, *w)]);
@@ -70,9 +108,12 @@ fn read_rate(target: &Target, value: &Expr, graph: &mut Graph, scope: &Scope, de
     for (place, edge) in range.zip(entries.entries()) {
         if let Some((_, first)) = rate[place] {
             report.push(
-                Diagnostic::new(target.span(), format!("the rate of `{}` is given twice", target.name.name))
-                    .help("remove one of the two")
-                    .note(first, "first given here"),
+                Diagnostic::new(
+                    target.span(),
+                    format!("the rate of `{}` is given twice", target.name.name),
+                )
+                .help("remove one of the two")
+                .note(first, "first given here"),
             );
             return None;
         }
@@ -82,14 +123,28 @@ fn read_rate(target: &Target, value: &Expr, graph: &mut Graph, scope: &Scope, de
 }
 
 /// The entries of x that a target names, and its value.
-pub fn part(target: &Target, scope: &Scope, declared: &Declared, report: &mut Report) -> Option<(std::ops::Range<usize>, Value)> {
+pub fn part(
+    target: &Target,
+    scope: &Scope,
+    declared: &Declared,
+    report: &mut Report,
+) -> Option<(std::ops::Range<usize>, Value)> {
     let name = &target.name;
     let Some(coordinate) = declared.coordinates.iter().find(|c| c.name == name.name) else {
         let error = match scope.get(&name.name) {
-            Some(entry) => Diagnostic::new(name.span, format!("`{}` is {}, it has no rate of its own", name.name, entry.kind.describe()))
-                .help("rates belong to coordinates")
-                .note(entry.span, "defined here"),
-            None => scope.unknown(name.span, &name.name, "coordinate", |kind| matches!(kind, NameKind::Coord(_))),
+            Some(entry) => Diagnostic::new(
+                name.span,
+                format!(
+                    "`{}` is {}, it has no rate of its own",
+                    name.name,
+                    entry.kind.describe()
+                ),
+            )
+            .help("rates belong to coordinates")
+            .note(entry.span, "defined here"),
+            None => scope.unknown(name.span, &name.name, "coordinate", |kind| {
+                matches!(kind, NameKind::Coord(_))
+            }),
         };
         report.push(error);
         return None;
@@ -99,10 +154,18 @@ pub fn part(target: &Target, scope: &Scope, declared: &Declared, report: &mut Re
     let at = |from: usize, len: usize| coordinate.offset + from..coordinate.offset + from + len;
     match (&target.field, coordinate.kind) {
         (None, kind) => Some((whole, coordinate_value(kind, entries))),
-        (Some(field), CoordKind::SE3) if field.name == "p" => Some((at(0, 3), Value::Vector(entries[..3].to_vec()))),
-        (Some(field), CoordKind::SE3) if field.name == "R" => Some((at(3, 9), coordinate_value(CoordKind::SO3, &entries[3..]))),
-        (Some(field), CoordKind::S1) if field.name == "c" => Some((at(0, 1), Value::Scalar(entries[0]))),
-        (Some(field), CoordKind::S1) if field.name == "s" => Some((at(1, 1), Value::Scalar(entries[1]))),
+        (Some(field), CoordKind::SE3) if field.name == "p" => {
+            Some((at(0, 3), Value::Vector(entries[..3].to_vec())))
+        }
+        (Some(field), CoordKind::SE3) if field.name == "R" => {
+            Some((at(3, 9), coordinate_value(CoordKind::SO3, &entries[3..])))
+        }
+        (Some(field), CoordKind::S1) if field.name == "c" => {
+            Some((at(0, 1), Value::Scalar(entries[0])))
+        }
+        (Some(field), CoordKind::S1) if field.name == "s" => {
+            Some((at(1, 1), Value::Scalar(entries[1])))
+        }
         (Some(field), _) => {
             report.push(no_part(name, field));
             None
@@ -111,8 +174,11 @@ pub fn part(target: &Target, scope: &Scope, declared: &Declared, report: &mut Re
 }
 
 fn no_part(name: &Ident, field: &Ident) -> Diagnostic {
-    Diagnostic::new(field.span, format!("`{}` has no part `.{}`", name.name, field.name))
-        .help("parts are `.p` and `.R` of an SE3 coordinate, `.c` and `.s` of an S1 coordinate")
+    Diagnostic::new(
+        field.span,
+        format!("`{}` has no part `.{}`", name.name, field.name),
+    )
+    .help("parts are `.p` and `.R` of an SE3 coordinate, `.c` and `.s` of an S1 coordinate")
 }
 
 fn rate_help(name: &str, kind: CoordKind) -> String {
@@ -122,12 +188,20 @@ fn rate_help(name: &str, kind: CoordKind) -> String {
         CoordKind::S1 => format!("write `rate {name} = w;` with its angular velocity w"),
         CoordKind::S3 => format!("write `rate {name} = qmul({name}, [0, w[1], w[2], w[3]]) / 2;`"),
         CoordKind::SO3 => format!("write `rate {name} = {name} * hat(w);` with a velocity w: vec3"),
-        CoordKind::SE3 => format!("write `rate {name}.p = {name}.R * v;` and `rate {name}.R = {name}.R * hat(w);`"),
+        CoordKind::SE3 => format!(
+            "write `rate {name}.p = {name}.R * v;` and `rate {name}.R = {name}.R * hat(w);`"
+        ),
     }
 }
 
 /// A = ∂ẋ/∂ξ, with ẋ − A ξ = 0 and A free of ξ and u.
-fn linear_part(graph: &mut Graph, rate: &[Edge], spans: &[Span], declared: &Declared, report: &mut Report) -> Option<Vec<Vec<Edge>>> {
+fn linear_part(
+    graph: &mut Graph,
+    rate: &[Edge],
+    spans: &[Span],
+    declared: &Declared,
+    report: &mut Report,
+) -> Option<Vec<Vec<Edge>>> {
     let mut a = vec![Vec::new(); rate.len()];
     for &xi in &declared.xi {
         let mut derivation = Derivation::new([(xi.node(), graph.one())]);
@@ -139,7 +213,9 @@ fn linear_part(graph: &mut Graph, rate: &[Edge], spans: &[Span], declared: &Decl
     let mut last: Option<Span> = None;
     for ((row, &entry), &span) in a.iter().zip(rate).zip(spans) {
         let whole = graph.dot(row, &declared.xi);
-        let class = row.iter().fold(0, |class, edge| class | graph.class(edge.node()));
+        let class = row
+            .iter()
+            .fold(0, |class, edge| class | graph.class(edge.node()));
         if whole == entry && class & !(class::PARAM | class::COORD) == 0 {
             continue;
         }
@@ -162,10 +238,17 @@ fn same(a: Span, b: Span) -> bool {
 }
 
 /// ∂φ/∂x at the lanes' points of X; one matrix a lane.
-fn jacobian(points: &Points, graph: &Graph, phi: &[(Edge, String)], declared: &Declared) -> Option<Vec<Vec<Vec<Fp>>>> {
+fn jacobian(
+    points: &Points,
+    graph: &Graph,
+    phi: &[(Edge, String)],
+    declared: &Declared,
+) -> Option<Vec<Vec<Vec<Fp>>>> {
     let mut free = points.free.clone();
     let nu = declared.x.len();
-    let x: Vec<Edge> = (points.first..points.first + nu).map(|i| Edge::of(free.symbols()[i].node)).collect();
+    let x: Vec<Edge> = (points.first..points.first + nu)
+        .map(|i| Edge::of(free.symbols()[i].node))
+        .collect();
     let mut entries = Vec::new();
     for &(row, _) in phi {
         for edge in &x {
@@ -186,16 +269,29 @@ fn jacobian(points: &Points, graph: &Graph, phi: &[(Edge, String)], declared: &D
 }
 
 /// (∂φ/∂x) A = 0 on X.
-fn check_tangent(graph: &Graph, a: &[Vec<Edge>], spans: &[Span], phi: &[(Edge, String)], jacobian: Option<&[Vec<Vec<Fp>>]>, declared: &Declared, report: &mut Report) -> Option<()> {
-    let Some(jacobian) = jacobian else { return Some(()) };
+fn check_tangent(
+    graph: &Graph,
+    a: &[Vec<Edge>],
+    spans: &[Span],
+    phi: &[(Edge, String)],
+    jacobian: Option<&[Vec<Vec<Fp>>]>,
+    declared: &Declared,
+    report: &mut Report,
+) -> Option<()> {
+    let Some(jacobian) = jacobian else {
+        return Some(());
+    };
     let mut bad = false;
     let mut reported: Vec<Span> = Vec::new();
     for (row, (_, text)) in phi.iter().enumerate() {
         for i in 0..declared.xi.len() {
             let leaves = (0..LANES).any(|lane| {
-                let sum = a.iter().enumerate().fold(Fp::ZERO, |sum, (alpha, entries)| {
-                    sum + jacobian[lane][row][alpha] * graph.value(entries[i])[lane]
-                });
+                let sum = a
+                    .iter()
+                    .enumerate()
+                    .fold(Fp::ZERO, |sum, (alpha, entries)| {
+                        sum + jacobian[lane][row][alpha] * graph.value(entries[i])[lane]
+                    });
                 !sum.is_zero()
             });
             if !leaves {
@@ -203,16 +299,26 @@ fn check_tangent(graph: &Graph, a: &[Vec<Edge>], spans: &[Span], phi: &[(Edge, S
             }
             bad = true;
             // The first coordinate that the row is about carries the place.
-            let Some(alpha) = (0..declared.x.len()).find(|&alpha| !jacobian[0][row][alpha].is_zero()) else { continue };
+            let Some(alpha) =
+                (0..declared.x.len()).find(|&alpha| !jacobian[0][row][alpha].is_zero())
+            else {
+                continue;
+            };
             let span = spans[alpha];
             if reported.iter().any(|&known| same(known, span)) {
                 continue;
             }
             reported.push(span);
             let coordinate = declared.coordinates.iter().rfind(|c| c.offset <= alpha);
-            let velocity = graph.symbols().iter().find(|s| s.node == declared.xi[i].node()).map_or("", |s| s.name.as_str());
+            let velocity = graph
+                .symbols()
+                .iter()
+                .find(|s| s.node == declared.xi[i].node())
+                .map_or("", |s| s.name.as_str());
             let help = coordinate.map_or(String::new(), |c| match c.kind {
-                CoordKind::Real | CoordKind::Euclidean(_) => "choose rates whose motion keeps the constraint: (∂φ/∂x) A = 0".into(),
+                CoordKind::Real | CoordKind::Euclidean(_) => {
+                    "choose rates whose motion keeps the constraint: (∂φ/∂x) A = 0".into()
+                }
                 kind => rate_help(&c.name, kind),
             });
             report.push(Diagnostic::new(span, format!("this rate leaves the constraint {text}: a motion along `{velocity}` changes it")).help(help));
@@ -222,7 +328,14 @@ fn check_tangent(graph: &Graph, a: &[Vec<Edge>], spans: &[Span], phi: &[(Edge, S
 }
 
 /// n = dim X = ν − rank ∂φ/∂x, and A of rank n.
-fn check_count(system: &System, graph: &Graph, a: &[Vec<Edge>], jacobian: Option<&[Vec<Vec<Fp>>]>, declared: &Declared, report: &mut Report) -> Option<()> {
+fn check_count(
+    system: &System,
+    graph: &Graph,
+    a: &[Vec<Edge>],
+    jacobian: Option<&[Vec<Vec<Fp>>]>,
+    declared: &Declared,
+    report: &mut Report,
+) -> Option<()> {
     let n = declared.xi.len();
     let rank_phi = jacobian.map_or(0, |lanes| rank(lanes[0].clone()));
     let dimension = declared.x.len() - rank_phi;
@@ -230,30 +343,55 @@ fn check_count(system: &System, graph: &Graph, a: &[Vec<Edge>], jacobian: Option
         .items
         .iter()
         .find_map(|item| match &item.kind {
-            ItemKind::Velocity(list) => list.first().map(|first| first.name.span.to(list.last().map_or(first.name.span, |l| l.name.span))),
+            ItemKind::Velocity(list) => list.first().map(|first| {
+                first
+                    .name
+                    .span
+                    .to(list.last().map_or(first.name.span, |l| l.name.span))
+            }),
             _ => None,
         })
         .unwrap_or(system.name.span);
     if n != dimension {
         let (few, help) = if n < dimension {
-            ("too few", "add velocities until they are as many as the system has degrees of freedom")
+            (
+                "too few",
+                "add velocities until they are as many as the system has degrees of freedom",
+            )
         } else {
-            ("too many", "remove velocities, or a constraint that is not meant")
+            (
+                "too many",
+                "remove velocities, or a constraint that is not meant",
+            )
         };
         report.push(
             Diagnostic::new(span, format!("{few} velocities: there are {n}, the configurations form a set of dimension {dimension} ({} coordinates less {rank_phi} independent constraints)", declared.x.len())).help(help),
         );
         return None;
     }
-    let values: Vec<Vec<Fp>> = a.iter().map(|row| row.iter().map(|&edge| graph.value(edge)[0]).collect()).collect();
+    let values: Vec<Vec<Fp>> = a
+        .iter()
+        .map(|row| row.iter().map(|&edge| graph.value(edge)[0]).collect())
+        .collect();
     let rank_a = rank(values.clone());
     if rank_a < n {
         // The first column that depends on those before it.
-        let dependent = (0..n).find(|&i| rank(values.iter().map(|row| row[..=i].to_vec()).collect()) <= i).unwrap_or(0);
-        let name = graph.symbols().iter().find(|s| s.node == declared.xi[dependent].node()).map_or("", |s| s.name.as_str());
+        let dependent = (0..n)
+            .find(|&i| rank(values.iter().map(|row| row[..=i].to_vec()).collect()) <= i)
+            .unwrap_or(0);
+        let name = graph
+            .symbols()
+            .iter()
+            .find(|s| s.node == declared.xi[dependent].node())
+            .map_or("", |s| s.name.as_str());
         report.push(
-            Diagnostic::new(span, format!("the velocities are not independent: A has rank {rank_a}, not {n}"))
-                .help(format!("`{name}` moves nothing that the velocities before it do not move")),
+            Diagnostic::new(
+                span,
+                format!("the velocities are not independent: A has rank {rank_a}, not {n}"),
+            )
+            .help(format!(
+                "`{name}` moves nothing that the velocities before it do not move"
+            )),
         );
         return None;
     }

@@ -60,9 +60,13 @@ pub fn blocks(kind: CoordKind) -> Vec<Block> {
 /// Names of the entries of a coordinate, as they are written in the language.
 pub fn entry_names(name: &str, kind: CoordKind) -> Vec<String> {
     let matrix = |name: &str| -> Vec<String> {
-        (1..=3).flat_map(|i| (1..=3).map(move |j| (i, j))).map(|(i, j)| format!("{name}[{i},{j}]")).collect()
+        (1..=3)
+            .flat_map(|i| (1..=3).map(move |j| (i, j)))
+            .map(|(i, j)| format!("{name}[{i},{j}]"))
+            .collect()
     };
-    let vector = |name: &str, n: usize| -> Vec<String> { (1..=n).map(|i| format!("{name}[{i}]")).collect() };
+    let vector =
+        |name: &str, n: usize| -> Vec<String> { (1..=n).map(|i| format!("{name}[{i}]")).collect() };
     match kind {
         CoordKind::Real => vec![name.to_string()],
         CoordKind::Euclidean(n) => vector(name, n),
@@ -98,12 +102,26 @@ pub fn sample(block: Block, random: &mut Random) -> Vec<Fp> {
         Block::Rotation => loop {
             // R(q)/|q|² of any quaternion q.
             let [w, x, y, z]: [Fp; 4] = std::array::from_fn(|_| random.element());
-            let Some(scale) = (w * w + x * x + y * y + z * z).inv() else { continue };
+            let Some(scale) = (w * w + x * x + y * y + z * z).inv() else {
+                continue;
+            };
             let two = Fp::new(2);
             let rows = [
-                [w * w + x * x - y * y - z * z, two * (x * y - w * z), two * (x * z + w * y)],
-                [two * (x * y + w * z), w * w - x * x + y * y - z * z, two * (y * z - w * x)],
-                [two * (x * z - w * y), two * (y * z + w * x), w * w - x * x - y * y + z * z],
+                [
+                    w * w + x * x - y * y - z * z,
+                    two * (x * y - w * z),
+                    two * (x * z + w * y),
+                ],
+                [
+                    two * (x * y + w * z),
+                    w * w - x * x + y * y - z * z,
+                    two * (y * z - w * x),
+                ],
+                [
+                    two * (x * z - w * y),
+                    two * (y * z + w * x),
+                    w * w - x * x - y * y + z * z,
+                ],
             ];
             return rows.iter().flatten().map(|&entry| entry * scale).collect();
         },
@@ -128,7 +146,11 @@ pub fn constraint(graph: &mut Graph, block: Block, x: &[Edge], name: &str) -> Ve
             rows.iter()
                 .map(|&(i, j)| {
                     let target = if i == j { minus_one } else { graph.zero() };
-                    let text = format!("{name}.T * {name} = identity(3), entry [{},{}]", i + 1, j + 1);
+                    let text = format!(
+                        "{name}.T * {name} = identity(3), entry [{},{}]",
+                        i + 1,
+                        j + 1
+                    );
                     (graph.add(gram[i][j], target), text)
                 })
                 .collect()

@@ -198,7 +198,14 @@ impl Model {
     }
 
     /// The number that every symbol stands for, given x, ξ, u and ξ̇ and the parameters.
-    pub fn numbers(&self, params: &[f64], x: &[f64], xi: &[f64], u: &[f64], xi_dot: &[f64]) -> Vec<f64> {
+    pub fn numbers(
+        &self,
+        params: &[f64],
+        x: &[f64],
+        xi: &[f64],
+        u: &[f64],
+        xi_dot: &[f64],
+    ) -> Vec<f64> {
         let mut numbers = vec![std::f64::consts::PI];
         for part in [params, x, xi, u, xi_dot] {
             numbers.extend_from_slice(part);

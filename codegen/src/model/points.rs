@@ -52,7 +52,8 @@ impl Points {
             generators.push(polynomial_at(&self.free, constraint, values, &unknown)?);
         }
         let used = |generators: &[poly::polynomial::Poly<Fp>]| {
-            let mut used: Vec<poly::monomial::Var> = generators.iter().flat_map(|g| g.variables()).collect();
+            let mut used: Vec<poly::monomial::Var> =
+                generators.iter().flat_map(|g| g.variables()).collect();
             used.sort_unstable();
             used.dedup();
             used
@@ -61,13 +62,16 @@ impl Points {
         // A constrained block that takes part brings its own φ.
         let mut place = self.first as poly::monomial::Var;
         for &block in &self.blocks {
-            let range: Vec<poly::monomial::Var> = (place..place + block.len() as poly::monomial::Var).collect();
+            let range: Vec<poly::monomial::Var> =
+                (place..place + block.len() as poly::monomial::Var).collect();
             place += block.len() as poly::monomial::Var;
             if range.iter().any(|var| variables.contains(var)) {
                 generators.extend(match block {
                     Block::Flat(_) => Vec::new(),
                     Block::Circle => poly::ideals::circle(range[0], range[1]),
-                    Block::Quaternion => poly::ideals::quaternion([range[0], range[1], range[2], range[3]]),
+                    Block::Quaternion => {
+                        poly::ideals::quaternion([range[0], range[1], range[2], range[3]])
+                    }
                     Block::Rotation => poly::ideals::rotation(std::array::from_fn(|i| range[i])),
                 });
                 if !matches!(block, Block::Flat(_)) {

@@ -55,9 +55,34 @@ pub struct Entry {
 
 /// Names of functions and constants of the language, which cannot be redefined.
 pub const RESERVED: &[&str] = &[
-    "transpose", "dot", "cross", "hat", "vee", "norm", "diag", "trace", "outer", "identity", "sin", "cos",
-    "tan", "atan2", "sqrt", "exp", "log", "rotx", "roty", "rotz", "rpy", "axis_angle", "rot", "qmul",
-    "pose", "inverse", "pi", "world",
+    "transpose",
+    "dot",
+    "cross",
+    "hat",
+    "vee",
+    "norm",
+    "diag",
+    "trace",
+    "outer",
+    "identity",
+    "sin",
+    "cos",
+    "tan",
+    "atan2",
+    "sqrt",
+    "exp",
+    "log",
+    "rotx",
+    "roty",
+    "rotz",
+    "rpy",
+    "axis_angle",
+    "rot",
+    "qmul",
+    "pose",
+    "inverse",
+    "pi",
+    "world",
 ];
 
 /// The names of a description.
@@ -68,11 +93,20 @@ pub struct Scope {
 
 impl Scope {
     /// Defines a name; a second definition is an error.
-    pub fn define(&mut self, name: &Ident, kind: NameKind, value: Option<Value>, report: &mut Report) {
+    pub fn define(
+        &mut self,
+        name: &Ident,
+        kind: NameKind,
+        value: Option<Value>,
+        report: &mut Report,
+    ) {
         if RESERVED.contains(&name.name.as_str()) {
             report.push(
-                Diagnostic::new(name.span, format!("`{}` is a word of the language", name.name))
-                    .help("choose another name"),
+                Diagnostic::new(
+                    name.span,
+                    format!("`{}` is a word of the language", name.name),
+                )
+                .help("choose another name"),
             );
             return;
         }
@@ -80,11 +114,21 @@ impl Scope {
             report.push(
                 Diagnostic::new(name.span, format!("`{}` is defined twice", name.name))
                     .help("rename one of the two")
-                    .note(first.span, format!("first defined here, as {}", first.kind.describe())),
+                    .note(
+                        first.span,
+                        format!("first defined here, as {}", first.kind.describe()),
+                    ),
             );
             return;
         }
-        self.names.insert(name.name.clone(), Entry { kind, value, span: name.span });
+        self.names.insert(
+            name.name.clone(),
+            Entry {
+                kind,
+                value,
+                span: name.span,
+            },
+        );
     }
 
     /// The entry of a name.
@@ -100,8 +144,18 @@ impl Scope {
     }
 
     /// An error for an unknown name, with the closest known one of the wanted kind.
-    pub fn unknown(&self, span: Span, name: &str, wanted: &str, accept: impl Fn(NameKind) -> bool) -> Diagnostic {
-        let known = self.names.iter().filter(|(_, e)| accept(e.kind)).map(|(n, _)| n.as_str());
+    pub fn unknown(
+        &self,
+        span: Span,
+        name: &str,
+        wanted: &str,
+        accept: impl Fn(NameKind) -> bool,
+    ) -> Diagnostic {
+        let known = self
+            .names
+            .iter()
+            .filter(|(_, e)| accept(e.kind))
+            .map(|(n, _)| n.as_str());
         let error = Diagnostic::new(span, format!("no {wanted} is called `{name}`"));
         match closest(name, known) {
             Some(known) => error.help(format!("did you mean `{known}`?")),
@@ -126,12 +180,19 @@ impl Scope {
 /// The known word nearest to a misspelt one, if it is near enough.
 pub fn closest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let limit = if word.chars().count() <= 3 { 1 } else { 2 };
-    known.map(|k| (distance(word, k), k)).filter(|(d, _)| *d <= limit).min().map(|(_, k)| k)
+    known
+        .map(|k| (distance(word, k), k))
+        .filter(|(d, _)| *d <= limit)
+        .min()
+        .map(|(_, k)| k)
 }
 
 /// Levenshtein distance, letters of different case being near to equal.
 fn distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.to_lowercase().chars().collect(), b.to_lowercase().chars().collect());
+    let (a, b): (Vec<char>, Vec<char>) = (
+        a.to_lowercase().chars().collect(),
+        b.to_lowercase().chars().collect(),
+    );
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, x) in a.iter().enumerate() {
         let mut diagonal = row[0];

@@ -54,9 +54,11 @@ impl Value {
         match self {
             Value::Scalar(edge) => Value::Scalar(f(*edge)),
             Value::Vector(v) => Value::Vector(v.iter().map(|&e| f(e)).collect()),
-            Value::Matrix(m) => {
-                Value::Matrix(m.iter().map(|row| row.iter().map(|&e| f(e)).collect()).collect())
-            }
+            Value::Matrix(m) => Value::Matrix(
+                m.iter()
+                    .map(|row| row.iter().map(|&e| f(e)).collect())
+                    .collect(),
+            ),
             Value::Pose(r, p) => {
                 let p = p.map(&mut f);
                 Value::Pose(r.map(|row| row.map(&mut f)), p)
@@ -82,8 +84,10 @@ impl Value {
     /// The value as a matrix of three rows and columns.
     pub fn as_mat3(&self) -> Option<Mat3> {
         let Value::Matrix(m) = self else { return None };
-        let rows: Vec<Vec3> =
-            m.iter().map(|row| <[Edge; 3]>::try_from(row.as_slice()).ok()).collect::<Option<_>>()?;
+        let rows: Vec<Vec3> = m
+            .iter()
+            .map(|row| <[Edge; 3]>::try_from(row.as_slice()).ok())
+            .collect::<Option<_>>()?;
         <[Vec3; 3]>::try_from(rows.as_slice()).ok()
     }
 

@@ -2,6 +2,7 @@
 
 use super::schedule::body;
 use crate::algebra::graph::{Edge, Function, Graph, Node, NodeId};
+use rustc_hash::FxHashMap;
 
 /// Operations of a function at run time; negation is free, parameters are hoisted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,4 +57,19 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
     angles.dedup();
     count.sincos = angles.len();
     count
+}
+
+/// The longest chain of run-time operations that depend on one another.
+pub fn depth(graph: &Graph, roots: &[Edge]) -> usize {
+    let mut depths: FxHashMap<NodeId, usize> = FxHashMap::default();
+    for id in body(graph, roots) {
+        let below = graph
+            .node(id)
+            .children()
+            .filter_map(|child| depths.get(&child.node()))
+            .max();
+        let depth = 1 + below.copied().unwrap_or(0);
+        depths.insert(id, depth);
+    }
+    depths.values().copied().max().unwrap_or(0)
 }

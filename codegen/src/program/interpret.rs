@@ -32,13 +32,23 @@ pub struct Interpreter {
     arguments: [bool; 4],
 }
 
-const ORDER: [Argument; 4] = [Argument::Coordinates, Argument::Velocities, Argument::Inputs, Argument::Accelerations];
+const ORDER: [Argument; 4] = [
+    Argument::Coordinates,
+    Argument::Velocities,
+    Argument::Inputs,
+    Argument::Accelerations,
+];
 
 impl Interpreter {
     /// Compiles a function of a program with given parameters.
     pub fn new(program: &Program, function: &Function, params: &[f64]) -> Self {
         let graph = &program.graph;
-        let roots: Vec<Edge> = function.outputs.iter().chain(&function.guards).copied().collect();
+        let roots: Vec<Edge> = function
+            .outputs
+            .iter()
+            .chain(&function.guards)
+            .copied()
+            .collect();
         let reachable = graph.reachable(&roots);
         let symbols = graph.symbols().len();
         let mut initial = vec![0.0; symbols];
@@ -47,7 +57,10 @@ impl Interpreter {
         let mut places: rustc_hash::FxHashMap<NodeId, usize> = rustc_hash::FxHashMap::default();
         let mut steps = Vec::new();
         for id in reachable {
-            let place = |edge: Edge| Place { index: places.get(&edge.node()).copied().unwrap_or(0), negative: edge.is_negative() };
+            let place = |edge: Edge| Place {
+                index: places.get(&edge.node()).copied().unwrap_or(0),
+                negative: edge.is_negative(),
+            };
             let index = initial.len();
             let step = match graph.node(id) {
                 Node::Symbol(symbol) => {
@@ -74,9 +87,17 @@ impl Interpreter {
             };
             initial.push(value);
         }
-        let place = |edge: &Edge| Place { index: places.get(&edge.node()).copied().unwrap_or(0), negative: edge.is_negative() };
+        let place = |edge: &Edge| Place {
+            index: places.get(&edge.node()).copied().unwrap_or(0),
+            negative: edge.is_negative(),
+        };
         let first = 1 + params.len();
-        let inputs = [first, first + program.nu, first + program.nu + program.n, first + program.nu + program.n + program.m];
+        let inputs = [
+            first,
+            first + program.nu,
+            first + program.nu + program.n,
+            first + program.nu + program.n + program.m,
+        ];
         Interpreter {
             outputs: function.outputs.iter().map(place).collect(),
             guards: function.guards.iter().map(place).collect(),
@@ -88,7 +109,13 @@ impl Interpreter {
     }
 
     /// The function's value; the number of the first pivot that is not positive where it has none.
-    pub fn call(&self, x: &[f64], xi: &[f64], u: &[f64], xi_dot: &[f64]) -> Result<Vec<f64>, usize> {
+    pub fn call(
+        &self,
+        x: &[f64],
+        xi: &[f64],
+        u: &[f64],
+        xi_dot: &[f64],
+    ) -> Result<Vec<f64>, usize> {
         let mut values = self.initial.clone();
         for (index, part) in [x, xi, u, xi_dot].into_iter().enumerate() {
             if self.arguments[index] {
@@ -104,12 +131,20 @@ impl Interpreter {
                 return Err(pivot);
             }
         }
-        Ok(self.outputs.iter().map(|&output| read(output, &values)).collect())
+        Ok(self
+            .outputs
+            .iter()
+            .map(|&output| read(output, &values))
+            .collect())
     }
 }
 
 fn read(place: Place, values: &[f64]) -> f64 {
-    if place.negative { -values[place.index] } else { values[place.index] }
+    if place.negative {
+        -values[place.index]
+    } else {
+        values[place.index]
+    }
 }
 
 fn run(step: Step, values: &[f64]) -> f64 {

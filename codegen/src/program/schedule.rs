@@ -23,7 +23,12 @@ impl Schedule {
             .functions
             .iter()
             .map(|function| {
-                let roots: Vec<Edge> = function.outputs.iter().chain(&function.guards).copied().collect();
+                let roots: Vec<Edge> = function
+                    .outputs
+                    .iter()
+                    .chain(&function.guards)
+                    .copied()
+                    .collect();
                 body(graph, &roots)
             })
             .collect();
@@ -31,13 +36,30 @@ impl Schedule {
         for (function, nodes) in program.functions.iter().zip(&bodies) {
             let children = nodes.iter().flat_map(|&id| graph.node(id).children());
             let roots = function.outputs.iter().chain(&function.guards).copied();
-            kept.extend(children.chain(roots).map(Edge::node).filter(|&id| is_hoisted(graph, id)));
+            kept.extend(
+                children
+                    .chain(roots)
+                    .map(Edge::node)
+                    .filter(|&id| is_hoisted(graph, id)),
+            );
         }
         kept.sort_unstable();
         kept.dedup();
-        let roots: Vec<Edge> = kept.iter().map(|&id| Edge::of(id)).chain(program.constant_guards.iter().copied()).collect();
-        let hoisted = graph.reachable(&roots).into_iter().filter(|&id| is_hoisted(graph, id)).collect();
-        Schedule { hoisted, kept, bodies }
+        let roots: Vec<Edge> = kept
+            .iter()
+            .map(|&id| Edge::of(id))
+            .chain(program.constant_guards.iter().copied())
+            .collect();
+        let hoisted = graph
+            .reachable(&roots)
+            .into_iter()
+            .filter(|&id| is_hoisted(graph, id))
+            .collect();
+        Schedule {
+            hoisted,
+            kept,
+            bodies,
+        }
     }
 }
 

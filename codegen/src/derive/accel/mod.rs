@@ -10,12 +10,15 @@ pub mod solve;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::model::Model;
-use crate::program::count::{Count, count};
+use crate::program::count::{Count, count, depth};
 use parts::{Axes, Parts, Reference, Variant, parts};
 use solve::{Plan, solve};
 
 /// Models with more velocities than this get one route and one order of elimination.
 const SMALL: usize = 8;
+
+/// Graphs with more nodes get two orders of elimination and no further plans.
+const LARGE: usize = 3000;
 
 /// The chosen computation of ξ̇.
 #[derive(Clone, Debug)]
@@ -28,6 +31,8 @@ pub struct Acceleration {
     pub pivots: Vec<Edge>,
     /// Its operations.
     pub count: Count,
+    /// Its longest chain of operations after one another: of two equal counts the flatter is faster.
+    pub depth: usize,
     /// What was chosen, for people.
     pub route: String,
 }
@@ -72,10 +77,10 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
 }
 
 fn keep(best: &mut Option<Acceleration>, candidate: Acceleration) {
-    let better = match best {
-        Some(best) => candidate.count.weight() < best.count.weight(),
-        None => true,
-    };
+    let cost = |a: &Acceleration| (a.count.weight(), a.depth);
+    let better = best
+        .as_ref()
+        .is_none_or(|best| cost(&candidate) < cost(best));
     if better {
         *best = Some(candidate);
     }
@@ -85,13 +90,17 @@ fn variants(model: &Model, small: bool) -> Vec<Variant> {
     let mut variants = Vec::new();
     for axes in [Axes::Body, Axes::World] {
         for reference in [Reference::Com, Reference::Origin] {
-            variants.push(Variant { axes, reference, shift: None });
+            variants.push(Variant {
+                axes,
+                reference,
+                shift: None,
+            });
         }
     }
     if model.bodies.is_empty() {
         variants.truncate(1);
     } else if !small {
-        variants.truncate(1);
+        variants.retain(|variant| variant.reference == Reference::Com);
     }
     variants
 }
@@ -106,19 +115,73 @@ fn attempt(traced: &Model, parts: &Parts, plan: &Plan, variant: &Variant) -> Opt
     let mut graph = traced.graph.clone();
     let solution = solve(&mut graph, parts, plan)?;
     let mut roots = solution.xi_dot.clone();
-    roots.extend(solution.pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
-    let count = count(&graph, &roots);
-    let route = format!("bodies traced in {:?} axes about {:?}, elimination order {:?}", variant.axes, variant.reference, plan.order);
-    Some(Acceleration { graph, xi_dot: solution.xi_dot, pivots: solution.pivots, count, route })
+    roots.extend(
+        solution
+            .pivots
+            .iter()
+            .filter(|pivot| !graph.is_free(pivot.node())),
+    );
+    let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
+    let axes = match variant.axes {
+        Axes::Body => "body",
+        Axes::World => "world",
+    };
+    let point = match variant.reference {
+        Reference::Com => "centres of mass",
+        Reference::Origin => "frame origins",
+    };
+    let route = if traced.bodies.is_empty() {
+        format!("masses traced, {}", elimination(traced, &plan.order))
+    } else {
+        format!(
+            "bodies traced about their {point} in {axes} axes, {}",
+            elimination(traced, &plan.order)
+        )
+    };
+    Some(Acceleration {
+        graph,
+        xi_dot: solution.xi_dot,
+        pivots: solution.pivots,
+        count,
+        depth,
+        route,
+    })
+}
+
+/// The order of elimination in words.
+fn elimination(model: &Model, order: &[usize]) -> String {
+    if order.windows(2).all(|pair| pair[0] < pair[1]) {
+        return "velocities eliminated in their order".into();
+    }
+    let name = |i: &usize| {
+        model
+            .graph
+            .symbols()
+            .iter()
+            .find(|s| s.node == model.xi[*i].node())
+            .map_or("", |s| s.name.as_str())
+    };
+    let names: Vec<&str> = order.iter().map(name).collect();
+    format!("velocities eliminated in the order {}", names.join(", "))
 }
 
 /// Few plans, to choose what to trace.
 fn first_plans(graph: &Graph, parts: &Parts, small: bool) -> Vec<Plan> {
     let n = parts.mass.len();
     let order: Vec<usize> = (0..n).collect();
-    let mut plans = vec![Plan { order: constant_first(graph, parts), apart: 0, scale: false }];
+    let mut plans = vec![Plan {
+        order: constant_first(graph, parts),
+        apart: 0,
+        scale: false,
+        inverse: false,
+    }];
     if small && n > 3 {
-        plans.push(Plan { order, apart: 3, scale: false });
+        plans.push(Plan {
+            order,
+            apart: 3,
+            scale: false,
+            inverse: false,
+        });
     }
     plans
 }
@@ -126,14 +189,54 @@ fn first_plans(graph: &Graph, parts: &Parts, small: bool) -> Vec<Plan> {
 /// All plans worth counting for a small system.
 fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
     let n = parts.mass.len();
-    let mut orders = if n <= 3 { permutations(n) } else { vec![(0..n).collect(), (0..n).rev().collect(), constant_first(graph, parts)] };
+    if graph.len() > LARGE {
+        return [(0..n).collect(), (0..n).rev().collect()]
+            .map(|order| Plan {
+                order,
+                apart: 0,
+                scale: false,
+                inverse: false,
+            })
+            .to_vec();
+    }
+    // A constant M is factored when parameters are set: its order of elimination costs nothing.
+    let constant = parts
+        .mass
+        .iter()
+        .flatten()
+        .all(|edge| graph.is_free(edge.node()));
+    let mut orders = match n {
+        _ if constant => vec![(0..n).collect()],
+        0..=3 => permutations(n),
+        _ => vec![
+            (0..n).collect(),
+            (0..n).rev().collect(),
+            constant_first(graph, parts),
+        ],
+    };
     orders.sort();
     orders.dedup();
+    // Bodies come with three linear velocities first; else all or nothing.
+    let mut aparts = if parts.groups.len() > 1 {
+        vec![0, 3.min(n), n]
+    } else {
+        vec![0]
+    };
+    aparts.dedup();
     let mut plans = Vec::new();
     for order in orders {
-        for apart in 0..=if parts.groups.len() > 1 { n } else { 0 } {
+        for &apart in &aparts {
             for scale in [false, true] {
-                plans.push(Plan { order: order.clone(), apart, scale });
+                for inverse in [false, true] {
+                    if apart < n || !(scale || inverse) {
+                        plans.push(Plan {
+                            order: order.clone(),
+                            apart,
+                            scale,
+                            inverse,
+                        });
+                    }
+                }
             }
         }
     }
@@ -153,7 +256,10 @@ fn permutations(n: usize) -> Vec<Vec<usize>> {
         all = all
             .into_iter()
             .flat_map(|head: Vec<usize>| {
-                (0..n).filter(|i| !head.contains(i)).map(|i| [head.as_slice(), &[i]].concat()).collect::<Vec<_>>()
+                (0..n)
+                    .filter(|i| !head.contains(i))
+                    .map(|i| [head.as_slice(), &[i]].concat())
+                    .collect::<Vec<_>>()
             })
             .collect();
     }

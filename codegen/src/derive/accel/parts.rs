@@ -4,13 +4,13 @@
 //! its reference point and α of its frame at ξ̇ = 0, the force m a and the torque Θ α + ω × Θ ω.
 
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::transplant::rebuild;
 use crate::algebra::linear::{Mat3, Vec3, add3, apply3, cross, scale3, zero3};
+use crate::algebra::transplant::rebuild;
 use crate::derive::calculus::{Calculus, into_frame};
 use crate::derive::commutation::gamma;
 use crate::derive::connection::quadratic;
 use crate::derive::inertia::{accumulate, kinetic_mass, symmetric};
-use crate::derive::normal::{NormalForms, without_coordinates};
+use crate::derive::normal::without_coordinates;
 use crate::derive::{kinematics, loads};
 use crate::model::{Body, Model};
 
@@ -92,7 +92,10 @@ pub fn parts(model: &mut Model, variant: Variant) -> Parts {
         let force = scale3(graph, particle.mass, acceleration);
         let weight = scale3(graph, particle.mass, model.gravity);
         for i in 0..n {
-            let (h, g) = (graph.dot(&columns[i], &force), graph.dot(&columns[i], &weight));
+            let (h, g) = (
+                graph.dot(&columns[i], &force),
+                graph.dot(&columns[i], &weight),
+            );
             inertia[i] = graph.sub(inertia[i], h);
             gravity[i] = graph.add(gravity[i], g);
         }
@@ -114,20 +117,36 @@ pub fn parts(model: &mut Model, variant: Variant) -> Parts {
         accumulate(graph, &mut mass, &part);
     }
     if n <= super::SMALL {
-        let mut forms = NormalForms::new(model);
+        let mut forms = None;
         for entry in mass.iter_mut().flatten() {
-            *entry = without_coordinates(&mut model.graph, &mut calculus, &mut forms, *entry);
+            *entry = without_coordinates(
+                &mut model.graph,
+                &mut calculus,
+                &model.points,
+                &mut forms,
+                *entry,
+            );
         }
     }
     let potential = loads::potential(model, &mut calculus, model.potential);
     let loads = loads::applied(model, &mut calculus);
     let graph = &mut model.graph;
-    let conservative = (0..n).map(|i| graph.add(gravity[i], potential[i])).collect();
-    let applied = (0..n).map(|i| loads.iter().fold(zero, |sum, load| graph.add(sum, load[i]))).collect();
+    let conservative = (0..n)
+        .map(|i| graph.add(gravity[i], potential[i]))
+        .collect();
+    let applied = (0..n)
+        .map(|i| loads.iter().fold(zero, |sum, load| graph.add(sum, load[i])))
+        .collect();
     let mut groups = vec![inertia.clone(), gravity, potential];
     groups.extend(loads);
     groups.retain(|group| group.iter().any(|&edge| edge != zero));
-    Parts { mass, groups, inertia, conservative, applied }
+    Parts {
+        mass,
+        groups,
+        inertia,
+        conservative,
+        applied,
+    }
 }
 
 /// A body with its Jacobian, bias force and weight in the chosen axes and point.
@@ -155,8 +174,16 @@ impl Traced {
         let omega = calculus.spin(graph, &frame.rotation);
         let alpha = calculus.rate3(graph, omega);
         let at_com = variant.reference == Reference::Com;
-        let (inertia, arm) = if at_com { (body.inertia_com, body.com) } else { (body.inertia_origin, zero) };
-        let moment = if at_com { zero } else { scale3(graph, body.mass, body.com) };
+        let (inertia, arm) = if at_com {
+            (body.inertia_com, body.com)
+        } else {
+            (body.inertia_origin, zero)
+        };
+        let moment = if at_com {
+            zero
+        } else {
+            scale3(graph, body.mass, body.com)
+        };
         // Motion of the reference point.
         let (linear, acceleration, rotation) = match variant.axes {
             Axes::Body => {
@@ -182,7 +209,11 @@ impl Traced {
                 let point = add3(graph, frame.position, turned);
                 let linear = calculus.point_jacobian(graph, point);
                 let velocity = calculus.rate3(graph, point);
-                (linear, calculus.rate3(graph, velocity), Some(frame.rotation))
+                (
+                    linear,
+                    calculus.rate3(graph, velocity),
+                    Some(frame.rotation),
+                )
             }
         };
         let mut force = scale3(graph, body.mass, acceleration);
@@ -214,20 +245,47 @@ impl Traced {
         if variant.axes == Axes::Body {
             weight = into_frame(graph, &frame.rotation, weight);
         }
-        Traced { linear, angular, mass: body.mass, inertia, moment, rotation, force, torque, weight, weight_torque }
+        Traced {
+            linear,
+            angular,
+            mass: body.mass,
+            inertia,
+            moment,
+            rotation,
+            force,
+            torque,
+            weight,
+            weight_torque,
+        }
     }
 
-    fn add(&self, graph: &mut Graph, mass: &mut [Vec<Edge>], inertia: &mut [Edge], gravity: &mut [Edge]) {
+    fn add(
+        &self,
+        graph: &mut Graph,
+        mass: &mut [Vec<Edge>],
+        inertia: &mut [Edge],
+        gravity: &mut [Edge],
+    ) {
         let n = self.linear.len();
         for i in 0..n {
-            let (force, torque) = (graph.dot(&self.linear[i], &self.force), graph.dot(&self.angular[i], &self.torque));
+            let (force, torque) = (
+                graph.dot(&self.linear[i], &self.force),
+                graph.dot(&self.angular[i], &self.torque),
+            );
             let h = graph.add(force, torque);
             inertia[i] = graph.sub(inertia[i], h);
-            let (pull, twist) = (graph.dot(&self.linear[i], &self.weight), graph.dot(&self.angular[i], &self.weight_torque));
+            let (pull, twist) = (
+                graph.dot(&self.linear[i], &self.weight),
+                graph.dot(&self.angular[i], &self.weight_torque),
+            );
             let g = graph.add(pull, twist);
             gravity[i] = graph.add(gravity[i], g);
         }
-        let spun: Vec<Vec3> = self.angular.iter().map(|&w| apply3(graph, &self.inertia, w)).collect();
+        let spun: Vec<Vec3> = self
+            .angular
+            .iter()
+            .map(|&w| apply3(graph, &self.inertia, w))
+            .collect();
         let lever: Vec<Vec3> = self
             .angular
             .iter()

@@ -4,7 +4,7 @@
 
 use super::parts::{Axes, Reference, Variant, parts};
 use super::solve::{Plan, solve};
-use super::{Acceleration, Parts, all_plans};
+use super::{Acceleration, Parts, all_plans, elimination};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::solve_symmetric;
 use crate::algebra::poly::factor::{Coefficient, Operand, Step, Term, Value, factor};
@@ -13,7 +13,7 @@ use crate::algebra::topoly::OPAQUE;
 use crate::algebra::transplant::rebuild;
 use crate::derive::normal::{Collected, NormalForms, collect, variable_node};
 use crate::model::Model;
-use crate::program::count::count;
+use crate::program::count::{count, depth};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most run-time terms of a system that is expanded.
@@ -26,18 +26,27 @@ const MOST_CONSTANT_TERMS: usize = 40;
 /// to expand.
 pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
     let mut traced = model.clone();
-    let variant = Variant { axes: Axes::World, reference: Reference::Com, shift: None };
+    let variant = Variant {
+        axes: Axes::World,
+        reference: Reference::Com,
+        shift: None,
+    };
     let parts = parts(&mut traced, variant);
-    let mut forms = NormalForms::new(model);
+    let mut forms = NormalForms::new(&model.points);
     let mut all = Vec::new();
     let mut before: Option<System> = None;
     for reduced in [false, true] {
-        let Some(system) = System::expand(model, &traced, &parts, &mut forms, reduced) else { continue };
-        if before.as_ref().is_some_and(|before| before.right == system.right && before.varying == system.varying) {
+        let Some(system) = System::expand(model, &traced, &parts, &mut forms, reduced) else {
+            continue;
+        };
+        if before
+            .as_ref()
+            .is_some_and(|before| before.right == system.right && before.varying == system.varying)
+        {
             continue;
         }
         all.extend(system.inverted(most));
-        all.extend(system.solved(most));
+        all.extend(system.solved(model, most));
         before = Some(system);
     }
     all
@@ -58,7 +67,13 @@ struct System {
 }
 
 impl System {
-    fn expand(model: &Model, traced: &Model, parts: &Parts, forms: &mut NormalForms, reduced: bool) -> Option<Self> {
+    fn expand(
+        model: &Model,
+        traced: &Model,
+        parts: &Parts,
+        forms: &mut NormalForms,
+        reduced: bool,
+    ) -> Option<Self> {
         let n = model.n();
         let mut source = traced.graph.clone();
         let mut polynomial = |source: &mut Graph, edges: &[Edge]| -> Option<Collected> {
@@ -66,7 +81,11 @@ impl System {
             for &edge in edges {
                 sum = sum.add(&forms.expand(source, edge)?);
             }
-            let normal = if reduced { forms.reduce(source, &sum) } else { sum };
+            let normal = if reduced {
+                forms.reduce(source, &sum)
+            } else {
+                sum
+            };
             let collected = collect(source, &normal);
             (collected.len() <= MOST_TERMS).then_some(collected)
         };
@@ -91,7 +110,10 @@ impl System {
         }
         // Coefficients and opaque variables move to the small graph.
         let mut opaque = BTreeMap::new();
-        for collected in right.iter_mut().chain(varying.iter_mut().map(|(_, _, c)| c)) {
+        for collected in right
+            .iter_mut()
+            .chain(varying.iter_mut().map(|(_, _, c)| c))
+        {
             for (monomial, coefficient) in collected.iter_mut() {
                 *coefficient = rebuild(&source, &mut graph, &[*coefficient])[0];
                 for &(var, _) in monomial.powers() {
@@ -104,7 +126,14 @@ impl System {
             }
         }
         let terms: usize = right.iter().map(|c| c.len()).sum();
-        (terms <= MOST_TERMS).then_some(System { graph, right, varying, mass, opaque, reduced })
+        (terms <= MOST_TERMS).then_some(System {
+            graph,
+            right,
+            varying,
+            mass,
+            opaque,
+            reduced,
+        })
     }
 
     /// ξ̇ = M⁻¹ f with the constant M⁻¹ in the coefficients.
@@ -114,8 +143,13 @@ impl System {
         }
         let n = self.mass.len();
         let mut graph = self.graph.clone();
-        let identity: Vec<Vec<Edge>> =
-            (0..n).map(|i| (0..n).map(|j| if i == j { graph.one() } else { graph.zero() }).collect()).collect();
+        let identity: Vec<Vec<Edge>> = (0..n)
+            .map(|i| {
+                (0..n)
+                    .map(|j| if i == j { graph.one() } else { graph.zero() })
+                    .collect()
+            })
+            .collect();
         let inverse = solve_symmetric(&mut graph, &self.mass, &identity)?;
         let polynomials: Vec<Collected> = (0..n)
             .map(|i| {
@@ -140,17 +174,33 @@ impl System {
         }
         let xi_dot = self.factored(&mut graph, &polynomials);
         // The pivots of the constant M still have to be positive.
-        let parts = Parts { mass: self.mass.clone(), groups: Vec::new(), inertia: Vec::new(), conservative: Vec::new(), applied: Vec::new() };
-        let plan = Plan { order: (0..n).collect(), apart: 0, scale: false };
+        let parts = Parts {
+            mass: self.mass.clone(),
+            groups: Vec::new(),
+            inertia: Vec::new(),
+            conservative: Vec::new(),
+            applied: Vec::new(),
+        };
+        let plan = Plan {
+            order: (0..n).collect(),
+            apart: 0,
+            scale: false,
+            inverse: false,
+        };
         let pivots = solve(&mut graph, &parts, &plan)?.pivots;
-        Some(self.finish(graph, xi_dot, pivots, "M⁻¹ in the coefficients"))
+        Some(self.finish(graph, xi_dot, pivots, "M⁻¹ in its coefficients"))
     }
 
     /// M ξ̇ = f with f and M factored together.
-    fn solved(&self, most: usize) -> Vec<Acceleration> {
+    fn solved(&self, model: &Model, most: usize) -> Vec<Acceleration> {
         let n = self.mass.len();
         let mut graph = self.graph.clone();
-        let polynomials: Vec<Collected> = self.right.iter().chain(self.varying.iter().map(|(_, _, c)| c)).cloned().collect();
+        let polynomials: Vec<Collected> = self
+            .right
+            .iter()
+            .chain(self.varying.iter().map(|(_, _, c)| c))
+            .cloned()
+            .collect();
         let terms: usize = polynomials.iter().map(BTreeMap::len).sum();
         let constant = self.varying.is_empty() && terms > MOST_CONSTANT_TERMS;
         if constant || least(&graph, &polynomials) >= most {
@@ -162,24 +212,43 @@ impl System {
             mass[*i][*j] = value;
             mass[*j][*i] = value;
         }
-        let parts = Parts { mass, groups: vec![values[..n].to_vec()], inertia: Vec::new(), conservative: Vec::new(), applied: Vec::new() };
+        let parts = Parts {
+            mass,
+            groups: vec![values[..n].to_vec()],
+            inertia: Vec::new(),
+            conservative: Vec::new(),
+            applied: Vec::new(),
+        };
         all_plans(&graph, &parts)
             .into_iter()
             .filter_map(|plan| {
                 let mut graph = graph.clone();
                 let solution = solve(&mut graph, &parts, &plan)?;
-                let how = format!("elimination order {:?}", plan.order);
+                let how = elimination(model, &plan.order);
                 Some(self.finish(graph, solution.xi_dot, solution.pivots, &how))
             })
             .collect()
     }
 
-    fn finish(&self, graph: Graph, xi_dot: Vec<Edge>, pivots: Vec<Edge>, how: &str) -> Acceleration {
+    fn finish(
+        &self,
+        graph: Graph,
+        xi_dot: Vec<Edge>,
+        pivots: Vec<Edge>,
+        how: &str,
+    ) -> Acceleration {
         let mut roots = xi_dot.clone();
         roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
-        let count = count(&graph, &roots);
+        let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
         let modulo = if self.reduced { " modulo φ" } else { "" };
-        Acceleration { route: format!("polynomials{modulo} factored, {how}"), graph, xi_dot, pivots, count }
+        Acceleration {
+            route: format!("right-hand side expanded{modulo} and factored, {how}"),
+            graph,
+            xi_dot,
+            pivots,
+            count,
+            depth,
+        }
     }
 
     /// The polynomials as expressions with few operations.
@@ -192,11 +261,20 @@ impl System {
                 collected
                     .iter()
                     .map(|(monomial, &edge)| {
-                        let place = coefficients.iter().position(|&known| known == edge.abs()).unwrap_or_else(|| {
-                            coefficients.push(edge.abs());
-                            coefficients.len() - 1
-                        });
-                        Term { coefficient: Coefficient { id: place as u32, negative: edge.is_negative() }, monomial: monomial.clone() }
+                        let place = coefficients
+                            .iter()
+                            .position(|&known| known == edge.abs())
+                            .unwrap_or_else(|| {
+                                coefficients.push(edge.abs());
+                                coefficients.len() - 1
+                            });
+                        Term {
+                            coefficient: Coefficient {
+                                id: place as u32,
+                                negative: edge.is_negative(),
+                            },
+                            monomial: monomial.clone(),
+                        }
                     })
                     .collect()
             })
@@ -207,7 +285,11 @@ impl System {
             let edge = match operand.value {
                 Value::Zero => graph.zero(),
                 Value::Coefficient(id) => coefficients[id as usize],
-                Value::Var(var) => self.opaque.get(&var).copied().unwrap_or_else(|| variable_node(graph, var)),
+                Value::Var(var) => self
+                    .opaque
+                    .get(&var)
+                    .copied()
+                    .unwrap_or_else(|| variable_node(graph, var)),
                 Value::Step(index) => values[index],
             };
             edge.signed(operand.negative)
@@ -225,12 +307,17 @@ impl System {
             };
             values.push(value);
         }
-        program.outputs.iter().map(|&output| read(graph, &values, output)).collect()
+        program
+            .outputs
+            .iter()
+            .map(|&output| read(graph, &values, output))
+            .collect()
     }
 }
 
-/// Operations that no factoring avoids: every coefficient but 1 takes part in a product, and the
-/// terms whose coefficient occurs in one polynomial alone cannot be summed anywhere else.
+/// Operations that no factoring avoids: every coefficient but 1 takes part in a product; terms whose
+/// coefficient occurs in one polynomial alone cannot be summed anywhere else; and polynomials of
+/// degree two with such terms are independent, so each needs a product of variables of its own.
 fn least(graph: &Graph, polynomials: &[Collected]) -> usize {
     let mut rows: BTreeMap<Edge, BTreeSet<usize>> = BTreeMap::new();
     for (row, collected) in polynomials.iter().enumerate() {
@@ -239,8 +326,24 @@ fn least(graph: &Graph, polynomials: &[Collected]) -> usize {
         }
     }
     rows.remove(&graph.one());
-    let sums: usize = (0..polynomials.len())
-        .map(|row| rows.values().filter(|rows| rows.len() == 1 && rows.contains(&row)).count().saturating_sub(1))
+    let own = |edge: &Edge| rows.get(&edge.abs()).is_some_and(|rows| rows.len() == 1);
+    let sums: usize = polynomials
+        .iter()
+        .map(|collected| {
+            collected
+                .values()
+                .filter(|edge| own(edge))
+                .count()
+                .saturating_sub(1)
+        })
         .sum();
-    rows.len() + sums
+    let products = polynomials
+        .iter()
+        .filter(|collected| {
+            collected
+                .iter()
+                .any(|(monomial, edge)| monomial.degree() > 1 && own(edge))
+        })
+        .count();
+    rows.len() + sums + products
 }

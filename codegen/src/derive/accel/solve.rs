@@ -2,6 +2,7 @@
 
 use super::parts::Parts;
 use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::linear::solve_symmetric;
 
 /// One way to solve.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,6 +15,9 @@ pub struct Plan {
     /// Scale the remaining right-hand side by the first remaining pivot, where that is constant:
     /// the factor goes into constants that are there anyway.
     pub scale: bool,
+    /// Multiply the remaining right-hand side by the inverse of what remains of M, where that is
+    /// constant: as many operations as substitution where it is full, but fewer after one another.
+    pub inverse: bool,
 }
 
 /// ξ̇ and the pivots that have to be positive.
@@ -29,8 +33,16 @@ pub struct Solution {
 pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> {
     let n = plan.order.len();
     let zero = graph.zero();
-    let mut a: Vec<Vec<Edge>> = plan.order.iter().map(|&i| plan.order.iter().map(|&j| parts.mass[i][j]).collect()).collect();
-    let mut groups: Vec<Vec<Edge>> = parts.groups.iter().map(|g| plan.order.iter().map(|&i| g[i]).collect()).collect();
+    let mut a: Vec<Vec<Edge>> = plan
+        .order
+        .iter()
+        .map(|&i| plan.order.iter().map(|&j| parts.mass[i][j]).collect())
+        .collect();
+    let mut groups: Vec<Vec<Edge>> = parts
+        .groups
+        .iter()
+        .map(|g| plan.order.iter().map(|&i| g[i]).collect())
+        .collect();
     if groups.is_empty() {
         groups.push(vec![zero; n]);
     }
@@ -38,10 +50,18 @@ pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> 
     let mut l = vec![vec![zero; n]; n];
     let mut pivots = Vec::with_capacity(n);
     let mut inverses: Vec<Option<Edge>> = Vec::with_capacity(n);
+    let mut rest = Vec::new();
     for c in 0..n {
+        if c == plan.apart {
+            rest = (c..n).map(|r| a[r][c..].to_vec()).collect();
+        }
         let pivot = a[c][c];
         let below = (c + 1..n).filter(|&r| a[r][c] != zero).count();
-        let inverse = if graph.is_free(pivot.node()) || below > 0 { Some(graph.div(graph.one(), pivot)?) } else { None };
+        let inverse = if graph.is_free(pivot.node()) || below > 0 {
+            Some(graph.div(graph.one(), pivot)?)
+        } else {
+            None
+        };
         for r in c + 1..n {
             if a[r][c] != zero {
                 l[r][c] = divide(graph, a[r][c], pivot, inverse)?;
@@ -78,7 +98,71 @@ pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> 
             graph.sum(&column)
         })
         .collect();
-    let lead = pivots.get(plan.apart).copied().filter(|pivot| plan.scale && graph.is_free(pivot.node()));
+    let constant = rest.iter().flatten().all(|edge| graph.is_free(edge.node()));
+    if plan.inverse && constant && !rest.is_empty() {
+        let block = multiply_inverse(graph, &rest, &right[plan.apart..], plan.scale)?;
+        w.truncate(plan.apart);
+        w.extend(block);
+    } else {
+        substitute(graph, plan, &l, (&pivots, &inverses), &mut right, &mut w)?;
+    }
+    for c in (0..plan.apart).rev() {
+        for r in c + 1..n {
+            let product = graph.mul(l[r][c], w[r]);
+            w[c] = graph.sub(w[c], product);
+        }
+    }
+    let mut xi_dot = vec![zero; n];
+    for (place, &i) in plan.order.iter().enumerate() {
+        xi_dot[i] = w[place];
+    }
+    Some(Solution { xi_dot, pivots })
+}
+
+/// S⁻¹ b for a constant S; scaled, the entry [1,1] of the inverse goes into constants of b.
+fn multiply_inverse(
+    graph: &mut Graph,
+    s: &[Vec<Edge>],
+    b: &[Edge],
+    scale: bool,
+) -> Option<Vec<Edge>> {
+    let k = s.len();
+    let identity: Vec<Vec<Edge>> = (0..k)
+        .map(|i| {
+            (0..k)
+                .map(|j| if i == j { graph.one() } else { graph.zero() })
+                .collect()
+        })
+        .collect();
+    let mut inverse = solve_symmetric(graph, s, &identity)?;
+    let mut b = b.to_vec();
+    if scale {
+        let factor = inverse[0][0];
+        for entry in inverse.iter_mut().flatten() {
+            *entry = graph.div(*entry, factor)?;
+        }
+        b = b
+            .into_iter()
+            .map(|entry| absorb(graph, entry, factor))
+            .collect();
+    }
+    Some(inverse.iter().map(|row| graph.dot(row, &b)).collect())
+}
+
+/// Forward, diagonal and backward substitution in the columns from `plan.apart` on.
+fn substitute(
+    graph: &mut Graph,
+    plan: &Plan,
+    l: &[Vec<Edge>],
+    (pivots, inverses): (&[Edge], &[Option<Edge>]),
+    right: &mut [Edge],
+    w: &mut [Edge],
+) -> Option<()> {
+    let n = right.len();
+    let lead = pivots
+        .get(plan.apart)
+        .copied()
+        .filter(|pivot| plan.scale && graph.is_free(pivot.node()));
     if let Some(lead) = lead {
         let factor = graph.div(graph.one(), lead)?;
         for entry in right.iter_mut().skip(plan.apart) {
@@ -99,17 +183,13 @@ pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> 
             None => divide(graph, y, pivots[c], inverses[c])?,
         };
     }
-    for c in (0..n).rev() {
+    for c in (plan.apart..n).rev() {
         for r in c + 1..n {
             let product = graph.mul(l[r][c], w[r]);
             w[c] = graph.sub(w[c], product);
         }
     }
-    let mut xi_dot = vec![zero; n];
-    for (place, &i) in plan.order.iter().enumerate() {
-        xi_dot[i] = w[place];
-    }
-    Some(Solution { xi_dot, pivots })
+    Some(())
 }
 
 fn divide(graph: &mut Graph, a: Edge, pivot: Edge, inverse: Option<Edge>) -> Option<Edge> {

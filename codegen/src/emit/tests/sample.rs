@@ -1,12 +1,9 @@
 //! Small programs written by hand.
 
-use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Function as Elementary, Graph, LANES};
-use crate::syntax::ast::Span as Place;
-use crate::model::layout::{Block, blocks, chart_rate, entry_names};
-use crate::model::value::Value;
-use crate::model::{Coordinate, Group, class};
-use crate::program::{Argument, Function, Program, Shape};
+use super::sketch::{Declared, function, sketch};
+use crate::algebra::graph::{Edge, Function as Elementary};
+use crate::model::layout::{Block, chart_rate};
+use crate::program::{Argument, Program, Shape};
 use crate::syntax::ast::{CoordKind, ShapeKind};
 
 const X: Argument = Argument::Coordinates;
@@ -14,96 +11,17 @@ const XI: Argument = Argument::Velocities;
 const XI_DOT: Argument = Argument::Accelerations;
 const U: Argument = Argument::Inputs;
 
-/// Declarations: names with shapes.
-pub struct Declared<'a> {
-    pub params: &'a [(&'a str, ShapeKind)],
-    pub coordinates: &'a [(&'a str, CoordKind)],
-    pub velocities: &'a [(&'a str, ShapeKind)],
-    pub inputs: &'a [(&'a str, ShapeKind)],
-}
-
-/// A program without functions, and its symbols: parameters, x, ξ, u, ξ̇.
-pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
-    let mut random = Random::new(7);
-    let mut graph = Graph::new(11, class::PARAM);
-    let mut symbol = |graph: &mut Graph, name: &str, class: u8| {
-        let value = std::array::from_fn::<Fp, LANES, _>(|_| random.element());
-        graph.symbol(name, class, value)
-    };
-    symbol(&mut graph, "pi", 0);
-    let mut groups = |graph: &mut Graph, list: &[(&str, ShapeKind)], class| {
-        let (mut groups, mut all) = (Vec::new(), Vec::new());
-        for &(name, shape) in list {
-            let suffixes: Vec<String> = match shape {
-                ShapeKind::Scalar => vec![String::new()],
-                ShapeKind::Vector(n) => (1..=n).map(|i| format!("[{i}]")).collect(),
-                ShapeKind::Matrix(n) => (1..=n).flat_map(|i| (1..=n).map(move |j| format!("[{i},{j}]"))).collect(),
-                ShapeKind::Symmetric(n) => (1..=n).flat_map(|i| (i..=n).map(move |j| format!("[{i},{j}]"))).collect(),
-            };
-            let symbols: Vec<Edge> = suffixes.iter().map(|s| symbol(graph, &format!("{name}{s}"), class)).collect();
-            let (offset, len) = (all.len(), symbols.len());
-            groups.push(Group { name: name.into(), shape, value: Value::Vector(symbols.clone()), offset, len });
-            all.extend(symbols);
-        }
-        (groups, all)
-    };
-    let (params, p) = groups(&mut graph, declared.params, class::PARAM);
-    let entries: Vec<(&str, ShapeKind)> = Vec::new();
-    let (_, mut x) = groups(&mut graph, &entries, class::COORD);
-    let mut coordinates = Vec::new();
-    for &(name, kind) in declared.coordinates {
-        let span = Place::token(proc_macro2::Span::call_site());
-        coordinates.push(Coordinate { name: name.into(), kind, offset: x.len(), span });
-        for entry in entry_names(name, kind) {
-            x.extend(groups(&mut graph, &[(entry.as_str(), ShapeKind::Scalar)], class::COORD).1);
-        }
-    }
-    let (velocities, xi) = groups(&mut graph, declared.velocities, class::VELOCITY);
-    let (inputs, u) = groups(&mut graph, declared.inputs, class::INPUT);
-    let (_, xi_dot) = groups(&mut graph, declared.velocities, class::ACCEL);
-    let program = Program {
-        name: name.into(),
-        public: true,
-        docs: Vec::new(),
-        defaults: p.iter().enumerate().map(|(index, _)| 1.25 + 0.3 * index as f64).collect(),
-        params,
-        blocks: declared.coordinates.iter().flat_map(|&(_, kind)| blocks(kind)).collect(),
-        coordinates,
-        velocities,
-        inputs,
-        nu: x.len(),
-        n: xi.len(),
-        m: u.len(),
-        phi: 0,
-        start_x: vec![0.5; x.len()],
-        start_xi: vec![0.25; xi.len()],
-        names: Vec::new(),
-        constant_guards: Vec::new(),
-        functions: Vec::new(),
-        graph,
-    };
-    (program, [p, x, xi, u, xi_dot])
-}
-
-/// A function with a line of documentation.
-pub fn function(name: &str, arguments: &[Argument], shape: Shape, outputs: Vec<Edge>) -> Function {
-    Function {
-        name: name.into(),
-        docs: vec![format!("The {name} of a sample.")],
-        arguments: arguments.to_vec(),
-        shape,
-        outputs,
-        guards: Vec::new(),
-        fallible: false,
-    }
-}
-
 /// A driven pendulum, x = (cos θ, sin θ), ξ = θ̇: m l² θ̈ = τ − m g l sin θ.
 pub fn pendulum() -> Program {
     let s = ShapeKind::Scalar;
     let (mut program, [p, x, xi, u, xi_dot]) = sketch(
         "Pendulum",
-        &Declared { params: &[("m", s), ("l", s), ("g", s)], coordinates: &[("θ", CoordKind::S1)], velocities: &[("ω", s)], inputs: &[("τ", s)] },
+        &Declared {
+            params: &[("m", s), ("l", s), ("g", s)],
+            coordinates: &[("θ", CoordKind::S1)],
+            velocities: &[("ω", s)],
+            inputs: &[("τ", s)],
+        },
     );
     program.docs = vec!["A driven pendulum.".into()];
     program.phi = 1;
@@ -117,7 +35,10 @@ pub fn pendulum() -> Program {
     let accel = graph.div(force, inertia).unwrap();
     let product = graph.mul(inertia, xi_dot[0]);
     let inverse = graph.add(product, gravity);
-    let rate: Vec<Edge> = [(-x[1]), x[0]].iter().map(|&e| graph.mul(e, xi[0])).collect();
+    let rate: Vec<Edge> = [(-x[1]), x[0]]
+        .iter()
+        .map(|&e| graph.mul(e, xi[0]))
+        .collect();
     let chart = chart_rate(graph, Block::Circle, &x, &rate);
     let norm = graph.dot(&x, &x);
     let minus_one = -graph.one();
@@ -134,7 +55,12 @@ pub fn pendulum() -> Program {
     program.functions = vec![
         function("rate", &[X, XI], Shape::Vector(2), rate),
         function("accel", &[X, XI, U], Shape::Vector(1), vec![accel]),
-        function("inverse_dynamics", &[X, XI, XI_DOT], Shape::Vector(1), vec![inverse]),
+        function(
+            "inverse_dynamics",
+            &[X, XI, XI_DOT],
+            Shape::Vector(1),
+            vec![inverse],
+        ),
         function("chart_rate", &[X, XI], Shape::Vector(1), chart),
         function("correction", &[X], Shape::Vector(2), correction),
         function("constraint", &[X], Shape::Vector(1), vec![phi]),
@@ -150,8 +76,22 @@ pub fn everything() -> Program {
     let (mut program, [p, x, xi, u, xi_dot]) = sketch(
         "θSystem",
         &Declared {
-            params: &[("self", s), ("k", s), ("Θ", ShapeKind::Symmetric(3)), ("theta", ShapeKind::Vector(2)), ("rate", ShapeKind::Matrix(2)), ("set_k", s), ("é", s)],
-            coordinates: &[("q", CoordKind::Real), ("R", CoordKind::SO3), ("type", CoordKind::S3), ("X", CoordKind::SE3), ("r", CoordKind::Euclidean(2))],
+            params: &[
+                ("self", s),
+                ("k", s),
+                ("Θ", ShapeKind::Symmetric(3)),
+                ("theta", ShapeKind::Vector(2)),
+                ("rate", ShapeKind::Matrix(2)),
+                ("set_k", s),
+                ("é", s),
+            ],
+            coordinates: &[
+                ("q", CoordKind::Real),
+                ("R", CoordKind::SO3),
+                ("type", CoordKind::S3),
+                ("X", CoordKind::SE3),
+                ("r", CoordKind::Euclidean(2)),
+            ],
             velocities: &[("ω", ShapeKind::Vector(3)), ("move", s)],
             inputs: &[("f", s)],
         },
@@ -177,8 +117,14 @@ pub fn everything() -> Program {
     let scaled = graph.ratio(-7, 3);
     let scaled = graph.mul(scaled, negated);
     let angle = graph.mul(pi, x[0]);
-    let (sin, cos) = (graph.apply(Elementary::Sin, angle), graph.apply(Elementary::Cos, angle));
-    let (sin_q, cos_r) = (graph.apply(Elementary::Sin, x[0]), graph.apply(Elementary::Cos, x[1]));
+    let (sin, cos) = (
+        graph.apply(Elementary::Sin, angle),
+        graph.apply(Elementary::Cos, angle),
+    );
+    let (sin_q, cos_r) = (
+        graph.apply(Elementary::Sin, x[0]),
+        graph.apply(Elementary::Cos, x[1]),
+    );
     let exponential = graph.apply(Elementary::Exp, -sum);
     let logarithm = graph.apply(Elementary::Log, positive);
     let arc = graph.atan2(reduced, -positive);
@@ -189,13 +135,40 @@ pub fn everything() -> Program {
     let number = graph.apply(Elementary::Sqrt, two);
     let number = graph.mul(number, xi_dot[0]);
     let trig = graph.mul(sin, cos);
-    let tiny = graph.rational(&num_rational::BigRational::new(314159.into(), 100000.into()));
+    let tiny = graph.rational(&num_rational::BigRational::new(
+        314159.into(),
+        100000.into(),
+    ));
     let list = vec![
-        quotient, inverse, -scaled, trig, sin_q, cos_r, exponential, logarithm, -arc, kept, number, graph.zero(), -one, tiny, pi, p[2], -p[9],
-        x[11], reduced, graph.ratio(1, 3),
+        quotient,
+        inverse,
+        -scaled,
+        trig,
+        sin_q,
+        cos_r,
+        exponential,
+        logarithm,
+        -arc,
+        kept,
+        number,
+        graph.zero(),
+        -one,
+        tiny,
+        pi,
+        p[2],
+        -p[9],
+        x[11],
+        reduced,
+        graph.ratio(1, 3),
     ];
     let n = list.len();
-    program.names = vec![("self".into(), quotient), ("x".into(), scaled), ("t2".into(), inverse), ("ω̇".into(), -kept), ("sin_q".into(), arc)];
+    program.names = vec![
+        ("self".into(), quotient),
+        ("x".into(), scaled),
+        ("t2".into(), inverse),
+        ("ω̇".into(), -kept),
+        ("sin_q".into(), arc),
+    ];
     let mut pivoted = function("type", &[X, XI, XI_DOT, U], Shape::Vector(n), list.clone());
     pivoted.guards = vec![positive, root, p[1], graph.one()];
     pivoted.fallible = true;
@@ -217,7 +190,12 @@ pub fn random(size: usize, pivots: usize) -> Program {
     let s = ShapeKind::Vector(4);
     let (mut program, [p, x, xi, u, _]) = sketch(
         "Random",
-        &Declared { params: &[("p", s)], coordinates: &[("q", CoordKind::Euclidean(8))], velocities: &[("v", ShapeKind::Vector(8))], inputs: &[("f", s)] },
+        &Declared {
+            params: &[("p", s)],
+            coordinates: &[("q", CoordKind::Euclidean(8))],
+            velocities: &[("v", ShapeKind::Vector(8))],
+            inputs: &[("f", s)],
+        },
     );
     let graph = &mut program.graph;
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
@@ -230,7 +208,10 @@ pub fn random(size: usize, pivots: usize) -> Program {
     let mut pool: Vec<Edge> = x.iter().chain(&xi).chain(&u).copied().collect();
     let mut constants = p.clone();
     for _ in 0..size / 10 {
-        let (a, b) = (constants[draw(constants.len())], constants[draw(constants.len())]);
+        let (a, b) = (
+            constants[draw(constants.len())],
+            constants[draw(constants.len())],
+        );
         let product = graph.mul(a, b);
         let next = graph.add(product, p[draw(4)]);
         constants.push(graph.apply(Elementary::Cos, next));
@@ -249,7 +230,10 @@ pub fn random(size: usize, pivots: usize) -> Program {
             8 => graph.apply(Elementary::Sin, a),
             9 => graph.apply(Elementary::Cos, a),
             _ => {
-                let (sin, cos) = (graph.apply(Elementary::Sin, a), graph.apply(Elementary::Cos, b));
+                let (sin, cos) = (
+                    graph.apply(Elementary::Sin, a),
+                    graph.apply(Elementary::Cos, b),
+                );
                 graph.mul(sin, cos)
             }
         };
@@ -270,6 +254,9 @@ pub fn random(size: usize, pivots: usize) -> Program {
     let mut accel = function("accel", &[X, XI, U], Shape::Matrix(3, 4), outputs.clone());
     accel.fallible = pivots > 0;
     accel.guards = guards;
-    program.functions = vec![accel, function("energy", &[X, XI, U], Shape::Scalar, vec![outputs[3]])];
+    program.functions = vec![
+        accel,
+        function("energy", &[X, XI, U], Shape::Scalar, vec![outputs[3]]),
+    ];
     program
 }

@@ -1,0 +1,93 @@
+//! `hamel check`: the identities behind a description's equations, proved or refuted.
+
+use crate::failure::{Failure, print};
+use crate::names;
+use crate::source::Source;
+use clap::Args;
+use hamel_codegen::derive::check::{Identity, Verdict, check};
+use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::generate::Generated;
+use std::path::PathBuf;
+
+/// Proves the identities behind the equations of motion.
+///
+/// Equation numbers are those of KR18, the paper of the method. "proved" is exact, over the rationals
+/// and modulo the constraint; "checked modulo p" is equality at random exact points of the
+/// configuration manifold, which errs with a probability below 1e-17.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  hamel check heavy_top.eom\n  hamel check models/*.eom && echo sound")]
+pub struct Arguments {
+    /// Descriptions, `-` for standard input.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+}
+
+/// Checks every file; the failures of all of them are reported.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut worst: Option<Failure> = None;
+    for (index, path) in arguments.files.iter().enumerate() {
+        if arguments.files.len() > 1 {
+            let gap = if index > 0 { "\n" } else { "" };
+            print(&format!("{gap}\x1b[1m{}\x1b[0m\n", path.display()))?;
+        }
+        let checked = Source::read(path).and_then(|source| {
+            let generated = source.derive_all()?;
+            let identities = check(&generated.model, &generated.program);
+            print(&table(&identities))?;
+            print(&integrability(&generated))?;
+            let failed = identities.iter().filter(|identity| matches!(identity.verdict, Verdict::Failed(_))).count();
+            match failed {
+                0 => Ok(()),
+                1 => Err(Failure::failed(format!("{}: an identity failed", source.path))),
+                _ => Err(Failure::failed(format!("{}: {failed} identities failed", source.path))),
+            }
+        });
+        match checked {
+            Ok(()) => {}
+            Err(Failure::Closed) => return Err(Failure::Closed),
+            Err(failure) => {
+                worst = Some(match worst {
+                    Some(worst) => worst.and(failure),
+                    None => failure,
+                });
+            }
+        }
+    }
+    worst.map_or(Ok(()), Err)
+}
+
+fn table(identities: &[Identity]) -> String {
+    let width = |column: fn(&Identity) -> &str| identities.iter().map(|identity| column(identity).chars().count()).max().unwrap_or(0);
+    let (label, equation) = (width(|identity| identity.label), width(|identity| identity.equation));
+    identities
+        .iter()
+        .map(|identity| {
+            let verdict = match &identity.verdict {
+                Verdict::Proved => "\x1b[32mproved\x1b[0m".to_string(),
+                Verdict::Checked => "\x1b[36mchecked modulo p\x1b[0m".to_string(),
+                Verdict::Failed(why) => format!("\x1b[1;31mFAILED\x1b[0m: {why}"),
+            };
+            format!("  {:label$}  {:equation$}  {verdict}\n", identity.label, identity.equation)
+        })
+        .collect()
+}
+
+/// ξᵏ is the rate of a coordinate, at least locally, where γᵢⱼᵏ = 0 for all i and j (KR18 section 2.5).
+fn integrability(generated: &Generated) -> String {
+    let Some(geometry) = Geometry::new(&generated.model) else { return String::new() };
+    let zero = geometry.model.graph.zero();
+    let names = names::velocities(&generated.model);
+    let (integrable, other): (Vec<_>, Vec<_>) = names
+        .into_iter()
+        .enumerate()
+        .partition(|(k, _)| geometry.gamma.iter().flatten().all(|row| row[*k] == zero));
+    let list = |names: Vec<(usize, String)>| names.into_iter().map(|(_, name)| name).collect::<Vec<_>>().join(", ");
+    let mut text = String::new();
+    if !integrable.is_empty() {
+        text.push_str(&format!("  integrable velocity coordinates: {}\n", list(integrable)));
+    }
+    if !other.is_empty() {
+        text.push_str(&format!("  quasi-velocities, of no coordinate: {}\n", list(other)));
+    }
+    text
+}

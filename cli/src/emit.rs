@@ -1,0 +1,48 @@
+//! `hamel emit`: the generated Rust.
+
+use crate::failure::{Failure, print, write};
+use crate::source::Source;
+use clap::Args;
+use hamel_codegen::builder;
+use std::path::PathBuf;
+
+/// Writes the generated Rust.
+///
+/// The text is the same, byte for byte, as that of a build script.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel emit heavy_top.eom                          to the terminal
+  hamel emit heavy_top.eom -o src/heavy_top.rs      to a file
+  hamel emit heavy_top.eom -o src/heavy_top.rs --check    in CI: is the file up to date?")]
+pub struct Arguments {
+    /// Description, `-` for standard input.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Where to write; standard output where it is left out.
+    #[arg(short, long, value_name = "OUT")]
+    out: Option<PathBuf>,
+    /// Write nothing; status 1 where OUT is not what would be written.
+    #[arg(long, requires = "out")]
+    check: bool,
+}
+
+/// Emits, or compares.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Source::read(&arguments.file)?;
+    let name = arguments.file.file_name().map_or("-".into(), |name| name.to_string_lossy());
+    let code = builder::source(&source.text, &name).map_err(|errors| source.refused(&errors))?;
+    let Some(out) = &arguments.out else { return print(&code) };
+    let known = std::fs::read(out);
+    let same = known.as_ref().is_ok_and(|known| known == code.as_bytes());
+    match (arguments.check, same, known) {
+        (_, true, _) => Ok(()),
+        (false, false, _) => write(out, &code),
+        (true, false, Ok(_)) => Err(Failure::failed(format!(
+            "{} is stale; write it again with `hamel emit {} -o {}`",
+            out.display(),
+            arguments.file.display(),
+            out.display()
+        ))),
+        (true, false, Err(error)) => Err(Failure::usage(format!("cannot read {}: {error}", out.display()))),
+    }
+}

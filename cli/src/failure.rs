@@ -1,0 +1,77 @@
+//! What ends a command early, and the exit status that it ends with.
+
+use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
+
+/// A failure, ready to be shown.
+#[derive(Debug)]
+pub enum Failure {
+    /// A description or a check failed: status 1.
+    Failed(String),
+    /// Wrong usage, unreadable files: status 2.
+    Usage(String),
+    /// The reader of our output is gone, as in `hamel … | head`: nothing left to do.
+    Closed,
+}
+
+impl Failure {
+    /// A failure of what was asked for, in one message.
+    pub fn failed(message: impl AsRef<str>) -> Self {
+        Failure::Failed(headed(message.as_ref()))
+    }
+
+    /// Input that cannot be used, in one message.
+    pub fn usage(message: impl AsRef<str>) -> Self {
+        Failure::Usage(headed(message.as_ref()))
+    }
+
+    /// Several messages at once, about the same thing.
+    pub fn usages(about: &str, messages: &[String]) -> Self {
+        let mut text: String = messages.iter().map(|message| headed(&format!("{about}: {message}"))).collect();
+        if messages.len() > 1 {
+            text.push_str(&format!("{} errors\n", messages.len()));
+        }
+        Failure::Usage(text)
+    }
+
+    /// Writes the failure to standard error.
+    pub fn report(self) -> ExitCode {
+        let (text, code) = match self {
+            Failure::Failed(text) => (text, 1),
+            Failure::Usage(text) => (text, 2),
+            Failure::Closed => return ExitCode::SUCCESS,
+        };
+        // Where standard error is gone there is nobody to tell.
+        let _ = anstream::stderr().write_all(text.as_bytes());
+        ExitCode::from(code)
+    }
+
+    /// The graver of two failures, with the text of both.
+    pub fn and(self, other: Failure) -> Failure {
+        match (self, other) {
+            (Failure::Closed, other) => other,
+            (this, Failure::Closed) => this,
+            (Failure::Failed(a), Failure::Failed(b)) => Failure::Failed(a + &b),
+            (Failure::Failed(a) | Failure::Usage(a), Failure::Failed(b) | Failure::Usage(b)) => Failure::Usage(a + &b),
+        }
+    }
+}
+
+fn headed(message: &str) -> String {
+    format!("\x1b[1;31merror\x1b[0m: {message}\n")
+}
+
+/// Writes a result to standard output; colours are dropped where it is no terminal, or with `NO_COLOR`.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut stdout = anstream::stdout();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Ok(()) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::Closed),
+        Err(error) => Err(Failure::usage(format!("cannot write to standard output: {error}"))),
+    }
+}
+
+/// Writes a file.
+pub fn write(path: &std::path::Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| Failure::usage(format!("cannot write {}: {error}", path.display())))
+}

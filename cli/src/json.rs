@@ -1,0 +1,104 @@
+//! JSON with members in the order in which they were given, and short lists on one line.
+
+use crate::number::exact;
+
+/// A value to be written.
+#[derive(Clone, Debug)]
+pub enum Json {
+    /// A number; what is not finite is written as `null`.
+    Number(f64),
+    /// A count.
+    Count(u128),
+    /// A text.
+    Text(String),
+    /// A truth value.
+    Flag(bool),
+    /// Nothing.
+    Null,
+    /// A list.
+    List(Vec<Json>),
+    /// Members in order.
+    Object(Vec<(String, Json)>),
+}
+
+/// Lists up to this width stand on one line.
+const WIDTH: usize = 100;
+
+impl Json {
+    /// An object of members.
+    pub fn object<'a>(members: impl IntoIterator<Item = (&'a str, Json)>) -> Json {
+        Json::Object(members.into_iter().map(|(name, value)| (name.to_string(), value)).collect())
+    }
+
+    /// A list of numbers.
+    pub fn vector(values: &[f64]) -> Json {
+        Json::List(values.iter().map(|&value| Json::Number(value)).collect())
+    }
+
+    /// Rows of numbers.
+    pub fn matrix(rows: &[Vec<f64>]) -> Json {
+        Json::List(rows.iter().map(|row| Json::vector(row)).collect())
+    }
+
+    /// A list of texts.
+    pub fn texts(texts: &[String]) -> Json {
+        Json::List(texts.iter().map(|text| Json::Text(text.clone())).collect())
+    }
+
+    /// Indented text with a final line break.
+    pub fn pretty(&self) -> String {
+        let mut text = String::new();
+        self.write(0, &mut text);
+        text.push('\n');
+        text
+    }
+
+    /// Text on one line.
+    pub fn line(&self) -> String {
+        match self {
+            Json::Number(value) if value.is_finite() => exact(*value),
+            Json::Number(_) | Json::Null => "null".into(),
+            Json::Count(count) => count.to_string(),
+            Json::Flag(flag) => flag.to_string(),
+            Json::Text(text) => serde_json::Value::from(text.as_str()).to_string(),
+            Json::List(items) => {
+                let items: Vec<String> = items.iter().map(Json::line).collect();
+                format!("[{}]", items.join(", "))
+            }
+            Json::Object(members) => {
+                let members: Vec<String> = members.iter().map(|(name, value)| format!("{}: {}", quoted(name), value.line())).collect();
+                format!("{{{}}}", members.join(", "))
+            }
+        }
+    }
+
+    fn write(&self, indent: usize, text: &mut String) {
+        let parts: Vec<(String, &Json)> = match self {
+            Json::List(items) if !items.is_empty() => items.iter().map(|item| (String::new(), item)).collect(),
+            Json::Object(members) if !members.is_empty() => {
+                members.iter().map(|(name, value)| (format!("{}: ", quoted(name)), value)).collect()
+            }
+            _ => return text.push_str(&self.line()),
+        };
+        let line = self.line();
+        let list = matches!(self, Json::List(_));
+        // The outermost object is never a line.
+        if indent + line.chars().count() <= WIDTH && (list || indent > 0) {
+            return text.push_str(&line);
+        }
+        text.push(if list { '[' } else { '{' });
+        for (index, (name, value)) in parts.iter().enumerate() {
+            text.push_str(if index > 0 { ",\n" } else { "\n" });
+            text.push_str(&" ".repeat(indent + 2));
+            text.push_str(name);
+            value.write(indent + 2, text);
+        }
+        text.push('\n');
+        text.push_str(&" ".repeat(indent));
+        text.push(if list { ']' } else { '}' });
+    }
+}
+
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}

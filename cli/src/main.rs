@@ -1,0 +1,70 @@
+//! `hamel`: equations of motion from a description, on the command line.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `tables`, `check`, `ops`, `emit`, `eval`, `simulate` | one subcommand each |
+//! | `source` | reading and deriving a description |
+//! | `state` | reading the numbers of a state |
+//! | `interpreted` | a described system that the integrators can run |
+//! | `plot` | SVG |
+//! | `json`, `number`, `names` | how results are written |
+//! | `failure` | errors and exit statuses |
+
+mod check;
+mod emit;
+mod eval;
+mod failure;
+mod interpreted;
+mod json;
+mod names;
+mod number;
+mod ops;
+mod plot;
+mod simulate;
+mod source;
+mod state;
+mod tables;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::process::ExitCode;
+
+const EXAMPLES: &str = "\
+Examples:
+  hamel check heavy_top.eom                     prove the identities behind the equations
+  hamel tables heavy_top.eom --of gamma,M       what stands in the paper
+  hamel simulate heavy_top.eom --until 10       a first run
+  hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
+
+FILE may be `-`: the description is then read from standard input.
+Exit status: 0 done, 1 a description or a check failed, 2 wrong usage or unreadable files.";
+
+/// Generates equations of motion in redundant coordinates and quasi-velocities.
+#[derive(Parser)]
+#[command(name = "hamel", version, about, after_help = EXAMPLES)]
+struct Line {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Tables(tables::Arguments),
+    Check(check::Arguments),
+    Ops(ops::Arguments),
+    Emit(emit::Arguments),
+    Eval(eval::Arguments),
+    Simulate(simulate::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match Line::parse().command {
+        Command::Tables(arguments) => tables::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Ops(arguments) => ops::run(&arguments),
+        Command::Emit(arguments) => emit::run(&arguments),
+        Command::Eval(arguments) => eval::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
+    };
+    result.map_or_else(Failure::report, |()| ExitCode::SUCCESS)
+}

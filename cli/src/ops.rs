@@ -1,0 +1,151 @@
+//! `hamel ops`: what a call of each generated function costs.
+
+use crate::failure::{Failure, print};
+use crate::json::Json;
+use crate::source::Source;
+use clap::{Args, ValueEnum};
+use hamel_codegen::algebra::graph::{Edge, Function as Elementary, Graph, Node};
+use hamel_codegen::program::Program;
+use hamel_codegen::program::count::{Count, count_nodes};
+use hamel_codegen::program::schedule::Schedule;
+use std::path::PathBuf;
+
+/// Counts the operations of every generated function.
+///
+/// "shared" is what the generated code does on a call; "unshared" is the same result with every
+/// expression written out, where nothing is computed once for several uses and nothing when
+/// parameters are set. flops are add + mul + div; negation is free.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  hamel ops heavy_top.eom\n  hamel ops heavy_top.eom --format json")]
+pub struct Arguments {
+    /// Description, `-` for standard input.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// How to write the counts.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// add, mul, div, sqrt, sincos, other.
+type Operations = [u128; 6];
+const KINDS: [&str; 6] = ["add", "mul", "div", "sqrt", "sincos", "other"];
+
+/// One row: a function with its counts.
+struct Row {
+    name: String,
+    shared: Operations,
+    unshared: Operations,
+}
+
+/// Counts and prints.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let generated = Source::read(&arguments.file)?.derive()?;
+    let program = &generated.program;
+    let schedule = Schedule::of(program);
+    let rows = rows(program, &schedule);
+    let hoisted = operations(count_nodes(&program.graph, &schedule.hoisted));
+    print(&match arguments.format {
+        Format::Text => text(&rows, hoisted, schedule.kept.len()),
+        Format::Json => json(program, &rows, hoisted, schedule.kept.len()).pretty(),
+    })
+}
+
+fn rows(program: &Program, schedule: &Schedule) -> Vec<Row> {
+    let functions = program.functions.iter().zip(&schedule.bodies);
+    functions
+        .map(|(function, body)| {
+            let roots: Vec<Edge> = function.outputs.iter().chain(&function.guards).copied().collect();
+            Row {
+                name: function.name.clone(),
+                shared: operations(count_nodes(&program.graph, body)),
+                unshared: tree(&program.graph, &roots),
+            }
+        })
+        .collect()
+}
+
+fn operations(count: Count) -> Operations {
+    [count.add, count.mul, count.div, count.sqrt, count.sincos, count.other].map(|count| count as u128)
+}
+
+fn flops(operations: &Operations) -> u128 {
+    operations[..3].iter().fold(0, |sum: u128, &count| sum.saturating_add(count))
+}
+
+fn sum(a: Operations, b: Operations) -> Operations {
+    std::array::from_fn(|kind| a[kind].saturating_add(b[kind]))
+}
+
+/// The operations of the roots as trees: every use of a node counts again.
+fn tree(graph: &Graph, roots: &[Edge]) -> Operations {
+    let mut costs = vec![[0; 6]; graph.len()];
+    for id in graph.reachable(roots) {
+        let mut cost = graph.node(id).children().fold([0; 6], |cost, child| sum(cost, costs[child.node() as usize]));
+        let kind = match graph.node(id) {
+            Node::Constant(_) | Node::Symbol(_) => None,
+            Node::Add(..) => Some(0),
+            Node::Mul(..) => Some(1),
+            Node::Div(..) => Some(2),
+            Node::Apply(Elementary::Sqrt, _) => Some(3),
+            Node::Apply(Elementary::Sin | Elementary::Cos, _) => Some(4),
+            Node::Apply(..) | Node::Atan2(..) => Some(5),
+        };
+        if let Some(kind) = kind {
+            cost[kind] = cost[kind].saturating_add(1);
+        }
+        costs[id as usize] = cost;
+    }
+    roots.iter().fold([0; 6], |cost, root| sum(cost, costs[root.node() as usize]))
+}
+
+/// A count in at most eight characters: `123456`, `1.2e9`.
+fn compact(count: u128) -> String {
+    if count < 10_000_000 { count.to_string() } else { format!("{:.1e}", count as f64) }
+}
+
+fn text(rows: &[Row], hoisted: Operations, kept: usize) -> String {
+    let width = rows.iter().map(|row| row.name.len()).max().unwrap_or(0).max(8);
+    let mut text = format!("\x1b[1m{:width$}", "function");
+    for kind in KINDS {
+        text.push_str(&format!("{kind:>7}"));
+    }
+    text.push_str(&format!("{:>7}{:>10}\x1b[0m\n", "flops", "unshared"));
+    for row in rows {
+        text.push_str(&format!("{:width$}", row.name));
+        for count in row.shared {
+            text.push_str(&format!("{count:>7}"));
+        }
+        text.push_str(&format!("{:>7}{:>10}\n", flops(&row.shared), compact(flops(&row.unshared))));
+    }
+    let operations: u128 = hoisted.iter().sum();
+    text.push_str(&match (operations, kept) {
+        (0, _) => "nothing to be computed when parameters are set\n".to_string(),
+        (1, _) => "1 operation is done when parameters are set\n".to_string(),
+        (_, 1) => format!("{operations} operations are done when parameters are set, 1 constant is kept\n"),
+        _ => format!("{operations} operations are done when parameters are set, {kept} constants are kept\n"),
+    });
+    text
+}
+
+fn json(program: &Program, rows: &[Row], hoisted: Operations, kept: usize) -> Json {
+    let counts = |operations: &Operations| {
+        let mut members: Vec<(&str, Json)> = KINDS.into_iter().zip(operations.map(Json::Count)).collect();
+        members.push(("flops", Json::Count(flops(operations))));
+        Json::object(members)
+    };
+    let functions = rows.iter().map(|row| {
+        let members = [("shared", counts(&row.shared)), ("unshared", counts(&row.unshared))];
+        (row.name.as_str(), Json::object(members))
+    });
+    Json::object([
+        ("system", Json::Text(program.name.clone())),
+        ("functions", Json::object(functions)),
+        ("parameters", Json::object([("hoisted", counts(&hoisted)), ("kept", Json::Count(kept as u128))])),
+    ])
+}

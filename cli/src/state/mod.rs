@@ -1,0 +1,101 @@
+//! The numbers of a state: the description's own, changed by what a JSON file says.
+//!
+//! `{"param": {…}, "coord": {…}, "velocity": {…}, "input": {…}}`, all optional. Every mistake is
+//! reported with its path in the file, all at once.
+
+mod read;
+#[cfg(test)]
+mod tests;
+
+use crate::failure::Failure;
+use crate::source::Source;
+use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::model::Model;
+use hamel_codegen::model::layout::Block;
+use read::Reader;
+use std::path::Path;
+
+/// Larger values of |φ(x)| are no rounding of a state that was written down.
+const OFF: f64 = 1e-6;
+
+/// Numbers for everything that a model takes.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Parameters, in order of their symbols.
+    pub params: Vec<f64>,
+    /// x.
+    pub x: Vec<f64>,
+    /// ξ.
+    pub xi: Vec<f64>,
+    /// u.
+    pub u: Vec<f64>,
+}
+
+impl State {
+    /// Defaults, start and zero input.
+    pub fn start(model: &Model) -> Self {
+        State {
+            params: model.defaults.clone(),
+            x: model.start_x.clone(),
+            xi: model.start_xi.clone(),
+            u: vec![0.0; model.u.len()],
+        }
+    }
+
+    /// The start, changed by a file where there is one.
+    pub fn read(model: &Model, at: Option<&Path>) -> Result<Self, Failure> {
+        let Some(path) = at else { return Ok(State::start(model)) };
+        let source = Source::read(path)?;
+        State::parse(model, &source.text).map_err(|errors| Failure::usages(&source.path, &errors))
+    }
+
+    /// The start, changed by a JSON text.
+    pub fn parse(model: &Model, text: &str) -> Result<Self, Vec<String>> {
+        let json = serde_json::from_str(text).map_err(|error| vec![format!("no JSON: {error}")])?;
+        let mut state = State::start(model);
+        let mut reader = Reader::default();
+        reader.state(&json, model, &mut state);
+        let mut errors = reader.errors;
+        if errors.is_empty() {
+            errors = state.violations(model);
+        }
+        if errors.is_empty() { Ok(state) } else { Err(errors) }
+    }
+
+    /// Where x leaves the configuration manifold.
+    fn violations(&self, model: &Model) -> Vec<String> {
+        let numbers = model.numbers(&self.params, &self.x, &self.xi, &self.u, &vec![0.0; model.n()]);
+        let rows: Vec<_> = model.phi.iter().map(|(edge, _)| *edge).collect();
+        let residuals = evaluate(&model.points.free, &rows, &numbers);
+        let mut errors: Vec<String> = Vec::new();
+        for ((_, text), residual) in model.phi.iter().zip(residuals) {
+            // A NaN is off, too.
+            if residual.is_nan() || residual.abs() > OFF {
+                errors.push(format!("{}: violates {text}, the difference is {residual:.2e}", self.place(model, text)));
+            }
+        }
+        let mut offset = 0;
+        for &block in &model.blocks {
+            let entries = &self.x[offset..offset + block.len()];
+            if block == Block::Rotation && errors.is_empty() && determinant(entries) < 0.0 {
+                let name = model.coordinates.iter().rfind(|c| c.offset <= offset).map_or("", |c| c.name.as_str());
+                errors.push(format!("coord.{name}: a reflection, its determinant is -1"));
+            }
+            offset += block.len();
+        }
+        errors
+    }
+
+    /// The coordinates that a constraint mentions, as paths.
+    fn place(&self, model: &Model, text: &str) -> String {
+        let words: Vec<&str> = text.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+        let names = model.coordinates.iter().filter(|c| words.contains(&c.name.as_str()));
+        let paths: Vec<String> = names.map(|c| format!("coord.{}", c.name)).collect();
+        if paths.is_empty() { "coord".into() } else { paths.join(", ") }
+    }
+}
+
+fn determinant(r: &[f64]) -> f64 {
+    let minor = |a: usize, b: usize| r[3 + a] * r[6 + b] - r[3 + b] * r[6 + a];
+    r[0] * minor(1, 2) - r[1] * minor(0, 2) + r[2] * minor(0, 1)
+}

@@ -1,0 +1,178 @@
+//! JSON values to numbers, with the path of every mistake.
+
+use super::State;
+use hamel_codegen::model::Model;
+use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
+use hamel_codegen::syntax::suggest::closest;
+use serde_json::{Map, Value};
+
+/// Entries (i, j) and (j, i) of a symmetric matrix may differ by rounding alone.
+const SYMMETRY: f64 = 1e-12;
+
+/// The mistakes found so far.
+#[derive(Debug, Default)]
+pub struct Reader {
+    /// One line each, its path first.
+    pub errors: Vec<String>,
+}
+
+impl Reader {
+    /// A whole file.
+    pub fn state(&mut self, json: &Value, model: &Model, state: &mut State) {
+        let Value::Object(parts) = json else {
+            let expected = "{\"param\": …, \"coord\": …, \"velocity\": …, \"input\": …}";
+            return self.error("", format!("{expected} expected, {} found", kind(json)));
+        };
+        self.known("", parts, &["param", "coord", "velocity", "input"]);
+        let groups = [("param", &model.params, &mut state.params), ("velocity", &model.velocities, &mut state.xi), ("input", &model.inputs, &mut state.u)];
+        for (part, groups, numbers) in groups {
+            let names: Vec<&str> = groups.iter().map(|group| group.name.as_str()).collect();
+            let Some(given) = self.part(parts, part, &names) else { continue };
+            for group in groups {
+                if let Some(value) = given.get(&group.name)
+                    && let Some(values) = self.shape(&format!("{part}.{}", group.name), value, group.shape)
+                {
+                    numbers[group.offset..group.offset + group.len].copy_from_slice(&values);
+                }
+            }
+        }
+        let names: Vec<&str> = model.coordinates.iter().map(|coordinate| coordinate.name.as_str()).collect();
+        let Some(given) = self.part(parts, "coord", &names) else { return };
+        for coordinate in &model.coordinates {
+            let Some(value) = given.get(&coordinate.name) else { continue };
+            let offset = coordinate.offset;
+            for (part, values) in self.coordinate(&format!("coord.{}", coordinate.name), value, coordinate.kind) {
+                state.x[offset + part..offset + part + values.len()].copy_from_slice(&values);
+            }
+        }
+    }
+
+    /// An object with one member for each name, or fewer.
+    fn part<'a>(&mut self, parts: &'a Map<String, Value>, part: &str, names: &[&str]) -> Option<&'a Map<String, Value>> {
+        match parts.get(part)? {
+            Value::Object(given) => {
+                self.known(part, given, names);
+                Some(given)
+            }
+            other => {
+                self.error(part, format!("an object expected, {} found", kind(other)));
+                None
+            }
+        }
+    }
+
+    /// Reports members that have no such name.
+    fn known(&mut self, at: &str, given: &Map<String, Value>, names: &[&str]) {
+        for name in given.keys().filter(|name| !names.contains(&name.as_str())) {
+            let path = if at.is_empty() { name.clone() } else { format!("{at}.{name}") };
+            let message = match (closest(name, names.iter().copied()), names) {
+                (Some(meant), _) => format!("unknown name; did you mean `{meant}`?"),
+                (None, []) => "unknown name; the description has none".into(),
+                (None, _) => format!("unknown name; known are {}", names.join(", ")),
+            };
+            self.error(&path, message);
+        }
+    }
+
+    /// Numbers of a coordinate, with the place in it where they begin.
+    fn coordinate(&mut self, at: &str, value: &Value, kind: CoordKind) -> Vec<(usize, Vec<f64>)> {
+        let whole = match kind {
+            CoordKind::Real => self.number(at, value).map(|number| vec![number]),
+            CoordKind::Euclidean(n) => self.vector(at, value, n),
+            CoordKind::S1 => match value {
+                Value::Number(_) => self.number(at, value).map(|angle| vec![angle.cos(), angle.sin()]),
+                Value::Array(_) => self.vector(at, value, 2),
+                other => {
+                    self.error(at, format!("an angle or [cos, sin] expected, {} found", self::kind(other)));
+                    None
+                }
+            },
+            CoordKind::S3 => self.vector(at, value, 4),
+            CoordKind::SO3 => self.matrix(at, value, 3).map(|rows| rows.concat()),
+            CoordKind::SE3 => return self.pose(at, value),
+        };
+        whole.map(|values| (0, values)).into_iter().collect()
+    }
+
+    /// `{"p": [3], "R": [3 × 3]}`; what is left out keeps its value.
+    fn pose(&mut self, at: &str, value: &Value) -> Vec<(usize, Vec<f64>)> {
+        let Value::Object(parts) = value else {
+            self.error(at, format!("{{\"p\": …, \"R\": …}} expected, {} found", kind(value)));
+            return Vec::new();
+        };
+        self.known(at, parts, &["p", "R"]);
+        let position = parts.get("p").and_then(|p| self.vector(&format!("{at}.p"), p, 3));
+        let rotation = parts.get("R").and_then(|r| self.matrix(&format!("{at}.R"), r, 3));
+        position.map(|p| (0, p)).into_iter().chain(rotation.map(|rows| (3, rows.concat()))).collect()
+    }
+
+    /// Numbers of a declared shape, in the order of its symbols.
+    fn shape(&mut self, at: &str, value: &Value, shape: ShapeKind) -> Option<Vec<f64>> {
+        match shape {
+            ShapeKind::Scalar => self.number(at, value).map(|number| vec![number]),
+            ShapeKind::Vector(n) => self.vector(at, value, n),
+            ShapeKind::Matrix(n) => self.matrix(at, value, n).map(|rows| rows.concat()),
+            ShapeKind::Symmetric(n) => {
+                let rows = self.matrix(at, value, n)?;
+                let before = self.errors.len();
+                for i in 0..n {
+                    for j in 0..i {
+                        let scale = rows[i][j].abs().max(rows[j][i].abs());
+                        if (rows[i][j] - rows[j][i]).abs() > SYMMETRY * scale {
+                            let message = format!("has to be symmetric: {} here, {} at [{j}][{i}]", rows[i][j], rows[j][i]);
+                            self.error(&format!("{at}[{i}][{j}]"), message);
+                        }
+                    }
+                }
+                let upper = (0..n).flat_map(|i| rows[i][i..].iter().copied());
+                (self.errors.len() == before).then(|| upper.collect())
+            }
+        }
+    }
+
+    fn matrix(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<Vec<f64>>> {
+        let rows = self.list(at, value, n, &format!("a {n}×{n} matrix, a list of its rows,"))?;
+        let rows: Vec<_> = rows.iter().enumerate().map(|(i, row)| self.vector(&format!("{at}[{i}]"), row, n)).collect();
+        rows.into_iter().collect()
+    }
+
+    fn vector(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<f64>> {
+        let list = self.list(at, value, n, &format!("a list of {n} numbers"))?;
+        let numbers: Vec<_> = list.iter().enumerate().map(|(i, entry)| self.number(&format!("{at}[{i}]"), entry)).collect();
+        numbers.into_iter().collect()
+    }
+
+    fn list<'a>(&mut self, at: &str, value: &'a Value, n: usize, expected: &str) -> Option<&'a [Value]> {
+        match value {
+            Value::Array(list) if list.len() == n => return Some(list),
+            Value::Array(list) => self.error(at, format!("{expected} expected, a list of {} found", list.len())),
+            other => self.error(at, format!("{expected} expected, {} found", kind(other))),
+        }
+        None
+    }
+
+    fn number(&mut self, at: &str, value: &Value) -> Option<f64> {
+        match value.as_f64() {
+            Some(number) if number.is_finite() => return Some(number),
+            Some(_) => self.error(at, "the number is not finite".into()),
+            None => self.error(at, format!("a number expected, {} found", kind(value))),
+        }
+        None
+    }
+
+    fn error(&mut self, at: &str, message: String) {
+        self.errors.push(if at.is_empty() { message } else { format!("{at}: {message}") });
+    }
+}
+
+/// A JSON value in words.
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Null => "null",
+        Value::Bool(_) => "a truth value",
+        Value::Number(_) => "a number",
+        Value::String(_) => "a text",
+        Value::Array(_) => "a list",
+        Value::Object(_) => "an object",
+    }
+}

@@ -1,0 +1,61 @@
+use super::State;
+use hamel_codegen::generate::from_text;
+use hamel_codegen::model::Model;
+
+const SYSTEM: &str = "system Mixed {
+    param m = 2, J: sym3 = diag(1, 1, 1);
+    coord q: S1, X: SE3;
+    velocity a, v: vec3, w: vec3;
+    rate q = a;
+    rate X.p = X.R * v;
+    rate X.R = X.R * hat(w);
+    frame hull = X;
+    kinetic a^2 / 2;
+    body on hull { mass m; inertia J about com; }
+}";
+
+fn model() -> Model {
+    from_text(SYSTEM).expect("a sound description").model
+}
+
+#[test]
+fn every_shape_is_read() {
+    let text = r#"{"param": {"m": 3, "J": [[1, 0.1, 0.2], [0.1, 2, 0.3], [0.2, 0.3, 3]]},
+        "coord": {"q": 0.5, "X": {"p": [1, 2, 3], "R": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}},
+        "velocity": {"w": [4, 5, 6]}}"#;
+    let state = State::parse(&model(), text).expect("a sound state");
+    assert_eq!(state.params, [3.0, 1.0, 0.1, 0.2, 2.0, 0.3, 3.0]);
+    assert_eq!(state.x[..2], [0.5_f64.cos(), 0.5_f64.sin()]);
+    assert_eq!(state.x[2..], [1.0, 2.0, 3.0, 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    assert_eq!(state.xi, [0.0, 0.0, 0.0, 0.0, 4.0, 5.0, 6.0]);
+}
+
+#[test]
+fn every_mistake_is_named_at_once() {
+    let text = r#"{"param": {"mm": 1, "J": [[1, 2, 0], [3, 1, 0], [0, 0, 1]]},
+        "coord": {"q": [1, 0, 0], "X": {"p": [1, "2", 3], "r": 1}},
+        "velocity": {"w": 4}, "inputs": {}, "input": []}"#;
+    let errors = State::parse(&model(), text).expect_err("mistakes");
+    let expected = [
+        "inputs: unknown name; did you mean `input`?",
+        "param.mm: unknown name; did you mean `m`?",
+        "param.J[1][0]: has to be symmetric: 3 here, 2 at [0][1]",
+        "velocity.w: a list of 3 numbers expected, a number found",
+        "input: an object expected, a list found",
+        "coord.q: a list of 2 numbers expected, a list of 3 found",
+        "coord.X.r: unknown name; did you mean `R`?",
+        "coord.X.p[1]: a number expected, a text found",
+    ];
+    assert_eq!(errors, expected);
+}
+
+#[test]
+fn states_off_the_manifold_are_refused() {
+    let stretched = r#"{"coord": {"q": [1, 0.1], "X": {"R": [[1, 0, 0], [0, 1.1, 0], [0, 0, 1]]}}}"#;
+    let errors = State::parse(&model(), stretched).expect_err("off");
+    assert_eq!(errors[0], "coord.q: violates q.c^2 + q.s^2 = 1, the difference is 1.00e-2");
+    assert!(errors[1].starts_with("coord.X: violates") && errors[1].ends_with("the difference is 2.10e-1"), "{errors:?}");
+    let reflected = r#"{"coord": {"X": {"R": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}}}"#;
+    let errors = State::parse(&model(), reflected).expect_err("reflected");
+    assert_eq!(errors, ["coord.X: a reflection, its determinant is -1"]);
+}

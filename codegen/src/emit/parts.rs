@@ -1,0 +1,129 @@
+//! A long function as a row of calls: its parts share one array of slots and write the results.
+
+use super::function::{Drawing, Spec, length, shape_type, statements, zeros};
+use super::names;
+use super::places::Place;
+use super::print::Used;
+use crate::algebra::graph::NodeId;
+use crate::program::Shape;
+use rustc_hash::FxHashMap;
+
+/// Above this number of statements the parts of a function are never inlined: the compiler is then
+/// fastest, and the call costs little beside the part.
+const INLINE: usize = 2000;
+
+impl Drawing<'_> {
+    /// The parts, then the function that calls them.
+    pub fn split(&self) -> String {
+        let Spec { name, shape, .. } = self.spec;
+        let inline = if self.body.statements.len() > INLINE {
+            "#[inline(never)]\n"
+        } else {
+            "#[inline]\n"
+        };
+        let mut targets: FxHashMap<NodeId, Vec<usize>> = FxHashMap::default();
+        let mut rest = Vec::new();
+        for (index, edge) in self.body.outputs.iter().enumerate() {
+            match self.emitter.places.of(edge.node(), self.spec.time) {
+                Place::Temporary => targets.entry(edge.node()).or_default().push(index),
+                _ => rest.push(index),
+            }
+        }
+        let mut main = self.printer();
+        let (mut parts, mut calls) = (String::new(), String::new());
+        for (index, part) in self.plan.parts.iter().enumerate() {
+            let mut printer = self.printer();
+            let text = statements(&mut printer, self.body, part, |printer, node| {
+                let indices = targets.get(&node).map_or(&[][..], Vec::as_slice);
+                printer.used.out |= !indices.is_empty();
+                let writes = indices.iter().map(|&index| {
+                    let value = printer.signed(self.body.outputs[index]);
+                    format!("{} = {value};\n", target(*shape, index, true))
+                });
+                writes.collect()
+            });
+            let used = printer.used;
+            main.used.arguments.extend(&used.arguments);
+            main.used.reads |= used.reads || used.writes;
+            let part_name = self.emitter.names.part(name, index + 1);
+            let (arguments, values) = self.part_arguments(&used);
+            let (result, end) = match used.checks {
+                true => (
+                    "-> ::core::result::Result<(), ::hamel::Singular> ",
+                    "Ok(())\n",
+                ),
+                false => ("", ""),
+            };
+            let kept = self.bind_kept(&used);
+            parts.push_str(&format!(
+                "/// Part {} of {} of `{name}`.\n{inline}fn {part_name}({arguments}) {result}{{\n{kept}{text}{end}}}\n\n",
+                index + 1,
+                self.plan.parts.len(),
+            ));
+            let question = if used.checks { "?" } else { "" };
+            calls.push_str(&format!("self.{part_name}({values}){question};\n"));
+        }
+        let mut text = String::new();
+        if main.used.reads {
+            text.push_str(&format!(
+                "let mut slots = [S::default(); {}];\n",
+                self.plan.size
+            ));
+        }
+        text.push_str(&format!("let mut out = {};\n", zeros(*shape)));
+        text.push_str(&calls);
+        let zero = self.emitter.program.graph.zero();
+        for index in rest
+            .into_iter()
+            .filter(|&index| self.body.outputs[index] != zero)
+        {
+            let value = main.result(self.body.outputs[index]);
+            text.push_str(&format!("{} = {value};\n", target(*shape, index, false)));
+        }
+        let kept = self.bind_kept(&main.used);
+        let body = format!("{kept}{text}{}", self.value("out"));
+        parts + &self.head(&main.used, &body)
+    }
+
+    /// Parameters of a part with their types, and what is given for them.
+    fn part_arguments(&self, used: &Used) -> (String, String) {
+        let mut arguments = vec!["&self".to_string()];
+        let mut values = Vec::new();
+        for &argument in self
+            .spec
+            .arguments
+            .iter()
+            .filter(|argument| used.arguments.contains(argument))
+        {
+            let name = names::argument(argument);
+            arguments.push(format!(
+                "{name}: &[S; {}]",
+                length(self.emitter.program, argument)
+            ));
+            values.push(name.to_string());
+        }
+        if used.reads || used.writes {
+            let mutable = if used.writes { "mut " } else { "" };
+            arguments.push(format!("slots: &{mutable}[S; {}]", self.plan.size));
+            values.push(format!("&{mutable}slots"));
+        }
+        if used.out {
+            arguments.push(format!("out: &mut {}", shape_type(self.spec.shape)));
+            values.push("&mut out".into());
+        }
+        (arguments.join(", "), values.join(", "))
+    }
+}
+
+/// The place of a result, behind a reference or not.
+fn target(shape: Shape, index: usize, reference: bool) -> String {
+    match shape {
+        Shape::Scalar if reference => "*out".into(),
+        Shape::Scalar => "out".into(),
+        Shape::Vector(_) => format!("out[{index}]"),
+        Shape::Matrix(_, columns) => {
+            let columns = columns.max(1);
+            format!("out[{}][{}]", index / columns, index % columns)
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! The generated type: its fields, sizes, constructor and defaults.
+
+use super::function::zeros;
+use super::parameters::{errors, group_type, kept_value, needs_update, shaped};
+use super::{Emitter, docs, number};
+use crate::program::Shape;
+use crate::syntax::ast::ShapeKind;
+
+/// Lints that generated functions cannot obey in general.
+pub const ALLOW: &str = r#"#[rustfmt::skip]
+#[allow(dead_code, unreachable_pub, reason = "a program may use a part of what is generated")]
+#[allow(unused_qualifications, reason = "full paths are right whatever is imported")]
+#[allow(
+    clippy::approx_constant, clippy::let_and_return, clippy::too_many_arguments,
+    clippy::type_complexity, clippy::wrong_self_convention,
+    reason = "numbers, names and shapes are those of the description"
+)]
+"#;
+
+/// Lints that generated implementations of traits cannot obey in general.
+pub const ALLOW_TRAIT: &str = r#"#[rustfmt::skip]
+#[allow(unused_qualifications, clippy::approx_constant, reason = "full paths are right whatever is imported")]
+"#;
+
+/// Whether there is a field of constants: the type has at least one field.
+fn has_kept(emitter: &Emitter) -> bool {
+    !emitter.kept.is_empty() || emitter.program.params.is_empty()
+}
+
+fn zero_constants(emitter: &Emitter) -> String {
+    zeros(Shape::Vector(emitter.kept.len()))
+}
+
+/// `struct Name<S> { … }`
+pub fn structure(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    let mut lines = program.docs.clone();
+    if lines.is_empty() {
+        lines.push(format!("Equations of motion of `{}`.", program.name));
+    }
+    let mut fields = String::new();
+    for (group, field) in program.params.iter().zip(&emitter.names.fields) {
+        fields.push_str(&format!(
+            "/// Parameter `{}`.\n{field}: {},\n",
+            group.name,
+            group_type(group.shape)
+        ));
+    }
+    if has_kept(emitter) {
+        let (kept, n) = (&emitter.names.kept, emitter.kept.len());
+        fields.push_str(&format!(
+            "/// What depends on parameters alone.\n{kept}: [S; {n}],\n"
+        ));
+    }
+    let public = if program.public { "pub " } else { "" };
+    format!(
+        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, reason = \"the description's names and uses\")]\n#[derive(Clone, Debug)]\n{public}struct {}<S> {{\n{fields}}}\n\n",
+        docs::comment(&lines),
+        emitter.names.type_name
+    )
+}
+
+/// Sizes and `new`.
+pub fn sizes(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    let params: usize = program.params.iter().map(|group| group.len).sum();
+    let first = 1 + params;
+    let sizes = [
+        (
+            "COORDINATES",
+            "ν, the number of coordinates x.",
+            first,
+            program.nu,
+        ),
+        (
+            "VELOCITIES",
+            "n, the number of velocities ξ.",
+            first + program.nu,
+            program.n,
+        ),
+        (
+            "INPUTS",
+            "The number of inputs u.",
+            first + program.nu + program.n,
+            program.m,
+        ),
+        (
+            "PARAMETERS",
+            "The number of parameters, entry by entry.",
+            1,
+            params,
+        ),
+    ];
+    let mut text = String::new();
+    for (name, what, first, size) in sizes {
+        let lines = docs::comment(&docs::entries(program, what, first, size));
+        text.push_str(&format!("{lines}pub const {name}: usize = {size};\n\n"));
+    }
+    text + &constructor(emitter)
+}
+
+fn constructor(emitter: &Emitter) -> String {
+    let groups = || emitter.program.params.iter().zip(&emitter.names.fields);
+    let arguments: Vec<String> = groups()
+        .map(|(group, field)| format!("{field}: {}", group_type(group.shape)))
+        .collect();
+    let mut lines = vec![
+        "The system with given parameters.".to_string(),
+        String::new(),
+    ];
+    for (group, field) in groups() {
+        lines.push(format!(
+            "- `{field}`: `{}`, {}",
+            group.name,
+            docs::shape(group.shape)
+        ));
+    }
+    if groups().any(|(group, _)| matches!(group.shape, ShapeKind::Symmetric(_))) {
+        lines.extend([
+            String::new(),
+            "Symmetric matrices are read above their diagonal.".into(),
+        ]);
+    }
+    lines.extend(errors());
+    let values = groups().map(|(group, field)| match kept_value(group, field) {
+        value if value == *field => value,
+        value => format!("{field}: {value}"),
+    });
+    let (mutable, update) = match needs_update(emitter) {
+        true => ("mut ", format!("system.{}()?;\n", emitter.names.update)),
+        false => ("", String::new()),
+    };
+    format!(
+        "{}pub fn new({}) -> ::core::result::Result<Self, ::hamel::Singular> {{\nlet {mutable}system = {};\n{update}Ok(system)\n}}\n\n",
+        docs::comment(&lines),
+        arguments.join(", "),
+        literal(emitter, values.collect())
+    )
+}
+
+/// `Self { … }` with constants not yet computed.
+fn literal(emitter: &Emitter, mut fields: Vec<String>) -> String {
+    if has_kept(emitter) {
+        fields.push(format!(
+            "{}: {}",
+            emitter.names.kept,
+            zero_constants(emitter)
+        ));
+    }
+    format!("Self {{ {} }}", fields.join(", "))
+}
+
+/// `impl Default`
+pub fn default(emitter: &Emitter) -> String {
+    let program = emitter.program;
+    let entry =
+        |index: usize| number::scalar(program.defaults.get(index).copied().unwrap_or_default());
+    let groups = program.params.iter().zip(&emitter.names.fields);
+    let fields = groups.map(|(group, field)| {
+        let columns = match group.shape {
+            ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => n,
+            _ => 0,
+        };
+        let value = shaped(group.shape, |i, j| match group.shape {
+            ShapeKind::Symmetric(n) => entry(group.offset + upper(n, i.min(j), i.max(j))),
+            _ => entry(group.offset + i * columns + j),
+        });
+        format!("{field}: {value}")
+    });
+    let value = literal(emitter, fields.collect());
+    let names = &emitter.names;
+    let body = match emitter.kept.is_empty() {
+        true => value,
+        false => format!(
+            "let mut system = {value};\nsystem.{} = system.{}();\nsystem",
+            names.kept, names.constants
+        ),
+    };
+    format!(
+        "{ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::default::Default for {}<S> {{\n/// The parameters of the description.\nfn default() -> Self {{\n{body}\n}}\n}}\n\n",
+        names.type_name
+    )
+}
+
+/// The place of entry (i, j), i ≤ j, among those on and above the diagonal, by rows.
+fn upper(n: usize, i: usize, j: usize) -> usize {
+    i * n - i * (i + 1) / 2 + j
+}

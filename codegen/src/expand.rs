@@ -1,0 +1,28 @@
+//! The macro's door: tokens in, tokens out, errors as `compile_error!` at their places.
+
+use crate::diagnostics::Diagnostic;
+use crate::emit;
+use crate::generate::from_tokens;
+use crate::render::to_compile_errors;
+use proc_macro2::TokenStream;
+
+/// The macro refuses larger programs: rustc handles their text better as a file, in chunks.
+pub const MACRO_STATEMENTS: usize = 10_000;
+
+/// The expansion of `rigid_eom! { … }`.
+pub fn expand(input: TokenStream) -> TokenStream {
+    let generated = match from_tokens(input) {
+        Ok(generated) => generated,
+        Err(errors) => return to_compile_errors(&errors),
+    };
+    let statements = emit::statements(&generated.program);
+    if statements > MACRO_STATEMENTS {
+        let error = Diagnostic::new(
+            generated.model.span,
+            format!("`{}` has {statements} statements, more than the {MACRO_STATEMENTS} that a macro should expand to", generated.model.name),
+        )
+        .help("put the description in an `.eom` file and call `hamel_codegen::Builder` in build.rs");
+        return to_compile_errors(&[error]);
+    }
+    emit::tokens(&generated.program, &emit::Options::default())
+}

@@ -1,0 +1,78 @@
+//! c² + s² = 1 used where it shortens a polynomial: a normal form knows one direction only, and
+//! c² → 1 − s² may be longer where s² → 1 − c² is shorter.
+
+use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::poly::monomial::{Monomial, Var};
+use crate::algebra::poly::polynomial::Poly;
+use crate::algebra::topoly::OPAQUE;
+use crate::model::layout::Block;
+use num_rational::BigRational;
+
+/// Polynomials beyond this are left alone.
+const MOST_TERMS: usize = 300;
+
+/// Pairs of variables on a unit circle: coordinates on S¹, sine and cosine of one angle.
+pub fn pairs(
+    graph: &Graph,
+    first: Var,
+    blocks: &[Block],
+    polynomial: &Poly<BigRational>,
+) -> Vec<(Var, Var)> {
+    let mut pairs = Vec::new();
+    let mut place = first;
+    for block in blocks {
+        if *block == Block::Circle {
+            pairs.push((place, place + 1));
+        }
+        place += block.len() as Var;
+    }
+    let angle = |var: Var, wanted: Function| -> Option<Edge> {
+        match graph.node(var.checked_sub(OPAQUE)?) {
+            Node::Apply(function, angle) if function == wanted => Some(angle),
+            _ => None,
+        }
+    };
+    let variables = polynomial.variables();
+    for &cos in &variables {
+        let Some(of) = angle(cos, Function::Cos) else {
+            continue;
+        };
+        let sines = variables.iter().copied();
+        let mut sines = sines.filter(|&var| angle(var, Function::Sin) == Some(of));
+        pairs.extend(sines.next().map(|sin| (cos, sin)));
+    }
+    pairs
+}
+
+/// The polynomial with fewest terms that replacing squares on circles leads to, one circle after
+/// the other.
+pub fn shortened(polynomial: Poly<BigRational>, pairs: &[(Var, Var)]) -> Poly<BigRational> {
+    let mut best = polynomial;
+    for &(c, s) in pairs {
+        for (square, other) in [(c, s), (s, c)] {
+            if best.terms().len() > MOST_TERMS {
+                return best;
+            }
+            let replaced = replaced(&best, square, other);
+            if replaced.terms().len() < best.terms().len() {
+                best = replaced;
+            }
+        }
+    }
+    best
+}
+
+/// Every square² replaced by 1 − other².
+fn replaced(polynomial: &Poly<BigRational>, square: Var, other: Var) -> Poly<BigRational> {
+    let circle = Poly::one().sub(&Poly::var(other).pow(2));
+    let mut sum = Poly::zero();
+    for (monomial, c) in polynomial.terms() {
+        let exponent = monomial.exponent(square);
+        let rest = monomial.powers().iter().copied();
+        let rest = rest.filter(|&(var, _)| var != square);
+        let rest = Monomial::from_powers(rest.chain([(square, exponent % 2)]));
+        let term = Poly::from_terms(polynomial.order(), vec![(rest, c.clone())]);
+        sum = sum.add(&term.mul(&circle.pow(exponent / 2)));
+    }
+    sum
+}

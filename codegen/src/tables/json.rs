@@ -1,0 +1,56 @@
+//! Tables as JSON.
+//!
+//! `{ "hamel": version, "system", "coordinates", "velocities", "tables": { name: { "symbol", "shape",
+//! "nonzero", "entries": [{ "index", "value" }], "groups": [{ "value", "plus", "minus" }],
+//! "constants": [{ "name", "value" }], "temporaries": [{ "name", "value" }] } } }`; entries of φ have
+//! `reads`, entries with a name of their own have `name`.
+
+use super::Tables;
+use super::listing::{Definition, Entry, Group, Listing};
+use super::print::Notation;
+use serde_json::{Value, json as object};
+
+/// All tables as JSON; entries that are zero are among the entries where `all`.
+pub fn json(tables: &Tables, all: bool) -> Value {
+    let listings = tables.listings.iter();
+    let listings = listings.map(|listing| (listing.table.name().to_string(), table(listing, all)));
+    object!({
+        "hamel": env!("CARGO_PKG_VERSION"),
+        "system": tables.system,
+        "coordinates": tables.coordinates,
+        "velocities": tables.velocities,
+        "tables": Value::Object(listings.collect()),
+    })
+}
+
+fn table(listing: &Listing, all: bool) -> Value {
+    let listed = listing.listed(all).into_iter();
+    object!({
+        "symbol": listing.table.symbol(),
+        "shape": listing.shape,
+        "nonzero": listing.entries.len(),
+        "entries": listed.map(entry).collect::<Vec<Value>>(),
+        "groups": listing.groups.iter().map(group).collect::<Vec<Value>>(),
+        "constants": listing.constants.iter().map(definition).collect::<Vec<Value>>(),
+        "temporaries": listing.temporaries.iter().map(definition).collect::<Vec<Value>>(),
+    })
+}
+
+fn entry(entry: &Entry) -> Value {
+    let mut value = object!({ "index": entry.index, "value": Notation::Text.term(&entry.value) });
+    if let Value::Object(fields) = &mut value {
+        let named = [("name", &entry.label), ("reads", &entry.reads)];
+        for (key, text) in named.into_iter().filter(|(_, text)| !text.is_empty()) {
+            fields.insert(key.into(), Value::String(text.clone()));
+        }
+    }
+    value
+}
+
+fn group(group: &Group) -> Value {
+    object!({ "value": Notation::Text.term(&group.value), "plus": group.plus, "minus": group.minus })
+}
+
+fn definition(definition: &Definition) -> Value {
+    object!({ "name": definition.name, "value": Notation::Text.term(&definition.value) })
+}

@@ -1,0 +1,83 @@
+//! The symbols of the formalism as tables to read: text, Markdown, LaTeX, JSON.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `kind` | which tables there are, their symbols, shapes and names |
+//! | `collect` | the entries of every table as edges of a graph |
+//! | `simplify`, `circles` | the polynomial shown for an expression, modulo φ |
+//! | `write`, `style` | nodes to expressions; what is shared gets a name |
+//! | `naming` | those names |
+//! | `polish` | polynomials to expressions, common factors in front |
+//! | `expression` | products, sums, calls |
+//! | `listing`, `rows` | entries in order, and grouped by value |
+//! | `notation`, `print` | names and expressions as text or LaTeX |
+//! | `text`, `markdown`, `latex`, `json` | a whole set of tables |
+
+mod circles;
+mod collect;
+pub mod expression;
+mod json;
+pub mod kind;
+mod latex;
+pub mod listing;
+mod markdown;
+mod naming;
+mod notation;
+mod polish;
+mod print;
+mod rows;
+mod simplify;
+mod style;
+#[cfg(test)]
+mod tests;
+mod text;
+mod write;
+
+pub use json::json;
+pub use kind::Table;
+pub use latex::latex;
+pub use listing::{Definition, Entry, Group, Listing};
+pub use markdown::markdown;
+pub use text::text;
+
+use crate::generate::Generated;
+use collect::Collector;
+
+/// The tables that were asked for, ready to be printed.
+#[derive(Clone, Debug)]
+pub struct Tables {
+    /// Name of the system.
+    pub system: String,
+    /// Names of x, in order.
+    pub coordinates: Vec<String>,
+    /// Names of ξ, in order.
+    pub velocities: Vec<String>,
+    /// The tables, in the order asked for.
+    pub listings: Vec<Listing>,
+}
+
+/// Derives tables; all of [`Table::DEFAULT`] where none is named. The error says which table
+/// cannot be had, and why.
+pub fn tables(generated: &Generated, of: &[Table]) -> Result<Tables, String> {
+    let model = &generated.model;
+    let of = if of.is_empty() { &Table::DEFAULT } else { of };
+    let mut collector = Collector::new(generated);
+    let mut listings: Vec<Listing> = Vec::new();
+    for &table in of {
+        if listings.iter().all(|known| known.table != table) {
+            listings.push(collector.listing(table)?);
+        }
+    }
+    let names = |edges: &[crate::algebra::graph::Edge]| -> Vec<String> {
+        let symbols = model.graph.symbols();
+        let of = |node| symbols.iter().find(|symbol| symbol.node == node);
+        let named = edges.iter().filter_map(|edge| of(edge.node()));
+        named.map(|symbol| symbol.name.clone()).collect()
+    };
+    Ok(Tables {
+        system: model.name.clone(),
+        coordinates: names(&model.x),
+        velocities: names(&model.xi),
+        listings,
+    })
+}

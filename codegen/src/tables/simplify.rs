@@ -1,0 +1,122 @@
+//! The polynomial that is shown for an expression: as it stands, or in normal form modulo φ.
+
+use super::circles::{pairs, shortened};
+use crate::algebra::graph::{Edge, Graph, Node, NodeId};
+use crate::algebra::poly::monomial::Var;
+use crate::algebra::poly::polynomial::Poly;
+use crate::algebra::topoly::{Expander, OPAQUE};
+use crate::derive::normal::NormalForms;
+use crate::model::class;
+use crate::model::layout::Block;
+use crate::model::points::Points;
+use num_rational::BigRational;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Longest polynomial that is shown as one.
+pub const MOST_SHOWN: usize = 60;
+
+/// Longest polynomial that is expanded inside an expression that is not.
+const MOST_INSIDE: usize = 8;
+
+/// Simplification of the expressions of one graph.
+pub struct Simplifier {
+    expander: Expander,
+    forms: Option<NormalForms>,
+    /// The symbol of x₁.
+    first: NodeId,
+    /// The block of every coordinate.
+    blocks: Vec<usize>,
+    kinds: Vec<Block>,
+    inside: BTreeMap<Var, BTreeSet<usize>>,
+}
+
+impl Simplifier {
+    /// Simplification modulo φ.
+    pub fn modulo(points: &Points) -> Self {
+        let forms = Some(NormalForms::new(points));
+        Simplifier {
+            forms,
+            ..Simplifier::free(points)
+        }
+    }
+
+    /// Expansion only: for φ itself, and for functions as they are emitted.
+    pub fn free(points: &Points) -> Self {
+        let numbered = points.blocks.iter().enumerate();
+        Simplifier {
+            expander: Expander::default(),
+            forms: None,
+            first: points.first as NodeId,
+            blocks: numbered
+                .flat_map(|(i, block)| vec![i; block.len()])
+                .collect(),
+            kinds: points.blocks.clone(),
+            inside: BTreeMap::new(),
+        }
+    }
+
+    /// The polynomial to show: of the candidates that with fewest blocks of coordinates, then
+    /// fewest coordinates, then fewest terms; `None` where it is too long.
+    pub fn whole(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
+        let plain = self.expander.expand(graph, Edge::of(node))?;
+        let mut best = plain.clone();
+        if graph.class(node) & class::COORD != 0
+            && let Some(forms) = &mut self.forms
+        {
+            let reduced = forms.reduce(graph, &plain);
+            for candidate in [plain, reduced] {
+                let pairs = pairs(graph, self.first, &self.kinds, &candidate);
+                let candidate = shortened(candidate, &pairs);
+                if self.cost(graph, &candidate) < self.cost(graph, &best) {
+                    best = candidate;
+                }
+            }
+        }
+        // Products with quotients are shorter as they are than multiplied out.
+        let quotient = |var: Var| {
+            let id = var.checked_sub(OPAQUE);
+            id.is_some_and(|id| matches!(graph.node(id), Node::Div(..)))
+        };
+        let most = match best.variables().into_iter().any(quotient) {
+            true => MOST_INSIDE,
+            false => MOST_SHOWN,
+        };
+        (best.terms().len() <= most).then_some(best)
+    }
+
+    /// The polynomial of a part of a longer expression.
+    pub fn part(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
+        let plain = self.expander.expand(graph, Edge::of(node))?;
+        (plain.terms().len() <= MOST_INSIDE).then_some(plain)
+    }
+
+    fn cost(&mut self, graph: &Graph, polynomial: &Poly<BigRational>) -> (usize, usize, usize) {
+        let mut coordinates: BTreeSet<usize> = BTreeSet::new();
+        for var in polynomial.variables() {
+            coordinates.extend(self.coordinates(graph, var));
+        }
+        let blocks: BTreeSet<usize> = coordinates.iter().map(|&c| self.blocks[c]).collect();
+        (blocks.len(), coordinates.len(), polynomial.terms().len())
+    }
+
+    /// The coordinates that a variable is written in.
+    fn coordinates(&mut self, graph: &Graph, var: Var) -> BTreeSet<usize> {
+        let (first, count) = (self.first, self.blocks.len());
+        let place = |symbol: u32| {
+            let place = symbol.checked_sub(first)? as usize;
+            (place < count).then_some(place)
+        };
+        let Some(id) = var.checked_sub(OPAQUE) else {
+            return place(var).into_iter().collect();
+        };
+        let written = self.inside.entry(var).or_insert_with(|| {
+            let nodes = graph.reachable(&[Edge::of(id)]).into_iter();
+            let symbols = nodes.filter_map(|node| match graph.node(node) {
+                Node::Symbol(index) => place(index),
+                _ => None,
+            });
+            symbols.collect()
+        });
+        written.clone()
+    }
+}

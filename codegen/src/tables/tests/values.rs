@@ -1,0 +1,131 @@
+//! What is printed has the value of what it stands for, in floating point at a point of X.
+
+use super::fixture;
+use crate::algebra::graph::{Edge, Function};
+use crate::algebra::numeric::evaluate;
+use crate::derive::tables::Geometry;
+use crate::generate::Generated;
+use crate::model::layout::Block;
+use crate::tables::expression::{Atom, Term};
+use crate::tables::{Listing, Table, tables};
+use num_traits::ToPrimitive;
+use std::collections::BTreeMap;
+
+/// Rounding of some hundred operations on numbers near 1.
+const TOLERANCE: f64 = 1e-9;
+
+type Values = BTreeMap<String, f64>;
+
+fn term(values: &Values, term: &Term) -> f64 {
+    let product = |factors: &[(Atom, u32)]| -> f64 {
+        let powers = factors
+            .iter()
+            .map(|(a, power)| atom(values, a).powi(*power as i32));
+        powers.product()
+    };
+    term.coefficient.to_f64().expect("finite") * product(&term.over) / product(&term.under)
+}
+
+fn atom(values: &Values, atom: &Atom) -> f64 {
+    let arguments =
+        |terms: &[Term]| -> Vec<f64> { terms.iter().map(|t| term(values, t)).collect() };
+    match atom {
+        Atom::Name(name) => values[name],
+        Atom::Sum(terms) => arguments(terms).iter().sum(),
+        Atom::Call(function, terms) => match (function, arguments(terms).as_slice()) {
+            (Function::Sin, [a]) => a.sin(),
+            (Function::Cos, [a]) => a.cos(),
+            (Function::Exp, [a]) => a.exp(),
+            (Function::Log, [a]) => a.ln(),
+            (Function::Sqrt, [a]) => a.sqrt(),
+            (Function::Atan2, [y, x]) => y.atan2(*x),
+            _ => f64::NAN,
+        },
+    }
+}
+
+/// A point of X away from the identity; the start where the user wrote constraints.
+fn point(generated: &Generated) -> Vec<f64> {
+    let model = &generated.model;
+    if !model.points.constraints.is_empty() {
+        return model.start_x.clone();
+    }
+    let mut x = Vec::new();
+    for block in &model.blocks {
+        match block {
+            Block::Flat(n) => x.extend((0..*n).map(|i| 0.7 + 0.2 * i as f64)),
+            Block::Circle => x.extend([0.6, 0.8]),
+            Block::Quaternion => x.extend([0.2, 0.4, 0.4, 0.8]),
+            Block::Rotation => {
+                let rows = [[-0.6, 0.0, 0.8], [0.64, -0.6, 0.48], [0.48, 0.8, 0.36]];
+                x.extend(rows.concat());
+            }
+        }
+    }
+    x
+}
+
+fn compare(what: &str, listing: &Listing, mut values: Values, expected: &[f64]) {
+    for definition in listing.constants.iter().chain(&listing.temporaries) {
+        let value = term(&values, &definition.value);
+        values.insert(definition.name.clone(), value);
+    }
+    let entries = listing.listed(true);
+    assert_eq!(entries.len(), expected.len(), "{what}");
+    for (entry, expected) in entries.iter().zip(expected) {
+        let value = term(&values, &entry.value);
+        let error = (value - expected).abs() / (1.0 + expected.abs());
+        assert!(
+            error < TOLERANCE,
+            "{what} {:?}: {value} for {expected}",
+            entry.index
+        );
+    }
+}
+
+#[test]
+fn printed_values_are_those_of_the_graph() {
+    let folder = format!("{}/../tests/models", env!("CARGO_MANIFEST_DIR"));
+    for file in std::fs::read_dir(folder).expect("models").flatten() {
+        let name = file.file_name().to_string_lossy().replace(".eom", "");
+        let generated = fixture(&name);
+        let model = &generated.model;
+        let numbered =
+            |n: usize, scale: f64| (1..=n).map(|i| scale * i as f64).collect::<Vec<f64>>();
+        let (xi, u) = (numbered(model.n(), 0.3), numbered(model.u.len(), -0.4));
+        let x = point(&generated);
+        let numbers = model.numbers(&model.defaults, &x, &xi, &u, &numbered(model.n(), 0.0));
+        let symbols = model.graph.symbols().iter();
+        let values: Values = symbols
+            .map(|s| s.name.clone())
+            .zip(numbers.iter().copied())
+            .collect();
+        let geometry = Geometry::new(model).expect("regular");
+        let accel = generated.program.function("accel").expect("generated");
+        let shapes: [(Table, Vec<Edge>); 6] = [
+            (Table::A, model.a.concat()),
+            (Table::Y, geometry.y.concat()),
+            (Table::Gamma, geometry.gamma.concat().concat()),
+            (Table::Mass, geometry.mass.concat()),
+            (Table::Connection, geometry.connection.concat().concat()),
+            (Table::Accel, accel.outputs.clone()),
+        ];
+        for (table, edges) in shapes {
+            let graph = match table {
+                Table::Accel => &generated.program.graph,
+                _ => &geometry.model.graph,
+            };
+            let expected = evaluate(graph, &edges, &numbers);
+            let listing = tables(&generated, &[table])
+                .expect("derivable")
+                .listings
+                .remove(0);
+            compare(
+                &format!("{name} {table:?}"),
+                &listing,
+                values.clone(),
+                &expected,
+            );
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Tables as plain text for a terminal.
+
+use super::Tables;
+use super::listing::{Definition, Entry, Group, Listing};
+use super::print::{Notation, index};
+
+/// Widest value that indices are aligned behind.
+const WIDEST: usize = 60;
+
+/// All tables as text; ungrouped and with zeros where `all`.
+pub fn text(tables: &Tables, all: bool) -> String {
+    let mut text = format!("{}\n", tables.system);
+    text.push_str(&format!("x = ({})\n", tables.coordinates.join(", ")));
+    text.push_str(&format!("ξ = ({})\n", tables.velocities.join(", ")));
+    for listing in &tables.listings {
+        text.push_str(&format!(
+            "\n{}: {}\n",
+            listing.table.name(),
+            listing.table.title()
+        ));
+        text.push_str(&format!("  {}\n", summary(listing)));
+        let lines = match listing.table.is_grouped() && !all {
+            true => grouped(listing),
+            false => single(listing, all),
+        };
+        for line in definitions(&listing.constants).into_iter().chain(lines) {
+            text.push_str(&format!("  {}\n", line.trim_end()));
+        }
+        if !listing.temporaries.is_empty() && !leads(listing) {
+            text.push_str("  where\n");
+            for line in definitions(&listing.temporaries) {
+                text.push_str(&format!("    {line}\n"));
+            }
+        }
+    }
+    text
+}
+
+/// Whether temporaries stand before what uses them: in straight-line code.
+pub fn leads(listing: &Listing) -> bool {
+    listing.table == super::Table::Accel
+}
+
+/// `6×6×6, 48 of 216 nonzero`
+pub fn summary(listing: &Listing) -> String {
+    let sizes: Vec<String> = listing.shape.iter().map(usize::to_string).collect();
+    let size = match sizes.as_slice() {
+        [_] if listing.size() == 1 => "1 entry".to_string(),
+        [_] => format!("{} entries", listing.size()),
+        _ => sizes.join("×"),
+    };
+    match (listing.entries.len(), listing.size()) {
+        (_, 0) => "none".into(),
+        (0, _) => format!("{size}, all zero"),
+        (nonzero, all) if nonzero == all => size,
+        (nonzero, all) => format!("{size}, {nonzero} of {all} nonzero"),
+    }
+}
+
+/// The indices of some entries, `135 216 324`.
+pub fn indices(list: &[Vec<usize>], shape: &[usize]) -> String {
+    let written: Vec<String> = list.iter().map(|entry| index(entry, shape)).collect();
+    written.join(" ")
+}
+
+/// What stands left of an entry's value: `gamma[1,2,3]`, or its own name.
+pub fn label(listing: &Listing, entry: &Entry) -> String {
+    if entry.label.is_empty() {
+        let digits: Vec<String> = entry.index.iter().map(usize::to_string).collect();
+        return format!("{}[{}]", listing.table.name(), digits.join(","));
+    }
+    entry.label.clone()
+}
+
+fn definitions(list: &[Definition]) -> Vec<String> {
+    let line = |definition: &Definition| {
+        format!(
+            "{} = {}",
+            definition.name,
+            Notation::Text.term(&definition.value)
+        )
+    };
+    list.iter().map(line).collect()
+}
+
+fn single(listing: &Listing, all: bool) -> Vec<String> {
+    let before = if leads(listing) {
+        definitions(&listing.temporaries)
+    } else {
+        Vec::new()
+    };
+    let entries = listing.listed(all);
+    let labels: Vec<String> = entries.iter().map(|entry| label(listing, entry)).collect();
+    let width = labels
+        .iter()
+        .map(|label| label.chars().count())
+        .max()
+        .unwrap_or(0);
+    let lines = entries.iter().zip(&labels).map(|(entry, label)| {
+        let value = Notation::Text.term(&entry.value);
+        if entry.reads.is_empty() {
+            format!("{label:width$} = {value}")
+        } else {
+            format!("{label:width$}: {value} = 0    ({})", entry.reads)
+        }
+    });
+    before.into_iter().chain(lines).collect()
+}
+
+fn grouped(listing: &Listing) -> Vec<String> {
+    if listing.groups.is_empty() {
+        return Vec::new();
+    }
+    let row = |group: &Group| {
+        [
+            Notation::Text.term(&group.value),
+            indices(&group.plus, &listing.shape),
+            indices(&group.minus, &listing.shape),
+        ]
+    };
+    let mut rows: Vec<[String; 3]> = listing.groups.iter().map(row).collect();
+    let signed = listing.groups.iter().any(|group| !group.minus.is_empty());
+    let last = if signed { "negative of it" } else { "" };
+    rows.insert(
+        0,
+        ["value".into(), listing.table.indices().into(), last.into()],
+    );
+    let width = |column: usize| {
+        let widths = rows.iter().map(|row| row[column].chars().count());
+        widths.filter(|&width| width <= WIDEST).max().unwrap_or(0)
+    };
+    let (first, second) = (width(0), width(1));
+    rows.iter()
+        .map(|[value, plus, minus]| format!("{value:first$}  {plus:second$}  {minus}"))
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! Every identity of the formalism holds for every model, and a broken symbol is noticed.
+
+use hamel_codegen::derive::check::{Verdict, check};
+use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::generate::from_text;
+use std::path::Path;
+
+fn text(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.eom"));
+    std::fs::read_to_string(path).expect("the model is in the repository")
+}
+
+#[test]
+fn all_identities_hold() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    for entry in std::fs::read_dir(folder).expect("models") {
+        let path = entry.expect("entry").path();
+        if path.extension().is_none_or(|extension| extension != "eom") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).expect("readable");
+        let generated = from_text(&text).expect("correct");
+        let identities = check(&generated.model, &generated.program);
+        assert!(identities.len() >= 9);
+        for identity in identities {
+            let failed = matches!(identity.verdict, Verdict::Failed(_));
+            assert!(
+                !failed,
+                "{}: {} {}: {:?}",
+                path.display(),
+                identity.label,
+                identity.equation,
+                identity.verdict
+            );
+        }
+    }
+}
+
+/// Kinematic identities of Lie groups are proved over the rationals, not only modulo p.
+#[test]
+fn lie_group_identities_are_proved() {
+    for name in [
+        "free_body",
+        "free_body_world",
+        "heavy_top",
+        "heavy_top_quaternion",
+        "planar_body",
+    ] {
+        let generated = from_text(&text(name)).expect("correct");
+        for identity in check(&generated.model, &generated.program).iter().take(6) {
+            assert_eq!(
+                identity.verdict,
+                Verdict::Proved,
+                "{name}: {}",
+                identity.equation
+            );
+        }
+    }
+}
+
+/// A wrong acceleration is caught: by the equation of motion and by the power balance.
+#[test]
+fn a_wrong_sign_is_noticed() {
+    let generated = from_text(&text("heavy_top")).expect("correct");
+    let mut program = generated.program.clone();
+    let accel = program
+        .functions
+        .iter_mut()
+        .find(|f| f.name == "accel")
+        .expect("accel");
+    accel.outputs[1] = -accel.outputs[1];
+    let failed: Vec<&str> = check(&generated.model, &program)
+        .iter()
+        .filter(|identity| matches!(identity.verdict, Verdict::Failed(_)))
+        .map(|identity| identity.label)
+        .collect();
+    assert_eq!(failed, ["(30c)", "power"]);
+}
+
+/// γ of the body and world frames of SE(3) differ in sign: structure constants of left- and
+/// right-invariant fields.
+#[test]
+fn world_frame_has_opposite_structure_constants() {
+    let body = Geometry::new(&from_text(&text("heavy_top")).expect("correct").model).expect("Y");
+    let world =
+        Geometry::new(&from_text(&text("heavy_top_world")).expect("correct").model).expect("Y");
+    for i in 0..3 {
+        for j in 0..3 {
+            for k in 0..3 {
+                let a = body
+                    .model
+                    .graph
+                    .as_rational(body.gamma[i][j][k])
+                    .expect("constant");
+                let b = world
+                    .model
+                    .graph
+                    .as_rational(world.gamma[i][j][k])
+                    .expect("constant");
+                assert_eq!(a, -b);
+            }
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Three doors, one generator: the same text gives the same function bodies through the macro, the
+//! build script and the generator that the command line calls.
+
+use hamel_codegen::builder::source;
+use std::path::Path;
+
+fn models() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let mut all: Vec<(String, String)> = std::fs::read_dir(folder)
+        .expect("models")
+        .map(|entry| entry.expect("entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "eom"))
+        .map(|path| {
+            let name = path
+                .file_stem()
+                .expect("a name")
+                .to_string_lossy()
+                .into_owned();
+            (name, std::fs::read_to_string(path).expect("readable"))
+        })
+        .collect();
+    all.sort();
+    all
+}
+
+/// The items of a file without its header comment.
+fn items(code: &str) -> &str {
+    code.split_once("\n\n").map_or(code, |(_, items)| items)
+}
+
+#[test]
+fn the_macro_expands_to_what_the_builder_writes() {
+    for (name, text) in models() {
+        let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
+        let expanded = hamel_codegen::expand(tokens);
+        let formatted = prettyplease::unparse(&syn::parse2(expanded).expect("items"));
+        let written = source(&text, &name).expect("correct");
+        assert_eq!(formatted.trim(), items(&written).trim(), "{name}");
+    }
+}
+
+#[test]
+fn the_build_script_wrote_the_same() {
+    let written = include_str!(concat!(env!("OUT_DIR"), "/free_body.rs"));
+    let (name, text) = models()
+        .into_iter()
+        .find(|(name, _)| name == "free_body")
+        .expect("free_body");
+    assert_eq!(
+        written,
+        source(&text, &format!("{name}.eom")).expect("correct")
+    );
+}
+
+#[test]
+fn a_large_model_is_refused_by_the_macro_with_the_way_out() {
+    let text = hamel_tests::chain::chain(9);
+    let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
+    let expanded = hamel_codegen::expand(tokens).to_string();
+    assert!(expanded.contains("compile_error"), "{expanded}");
+    assert!(
+        expanded.contains("statements, more than the 10000 that a macro should expand to"),
+        "{expanded}"
+    );
+    assert!(expanded.contains("build.rs"), "{expanded}");
+}

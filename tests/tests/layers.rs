@@ -1,0 +1,175 @@
+//! Dependencies point one way; what a stage must not know is checked in its sources.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// All Rust sources below a folder.
+fn sources(folder: &str) -> Vec<(PathBuf, String)> {
+    let mut found = Vec::new();
+    let mut open = vec![root().join(folder)];
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            let entries = fs::read_dir(&path).expect("a folder");
+            open.extend(entries.map(|entry| entry.expect("an entry").path()));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let text = fs::read_to_string(&path).expect("readable");
+            found.push((path, text));
+        }
+    }
+    assert!(!found.is_empty(), "{folder} has no sources");
+    found
+}
+
+fn forbid(folder: &str, words: &[&str]) {
+    for (path, text) in sources(folder) {
+        for word in words {
+            let line = text
+                .lines()
+                .position(|line| !line.trim_start().starts_with("//") && line.contains(word));
+            assert!(
+                line.is_none(),
+                "{}:{}: {folder} must not know `{word}`",
+                path.display(),
+                line.unwrap_or(0) + 1
+            );
+        }
+    }
+}
+
+#[test]
+fn algebra_knows_no_mechanics() {
+    forbid(
+        "codegen/src/algebra",
+        &[
+            "crate::model",
+            "crate::derive",
+            "crate::program",
+            "crate::emit",
+            "crate::tables",
+            "crate::syntax",
+            "crate::diagnostics",
+        ],
+    );
+}
+
+#[test]
+fn syntax_resolves_nothing() {
+    forbid(
+        "codegen/src/syntax",
+        &[
+            "crate::model",
+            "crate::algebra",
+            "crate::derive",
+            "crate::program",
+            "crate::emit",
+            "crate::tables",
+        ],
+    );
+}
+
+#[test]
+fn the_model_derives_nothing() {
+    forbid(
+        "codegen/src/model",
+        &[
+            "crate::derive",
+            "crate::program",
+            "crate::emit",
+            "crate::tables",
+        ],
+    );
+}
+
+#[test]
+fn programs_do_not_know_how_they_were_derived() {
+    forbid(
+        "codegen/src/program",
+        &[
+            "crate::derive",
+            "crate::emit",
+            "crate::tables",
+            "crate::syntax",
+        ],
+    );
+}
+
+#[test]
+fn derivation_prints_nothing() {
+    forbid(
+        "codegen/src/derive",
+        &["crate::emit", "crate::tables", "crate::render", "println!"],
+    );
+}
+
+#[test]
+fn emission_does_no_algebra() {
+    forbid(
+        "codegen/src/emit",
+        &[
+            "crate::derive",
+            "crate::tables",
+            "algebra::poly",
+            "algebra::derivation",
+            "algebra::linear",
+            ".rational(",
+            ".apply(",
+        ],
+    );
+}
+
+#[test]
+fn runtime_and_generator_never_meet() {
+    for (folder, stranger) in [("runtime", "hamel-codegen"), ("codegen", "hamel =")] {
+        let manifest =
+            fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
+        assert!(
+            !manifest.contains(stranger),
+            "{folder} depends on {stranger}"
+        );
+    }
+    forbid("runtime/src", &["hamel_codegen"]);
+}
+
+#[test]
+fn no_file_hides_two_ideas() {
+    for folder in ["codegen/src", "macros/src", "runtime/src", "cli/src"] {
+        for (path, text) in sources(folder) {
+            let lines = text.lines().count();
+            assert!(
+                lines <= 500,
+                "{} has {lines} lines; split it",
+                path.display()
+            );
+            assert!(
+                text.starts_with("//!") || text.starts_with("#!["),
+                "{} does not say what it is",
+                path.display()
+            );
+        }
+    }
+}
+
+/// The map in ARCHITECTURE.md names folders and files that exist.
+#[test]
+fn the_architecture_page_is_true() {
+    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    let mut seen = 0;
+    for word in page.split('`').skip(1).step_by(2) {
+        let is_path = word.contains('/')
+            && !word.contains(' ')
+            && !word.contains("::")
+            && !word.contains('*');
+        if is_path {
+            seen += 1;
+            assert!(
+                root().join(word).exists(),
+                "ARCHITECTURE.md names `{word}`, which does not exist"
+            );
+        }
+    }
+    assert!(seen > 20, "the page has lost its map");
+}

@@ -1,0 +1,146 @@
+//! Reviewed snapshots of what every model gives: its tables, its code, its operation counts.
+//!
+//! What they lock has been proved before: generation validates every function, and `checks.rs`
+//! checks every identity.
+
+use hamel_codegen::builder::source;
+use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::program::count::count;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+fn models() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("models")
+        .map(|entry| entry.expect("entry").path())
+        .collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "eom"));
+    paths.sort();
+    assert!(paths.len() >= 18, "the models have gone");
+    paths
+}
+
+fn read(path: &Path) -> (String, String, Generated) {
+    let text = std::fs::read_to_string(path).expect("readable");
+    let name = path
+        .file_stem()
+        .expect("a name")
+        .to_string_lossy()
+        .into_owned();
+    let generated = from_text(&text).unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
+    (name, text, generated)
+}
+
+fn operations(generated: &Generated) -> String {
+    let mut text = String::new();
+    for function in &generated.program.functions {
+        let roots: Vec<_> = function
+            .outputs
+            .iter()
+            .chain(&function.guards)
+            .copied()
+            .collect();
+        let c = count(&generated.program.graph, &roots);
+        let _ = writeln!(
+            text,
+            "{:18} {:4} flops = {:3} mul {:3} add {:2} div, {} sqrt, {} sincos, {} other",
+            function.name,
+            c.flops(),
+            c.mul,
+            c.add,
+            c.div,
+            c.sqrt,
+            c.sincos,
+            c.other
+        );
+    }
+    text
+}
+
+#[test]
+fn operation_counts() {
+    let mut text = String::new();
+    for path in models() {
+        let (name, _, generated) = read(&path);
+        let _ = writeln!(text, "{name}\n{}", operations(&generated));
+    }
+    insta::assert_snapshot!(text);
+}
+
+#[test]
+fn generated_code() {
+    for path in models() {
+        let (name, text, _) = read(&path);
+        let code = source(&text, &format!("{name}.eom")).expect("correct");
+        insta::assert_snapshot!(format!("code_{name}"), code);
+    }
+}
+
+/// The bars of operation counts, each with the best peer measured.
+#[test]
+fn accel_costs_no_more_than_its_bar() {
+    let bars = [
+        ("free_body", 99),
+        ("free_body_no_wrench", 80),
+        ("heavy_top", 48),
+        ("heavy_top_axis", 10),
+        ("principal_axes", 6),
+        ("cart_pole", 16),
+        ("double_pendulum_angles", 32),
+    ];
+    for path in models() {
+        let (name, _, generated) = read(&path);
+        let Some((_, bar)) = bars.iter().find(|(known, _)| *known == name) else {
+            continue;
+        };
+        let accel = generated.program.function("accel").expect("accel");
+        let roots: Vec<_> = accel.outputs.iter().chain(&accel.guards).copied().collect();
+        let count = count(&generated.program.graph, &roots);
+        assert!(
+            count.flops() <= *bar,
+            "{name}: {} operations, the bar is {bar}",
+            count.flops()
+        );
+        if name == "cart_pole" {
+            assert_eq!(count.sincos, 1);
+        }
+    }
+}
+
+/// γ of a Lie group is constant: it costs nothing, and no function of M's inverse is left either
+/// where M is constant.
+#[test]
+fn constant_mass_costs_nothing() {
+    for name in ["free_body", "heavy_top", "principal_axes", "six_particles"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.eom"));
+        let (_, _, generated) = read(&path);
+        let mass = generated
+            .program
+            .function("mass_matrix")
+            .expect("mass_matrix");
+        assert_eq!(
+            count(&generated.program.graph, &mass.outputs).flops(),
+            0,
+            "{name}"
+        );
+        assert!(
+            generated
+                .program
+                .function("accel")
+                .expect("accel")
+                .guards
+                .is_empty(),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn generation_repeats_to_the_byte() {
+    for path in models() {
+        let (name, text, _) = read(&path);
+        let first = source(&text, &name).expect("correct");
+        assert_eq!(first, source(&text, &name).expect("correct"), "{name}");
+    }
+}
