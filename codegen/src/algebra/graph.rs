@@ -7,6 +7,7 @@
 
 use super::fp::{Fp, P};
 use super::lane::Lane;
+pub use super::node::{Edge, Function, Node, NodeId, Symbol};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -14,108 +15,6 @@ use rustc_hash::FxHashMap;
 
 /// Number of points; a false merge of expressions of degree D has probability below (D/p)^2.
 pub const LANES: usize = 2;
-
-/// Index of a node.
-pub type NodeId = u32;
-
-/// A node with a sign.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub struct Edge(u32);
-
-impl Edge {
-    /// The node under the sign.
-    pub fn node(self) -> NodeId {
-        self.0 >> 1
-    }
-
-    /// Whether the sign is −.
-    pub fn is_negative(self) -> bool {
-        self.0 & 1 == 1
-    }
-
-    /// The same node with sign +.
-    pub fn abs(self) -> Edge {
-        Edge(self.0 & !1)
-    }
-
-    /// The positive edge of a node.
-    pub fn of(node: NodeId) -> Edge {
-        Edge(node << 1)
-    }
-
-    /// This edge, negated where `negative`.
-    pub fn signed(self, negative: bool) -> Edge {
-        Edge(self.0 ^ negative as u32)
-    }
-}
-
-impl std::ops::Neg for Edge {
-    type Output = Edge;
-    fn neg(self) -> Edge {
-        Edge(self.0 ^ 1)
-    }
-}
-
-/// Functions beyond the four operations.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub enum Function {
-    /// sine
-    Sin,
-    /// cosine
-    Cos,
-    /// exponential
-    Exp,
-    /// natural logarithm
-    Log,
-    /// square root
-    Sqrt,
-    /// angle of (x, y), arguments (y, x)
-    Atan2,
-}
-
-/// What a node computes.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Node {
-    /// An exact rational, by its place in the table of constants.
-    Constant(u32),
-    /// A symbol, by its place in the table of symbols.
-    Symbol(u32),
-    /// a + b, signed.
-    Add(Edge, Edge),
-    /// a · b, both unsigned.
-    Mul(Edge, Edge),
-    /// a / b, both unsigned.
-    Div(Edge, Edge),
-    /// A function of one argument.
-    Apply(Function, Edge),
-    /// atan2(y, x).
-    Atan2(Edge, Edge),
-}
-
-impl Node {
-    /// The children, in order.
-    pub fn children(self) -> impl Iterator<Item = Edge> {
-        let (a, b) = match self {
-            Node::Constant(_) | Node::Symbol(_) => (None, None),
-            Node::Apply(_, a) => (Some(a), None),
-            Node::Add(a, b) | Node::Mul(a, b) | Node::Div(a, b) | Node::Atan2(a, b) => {
-                (Some(a), Some(b))
-            }
-        };
-        a.into_iter().chain(b)
-    }
-}
-
-/// A symbol: its name and the class of inputs that it belongs to, one bit each.
-#[derive(Clone, Debug)]
-pub struct Symbol {
-    /// Name as the user wrote it.
-    pub name: String,
-    /// Class bit; what the bits mean is the caller's affair.
-    pub class: u8,
-    /// Its node.
-    pub node: NodeId,
-}
 
 /// The graph.
 #[derive(Clone, Debug)]
@@ -457,32 +356,6 @@ impl Graph {
         sum
     }
 
-    /// The argument of a function with a group law, as Σ coefficient · atom.
-    pub fn linear_form(&self, edge: Edge) -> Vec<(NodeId, BigRational)> {
-        let mut form = Vec::new();
-        let mut stack = vec![(edge, BigRational::one())];
-        while let Some((edge, scale)) = stack.pop() {
-            let scale = if edge.is_negative() { -scale } else { scale };
-            let node = edge.node();
-            match self.nodes[node as usize] {
-                Node::Add(a, b) => {
-                    stack.push((b, scale.clone()));
-                    stack.push((a, scale));
-                }
-                Node::Mul(a, b) => match (self.as_rational(a), self.as_rational(b)) {
-                    (Some(factor), _) => stack.push((b, scale * factor)),
-                    (_, Some(factor)) => stack.push((a, scale * factor)),
-                    _ => collect(&mut form, node, scale),
-                },
-                Node::Constant(index) => {
-                    collect(&mut form, 1, scale * &self.constants[index as usize])
-                }
-                _ => collect(&mut form, node, scale),
-            }
-        }
-        form
-    }
-
     /// All nodes that the roots are made of, children before parents.
     pub fn reachable(&self, roots: &[Edge]) -> Vec<NodeId> {
         let mut seen = vec![false; self.nodes.len()];
@@ -495,69 +368,6 @@ impl Graph {
         (0..self.nodes.len() as NodeId)
             .filter(|&id| seen[id as usize])
             .collect()
-    }
-
-    fn exact_root(&mut self, argument: Edge) -> Option<Edge> {
-        let value = self.as_rational(argument)?;
-        let (n, d) = (value.numer().sqrt(), value.denom().sqrt());
-        let root = BigRational::new(n, d);
-        (&root * &root == value).then(|| self.rational(&root))
-    }
-
-    /// p·y + q·y = (p + q)·y for run-time constants p, q: the sum of constants costs nothing.
-    fn factor(&mut self, a: Edge, b: Edge) -> Option<Edge> {
-        let (p, y) = self.free_factor(a)?;
-        let (q, z) = self.free_factor(b)?;
-        if y != z {
-            return None;
-        }
-        let coefficient = self.add(p, q);
-        Some(self.mul(coefficient, y))
-    }
-
-    /// edge = p · y with p constant and y varying at run time.
-    fn free_factor(&self, edge: Edge) -> Option<(Edge, Edge)> {
-        if self.is_free(edge.node()) {
-            return None;
-        }
-        if let Node::Mul(a, b) = self.nodes[edge.node() as usize] {
-            if self.is_free(a.node()) {
-                return Some((a.signed(edge.is_negative()), b));
-            }
-            if self.is_free(b.node()) {
-                return Some((b.signed(edge.is_negative()), a));
-            }
-        }
-        Some((self.one().signed(edge.is_negative()), edge.abs()))
-    }
-
-    /// p ∘ (q ∘ y) = (p ∘ q) ∘ y for run-time constants p, q and ∘ one of +, ·.
-    fn regroup(&mut self, a: Edge, b: Edge, kind: fn(Edge, Edge) -> Node) -> Option<Edge> {
-        let (p, rest) = match (self.is_free(a.node()), self.is_free(b.node())) {
-            (true, false) => (a, b),
-            (false, true) => (b, a),
-            _ => return None,
-        };
-        let is_sum = matches!(kind(a, b), Node::Add(..));
-        let (x, y) = match self.nodes[rest.node() as usize] {
-            Node::Add(x, y) if is_sum => {
-                (x.signed(rest.is_negative()), y.signed(rest.is_negative()))
-            }
-            Node::Mul(x, y) if !is_sum => (x.signed(rest.is_negative()), y),
-            _ => return None,
-        };
-        let (q, y) = match (self.is_free(x.node()), self.is_free(y.node())) {
-            (true, false) => (x, y),
-            (false, true) => (y, x),
-            _ => return None,
-        };
-        if is_sum {
-            let constant = self.add(p, q);
-            Some(self.add(constant, y))
-        } else {
-            let constant = self.mul(p, q);
-            Some(self.mul(constant, y))
-        }
     }
 
     /// A node with this value, or the small rational that it is; an expression that is constant at
@@ -604,14 +414,6 @@ impl Graph {
         }
         Edge::of(id)
     }
-}
-
-fn collect(form: &mut Vec<(NodeId, BigRational)>, atom: NodeId, coefficient: BigRational) {
-    match form.iter_mut().find(|(known, _)| *known == atom) {
-        Some((_, sum)) => *sum += coefficient,
-        None => form.push((atom, coefficient)),
-    }
-    form.retain(|(_, coefficient)| !coefficient.is_zero());
 }
 
 fn ordered(a: Edge, b: Edge) -> (Edge, Edge) {

@@ -3,10 +3,12 @@
 //! polynomials with normal forms for the small pieces that people read.
 
 pub mod derivation;
+mod fold;
 pub mod fp;
 pub mod graph;
 pub mod lane;
 pub mod linear;
+pub mod node;
 pub mod numeric;
 pub mod poly;
 pub mod topoly;

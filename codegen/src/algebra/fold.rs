@@ -1,0 +1,110 @@
+//! What the constructor of nodes folds beyond equal values: constants of run time are kept together,
+//! and arguments of sin, cos and exp are read as linear forms.
+
+use super::graph::Graph;
+use super::node::{Edge, Node, NodeId};
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+
+impl Graph {
+    /// √ of a rational square.
+    pub(super) fn exact_root(&mut self, argument: Edge) -> Option<Edge> {
+        let value = self.as_rational(argument)?;
+        let (n, d) = (value.numer().sqrt(), value.denom().sqrt());
+        let root = BigRational::new(n, d);
+        (&root * &root == value).then(|| self.rational(&root))
+    }
+
+    /// p·y + q·y = (p + q)·y for run-time constants p, q: the sum of constants costs nothing.
+    pub(super) fn factor(&mut self, a: Edge, b: Edge) -> Option<Edge> {
+        let (p, y) = self.free_factor(a)?;
+        let (q, z) = self.free_factor(b)?;
+        if y != z {
+            return None;
+        }
+        let coefficient = self.add(p, q);
+        Some(self.mul(coefficient, y))
+    }
+
+    /// edge = p · y with p constant and y varying at run time.
+    fn free_factor(&self, edge: Edge) -> Option<(Edge, Edge)> {
+        if self.is_free(edge.node()) {
+            return None;
+        }
+        if let Node::Mul(a, b) = self.node(edge.node()) {
+            if self.is_free(a.node()) {
+                return Some((a.signed(edge.is_negative()), b));
+            }
+            if self.is_free(b.node()) {
+                return Some((b.signed(edge.is_negative()), a));
+            }
+        }
+        Some((self.one().signed(edge.is_negative()), edge.abs()))
+    }
+
+    /// p ∘ (q ∘ y) = (p ∘ q) ∘ y for run-time constants p, q and ∘ one of +, ·.
+    pub(super) fn regroup(
+        &mut self,
+        a: Edge,
+        b: Edge,
+        kind: fn(Edge, Edge) -> Node,
+    ) -> Option<Edge> {
+        let (p, rest) = match (self.is_free(a.node()), self.is_free(b.node())) {
+            (true, false) => (a, b),
+            (false, true) => (b, a),
+            _ => return None,
+        };
+        let is_sum = matches!(kind(a, b), Node::Add(..));
+        let (x, y) = match self.node(rest.node()) {
+            Node::Add(x, y) if is_sum => {
+                (x.signed(rest.is_negative()), y.signed(rest.is_negative()))
+            }
+            Node::Mul(x, y) if !is_sum => (x.signed(rest.is_negative()), y),
+            _ => return None,
+        };
+        let (q, y) = match (self.is_free(x.node()), self.is_free(y.node())) {
+            (true, false) => (x, y),
+            (false, true) => (y, x),
+            _ => return None,
+        };
+        if is_sum {
+            let constant = self.add(p, q);
+            Some(self.add(constant, y))
+        } else {
+            let constant = self.mul(p, q);
+            Some(self.mul(constant, y))
+        }
+    }
+
+    /// The argument of a function with a group law, as Σ coefficient · atom.
+    pub fn linear_form(&self, edge: Edge) -> Vec<(NodeId, BigRational)> {
+        let mut form = Vec::new();
+        let mut stack = vec![(edge, BigRational::one())];
+        while let Some((edge, scale)) = stack.pop() {
+            let scale = if edge.is_negative() { -scale } else { scale };
+            let node = edge.node();
+            match self.node(node) {
+                Node::Add(a, b) => {
+                    stack.push((b, scale.clone()));
+                    stack.push((a, scale));
+                }
+                Node::Mul(a, b) => match (self.as_rational(a), self.as_rational(b)) {
+                    (Some(factor), _) => stack.push((b, scale * factor)),
+                    (_, Some(factor)) => stack.push((a, scale * factor)),
+                    _ => collect(&mut form, node, scale),
+                },
+                Node::Constant(index) => collect(&mut form, 1, scale * self.constant(index)),
+                _ => collect(&mut form, node, scale),
+            }
+        }
+        form
+    }
+}
+
+fn collect(form: &mut Vec<(NodeId, BigRational)>, atom: NodeId, coefficient: BigRational) {
+    match form.iter_mut().find(|(known, _)| *known == atom) {
+        Some((_, sum)) => *sum += coefficient,
+        None => form.push((atom, coefficient)),
+    }
+    form.retain(|(_, coefficient)| !coefficient.is_zero());
+}

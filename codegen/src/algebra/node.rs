@@ -1,0 +1,103 @@
+//! Edges, nodes and symbols of the expression graph.
+
+/// Index of a node.
+pub type NodeId = u32;
+
+/// A node with a sign.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Edge(u32);
+
+impl Edge {
+    /// The node under the sign.
+    pub fn node(self) -> NodeId {
+        self.0 >> 1
+    }
+
+    /// Whether the sign is −.
+    pub fn is_negative(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// The same node with sign +.
+    pub fn abs(self) -> Edge {
+        Edge(self.0 & !1)
+    }
+
+    /// The positive edge of a node.
+    pub fn of(node: NodeId) -> Edge {
+        Edge(node << 1)
+    }
+
+    /// This edge, negated where `negative`.
+    pub fn signed(self, negative: bool) -> Edge {
+        Edge(self.0 ^ negative as u32)
+    }
+}
+
+impl std::ops::Neg for Edge {
+    type Output = Edge;
+    fn neg(self) -> Edge {
+        Edge(self.0 ^ 1)
+    }
+}
+
+/// Functions beyond the four operations.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
+pub enum Function {
+    /// sine
+    Sin,
+    /// cosine
+    Cos,
+    /// exponential
+    Exp,
+    /// natural logarithm
+    Log,
+    /// square root
+    Sqrt,
+    /// angle of (x, y), arguments (y, x)
+    Atan2,
+}
+
+/// What a node computes.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// An exact rational, by its place in the table of constants.
+    Constant(u32),
+    /// A symbol, by its place in the table of symbols.
+    Symbol(u32),
+    /// a + b, signed.
+    Add(Edge, Edge),
+    /// a · b, both unsigned.
+    Mul(Edge, Edge),
+    /// a / b, both unsigned.
+    Div(Edge, Edge),
+    /// A function of one argument.
+    Apply(Function, Edge),
+    /// atan2(y, x).
+    Atan2(Edge, Edge),
+}
+
+impl Node {
+    /// The children, in order.
+    pub fn children(self) -> impl Iterator<Item = Edge> {
+        let (a, b) = match self {
+            Node::Constant(_) | Node::Symbol(_) => (None, None),
+            Node::Apply(_, a) => (Some(a), None),
+            Node::Add(a, b) | Node::Mul(a, b) | Node::Div(a, b) | Node::Atan2(a, b) => {
+                (Some(a), Some(b))
+            }
+        };
+        a.into_iter().chain(b)
+    }
+}
+
+/// A symbol: its name and the class of inputs that it belongs to, one bit each.
+#[derive(Clone, Debug)]
+pub struct Symbol {
+    /// Name as the user wrote it.
+    pub name: String,
+    /// Class bit; what the bits mean is the caller's affair.
+    pub class: u8,
+    /// Its node.
+    pub node: NodeId,
+}
