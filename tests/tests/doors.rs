@@ -54,13 +54,11 @@ fn the_build_script_wrote_the_same() {
 
 #[test]
 fn a_large_model_is_refused_by_the_macro_with_the_way_out() {
-    let text = hamel_tests::chain::chain(9);
+    let text = hamel_tests::chain::chain(14);
     let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
     let expanded = hamel_codegen::expand(tokens).to_string();
-    assert!(expanded.contains("compile_error"), "{expanded}");
-    assert!(
-        expanded.contains("statements, more than the 10000 that a macro should expand to"),
-        "{expanded}"
-    );
-    assert!(expanded.contains("build.rs"), "{expanded}");
+    assert!(expanded.len() < 1000, "an expansion instead of a refusal");
+    for part in ["compile_error", "statements, more than the 10000 that a macro should expand to", "build.rs"] {
+        assert!(expanded.contains(part), "{expanded}");
+    }
 }

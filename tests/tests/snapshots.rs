@@ -6,6 +6,7 @@
 use hamel_codegen::builder::source;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::count::count;
+use hamel_codegen::tables::{json, latex, markdown, tables, text};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -71,10 +72,30 @@ fn operation_counts() {
 #[test]
 fn generated_code() {
     for path in models() {
-        let (name, text, _) = read(&path);
-        let code = source(&text, &format!("{name}.eom")).expect("correct");
+        let (name, description, _) = read(&path);
+        let code = source(&description, &format!("{name}.eom")).expect("correct");
         insta::assert_snapshot!(format!("code_{name}"), code);
     }
+}
+
+#[test]
+fn coefficient_tables() {
+    for path in models() {
+        let (name, _, generated) = read(&path);
+        let tables = tables(&generated, &[]).expect("the default tables");
+        insta::assert_snapshot!(format!("tables_{name}"), text(&tables, false));
+    }
+}
+
+/// One model in every format.
+#[test]
+fn table_formats() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/heavy_top.eom");
+    let (_, _, generated) = read(&path);
+    let tables = tables(&generated, &[]).expect("the default tables");
+    insta::assert_snapshot!("tables_markdown", markdown(&tables, false));
+    insta::assert_snapshot!("tables_latex", latex(&tables, false));
+    insta::assert_snapshot!("tables_json", format!("{:#}", json(&tables, false)));
 }
 
 /// The bars of operation counts, each with the best peer measured.
@@ -139,8 +160,8 @@ fn constant_mass_costs_nothing() {
 #[test]
 fn generation_repeats_to_the_byte() {
     for path in models() {
-        let (name, text, _) = read(&path);
-        let first = source(&text, &name).expect("correct");
-        assert_eq!(first, source(&text, &name).expect("correct"), "{name}");
+        let (name, description, _) = read(&path);
+        let first = source(&description, &name).expect("correct");
+        assert_eq!(first, source(&description, &name).expect("correct"), "{name}");
     }
 }

@@ -11,5 +11,7 @@ pub mod linear;
 pub mod node;
 pub mod numeric;
 pub mod poly;
+#[cfg(test)]
+mod tests;
 pub mod topoly;
 pub mod transplant;

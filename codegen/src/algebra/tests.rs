@@ -1,0 +1,187 @@
+//! Laws of the graph: what is equal on X is one node, what differs is not, and derivatives are
+//! those of numbers.
+
+use super::derivation::Derivation;
+use super::fp::{Fp, Random};
+use super::graph::{Edge, Function, Graph, LANES};
+use super::lane::circle_point;
+use super::numeric::evaluate;
+use super::poly::monomial::Var;
+use super::topoly::Expander;
+use super::transplant::{copy, rebuild};
+
+const PARAM: u8 = 1;
+const COORD: u8 = 2;
+
+/// A graph with two parameters, two free coordinates and a point of the circle.
+fn graph() -> (Graph, [Edge; 6]) {
+    let mut graph = Graph::new(7, PARAM);
+    let mut random = Random::new(11);
+    let mut free = |graph: &mut Graph, name: &str, class: u8| {
+        let value = std::array::from_fn(|_| random.element());
+        graph.symbol(name, class, value)
+    };
+    let p = free(&mut graph, "p", PARAM);
+    let q = free(&mut graph, "q", PARAM);
+    let a = free(&mut graph, "a", COORD);
+    let b = free(&mut graph, "b", COORD);
+    let mut random = Random::new(13);
+    let points: [(Fp, Fp); LANES] = std::array::from_fn(|_| circle_point(&mut random));
+    let c = graph.symbol("c", COORD, points.map(|point| point.0));
+    let s = graph.symbol("s", COORD, points.map(|point| point.1));
+    (graph, [p, q, a, b, c, s])
+}
+
+#[test]
+fn what_is_equal_on_the_variety_is_one_node() {
+    let (mut g, [p, q, a, b, c, s]) = graph();
+    let (cc, ss) = (g.mul(c, c), g.mul(s, s));
+    assert_eq!(g.add(cc, ss), g.one());
+    // 1 − s² is c².
+    assert_eq!(g.sub(g.one(), ss), cc);
+    // (a + b)(a − b) = a² − b²
+    let (sum, difference) = (g.add(a, b), g.sub(a, b));
+    let product = g.mul(sum, difference);
+    let (aa, bb) = (g.mul(a, a), g.mul(b, b));
+    assert_eq!(g.sub(aa, bb), product);
+    // Signs live on edges: b − a is the negative of a − b.
+    assert_eq!(g.sub(b, a), -difference);
+    // Constants are kept together: p (q a) is (p q) a.
+    let qa = g.mul(q, a);
+    let pq = g.mul(p, q);
+    let left = g.mul(p, qa);
+    assert_eq!(left, g.mul(pq, a));
+    assert!(g.is_free(pq.node()) && !g.is_free(left.node()));
+}
+
+#[test]
+fn what_differs_is_not_merged() {
+    let (mut g, [p, q, a, b, c, s]) = graph();
+    let mut seen = std::collections::BTreeSet::new();
+    let edges = [p, q, a, b, c, s];
+    for x in edges {
+        for y in edges {
+            let (sum, product) = (g.add(x, y), g.mul(x, y));
+            let quotient = g.div(x, y);
+            seen.extend([Some(sum), Some(product), quotient]);
+        }
+    }
+    // 21 sums, 21 products, 30 quotients and 1.
+    assert_eq!(seen.len(), 21 + 21 + 31);
+}
+
+#[test]
+fn functions_obey_their_group_laws() {
+    let (mut g, [_, _, a, b, ..]) = graph();
+    let sum = g.add(a, b);
+    let (sa, ca) = (g.apply(Function::Sin, a), g.apply(Function::Cos, a));
+    let (sb, cb) = (g.apply(Function::Sin, b), g.apply(Function::Cos, b));
+    let sine = g.dot(&[sa, ca], &[cb, sb]);
+    assert_eq!(g.apply(Function::Sin, sum), sine);
+    assert_eq!(g.apply(Function::Sin, -a), -sa);
+    let third = g.ratio(1, 3);
+    let part = g.mul(third, a);
+    let c3 = g.apply(Function::Cos, part);
+    // cos a = 4 cos³(a/3) − 3 cos(a/3)
+    let (four, three) = (g.ratio(4, 1), g.ratio(3, 1));
+    let cube = g.powi(c3, 3).expect("no division");
+    let (left, right) = (g.mul(four, cube), g.mul(three, c3));
+    assert_eq!(g.sub(left, right), ca);
+    let (ea, eb) = (g.apply(Function::Exp, a), g.apply(Function::Exp, b));
+    let product = g.mul(ea, eb);
+    assert_eq!(g.apply(Function::Exp, sum), product);
+    let twice = g.mul(ea, g.one());
+    let inverse = g.apply(Function::Exp, -a);
+    assert_eq!(g.mul(twice, inverse), g.one());
+}
+
+#[test]
+fn division_by_zero_on_the_variety_is_refused() {
+    let (mut g, [_, _, a, _, c, s]) = graph();
+    let (cc, ss) = (g.mul(c, c), g.mul(s, s));
+    let sum = g.add(cc, ss);
+    let zero = g.sub(sum, g.one());
+    assert_eq!(g.div(a, zero), None);
+    assert_eq!(g.powi(zero, -1), None);
+}
+
+/// A random expression in a, b and p, with all functions.
+fn expression(g: &mut Graph, leaves: &[Edge], random: &mut Random, depth: usize) -> Edge {
+    if depth == 0 {
+        return leaves[random.bits() as usize % leaves.len()];
+    }
+    let x = expression(g, leaves, random, depth - 1);
+    let y = expression(g, leaves, random, depth - 1);
+    let (xx, two) = (g.mul(x, x), g.ratio(2, 1));
+    let positive = g.add(xx, two);
+    match random.bits() % 8 {
+        0 => g.add(x, y),
+        1 => g.sub(x, y),
+        2 => g.mul(x, y),
+        3 => g.div(y, positive).expect("not zero"),
+        4 => g.apply(Function::Sin, x),
+        5 => g.apply(Function::Sqrt, positive),
+        6 => g.apply(Function::Log, positive),
+        _ => g.atan2(y, positive),
+    }
+}
+
+#[test]
+fn derivatives_are_those_of_numbers() {
+    let mut random = Random::new(5);
+    for _ in 0..200 {
+        let (mut g, [p, _, a, b, ..]) = graph();
+        let f = expression(&mut g, &[p, a, b], &mut random, 3);
+        let slope = Derivation::new([(a.node(), g.one())]).of(&mut g, f);
+        let at = |g: &Graph, edge: Edge, x: f64| evaluate(g, &[edge], &[0.7, 0.2, x, -0.4, 0.0, 0.0])[0];
+        let h = 1e-5;
+        let numeric = (at(&g, f, 0.3 + h) - at(&g, f, 0.3 - h)) / (2.0 * h);
+        let exact = at(&g, slope, 0.3);
+        assert!((numeric - exact).abs() <= 1e-7 * (1.0 + exact.abs()), "{numeric} and {exact}");
+    }
+}
+
+#[test]
+fn carried_expressions_keep_their_values() {
+    let mut random = Random::new(6);
+    for _ in 0..50 {
+        let (mut g, [p, _, a, b, ..]) = graph();
+        let f = expression(&mut g, &[p, a, b], &mut random, 3);
+        let numbers = [0.7, 0.2, 0.3, -0.4, 0.0, 0.0];
+        let expected = evaluate(&g, &[f], &numbers)[0];
+        for carry in [rebuild, copy] {
+            let (mut other, _) = graph();
+            let moved = carry(&g, &mut other, &[f]);
+            let value = evaluate(&other, &moved, &numbers)[0];
+            assert!((value - expected).abs() <= 1e-12 * (1.0 + expected.abs()));
+        }
+    }
+}
+
+#[test]
+fn polynomials_have_the_values_of_their_nodes() {
+    let (mut g, [p, q, a, b, c, s]) = graph();
+    let mut random = Random::new(9);
+    for _ in 0..50 {
+        let leaves = [p, q, a, b, c, s];
+        let pick = |random: &mut Random| leaves[random.bits() as usize % leaves.len()];
+        let mut f = g.one();
+        for _ in 0..6 {
+            let (x, y) = (pick(&mut random), pick(&mut random));
+            let product = g.mul(f, x);
+            f = g.sub(product, y);
+        }
+        let polynomial = Expander::default().expand(&g, f).expect("small");
+        let numbers: [f64; 6] = [0.7, 0.2, 0.3, -0.4, 0.6, 0.8];
+        let value: f64 = polynomial
+            .terms()
+            .iter()
+            .map(|(monomial, number)| {
+                let powers = monomial.powers().iter().map(|&(var, exponent): &(Var, u32)| numbers[var as usize].powi(exponent as i32));
+                num_traits::ToPrimitive::to_f64(number).unwrap_or(f64::NAN) * powers.product::<f64>()
+            })
+            .sum();
+        let expected = evaluate(&g, &[f], &numbers)[0];
+        assert!((value - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{value} and {expected}");
+    }
+}
