@@ -133,11 +133,15 @@ fn derivatives_are_those_of_numbers() {
         let (mut g, [p, _, a, b, ..]) = graph();
         let f = expression(&mut g, &[p, a, b], &mut random, 3);
         let slope = Derivation::new([(a.node(), g.one())]).of(&mut g, f);
-        let at = |g: &Graph, edge: Edge, x: f64| evaluate(g, &[edge], &[0.7, 0.2, x, -0.4, 0.0, 0.0])[0];
+        let at =
+            |g: &Graph, edge: Edge, x: f64| evaluate(g, &[edge], &[0.7, 0.2, x, -0.4, 0.0, 0.0])[0];
         let h = 1e-5;
         let numeric = (at(&g, f, 0.3 + h) - at(&g, f, 0.3 - h)) / (2.0 * h);
         let exact = at(&g, slope, 0.3);
-        assert!((numeric - exact).abs() <= 1e-7 * (1.0 + exact.abs()), "{numeric} and {exact}");
+        assert!(
+            (numeric - exact).abs() <= 1e-7 * (1.0 + exact.abs()),
+            "{numeric} and {exact}"
+        );
     }
 }
 
@@ -177,11 +181,20 @@ fn polynomials_have_the_values_of_their_nodes() {
             .terms()
             .iter()
             .map(|(monomial, number)| {
-                let powers = monomial.powers().iter().map(|&(var, exponent): &(Var, u32)| numbers[var as usize].powi(exponent as i32));
-                num_traits::ToPrimitive::to_f64(number).unwrap_or(f64::NAN) * powers.product::<f64>()
+                let powers = monomial
+                    .powers()
+                    .iter()
+                    .map(|&(var, exponent): &(Var, u32)| {
+                        numbers[var as usize].powi(exponent as i32)
+                    });
+                num_traits::ToPrimitive::to_f64(number).unwrap_or(f64::NAN)
+                    * powers.product::<f64>()
             })
             .sum();
         let expected = evaluate(&g, &[f], &numbers)[0];
-        assert!((value - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{value} and {expected}");
+        assert!(
+            (value - expected).abs() <= 1e-12 * (1.0 + expected.abs()),
+            "{value} and {expected}"
+        );
     }
 }

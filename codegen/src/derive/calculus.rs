@@ -37,6 +37,16 @@ impl Calculus {
         }
     }
 
+    /// The same where ξ changes at rates of its own while inner velocities are held constant.
+    pub fn with_drift(model: &Model, drift: &[Edge]) -> Self {
+        let x = model.x.iter().zip(&model.rate);
+        let seeds = x.chain(model.xi.iter().zip(drift));
+        Calculus {
+            time: Derivation::new(seeds.map(|(symbol, &rate)| (symbol.node(), rate))),
+            ..Calculus::new(model)
+        }
+    }
+
     /// n.
     pub fn n(&self) -> usize {
         self.directions.len()

@@ -6,12 +6,14 @@
 
 pub mod parts;
 pub mod polynomial;
+pub mod setting;
 pub mod solve;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::model::Model;
 use crate::program::count::{Count, count, depth};
 use parts::{Axes, Parts, Reference, Variant, parts};
+use setting::Setting;
 use solve::{Plan, solve};
 
 /// Models with more velocities than this get one route and one order of elimination.
@@ -40,29 +42,11 @@ pub struct Acceleration {
 /// The cheapest computation of ξ̇, and M and the right-hand sides as they were traced, in its graph.
 pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     let mut best: Option<Acceleration> = None;
-    let small = model.n() <= SMALL;
-    let mut chosen: Option<(usize, Variant)> = None;
-    for variant in variants(model, small) {
-        let (traced, parts) = trace(model, variant);
-        for plan in first_plans(&traced.graph, &parts, small) {
-            if let Some(candidate) = attempt(&traced, &parts, &plan, &variant) {
-                let weight = candidate.count.weight();
-                if chosen.is_none_or(|(least, _)| weight < least) {
-                    chosen = Some((weight, variant));
-                }
-                keep(&mut best, candidate);
-            }
-        }
-    }
-    if let Some((_, variant)) = chosen.filter(|_| small) {
-        for shift in [None, Some(0), Some(1), Some(2)] {
-            let variant = Variant { shift, ..variant };
-            let (traced, parts) = trace(model, variant);
-            for plan in all_plans(&traced.graph, &parts) {
-                if let Some(candidate) = attempt(&traced, &parts, &plan, &variant) {
-                    keep(&mut best, candidate);
-                }
-            }
+    let given = Setting::given(model);
+    let variant = search(&given, &mut best)?;
+    if model.n() <= SMALL {
+        if let Some(twist) = Setting::twist(model) {
+            search(&twist, &mut best);
         }
         let most = best.as_ref().map_or(usize::MAX, |best| best.count.weight());
         for candidate in polynomial::candidates(model, most) {
@@ -70,10 +54,40 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
         }
     }
     let mut best = best?;
-    let variant = chosen.map(|(_, variant)| variant)?;
-    let (traced, parts) = trace(model, variant);
+    let (traced, parts) = trace(&given, variant);
     let parts = parts.rebuilt(&traced.graph, &mut best.graph);
     Some((best, parts))
+}
+
+/// Counts the candidates of a setting; the way of tracing that the best of them used.
+fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Variant> {
+    let small = setting.model.n() <= SMALL;
+    let mut chosen: Option<(usize, Variant)> = None;
+    for variant in variants(&setting.model, small) {
+        let (traced, parts) = trace(setting, variant);
+        for plan in first_plans(&traced.graph, &parts, small) {
+            if let Some(candidate) = attempt(setting, &traced, &parts, &plan, &variant) {
+                let weight = candidate.count.weight();
+                if chosen.is_none_or(|(least, _)| weight < least) {
+                    chosen = Some((weight, variant));
+                }
+                keep(best, candidate);
+            }
+        }
+    }
+    let (_, chosen) = chosen?;
+    if small {
+        for shift in [None, Some(0), Some(1), Some(2)] {
+            let variant = Variant { shift, ..chosen };
+            let (traced, parts) = trace(setting, variant);
+            for plan in all_plans(&traced.graph, &parts) {
+                if let Some(candidate) = attempt(setting, &traced, &parts, &plan, &variant) {
+                    keep(best, candidate);
+                }
+            }
+        }
+    }
+    Some(chosen)
 }
 
 fn keep(best: &mut Option<Acceleration>, candidate: Acceleration) {
@@ -105,16 +119,23 @@ fn variants(model: &Model, small: bool) -> Vec<Variant> {
     variants
 }
 
-fn trace(model: &Model, variant: Variant) -> (Model, Parts) {
-    let mut traced = model.clone();
-    let parts = parts(&mut traced, variant);
+fn trace(setting: &Setting, variant: Variant) -> (Model, Parts) {
+    let mut traced = setting.model.clone();
+    let parts = parts(&mut traced, &mut setting.calculus.clone(), variant);
     (traced, parts)
 }
 
-fn attempt(traced: &Model, parts: &Parts, plan: &Plan, variant: &Variant) -> Option<Acceleration> {
+fn attempt(
+    setting: &Setting,
+    traced: &Model,
+    parts: &Parts,
+    plan: &Plan,
+    variant: &Variant,
+) -> Option<Acceleration> {
     let mut graph = traced.graph.clone();
     let solution = solve(&mut graph, parts, plan)?;
-    let mut roots = solution.xi_dot.clone();
+    let xi_dot = setting.leave(&mut graph, solution.xi_dot);
+    let mut roots = xi_dot.clone();
     roots.extend(
         solution
             .pivots
@@ -130,17 +151,22 @@ fn attempt(traced: &Model, parts: &Parts, plan: &Plan, variant: &Variant) -> Opt
         Reference::Com => "centres of mass",
         Reference::Origin => "frame origins",
     };
+    let inner = if setting.back.is_some() {
+        " in its own twist"
+    } else {
+        ""
+    };
     let route = if traced.bodies.is_empty() {
         format!("masses traced, {}", elimination(traced, &plan.order))
     } else {
         format!(
-            "bodies traced about their {point} in {axes} axes, {}",
+            "bodies traced{inner} about their {point} in {axes} axes, {}",
             elimination(traced, &plan.order)
         )
     };
     Some(Acceleration {
         graph,
-        xi_dot: solution.xi_dot,
+        xi_dot,
         pivots: solution.pivots,
         count,
         depth,

@@ -73,15 +73,14 @@ pub struct Parts {
 }
 
 /// Traces a model.
-pub fn parts(model: &mut Model, variant: Variant) -> Parts {
+pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Parts {
     let n = model.n();
-    let mut calculus = Calculus::new(model);
     let zero = model.graph.zero();
     let mut mass = vec![vec![zero; n]; n];
     let mut inertia = vec![zero; n];
     let mut gravity = vec![zero; n];
     for body in model.bodies.clone() {
-        let traced = Traced::new(model, &mut calculus, &body, variant);
+        let traced = Traced::new(model, calculus, &body, variant);
         traced.add(&mut model.graph, &mut mass, &mut inertia, &mut gravity);
     }
     for particle in model.particles.clone() {
@@ -108,8 +107,8 @@ pub fn parts(model: &mut Model, variant: Variant) -> Parts {
     if model.kinetic != zero {
         let part = kinetic_mass(model);
         let rows = kinematics::left_inverse(model).unwrap_or_default();
-        let gamma = gamma(model, &mut calculus, &rows);
-        let h = quadratic(model, &mut calculus, &part, &gamma);
+        let gamma = gamma(model, calculus, &rows);
+        let h = quadratic(model, calculus, &part, &gamma);
         let graph = &mut model.graph;
         for i in 0..n {
             inertia[i] = graph.sub(inertia[i], h[i]);
@@ -121,15 +120,15 @@ pub fn parts(model: &mut Model, variant: Variant) -> Parts {
         for entry in mass.iter_mut().flatten() {
             *entry = without_coordinates(
                 &mut model.graph,
-                &mut calculus,
+                calculus,
                 &model.points,
                 &mut forms,
                 *entry,
             );
         }
     }
-    let potential = loads::potential(model, &mut calculus, model.potential);
-    let loads = loads::applied(model, &mut calculus);
+    let potential = loads::potential(model, calculus, model.potential);
+    let loads = loads::applied(model, calculus);
     let graph = &mut model.graph;
     let conservative = (0..n)
         .map(|i| graph.add(gravity[i], potential[i]))

@@ -11,6 +11,7 @@ use crate::algebra::poly::factor::{Coefficient, Operand, Step, Term, Value, fact
 use crate::algebra::poly::monomial::Var;
 use crate::algebra::topoly::OPAQUE;
 use crate::algebra::transplant::rebuild;
+use crate::derive::calculus::Calculus;
 use crate::derive::normal::{Collected, NormalForms, collect, variable_node};
 use crate::model::Model;
 use crate::program::count::{count, depth};
@@ -31,7 +32,8 @@ pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
         reference: Reference::Com,
         shift: None,
     };
-    let parts = parts(&mut traced, variant);
+    let mut calculus = Calculus::new(model);
+    let parts = parts(&mut traced, &mut calculus, variant);
     let mut forms = NormalForms::new(&model.points);
     let mut all = Vec::new();
     let mut before: Option<System> = None;
