@@ -11,6 +11,7 @@ pub mod linear;
 pub mod node;
 pub mod numeric;
 pub mod poly;
+pub mod resubstitute;
 #[cfg(test)]
 mod tests;
 pub mod topoly;

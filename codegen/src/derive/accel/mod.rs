@@ -10,6 +10,7 @@ pub mod setting;
 pub mod solve;
 
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::resubstitute::resubstitute;
 use crate::model::Model;
 use crate::program::count::{Count, count, depth};
 use parts::{Axes, Parts, Reference, Variant, parts};
@@ -53,10 +54,42 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
             keep(&mut best, candidate);
         }
     }
-    let mut best = best?;
+    let mut best = polished(best?, model);
     let (traced, parts) = trace(&given, variant);
     let parts = parts.rebuilt(&traced.graph, &mut best.graph);
     Some((best, parts))
+}
+
+/// The chosen computation after resubstitution.
+fn polished(chosen: Acceleration, model: &Model) -> Acceleration {
+    let roots: Vec<Edge> = chosen
+        .xi_dot
+        .iter()
+        .chain(&chosen.pivots)
+        .copied()
+        .collect();
+    let Some((graph, edges)) = resubstitute(&chosen.graph, &roots, &model.graph) else {
+        return chosen;
+    };
+    let (xi_dot, pivots) = edges.split_at(chosen.xi_dot.len());
+    let varying = edges
+        .iter()
+        .copied()
+        .filter(|edge| !graph.is_free(edge.node()))
+        .collect::<Vec<_>>();
+    let polished = Acceleration {
+        count: count(&graph, &varying),
+        depth: depth(&graph, &varying),
+        route: chosen.route.clone(),
+        xi_dot: xi_dot.to_vec(),
+        pivots: pivots.to_vec(),
+        graph,
+    };
+    if polished.count.weight() < chosen.count.weight() {
+        polished
+    } else {
+        chosen
+    }
 }
 
 /// Counts the candidates of a setting; the way of tracing that the best of them used.
