@@ -7,6 +7,7 @@
 use super::fp::Fp;
 use super::graph::{Graph, LANES};
 use super::node::{Edge, Node, NodeId};
+use super::transplant::rebuild;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Larger expressions are left as they are.
@@ -54,7 +55,7 @@ impl<'a> Network<'a> {
             .map(Edge::node)
     }
 
-    /// Nodes that the roots need, children first; `leaf` counts as given.
+    /// Nodes that the roots need, children first; `leaf` and run-time constants count as given.
     fn alive(&self, leaf: Option<NodeId>) -> Vec<NodeId> {
         let mut order = Vec::new();
         let mut seen = FxHashSet::default();
@@ -69,7 +70,7 @@ impl<'a> Network<'a> {
                 order.push(id);
             } else if seen.insert(id) {
                 stack.push((id, true));
-                if Some(id) != leaf {
+                if Some(id) != leaf && !self.graph.is_free(id) {
                     stack.extend(self.children(id).map(|child| (child, false)));
                 }
             }
@@ -95,12 +96,23 @@ impl<'a> Network<'a> {
         loop {
             let order = self.alive(None);
             let total = self.cost(&order);
+            let mut uses: FxHashMap<NodeId, usize> = FxHashMap::default();
+            for child in order
+                .iter()
+                .filter(|id| !self.graph.is_free(**id))
+                .flat_map(|&id| self.children(id))
+            {
+                *uses.entry(child).or_default() += usize::from(!self.graph.is_free(child));
+            }
             let found = order.iter().find_map(|&id| {
                 let operation = matches!(
                     self.definitions.get(&id),
                     Some(Node::Add(..) | Node::Mul(..))
                 );
-                if self.graph.is_free(id) || !operation {
+                if self.graph.is_free(id)
+                    || !operation
+                    || !self.children(id).any(|child| uses.get(&child) == Some(&1))
+                {
                     return None;
                 }
                 let rest = self.alive(Some(id));
@@ -175,8 +187,13 @@ impl<'a> Network<'a> {
                 .copied()
                 .map_or(Edge::of(0), |known| known.signed(edge.is_negative()))
         };
-        for id in self.alive(None) {
-            let Some(&node) = self.definitions.get(&id) else {
+        let alive = self.alive(None);
+        let is_constant = |id: &&NodeId| self.graph.is_free(**id);
+        let constants: Vec<Edge> = alive.iter().filter(is_constant).map(|&id| Edge::of(id)).collect();
+        let moved = rebuild(self.graph, into, &constants);
+        image.extend(constants.iter().map(|edge| edge.node()).zip(moved));
+        for id in alive {
+            let Some(&node) = self.definitions.get(&id).filter(|_| !self.graph.is_free(id)) else {
                 continue;
             };
             let made = match node {
