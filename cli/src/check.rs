@@ -15,7 +15,9 @@ use std::path::PathBuf;
 /// and modulo the constraint; "checked modulo p" is equality at random exact points of the
 /// configuration manifold, which errs with a probability below 1e-17.
 #[derive(Args)]
-#[command(after_help = "Examples:\n  hamel check heavy_top.eom\n  hamel check models/*.eom && echo sound")]
+#[command(
+    after_help = "Examples:\n  hamel check heavy_top.eom\n  hamel check models/*.eom && echo sound"
+)]
 pub struct Arguments {
     /// Descriptions, `-` for standard input.
     #[arg(value_name = "FILE", required = true)]
@@ -35,11 +37,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
             print(&integrability(&generated))?;
-            let failed = identities.iter().filter(|identity| matches!(identity.verdict, Verdict::Failed(_))).count();
+            let failed = identities
+                .iter()
+                .filter(|identity| matches!(identity.verdict, Verdict::Failed(_)))
+                .count();
             match failed {
                 0 => Ok(()),
-                1 => Err(Failure::failed(format!("{}: an identity failed", source.path))),
-                _ => Err(Failure::failed(format!("{}: {failed} identities failed", source.path))),
+                1 => Err(Failure::failed(format!(
+                    "{}: an identity failed",
+                    source.path
+                ))),
+                _ => Err(Failure::failed(format!(
+                    "{}: {failed} identities failed",
+                    source.path
+                ))),
             }
         });
         match checked {
@@ -57,8 +68,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn table(identities: &[Identity]) -> String {
-    let width = |column: fn(&Identity) -> &str| identities.iter().map(|identity| column(identity).chars().count()).max().unwrap_or(0);
-    let (label, equation) = (width(|identity| identity.label), width(|identity| identity.equation));
+    let width = |column: fn(&Identity) -> &str| {
+        identities
+            .iter()
+            .map(|identity| column(identity).chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let (label, equation) = (
+        width(|identity| identity.label),
+        width(|identity| identity.equation),
+    );
     identities
         .iter()
         .map(|identity| {
@@ -67,27 +87,44 @@ fn table(identities: &[Identity]) -> String {
                 Verdict::Checked => "\x1b[36mchecked modulo p\x1b[0m".to_string(),
                 Verdict::Failed(why) => format!("\x1b[1;31mFAILED\x1b[0m: {why}"),
             };
-            format!("  {:label$}  {:equation$}  {verdict}\n", identity.label, identity.equation)
+            format!(
+                "  {:label$}  {:equation$}  {verdict}\n",
+                identity.label, identity.equation
+            )
         })
         .collect()
 }
 
 /// ξᵏ is the rate of a coordinate, at least locally, where γᵢⱼᵏ = 0 for all i and j (KR18 section 2.5).
 fn integrability(generated: &Generated) -> String {
-    let Some(geometry) = Geometry::new(&generated.model) else { return String::new() };
+    let Some(geometry) = Geometry::new(&generated.model) else {
+        return String::new();
+    };
     let zero = geometry.model.graph.zero();
     let names = names::velocities(&generated.model);
     let (integrable, other): (Vec<_>, Vec<_>) = names
         .into_iter()
         .enumerate()
         .partition(|(k, _)| geometry.gamma.iter().flatten().all(|row| row[*k] == zero));
-    let list = |names: Vec<(usize, String)>| names.into_iter().map(|(_, name)| name).collect::<Vec<_>>().join(", ");
+    let list = |names: Vec<(usize, String)>| {
+        names
+            .into_iter()
+            .map(|(_, name)| name)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
     let mut text = String::new();
     if !integrable.is_empty() {
-        text.push_str(&format!("  integrable velocity coordinates: {}\n", list(integrable)));
+        text.push_str(&format!(
+            "  integrable, γᵢⱼᵏ = 0 for k of       {}\n",
+            list(integrable)
+        ));
     }
     if !other.is_empty() {
-        text.push_str(&format!("  quasi-velocities, of no coordinate: {}\n", list(other)));
+        text.push_str(&format!(
+            "  not integrable (quasi-velocities)  {}\n",
+            list(other)
+        ));
     }
     text
 }

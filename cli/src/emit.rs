@@ -29,9 +29,14 @@ pub struct Arguments {
 /// Emits, or compares.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::read(&arguments.file)?;
-    let name = arguments.file.file_name().map_or("-".into(), |name| name.to_string_lossy());
+    let name = arguments
+        .file
+        .file_name()
+        .map_or("-".into(), |name| name.to_string_lossy());
     let code = builder::source(&source.text, &name).map_err(|errors| source.refused(&errors))?;
-    let Some(out) = &arguments.out else { return print(&code) };
+    let Some(out) = &arguments.out else {
+        return print(&code);
+    };
     let known = std::fs::read(out);
     let same = known.as_ref().is_ok_and(|known| known == code.as_bytes());
     match (arguments.check, same, known) {
@@ -43,6 +48,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.file.display(),
             out.display()
         ))),
-        (true, false, Err(error)) => Err(Failure::usage(format!("cannot read {}: {error}", out.display()))),
+        (true, false, Err(error)) => Err(Failure::usage(format!(
+            "cannot read {}: {error}",
+            out.display()
+        ))),
     }
 }

@@ -27,7 +27,10 @@ impl Failure {
 
     /// Several messages at once, about the same thing.
     pub fn usages(about: &str, messages: &[String]) -> Self {
-        let mut text: String = messages.iter().map(|message| headed(&format!("{about}: {message}"))).collect();
+        let mut text: String = messages
+            .iter()
+            .map(|message| headed(&format!("{about}: {message}")))
+            .collect();
         if messages.len() > 1 {
             text.push_str(&format!("{} errors\n", messages.len()));
         }
@@ -52,7 +55,9 @@ impl Failure {
             (Failure::Closed, other) => other,
             (this, Failure::Closed) => this,
             (Failure::Failed(a), Failure::Failed(b)) => Failure::Failed(a + &b),
-            (Failure::Failed(a) | Failure::Usage(a), Failure::Failed(b) | Failure::Usage(b)) => Failure::Usage(a + &b),
+            (Failure::Failed(a) | Failure::Usage(a), Failure::Failed(b) | Failure::Usage(b)) => {
+                Failure::Usage(a + &b)
+            }
         }
     }
 }
@@ -64,14 +69,20 @@ fn headed(message: &str) -> String {
 /// Writes a result to standard output; colours are dropped where it is no terminal, or with `NO_COLOR`.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = anstream::stdout();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    match stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+    {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::Closed),
-        Err(error) => Err(Failure::usage(format!("cannot write to standard output: {error}"))),
+        Err(error) => Err(Failure::usage(format!(
+            "cannot write to standard output: {error}"
+        ))),
     }
 }
 
 /// Writes a file.
 pub fn write(path: &std::path::Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| Failure::usage(format!("cannot write {}: {error}", path.display())))
+    std::fs::write(path, text)
+        .map_err(|error| Failure::usage(format!("cannot write {}: {error}", path.display())))
 }

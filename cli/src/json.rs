@@ -11,8 +11,6 @@ pub enum Json {
     Count(u128),
     /// A text.
     Text(String),
-    /// A truth value.
-    Flag(bool),
     /// Nothing.
     Null,
     /// A list.
@@ -27,7 +25,12 @@ const WIDTH: usize = 100;
 impl Json {
     /// An object of members.
     pub fn object<'a>(members: impl IntoIterator<Item = (&'a str, Json)>) -> Json {
-        Json::Object(members.into_iter().map(|(name, value)| (name.to_string(), value)).collect())
+        Json::Object(
+            members
+                .into_iter()
+                .map(|(name, value)| (name.to_string(), value))
+                .collect(),
+        )
     }
 
     /// A list of numbers.
@@ -59,14 +62,16 @@ impl Json {
             Json::Number(value) if value.is_finite() => exact(*value),
             Json::Number(_) | Json::Null => "null".into(),
             Json::Count(count) => count.to_string(),
-            Json::Flag(flag) => flag.to_string(),
             Json::Text(text) => serde_json::Value::from(text.as_str()).to_string(),
             Json::List(items) => {
                 let items: Vec<String> = items.iter().map(Json::line).collect();
                 format!("[{}]", items.join(", "))
             }
             Json::Object(members) => {
-                let members: Vec<String> = members.iter().map(|(name, value)| format!("{}: {}", quoted(name), value.line())).collect();
+                let members: Vec<String> = members
+                    .iter()
+                    .map(|(name, value)| format!("{}: {}", quoted(name), value.line()))
+                    .collect();
                 format!("{{{}}}", members.join(", "))
             }
         }
@@ -74,10 +79,13 @@ impl Json {
 
     fn write(&self, indent: usize, text: &mut String) {
         let parts: Vec<(String, &Json)> = match self {
-            Json::List(items) if !items.is_empty() => items.iter().map(|item| (String::new(), item)).collect(),
-            Json::Object(members) if !members.is_empty() => {
-                members.iter().map(|(name, value)| (format!("{}: ", quoted(name)), value)).collect()
+            Json::List(items) if !items.is_empty() => {
+                items.iter().map(|item| (String::new(), item)).collect()
             }
+            Json::Object(members) if !members.is_empty() => members
+                .iter()
+                .map(|(name, value)| (format!("{}: ", quoted(name)), value))
+                .collect(),
             _ => return text.push_str(&self.line()),
         };
         let line = self.line();

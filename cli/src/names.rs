@@ -7,7 +7,11 @@ use hamel_codegen::syntax::ast::ShapeKind;
 
 /// Names of the entries of x.
 pub fn coordinates(model: &Model) -> Vec<String> {
-    model.coordinates.iter().flat_map(|coordinate| entry_names(&coordinate.name, coordinate.kind)).collect()
+    model
+        .coordinates
+        .iter()
+        .flat_map(|coordinate| entry_names(&coordinate.name, coordinate.kind))
+        .collect()
 }
 
 /// Names of the entries of ξ.
@@ -22,9 +26,9 @@ pub fn group(group: &Group) -> Vec<String> {
         ShapeKind::Scalar => shaped(name, Shape::Scalar),
         ShapeKind::Vector(n) => shaped(name, Shape::Vector(n)),
         ShapeKind::Matrix(n) => shaped(name, Shape::Matrix(n, n)),
-        ShapeKind::Symmetric(n) => {
-            (1..=n).flat_map(|i| (i..=n).map(move |j| format!("{name}[{i},{j}]"))).collect()
-        }
+        ShapeKind::Symmetric(n) => (1..=n)
+            .flat_map(|i| (i..=n).map(move |j| format!("{name}[{i},{j}]")))
+            .collect(),
     }
 }
 
@@ -33,8 +37,8 @@ pub fn shaped(name: &str, shape: Shape) -> Vec<String> {
     match shape {
         Shape::Scalar => vec![name.to_string()],
         Shape::Vector(n) => (1..=n).map(|i| format!("{name}[{i}]")).collect(),
-        Shape::Matrix(rows, columns) => {
-            (1..=rows).flat_map(|i| (1..=columns).map(move |j| format!("{name}[{i},{j}]"))).collect()
-        }
+        Shape::Matrix(rows, columns) => (1..=rows)
+            .flat_map(|i| (1..=columns).map(move |j| format!("{name}[{i},{j}]")))
+            .collect(),
     }
 }

@@ -14,7 +14,9 @@ pub fn digits(value: f64, significant: usize) -> String {
         return value.to_string();
     }
     let scientific = format!("{:.*e}", significant.max(1) - 1, value);
-    let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
+    let Some((mantissa, exponent)) = scientific.split_once('e') else {
+        return scientific;
+    };
     let exponent: i32 = exponent.parse().unwrap_or(0);
     if !(-4..6).contains(&exponent) {
         return format!("{}e{exponent}", trimmed(mantissa));
@@ -25,7 +27,11 @@ pub fn digits(value: f64, significant: usize) -> String {
 
 /// Two significant digits of an error: `3.1e-15`.
 pub fn error(value: f64) -> String {
-    if value == 0.0 { "0".into() } else { format!("{value:.1e}") }
+    if value == 0.0 {
+        "0".into()
+    } else {
+        format!("{value:.1e}")
+    }
 }
 
 /// A whole number with its thousands apart: `100 000`.
@@ -43,11 +49,19 @@ pub fn grouped(value: u64) -> String {
 
 /// The shortest text that reads back as the same number; never a long row of zeros.
 pub fn exact(value: f64) -> String {
-    if value == 0.0 { "0.0".into() } else { format!("{value:?}") }
+    if value == 0.0 {
+        "0.0".into()
+    } else {
+        format!("{value:?}")
+    }
 }
 
 fn trimmed(text: &str) -> &str {
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]
@@ -56,7 +70,15 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let cases = [(0.0, "0"), (1.0, "1"), (-0.001, "-0.001"), (1e-5, "1e-5"), (123456.7, "123457"), (1e6, "1e6"), (2.0 / 3.0, "0.666667")];
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.001, "-0.001"),
+            (1e-5, "1e-5"),
+            (123456.7, "123457"),
+            (1e6, "1e6"),
+            (2.0 / 3.0, "0.666667"),
+        ];
         for (value, text) in cases {
             assert_eq!(short(value), text);
         }

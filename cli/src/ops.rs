@@ -16,7 +16,9 @@ use std::path::PathBuf;
 /// expression written out, where nothing is computed once for several uses and nothing when
 /// parameters are set. flops are add + mul + div; negation is free.
 #[derive(Args)]
-#[command(after_help = "Examples:\n  hamel ops heavy_top.eom\n  hamel ops heavy_top.eom --format json")]
+#[command(
+    after_help = "Examples:\n  hamel ops heavy_top.eom\n  hamel ops heavy_top.eom --format json"
+)]
 pub struct Arguments {
     /// Description, `-` for standard input.
     #[arg(value_name = "FILE")]
@@ -60,7 +62,12 @@ fn rows(program: &Program, schedule: &Schedule) -> Vec<Row> {
     let functions = program.functions.iter().zip(&schedule.bodies);
     functions
         .map(|(function, body)| {
-            let roots: Vec<Edge> = function.outputs.iter().chain(&function.guards).copied().collect();
+            let roots: Vec<Edge> = function
+                .outputs
+                .iter()
+                .chain(&function.guards)
+                .copied()
+                .collect();
             Row {
                 name: function.name.clone(),
                 shared: operations(count_nodes(&program.graph, body)),
@@ -71,11 +78,21 @@ fn rows(program: &Program, schedule: &Schedule) -> Vec<Row> {
 }
 
 fn operations(count: Count) -> Operations {
-    [count.add, count.mul, count.div, count.sqrt, count.sincos, count.other].map(|count| count as u128)
+    [
+        count.add,
+        count.mul,
+        count.div,
+        count.sqrt,
+        count.sincos,
+        count.other,
+    ]
+    .map(|count| count as u128)
 }
 
 fn flops(operations: &Operations) -> u128 {
-    operations[..3].iter().fold(0, |sum: u128, &count| sum.saturating_add(count))
+    operations[..3]
+        .iter()
+        .fold(0, |sum: u128, &count| sum.saturating_add(count))
 }
 
 fn sum(a: Operations, b: Operations) -> Operations {
@@ -86,7 +103,9 @@ fn sum(a: Operations, b: Operations) -> Operations {
 fn tree(graph: &Graph, roots: &[Edge]) -> Operations {
     let mut costs = vec![[0; 6]; graph.len()];
     for id in graph.reachable(roots) {
-        let mut cost = graph.node(id).children().fold([0; 6], |cost, child| sum(cost, costs[child.node() as usize]));
+        let mut cost = graph.node(id).children().fold([0; 6], |cost, child| {
+            sum(cost, costs[child.node() as usize])
+        });
         let kind = match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => None,
             Node::Add(..) => Some(0),
@@ -101,16 +120,27 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Operations {
         }
         costs[id as usize] = cost;
     }
-    roots.iter().fold([0; 6], |cost, root| sum(cost, costs[root.node() as usize]))
+    roots
+        .iter()
+        .fold([0; 6], |cost, root| sum(cost, costs[root.node() as usize]))
 }
 
 /// A count in at most eight characters: `123456`, `1.2e9`.
 fn compact(count: u128) -> String {
-    if count < 10_000_000 { count.to_string() } else { format!("{:.1e}", count as f64) }
+    if count < 10_000_000 {
+        count.to_string()
+    } else {
+        format!("{:.1e}", count as f64)
+    }
 }
 
 fn text(rows: &[Row], hoisted: Operations, kept: usize) -> String {
-    let width = rows.iter().map(|row| row.name.len()).max().unwrap_or(0).max(8);
+    let width = rows
+        .iter()
+        .map(|row| row.name.len())
+        .max()
+        .unwrap_or(0)
+        .max(8);
     let mut text = format!("\x1b[1m{:width$}", "function");
     for kind in KINDS {
         text.push_str(&format!("{kind:>7}"));
@@ -121,31 +151,49 @@ fn text(rows: &[Row], hoisted: Operations, kept: usize) -> String {
         for count in row.shared {
             text.push_str(&format!("{count:>7}"));
         }
-        text.push_str(&format!("{:>7}{:>10}\n", flops(&row.shared), compact(flops(&row.unshared))));
+        text.push_str(&format!(
+            "{:>7}{:>10}\n",
+            flops(&row.shared),
+            compact(flops(&row.unshared))
+        ));
     }
     let operations: u128 = hoisted.iter().sum();
     text.push_str(&match (operations, kept) {
         (0, _) => "nothing to be computed when parameters are set\n".to_string(),
         (1, _) => "1 operation is done when parameters are set\n".to_string(),
-        (_, 1) => format!("{operations} operations are done when parameters are set, 1 constant is kept\n"),
-        _ => format!("{operations} operations are done when parameters are set, {kept} constants are kept\n"),
+        (_, 1) => format!(
+            "{operations} operations are done when parameters are set, 1 constant is kept\n"
+        ),
+        _ => format!(
+            "{operations} operations are done when parameters are set, {kept} constants are kept\n"
+        ),
     });
     text
 }
 
 fn json(program: &Program, rows: &[Row], hoisted: Operations, kept: usize) -> Json {
     let counts = |operations: &Operations| {
-        let mut members: Vec<(&str, Json)> = KINDS.into_iter().zip(operations.map(Json::Count)).collect();
+        let mut members: Vec<(&str, Json)> =
+            KINDS.into_iter().zip(operations.map(Json::Count)).collect();
         members.push(("flops", Json::Count(flops(operations))));
         Json::object(members)
     };
     let functions = rows.iter().map(|row| {
-        let members = [("shared", counts(&row.shared)), ("unshared", counts(&row.unshared))];
+        let members = [
+            ("shared", counts(&row.shared)),
+            ("unshared", counts(&row.unshared)),
+        ];
         (row.name.as_str(), Json::object(members))
     });
     Json::object([
         ("system", Json::Text(program.name.clone())),
         ("functions", Json::object(functions)),
-        ("parameters", Json::object([("hoisted", counts(&hoisted)), ("kept", Json::Count(kept as u128))])),
+        (
+            "parameters",
+            Json::object([
+                ("hoisted", counts(&hoisted)),
+                ("kept", Json::Count(kept as u128)),
+            ]),
+        ),
     ])
 }

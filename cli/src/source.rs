@@ -20,19 +20,29 @@ impl Source {
     /// Reads a file, or standard input where the path is `-`.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let stdin = path.as_os_str() == "-";
-        let name = if stdin { "<stdin>".to_string() } else { path.display().to_string() };
+        let name = if stdin {
+            "<stdin>".to_string()
+        } else {
+            path.display().to_string()
+        };
         let bytes = if stdin {
             let mut bytes = Vec::new();
-            std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+            std::io::stdin()
+                .lock()
+                .read_to_end(&mut bytes)
+                .map(|_| bytes)
         } else {
             std::fs::read(path)
         };
-        let bytes = bytes.map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))?;
+        let bytes =
+            bytes.map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))?;
         match String::from_utf8(bytes) {
             Ok(text) => Ok(Source { path: name, text }),
             Err(error) => {
                 let place = error.utf8_error().valid_up_to();
-                Err(Failure::usage(format!("cannot read {name}: byte {place} is not UTF-8")))
+                Err(Failure::usage(format!(
+                    "cannot read {name}: byte {place} is not UTF-8"
+                )))
             }
         }
     }
@@ -47,7 +57,8 @@ impl Source {
         let mut generated = self.derive()?;
         if !generated.model.generate.is_empty() {
             generated.model.generate.clear();
-            generated.program = assemble(&generated.model).map_err(|error| self.refused(&[error]))?;
+            generated.program =
+                assemble(&generated.model).map_err(|error| self.refused(&[error]))?;
         }
         Ok(generated)
     }

@@ -44,7 +44,9 @@ impl State {
 
     /// The start, changed by a file where there is one.
     pub fn read(model: &Model, at: Option<&Path>) -> Result<Self, Failure> {
-        let Some(path) = at else { return Ok(State::start(model)) };
+        let Some(path) = at else {
+            return Ok(State::start(model));
+        };
         let source = Source::read(path)?;
         State::parse(model, &source.text).map_err(|errors| Failure::usages(&source.path, &errors))
     }
@@ -59,26 +61,43 @@ impl State {
         if errors.is_empty() {
             errors = state.violations(model);
         }
-        if errors.is_empty() { Ok(state) } else { Err(errors) }
+        if errors.is_empty() {
+            Ok(state)
+        } else {
+            Err(errors)
+        }
     }
 
     /// Where x leaves the configuration manifold.
     fn violations(&self, model: &Model) -> Vec<String> {
-        let numbers = model.numbers(&self.params, &self.x, &self.xi, &self.u, &vec![0.0; model.n()]);
+        let numbers = model.numbers(
+            &self.params,
+            &self.x,
+            &self.xi,
+            &self.u,
+            &vec![0.0; model.n()],
+        );
         let rows: Vec<_> = model.phi.iter().map(|(edge, _)| *edge).collect();
         let residuals = evaluate(&model.points.free, &rows, &numbers);
         let mut errors: Vec<String> = Vec::new();
         for ((_, text), residual) in model.phi.iter().zip(residuals) {
             // A NaN is off, too.
             if residual.is_nan() || residual.abs() > OFF {
-                errors.push(format!("{}: violates {text}, the difference is {residual:.2e}", self.place(model, text)));
+                errors.push(format!(
+                    "{}: violates {text}, the difference is {residual:.2e}",
+                    self.place(model, text)
+                ));
             }
         }
         let mut offset = 0;
         for &block in &model.blocks {
             let entries = &self.x[offset..offset + block.len()];
             if block == Block::Rotation && errors.is_empty() && determinant(entries) < 0.0 {
-                let name = model.coordinates.iter().rfind(|c| c.offset <= offset).map_or("", |c| c.name.as_str());
+                let name = model
+                    .coordinates
+                    .iter()
+                    .rfind(|c| c.offset <= offset)
+                    .map_or("", |c| c.name.as_str());
                 errors.push(format!("coord.{name}: a reflection, its determinant is -1"));
             }
             offset += block.len();
@@ -88,10 +107,19 @@ impl State {
 
     /// The coordinates that a constraint mentions, as paths.
     fn place(&self, model: &Model, text: &str) -> String {
-        let words: Vec<&str> = text.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
-        let names = model.coordinates.iter().filter(|c| words.contains(&c.name.as_str()));
+        let words: Vec<&str> = text
+            .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .collect();
+        let names = model
+            .coordinates
+            .iter()
+            .filter(|c| words.contains(&c.name.as_str()));
         let paths: Vec<String> = names.map(|c| format!("coord.{}", c.name)).collect();
-        if paths.is_empty() { "coord".into() } else { paths.join(", ") }
+        if paths.is_empty() {
+            "coord".into()
+        } else {
+            paths.join(", ")
+        }
     }
 }
 

@@ -24,31 +24,55 @@ impl Reader {
             return self.error("", format!("{expected} expected, {} found", kind(json)));
         };
         self.known("", parts, &["param", "coord", "velocity", "input"]);
-        let groups = [("param", &model.params, &mut state.params), ("velocity", &model.velocities, &mut state.xi), ("input", &model.inputs, &mut state.u)];
+        let groups = [
+            ("param", &model.params, &mut state.params),
+            ("velocity", &model.velocities, &mut state.xi),
+            ("input", &model.inputs, &mut state.u),
+        ];
         for (part, groups, numbers) in groups {
             let names: Vec<&str> = groups.iter().map(|group| group.name.as_str()).collect();
-            let Some(given) = self.part(parts, part, &names) else { continue };
+            let Some(given) = self.part(parts, part, &names) else {
+                continue;
+            };
             for group in groups {
                 if let Some(value) = given.get(&group.name)
-                    && let Some(values) = self.shape(&format!("{part}.{}", group.name), value, group.shape)
+                    && let Some(values) =
+                        self.shape(&format!("{part}.{}", group.name), value, group.shape)
                 {
                     numbers[group.offset..group.offset + group.len].copy_from_slice(&values);
                 }
             }
         }
-        let names: Vec<&str> = model.coordinates.iter().map(|coordinate| coordinate.name.as_str()).collect();
-        let Some(given) = self.part(parts, "coord", &names) else { return };
+        let names: Vec<&str> = model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.name.as_str())
+            .collect();
+        let Some(given) = self.part(parts, "coord", &names) else {
+            return;
+        };
         for coordinate in &model.coordinates {
-            let Some(value) = given.get(&coordinate.name) else { continue };
+            let Some(value) = given.get(&coordinate.name) else {
+                continue;
+            };
             let offset = coordinate.offset;
-            for (part, values) in self.coordinate(&format!("coord.{}", coordinate.name), value, coordinate.kind) {
+            for (part, values) in self.coordinate(
+                &format!("coord.{}", coordinate.name),
+                value,
+                coordinate.kind,
+            ) {
                 state.x[offset + part..offset + part + values.len()].copy_from_slice(&values);
             }
         }
     }
 
     /// An object with one member for each name, or fewer.
-    fn part<'a>(&mut self, parts: &'a Map<String, Value>, part: &str, names: &[&str]) -> Option<&'a Map<String, Value>> {
+    fn part<'a>(
+        &mut self,
+        parts: &'a Map<String, Value>,
+        part: &str,
+        names: &[&str],
+    ) -> Option<&'a Map<String, Value>> {
         match parts.get(part)? {
             Value::Object(given) => {
                 self.known(part, given, names);
@@ -64,7 +88,11 @@ impl Reader {
     /// Reports members that have no such name.
     fn known(&mut self, at: &str, given: &Map<String, Value>, names: &[&str]) {
         for name in given.keys().filter(|name| !names.contains(&name.as_str())) {
-            let path = if at.is_empty() { name.clone() } else { format!("{at}.{name}") };
+            let path = if at.is_empty() {
+                name.clone()
+            } else {
+                format!("{at}.{name}")
+            };
             let message = match (closest(name, names.iter().copied()), names) {
                 (Some(meant), _) => format!("unknown name; did you mean `{meant}`?"),
                 (None, []) => "unknown name; the description has none".into(),
@@ -80,10 +108,18 @@ impl Reader {
             CoordKind::Real => self.number(at, value).map(|number| vec![number]),
             CoordKind::Euclidean(n) => self.vector(at, value, n),
             CoordKind::S1 => match value {
-                Value::Number(_) => self.number(at, value).map(|angle| vec![angle.cos(), angle.sin()]),
+                Value::Number(_) => self
+                    .number(at, value)
+                    .map(|angle| vec![angle.cos(), angle.sin()]),
                 Value::Array(_) => self.vector(at, value, 2),
                 other => {
-                    self.error(at, format!("an angle or [cos, sin] expected, {} found", self::kind(other)));
+                    self.error(
+                        at,
+                        format!(
+                            "an angle or [cos, sin] expected, {} found",
+                            self::kind(other)
+                        ),
+                    );
                     None
                 }
             },
@@ -97,13 +133,24 @@ impl Reader {
     /// `{"p": [3], "R": [3 × 3]}`; what is left out keeps its value.
     fn pose(&mut self, at: &str, value: &Value) -> Vec<(usize, Vec<f64>)> {
         let Value::Object(parts) = value else {
-            self.error(at, format!("{{\"p\": …, \"R\": …}} expected, {} found", kind(value)));
+            self.error(
+                at,
+                format!("{{\"p\": …, \"R\": …}} expected, {} found", kind(value)),
+            );
             return Vec::new();
         };
         self.known(at, parts, &["p", "R"]);
-        let position = parts.get("p").and_then(|p| self.vector(&format!("{at}.p"), p, 3));
-        let rotation = parts.get("R").and_then(|r| self.matrix(&format!("{at}.R"), r, 3));
-        position.map(|p| (0, p)).into_iter().chain(rotation.map(|rows| (3, rows.concat()))).collect()
+        let position = parts
+            .get("p")
+            .and_then(|p| self.vector(&format!("{at}.p"), p, 3));
+        let rotation = parts
+            .get("R")
+            .and_then(|r| self.matrix(&format!("{at}.R"), r, 3));
+        position
+            .map(|p| (0, p))
+            .into_iter()
+            .chain(rotation.map(|rows| (3, rows.concat())))
+            .collect()
     }
 
     /// Numbers of a declared shape, in the order of its symbols.
@@ -119,7 +166,10 @@ impl Reader {
                     for j in 0..i {
                         let scale = rows[i][j].abs().max(rows[j][i].abs());
                         if (rows[i][j] - rows[j][i]).abs() > SYMMETRY * scale {
-                            let message = format!("has to be symmetric: {} here, {} at [{j}][{i}]", rows[i][j], rows[j][i]);
+                            let message = format!(
+                                "has to be symmetric: {} here, {} at [{j}][{i}]",
+                                rows[i][j], rows[j][i]
+                            );
                             self.error(&format!("{at}[{i}][{j}]"), message);
                         }
                     }
@@ -131,21 +181,43 @@ impl Reader {
     }
 
     fn matrix(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<Vec<f64>>> {
-        let rows = self.list(at, value, n, &format!("a {n}×{n} matrix, a list of its rows,"))?;
-        let rows: Vec<_> = rows.iter().enumerate().map(|(i, row)| self.vector(&format!("{at}[{i}]"), row, n)).collect();
+        let rows = self.list(
+            at,
+            value,
+            n,
+            &format!("a {n}×{n} matrix, a list of its rows,"),
+        )?;
+        let rows: Vec<_> = rows
+            .iter()
+            .enumerate()
+            .map(|(i, row)| self.vector(&format!("{at}[{i}]"), row, n))
+            .collect();
         rows.into_iter().collect()
     }
 
     fn vector(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<f64>> {
         let list = self.list(at, value, n, &format!("a list of {n} numbers"))?;
-        let numbers: Vec<_> = list.iter().enumerate().map(|(i, entry)| self.number(&format!("{at}[{i}]"), entry)).collect();
+        let numbers: Vec<_> = list
+            .iter()
+            .enumerate()
+            .map(|(i, entry)| self.number(&format!("{at}[{i}]"), entry))
+            .collect();
         numbers.into_iter().collect()
     }
 
-    fn list<'a>(&mut self, at: &str, value: &'a Value, n: usize, expected: &str) -> Option<&'a [Value]> {
+    fn list<'a>(
+        &mut self,
+        at: &str,
+        value: &'a Value,
+        n: usize,
+        expected: &str,
+    ) -> Option<&'a [Value]> {
         match value {
             Value::Array(list) if list.len() == n => return Some(list),
-            Value::Array(list) => self.error(at, format!("{expected} expected, a list of {} found", list.len())),
+            Value::Array(list) => self.error(
+                at,
+                format!("{expected} expected, a list of {} found", list.len()),
+            ),
             other => self.error(at, format!("{expected} expected, {} found", kind(other))),
         }
         None
@@ -161,7 +233,11 @@ impl Reader {
     }
 
     fn error(&mut self, at: &str, message: String) {
-        self.errors.push(if at.is_empty() { message } else { format!("{at}: {message}") });
+        self.errors.push(if at.is_empty() {
+            message
+        } else {
+            format!("{at}: {message}")
+        });
     }
 }
 

@@ -26,7 +26,10 @@ fn every_shape_is_read() {
     let state = State::parse(&model(), text).expect("a sound state");
     assert_eq!(state.params, [3.0, 1.0, 0.1, 0.2, 2.0, 0.3, 3.0]);
     assert_eq!(state.x[..2], [0.5_f64.cos(), 0.5_f64.sin()]);
-    assert_eq!(state.x[2..], [1.0, 2.0, 3.0, 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    assert_eq!(
+        state.x[2..],
+        [1.0, 2.0, 3.0, 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    );
     assert_eq!(state.xi, [0.0, 0.0, 0.0, 0.0, 4.0, 5.0, 6.0]);
 }
 
@@ -38,12 +41,12 @@ fn every_mistake_is_named_at_once() {
     let errors = State::parse(&model(), text).expect_err("mistakes");
     let expected = [
         "inputs: unknown name; did you mean `input`?",
-        "param.mm: unknown name; did you mean `m`?",
+        "param.mm: unknown name; known are m, J",
         "param.J[1][0]: has to be symmetric: 3 here, 2 at [0][1]",
         "velocity.w: a list of 3 numbers expected, a number found",
         "input: an object expected, a list found",
         "coord.q: a list of 2 numbers expected, a list of 3 found",
-        "coord.X.r: unknown name; did you mean `R`?",
+        "coord.X.r: unknown name; known are p, R",
         "coord.X.p[1]: a number expected, a text found",
     ];
     assert_eq!(errors, expected);
@@ -51,10 +54,18 @@ fn every_mistake_is_named_at_once() {
 
 #[test]
 fn states_off_the_manifold_are_refused() {
-    let stretched = r#"{"coord": {"q": [1, 0.1], "X": {"R": [[1, 0, 0], [0, 1.1, 0], [0, 0, 1]]}}}"#;
+    let stretched =
+        r#"{"coord": {"q": [1, 0.1], "X": {"R": [[1, 0, 0], [0, 1.1, 0], [0, 0, 1]]}}}"#;
     let errors = State::parse(&model(), stretched).expect_err("off");
-    assert_eq!(errors[0], "coord.q: violates q.c^2 + q.s^2 = 1, the difference is 1.00e-2");
-    assert!(errors[1].starts_with("coord.X: violates") && errors[1].ends_with("the difference is 2.10e-1"), "{errors:?}");
+    assert_eq!(
+        errors[0],
+        "coord.q: violates q.c^2 + q.s^2 = 1, the difference is 1.00e-2"
+    );
+    assert!(
+        errors[1].starts_with("coord.X: violates")
+            && errors[1].ends_with("the difference is 2.10e-1"),
+        "{errors:?}"
+    );
     let reflected = r#"{"coord": {"X": {"R": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}}}"#;
     let errors = State::parse(&model(), reflected).expect_err("reflected");
     assert_eq!(errors, ["coord.X: a reflection, its determinant is -1"]);

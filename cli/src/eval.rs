@@ -1,0 +1,168 @@
+//! `hamel eval`: numbers of everything at a state.
+
+use crate::failure::{Failure, print};
+use crate::interpreted::{Interpreted, constant_pivot, function};
+use crate::json::Json;
+use crate::names;
+use crate::source::Source;
+use crate::state::State;
+use clap::Args;
+use hamel::System;
+use hamel_codegen::algebra::graph::Edge;
+use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::program::Shape;
+use std::path::PathBuf;
+
+/// Prints the numbers of A, γ, M, Γ, forces, rates and energies at a state, as JSON.
+///
+/// The state is the description's start with default parameters and zero input, changed by what
+/// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…}, "input": {…}}.
+/// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
+/// Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel eval heavy_top.eom
+  hamel eval heavy_top.eom --at state.json
+  echo '{\"velocity\": {\"w\": [0, 0, 9]}}' | hamel eval heavy_top.eom --at -")]
+pub struct Arguments {
+    /// Description, `-` for standard input.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// State, `-` for standard input.
+    #[arg(long, value_name = "STATE.json")]
+    at: Option<PathBuf>,
+}
+
+/// Evaluates and prints; where something has no value it is `null`, and the command fails.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Source::read(&arguments.file)?;
+    let generated = source.derive_all()?;
+    let state = State::read(&generated.model, arguments.at.as_deref())?;
+    let mut members = vec![
+        ("system", Json::Text(generated.model.name.clone())),
+        (
+            "coordinates",
+            Json::texts(&names::coordinates(&generated.model)),
+        ),
+        (
+            "velocities",
+            Json::texts(&names::velocities(&generated.model)),
+        ),
+        ("x", Json::vector(&state.x)),
+        ("xi", Json::vector(&state.xi)),
+    ];
+    members.extend(geometry(&generated, &state)?);
+    let mut missing: Vec<String> = Vec::new();
+    members.extend(motion(&generated, &state, &mut missing)?);
+    missing.extend(
+        members
+            .iter()
+            .filter(|(_, value)| !finite(value))
+            .map(|(name, _)| format!("`{name}` is not finite at this state")),
+    );
+    print(&Json::object(members).pretty())?;
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::failed(format!(
+            "{}: {}",
+            source.path,
+            missing.join("; ")
+        )))
+    }
+}
+
+/// A, γ, M, Γ.
+fn geometry(generated: &Generated, state: &State) -> Result<Vec<(&'static str, Json)>, Failure> {
+    let Some(geometry) = Geometry::new(&generated.model) else {
+        return Err(Failure::failed(
+            "the rates of this description leave A without a left inverse",
+        ));
+    };
+    let model = &geometry.model;
+    let numbers = model.numbers(
+        &state.params,
+        &state.x,
+        &state.xi,
+        &state.u,
+        &vec![0.0; model.n()],
+    );
+    let row = |edges: &[Edge]| evaluate(&model.graph, edges, &numbers);
+    let matrix =
+        |rows: &[Vec<Edge>]| Json::matrix(&rows.iter().map(|edges| row(edges)).collect::<Vec<_>>());
+    let cube =
+        |table: &[Vec<Vec<Edge>>]| Json::List(table.iter().map(|rows| matrix(rows)).collect());
+    Ok(vec![
+        ("A", matrix(&model.a)),
+        ("gamma", cube(&geometry.gamma)),
+        ("M", matrix(&geometry.mass)),
+        ("Gamma", cube(&geometry.connection)),
+    ])
+}
+
+/// Forces, rates, energies, outputs.
+fn motion(
+    generated: &Generated,
+    state: &State,
+    missing: &mut Vec<String>,
+) -> Result<Vec<(&'static str, Json)>, Failure> {
+    let system = Interpreted::new(generated, state)?;
+    let State { params, x, xi, u } = state;
+    let vector = |name: &str| -> Result<Json, Failure> {
+        let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);
+        Ok(Json::vector(&value.unwrap_or_default()))
+    };
+    let singular = |pivot: usize| {
+        format!(
+            "the mass matrix is not positive definite at this state (pivot {}), `accel` has no value",
+            pivot + 1
+        )
+    };
+    let accel = match constant_pivot(&generated.program, params) {
+        Some(pivot) => Err(pivot),
+        None => system.accel(x, xi, u).map_err(|singular| singular.pivot),
+    };
+    let accel = match accel {
+        Ok(accel) => Json::vector(&accel),
+        Err(pivot) => {
+            missing.push(singular(pivot));
+            Json::Null
+        }
+    };
+    let outputs = system.outputs().iter().map(|output| {
+        let values = system.output(output, x, xi);
+        let value = match output.shape {
+            Shape::Scalar => Json::Number(values.first().copied().unwrap_or(f64::NAN)),
+            Shape::Vector(_) => Json::vector(&values),
+            Shape::Matrix(_, columns) => Json::matrix(
+                &values
+                    .chunks(columns)
+                    .map(<[f64]>::to_vec)
+                    .collect::<Vec<_>>(),
+            ),
+        };
+        (output.name.as_str(), value)
+    });
+    Ok(vec![
+        ("bias", vector("bias")?),
+        ("potential_force", vector("potential_force")?),
+        ("generalized_force", vector("generalized_force")?),
+        ("rate", vector("rate")?),
+        ("accel", accel),
+        ("kinetic_energy", Json::Number(system.kinetic_energy(x, xi))),
+        ("potential_energy", Json::Number(system.potential_energy(x))),
+        ("constraint", Json::vector(&system.constraint(x))),
+        ("outputs", Json::object(outputs)),
+    ])
+}
+
+fn finite(value: &Json) -> bool {
+    match value {
+        Json::Number(number) => number.is_finite(),
+        Json::List(items) => items.iter().all(finite),
+        Json::Object(members) => members.iter().all(|(_, value)| finite(value)),
+        _ => true,
+    }
+}

@@ -1,0 +1,212 @@
+//! A described system that the integrators can run without its being compiled.
+
+use crate::failure::Failure;
+use crate::state::State;
+use hamel::{Block, Singular, System};
+use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::model::layout;
+use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::program::{Program, Shape};
+use std::cell::Cell;
+
+/// A program with its parameters set; x, ξ and u are `Vec`s.
+pub struct Interpreted {
+    blocks: Vec<Block>,
+    start: (Vec<f64>, Vec<f64>),
+    inputs: Vec<f64>,
+    chart: usize,
+    rate: Interpreter,
+    chart_rate: Interpreter,
+    accel: Interpreter,
+    correction: Interpreter,
+    constraint: Interpreter,
+    momentum: Interpreter,
+    kinetic: Interpreter,
+    potential: Interpreter,
+    outputs: Vec<Output>,
+    evaluations: Cell<u64>,
+}
+
+/// An output of the description.
+pub struct Output {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub shape: Shape,
+    function: Interpreter,
+}
+
+impl Interpreted {
+    /// Compiles a complete program for the parameters, start and constant inputs of a state.
+    pub fn new(generated: &Generated, state: &State) -> Result<Self, Failure> {
+        let program = &generated.program;
+        let function = |name: &str| function(program, name, &state.params);
+        let outputs = generated.model.outputs.iter().map(|(name, _)| {
+            let shape = program
+                .function(name)
+                .map_or(Shape::Scalar, |function| function.shape);
+            Ok(Output {
+                name: name.clone(),
+                shape,
+                function: function(name)?,
+            })
+        });
+        Ok(Interpreted {
+            blocks: program.blocks.iter().copied().map(block).collect(),
+            start: (state.x.clone(), state.xi.clone()),
+            inputs: state.u.clone(),
+            chart: program.blocks.iter().map(|block| block.dimension()).sum(),
+            rate: function("rate")?,
+            chart_rate: function("chart_rate")?,
+            accel: function("accel")?,
+            correction: function("correction")?,
+            constraint: function("constraint")?,
+            momentum: function("momentum")?,
+            kinetic: function("kinetic_energy")?,
+            potential: function("potential_energy")?,
+            outputs: outputs.collect::<Result<_, Failure>>()?,
+            evaluations: Cell::new(0),
+        })
+    }
+
+    /// How often ξ̇ was evaluated.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations.get()
+    }
+
+    /// u, constant in a run.
+    pub fn inputs(&self) -> &[f64] {
+        &self.inputs
+    }
+
+    /// p = M ξ.
+    pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Vec<f64> {
+        value(&self.momentum, x, xi, &[])
+    }
+
+    /// φ(x).
+    pub fn constraint(&self, x: &[f64]) -> Vec<f64> {
+        value(&self.constraint, x, &[], &[])
+    }
+
+    /// The outputs of the description.
+    pub fn outputs(&self) -> &[Output] {
+        &self.outputs
+    }
+
+    /// The value of an output, matrices by rows.
+    pub fn output(&self, output: &Output, x: &[f64], xi: &[f64]) -> Vec<f64> {
+        value(&output.function, x, xi, &self.inputs)
+    }
+}
+
+/// Compiles one function.
+pub fn function(program: &Program, name: &str, params: &[f64]) -> Result<Interpreter, Failure> {
+    match program.function(name) {
+        Some(function) => Ok(Interpreter::new(program, function, params)),
+        None => Err(Failure::failed(format!(
+            "{} has no function `{name}`",
+            program.name
+        ))),
+    }
+}
+
+/// The first pivot of a constant mass matrix that is not positive with these parameters.
+pub fn constant_pivot(program: &Program, params: &[f64]) -> Option<usize> {
+    let mut symbols = vec![std::f64::consts::PI];
+    symbols.extend_from_slice(params);
+    symbols.resize(program.graph.symbols().len(), f64::NAN);
+    let pivots = evaluate(&program.graph, &program.constant_guards, &symbols);
+    pivots
+        .iter()
+        .position(|&pivot| pivot.is_nan() || pivot <= 0.0)
+}
+
+/// The value of a function that has one everywhere.
+fn value(function: &Interpreter, x: &[f64], xi: &[f64], u: &[f64]) -> Vec<f64> {
+    function.call(x, xi, u, &[]).unwrap_or_default()
+}
+
+fn scalar(function: &Interpreter, x: &[f64], xi: &[f64]) -> f64 {
+    value(function, x, xi, &[])
+        .first()
+        .copied()
+        .unwrap_or(f64::NAN)
+}
+
+fn block(block: layout::Block) -> Block {
+    match block {
+        layout::Block::Flat(n) => Block::Flat(n),
+        layout::Block::Circle => Block::Circle,
+        layout::Block::Quaternion => Block::Quaternion,
+        layout::Block::Rotation => Block::Rotation,
+    }
+}
+
+impl System for Interpreted {
+    type Scalar = f64;
+    type Coordinates = Vec<f64>;
+    type Velocities = Vec<f64>;
+    type Chart = Vec<f64>;
+    type Inputs = Vec<f64>;
+
+    fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    fn zero_coordinates(&self) -> Vec<f64> {
+        vec![0.0; self.start.0.len()]
+    }
+
+    fn zero_velocities(&self) -> Vec<f64> {
+        vec![0.0; self.start.1.len()]
+    }
+
+    fn zero_chart(&self) -> Vec<f64> {
+        vec![0.0; self.chart]
+    }
+
+    fn zero_inputs(&self) -> Vec<f64> {
+        vec![0.0; self.inputs.len()]
+    }
+
+    fn start(&self) -> (Vec<f64>, Vec<f64>) {
+        self.start.clone()
+    }
+
+    fn rate(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+        value(&self.rate, x, xi, &[])
+    }
+
+    fn chart_rate(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+        value(&self.chart_rate, x, xi, &[])
+    }
+
+    fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
+        self.evaluations.set(self.evaluations.get() + 1);
+        self.accel
+            .call(x, xi, u, &[])
+            .map_err(|pivot| Singular { pivot })
+    }
+
+    fn correction(&self, x: &Vec<f64>) -> Vec<f64> {
+        value(&self.correction, x, &[], &[])
+    }
+
+    fn constraint_norm(&self, x: &Vec<f64>) -> f64 {
+        // A NaN stays.
+        self.constraint(x)
+            .into_iter()
+            .map(f64::abs)
+            .fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
+    }
+
+    fn kinetic_energy(&self, x: &Vec<f64>, xi: &Vec<f64>) -> f64 {
+        scalar(&self.kinetic, x, xi)
+    }
+
+    fn potential_energy(&self, x: &Vec<f64>) -> f64 {
+        scalar(&self.potential, x, &[])
+    }
+}

@@ -1,0 +1,160 @@
+//! `hamel simulate`: a run in time, interpreted.
+
+mod picture;
+mod record;
+mod summary;
+mod write;
+
+use crate::failure::{Failure, print};
+use crate::interpreted::{Interpreted, constant_pivot};
+use crate::plot;
+use crate::source::Source;
+use crate::state::State;
+use clap::{Args, ValueEnum};
+use hamel::Method;
+use record::{Plan, Run};
+use std::path::PathBuf;
+use write::Format;
+
+/// Steps where --step is left out: a thousandth, but no fewer than 1000 and no more than a million.
+const STEP: f64 = 1e-3;
+const FEWEST: f64 = 1e3;
+const MOST: f64 = 1e6;
+/// λ where --lambda is left out.
+const LAMBDA: f64 = 10.0;
+
+/// Integrates the equations of motion from a start.
+///
+/// The equations are interpreted: good for a look at a system, and some ten times slower than the
+/// generated code. Inputs keep the value that STATE.json gives them, or zero.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel simulate dzhanibekov.eom --until 100 --plot flip.svg
+  hamel simulate heavy_top.eom --until 10 --step 1e-3 --out run.csv --every 10
+  hamel simulate heavy_top.eom --until 10 --method rk4 --lambda 5
+  hamel simulate heavy_top.eom --until 10 --at state.json")]
+pub struct Arguments {
+    /// Description, `-` for standard input.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Length of the run, in the unit of time of the description (s).
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
+    until: f64,
+    /// Length of a step; 0.001, within a thousand to a million steps, where it is left out.
+    #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
+    step: Option<f64>,
+    /// How to step.
+    #[arg(long, value_enum, default_value = "rkmk4")]
+    method: Kind,
+    /// Rate at which rk4 leads back to the constraint (1/s); 10 where it is left out.
+    #[arg(long, value_name = "L", value_parser = rate, allow_negative_numbers = true)]
+    lambda: Option<f64>,
+    /// Start, parameters and inputs; see `hamel eval --help`.
+    #[arg(long, value_name = "STATE.json")]
+    at: Option<PathBuf>,
+    /// Samples as .csv or .json, or a plot as .svg.
+    #[arg(long, value_name = "F")]
+    out: Option<PathBuf>,
+    /// A sample every N steps; about 1000 samples where it is left out.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    every: Option<u64>,
+    /// Plot of velocities, energy and attitude over time.
+    #[arg(long, value_name = "F.svg")]
+    plot: Option<PathBuf>,
+}
+
+/// Methods by their names on the command line.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Kind {
+    /// Runge-Kutta-Munthe-Kaas of order 4: stays on the manifold
+    Rkmk4,
+    /// Runge-Kutta of order 4 on the coordinates, led back to the constraint at the rate λ
+    Rk4,
+    /// Runge-Kutta of order 4 on the coordinates, projected after each step
+    Rk4Projected,
+}
+
+/// Runs and reports.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let method = method(arguments)?;
+    let format = arguments.out.as_deref().map(Format::of).transpose()?;
+    if arguments
+        .at
+        .as_deref()
+        .is_some_and(|at| at.as_os_str() == "-")
+        && arguments.file.as_os_str() == "-"
+    {
+        return Err(Failure::usage(
+            "description and state cannot both be read from standard input",
+        ));
+    }
+    let generated = Source::read(&arguments.file)?.derive_all()?;
+    let state = State::read(&generated.model, arguments.at.as_deref())?;
+    if let Some(pivot) = constant_pivot(&generated.program, &state.params) {
+        let message = format!(
+            "the mass matrix is not positive definite with these parameters (pivot {})",
+            pivot + 1
+        );
+        return Err(Failure::failed(message));
+    }
+    let system = Interpreted::new(&generated, &state)?;
+    let until = arguments.until;
+    let step = arguments
+        .step
+        .unwrap_or_else(|| STEP.clamp(until / MOST, until / FEWEST));
+    let plan = Plan::new(method, until, step, arguments.every);
+    let run = Run::new(&generated, &system, plan)?;
+
+    let mut written = String::new();
+    for (path, format) in [
+        (&arguments.out, format),
+        (&arguments.plot, Some(Format::Svg)),
+    ] {
+        let (Some(path), Some(format)) = (path, format) else {
+            continue;
+        };
+        let text = match format {
+            Format::Csv => write::csv(&run),
+            Format::Json => write::json(&run),
+            Format::Svg => plot::svg(&run.picture()),
+        };
+        crate::failure::write(path, &text)?;
+        written.push_str(&format!("wrote {}\n", path.display()));
+    }
+    if arguments.out.is_none() {
+        print(&summary::table(&run))?;
+    }
+    print(&summary::text(&run, arguments.step.is_none()))?;
+    print(&written)?;
+    match run.failure {
+        Some(why) => Err(Failure::failed(why)),
+        None => Ok(()),
+    }
+}
+
+fn method(arguments: &Arguments) -> Result<Method, Failure> {
+    match (arguments.method, arguments.lambda) {
+        (Kind::Rk4, lambda) => Ok(Method::Rk4 {
+            lambda: lambda.unwrap_or(LAMBDA),
+        }),
+        (_, Some(_)) => Err(Failure::usage(
+            "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
+        )),
+        (Kind::Rkmk4, None) => Ok(Method::Rkmk4),
+        (Kind::Rk4Projected, None) => Ok(Method::Rk4Projected),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("a number greater than zero is needed".into()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("a number, zero or greater, is needed".into()),
+    }
+}

@@ -1,0 +1,105 @@
+//! What a plot of a run shows.
+
+use super::record::{Run, Sample};
+use crate::plot::{Panel, Path, Picture};
+use hamel::s3;
+use hamel_codegen::model::layout::Block;
+
+impl Run<'_> {
+    /// What a plot shows: velocities by groups of one unit, the energy, and how a body turns.
+    pub fn picture(&self) -> Picture {
+        let time: Vec<f64> = self.track.iter().map(|sample| sample.t).collect();
+        let line = |index: usize| {
+            (
+                self.velocity_names[index].clone(),
+                self.track.iter().map(|sample| sample.xi[index]).collect(),
+            )
+        };
+        let mut panels: Vec<Panel> = Vec::new();
+        let mut scalars = Panel::new("velocities");
+        for group in &self.program.velocities {
+            if group.len == 1 {
+                scalars.lines.push(line(group.offset));
+            } else {
+                let mut panel = Panel::new(&format!("velocity {}", group.name));
+                panel.lines = (group.offset..group.offset + group.len).map(line).collect();
+                panels.push(panel);
+            }
+        }
+        if !scalars.lines.is_empty() {
+            panels.push(scalars);
+        }
+        let first = self.monitor.initial_energy();
+        let scale = self.monitor.energy_deviation() / self.monitor.relative_energy_deviation();
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        let mut energy = Panel::new("energy, relative change");
+        let change = self
+            .track
+            .iter()
+            .map(|sample| (sample.energy - first) / scale)
+            .collect();
+        energy.lines.push(("E".into(), change));
+        panels.push(energy);
+        let subtitle = self
+            .program
+            .docs
+            .first()
+            .map_or(String::new(), |line| line.trim().to_string());
+        Picture {
+            title: self.program.name.clone(),
+            subtitle,
+            time,
+            panels,
+            path: self.attitude(),
+        }
+    }
+
+    /// The path of a body axis in the world, where exactly one coordinate is an attitude: the axis
+    /// about which the body turns most at first.
+    fn attitude(&self) -> Option<Path> {
+        let (mut offset, mut found) = (0, Vec::new());
+        for &block in &self.program.blocks {
+            if matches!(block, Block::Quaternion | Block::Rotation) {
+                found.push((offset, block));
+            }
+            offset += block.len();
+        }
+        let [(offset, block)] = found[..] else {
+            return None;
+        };
+        let rotation = |sample: &Sample| match block {
+            Block::Quaternion => sample.x[offset..].first_chunk().map(|q| s3::to_matrix(*q)),
+            _ => sample.x[offset..].first_chunk().copied(),
+        };
+        let rotations: Vec<[f64; 9]> = self.track.iter().filter_map(rotation).collect();
+        let [first, second, ..] = rotations[..] else {
+            return None;
+        };
+        // Entry (i, j) of R₀ᵀ R₁: the increment of rotation, in body axes.
+        let entry = |i: usize, j: usize| {
+            (0..3)
+                .map(|k| first[3 * k + i] * second[3 * k + j])
+                .sum::<f64>()
+        };
+        let turn = [
+            entry(2, 1) - entry(1, 2),
+            entry(0, 2) - entry(2, 0),
+            entry(1, 0) - entry(0, 1),
+        ]
+        .map(f64::abs);
+        let mut axis = 2;
+        for candidate in [1, 0] {
+            if turn[candidate] > turn[axis] * (1.0 + 1e-9) {
+                axis = candidate;
+            }
+        }
+        let points = rotations
+            .iter()
+            .map(|r| [r[axis], r[3 + axis], r[6 + axis]])
+            .collect();
+        Some(Path {
+            title: format!("body axis {} in the world", axis + 1),
+            points,
+        })
+    }
+}

@@ -1,0 +1,184 @@
+//! The run itself, and what is kept of it.
+
+use crate::failure::Failure;
+use crate::interpreted::Interpreted;
+use crate::names;
+use hamel::{Method, Monitor, State, StepError, System, integrate};
+use hamel_codegen::generate::Generated;
+use hamel_codegen::program::Program;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Samples where nothing else is asked for.
+const SAMPLES: u64 = 1000;
+/// Points of a plot.
+const POINTS: u64 = 4000;
+/// Shorter runs show no progress.
+const LONG: u64 = 20_000;
+/// Steps between two movements of the progress bar.
+const TICK: u64 = 500;
+
+/// What is to be run.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    pub method: Method,
+    pub until: f64,
+    pub step: f64,
+    /// Expected number of steps.
+    pub steps: u64,
+    /// A sample every so many steps.
+    pub every: u64,
+}
+
+impl Plan {
+    /// A plan with about a thousand samples, or one every so many steps.
+    pub fn new(method: Method, until: f64, step: f64, every: Option<u64>) -> Self {
+        // As the integrator counts: a ratio that is whole but for rounding is whole.
+        let steps = ((until / step) * (1.0 - 1e-9)).ceil().max(1.0) as u64;
+        Plan {
+            method,
+            until,
+            step,
+            steps,
+            every: every.unwrap_or((steps / SAMPLES).max(1)),
+        }
+    }
+}
+
+/// The state at one time, and what follows from it.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    pub t: f64,
+    pub x: Vec<f64>,
+    pub xi: Vec<f64>,
+    /// Entries of all outputs, one after the other.
+    pub outputs: Vec<f64>,
+    pub momentum: Vec<f64>,
+    pub energy: f64,
+}
+
+impl Sample {
+    fn of(system: &Interpreted, state: &State<Interpreted>) -> Self {
+        let (x, xi) = (state.x.clone(), state.xi.clone());
+        Sample {
+            t: state.t,
+            outputs: system
+                .outputs()
+                .iter()
+                .flat_map(|output| system.output(output, &x, &xi))
+                .collect(),
+            momentum: system.momentum(&x, &xi),
+            energy: system.kinetic_energy(&x, &xi) + system.potential_energy(&x),
+            x,
+            xi,
+        }
+    }
+}
+
+/// A run that is over.
+pub struct Run<'a> {
+    pub program: &'a Program,
+    pub plan: Plan,
+    pub coordinate_names: Vec<String>,
+    pub velocity_names: Vec<String>,
+    pub output_names: Vec<String>,
+    /// In order of time; the first and the last state among them.
+    pub samples: Vec<Sample>,
+    /// A finer list for plots.
+    pub track: Vec<Sample>,
+    pub monitor: Monitor<f64>,
+    pub steps: u64,
+    pub evaluations: u64,
+    /// Why it ended early.
+    pub failure: Option<String>,
+}
+
+impl<'a> Run<'a> {
+    /// Integrates; a numerical failure is part of the run, an impossible plan an error.
+    pub fn new(
+        generated: &'a Generated,
+        system: &Interpreted,
+        plan: Plan,
+    ) -> Result<Self, Failure> {
+        let mut state = State::start(system);
+        let mut monitor = Monitor::new(system, &state);
+        let (mut samples, mut track) = (Vec::new(), Vec::new());
+        let stride = (plan.steps / POINTS).max(1);
+        let bar = progress(plan.steps);
+        let mut steps = 0;
+        let outcome = integrate(
+            system,
+            plan.method,
+            &mut state,
+            plan.step,
+            plan.until,
+            |_, _, _| system.inputs().to_vec(),
+            |state| {
+                monitor.observe(system, state);
+                if steps % plan.every == 0 {
+                    samples.push(Sample::of(system, state));
+                }
+                if steps % stride == 0 {
+                    track.push(Sample::of(system, state));
+                }
+                if steps % TICK == 0 {
+                    bar.set_position(steps);
+                }
+                steps += 1;
+            },
+        );
+        bar.finish_and_clear();
+        let failure = match outcome {
+            Ok(()) => None,
+            Err(error @ (StepError::InvalidStep { .. } | StepError::Shape { .. })) => {
+                return Err(Failure::usage(error.to_string()));
+            }
+            Err(StepError::Singular { cause, time }) => {
+                Some(format!("the run ends at t = {time}: the {cause}"))
+            }
+            Err(StepError::NonFinite { time }) => Some(format!(
+                "the run ends at t = {time}: the next state is not finite; try a shorter step, now {}",
+                plan.step
+            )),
+            Err(error) => Some(error.to_string()),
+        };
+        for list in [&mut samples, &mut track] {
+            if list.last().is_none_or(|last| last.t != state.t) {
+                list.push(Sample::of(system, &state));
+            }
+        }
+        let outputs = system.outputs().iter();
+        Ok(Run {
+            program: &generated.program,
+            plan,
+            coordinate_names: names::coordinates(&generated.model),
+            velocity_names: names::velocities(&generated.model),
+            output_names: outputs
+                .flat_map(|output| names::shaped(&output.name, output.shape))
+                .collect(),
+            samples,
+            track,
+            monitor,
+            steps: steps.saturating_sub(1),
+            evaluations: system.evaluations(),
+            failure,
+        })
+    }
+}
+
+/// A bar on standard error, where that is a terminal and the run is long.
+fn progress(steps: u64) -> ProgressBar {
+    let colour = anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never;
+    if steps < LONG {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(steps);
+    let template = if colour {
+        "{bar:40.cyan} {percent}%  {eta} left"
+    } else {
+        "{bar:40} {percent}%  {eta} left"
+    };
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,201 @@
+//! What a run comes to, for a terminal.
+
+use super::record::{Run, Sample};
+use crate::number::{digits, error, grouped, short};
+use hamel::Method;
+use hamel_codegen::syntax::ast::CoordKind;
+
+/// Rows of the table.
+const ROWS: usize = 20;
+/// Columns of velocities.
+const COLUMNS: usize = 8;
+/// A momentum that changes by less, relative to its size, is said to be kept.
+const KEPT: f64 = 1e-6;
+
+/// About twenty rows of t and velocities.
+pub fn table(run: &Run) -> String {
+    let shown = run.velocity_names.len().min(COLUMNS);
+    let header =
+        std::iter::once("t".to_string()).chain(run.velocity_names.iter().take(shown).cloned());
+    let mut rows: Vec<Vec<String>> = vec![header.collect()];
+    let last = run.samples.len().saturating_sub(1);
+    let mut indices: Vec<usize> = (0..=ROWS).map(|row| row * last / ROWS).collect();
+    indices.dedup();
+    for index in indices {
+        let sample = &run.samples[index];
+        let values = std::iter::once(sample.t).chain(sample.xi.iter().take(shown).copied());
+        rows.push(values.map(short).collect());
+    }
+    let mut text = aligned(&rows, "");
+    if run.velocity_names.len() > shown {
+        text.push_str(&format!(
+            "({} more velocities: use --out)\n",
+            run.velocity_names.len() - shown
+        ));
+    }
+    text.push('\n');
+    text
+}
+
+/// Method, last state, invariants.
+pub fn text(run: &Run, default_step: bool) -> String {
+    let (Some(first), Some(last)) = (run.samples.first(), run.samples.last()) else {
+        return String::new();
+    };
+    let method = match run.plan.method {
+        Method::Rk4 { lambda } => format!("rk4, lambda {}", short(lambda)),
+        Method::Rk4Projected => "rk4-projected".into(),
+        _ => "rkmk4".into(),
+    };
+    let plural = |count: u64, word: &str| {
+        format!(
+            "{} {word}{}",
+            grouped(count),
+            if count == 1 { "" } else { "s" }
+        )
+    };
+    let step = run.plan.until / run.plan.steps as f64;
+    let default = if default_step { " (default)" } else { "" };
+    let mut text = format!(
+        "\x1b[1m{}\x1b[0m  {method}, {} of {}{default}, {} of the acceleration\n",
+        run.program.name,
+        plural(run.steps, "step"),
+        short(step),
+        plural(run.evaluations, "evaluation"),
+    );
+    text.push_str(&format!("\n\x1b[1mt = {}\x1b[0m\n", short(last.t)));
+    text.push_str(&state(run, last));
+    text.push_str(&invariants(run, first, last));
+    text
+}
+
+/// The last state by names, rotation matrices as matrices.
+fn state(run: &Run, last: &Sample) -> String {
+    let mut groups: Vec<(String, Vec<&[f64]>)> = Vec::new();
+    for coordinate in &run.program.coordinates {
+        let at = &last.x[coordinate.offset..];
+        let name = coordinate.name.clone();
+        match coordinate.kind {
+            CoordKind::Real => groups.push((name, vec![&at[..1]])),
+            CoordKind::Euclidean(n) => groups.push((name, vec![&at[..n]])),
+            CoordKind::S1 => groups.push((name, vec![&at[..2]])),
+            CoordKind::S3 => groups.push((name, vec![&at[..4]])),
+            CoordKind::SO3 => groups.push((name, at[..9].chunks(3).collect())),
+            CoordKind::SE3 => {
+                groups.push((format!("{name}.p"), vec![&at[..3]]));
+                groups.push((format!("{name}.R"), at[3..12].chunks(3).collect()));
+            }
+        }
+    }
+    for group in &run.program.velocities {
+        groups.push((
+            group.name.clone(),
+            vec![&last.xi[group.offset..group.offset + group.len]],
+        ));
+    }
+    let mut rows = Vec::new();
+    for (name, lines) in &groups {
+        for (index, line) in lines.iter().enumerate() {
+            let label = if index == 0 {
+                name.clone()
+            } else {
+                String::new()
+            };
+            rows.push(
+                std::iter::once(label)
+                    .chain(line.iter().map(|&value| short(value)))
+                    .collect(),
+            );
+        }
+    }
+    aligned(&rows, "  ")
+}
+
+/// Energy, momenta that are kept, outputs, φ.
+fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
+    let row = |name: &str, start: f64, end: f64, change: String| {
+        vec![name.to_string(), digits(start, 9), digits(end, 9), change]
+    };
+    let mut rows = vec![
+        ["", "start", "end", "largest change"]
+            .map(String::from)
+            .to_vec(),
+    ];
+    let relative = format!(
+        "{} relative",
+        error(run.monitor.relative_energy_deviation())
+    );
+    rows.push(row("energy", first.energy, last.energy, relative));
+    for (index, name) in run.velocity_names.iter().enumerate() {
+        let (size, change) = spread(run, |sample| sample.momentum[index]);
+        if size > 0.0 && change <= KEPT * size {
+            rows.push(row(
+                &format!("momentum of {name}"),
+                first.momentum[index],
+                last.momentum[index],
+                error(change),
+            ));
+        }
+    }
+    for (index, name) in run.output_names.iter().enumerate() {
+        let (_, change) = spread(run, |sample| sample.outputs[index]);
+        rows.push(row(
+            name,
+            first.outputs[index],
+            last.outputs[index],
+            error(change),
+        ));
+    }
+    let mut text = format!("\n{}", aligned(&rows, "  "));
+    if run.program.phi > 0 {
+        text.push_str(&format!(
+            "  max |phi|  {}\n",
+            error(run.monitor.constraint())
+        ));
+    }
+    text
+}
+
+/// Largest size of a quantity, and its largest distance from the first value.
+fn spread(run: &Run, of: impl Fn(&Sample) -> f64) -> (f64, f64) {
+    let first = run.samples.first().map_or(0.0, &of);
+    run.samples
+        .iter()
+        .map(of)
+        .fold((0.0, 0.0), |(size, change), value| {
+            (
+                f64::max(size, value.abs()),
+                f64::max(change, (value - first).abs()),
+            )
+        })
+}
+
+/// Columns, the first one to the left, numbers to the right.
+fn aligned(rows: &[Vec<String>], indent: &str) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns)
+        .map(|column| {
+            rows.iter()
+                .filter_map(|row| row.get(column))
+                .map(|cell| cell.chars().count())
+                .max()
+                .unwrap_or(0)
+        })
+        .collect();
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().zip(&widths).enumerate();
+        let line: Vec<String> = cells
+            .map(|(column, (cell, &width))| {
+                if column == 0 {
+                    format!("{cell:<width$}")
+                } else {
+                    format!("{cell:>width$}")
+                }
+            })
+            .collect();
+        text.push_str(format!("{indent}{}", line.join("  ")).trim_end());
+        text.push('\n');
+    }
+    text
+}

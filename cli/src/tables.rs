@@ -1,0 +1,58 @@
+//! `hamel tables`: the symbols of the formalism, as people read them.
+
+use crate::failure::{Failure, print};
+use crate::source::Source;
+use clap::{Args, ValueEnum};
+use hamel_codegen::tables::{self, Table};
+use std::path::PathBuf;
+
+/// Prints the tables of a description: φ, A, Y, γ, M, Γ, and what follows from them.
+///
+/// Entries are simplified modulo the constraint; entries of one value share a row, and those that are
+/// not shown are zero. Indices count from 1, as in KR18.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel tables heavy_top.eom
+  hamel tables heavy_top.eom --of gamma,M,accel
+  hamel tables heavy_top.eom --format latex > tables.tex
+  hamel tables heavy_top.eom --format json | jq .
+
+Tables: phi, A, Y, gamma, M, Gamma (these where --of is left out), accel, bias, potential_force,
+generalized_force, outputs.")]
+pub struct Arguments {
+    /// Description, `-` for standard input.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Which tables, a list with commas.
+    #[arg(long, value_name = "A,Y,…", value_delimiter = ',', value_parser = Table::parse)]
+    of: Vec<Table>,
+    /// How to write them.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Every entry on a row of its own, zeros too.
+    #[arg(long)]
+    all: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Markdown,
+    Latex,
+    Json,
+}
+
+/// Derives and prints.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Source::read(&arguments.file)?;
+    let generated = source.derive_all()?;
+    let tables = tables::tables(&generated, &arguments.of)
+        .map_err(|why| Failure::failed(format!("{}: {why}", source.path)))?;
+    let text = match arguments.format {
+        Format::Text => tables::text(&tables, arguments.all),
+        Format::Markdown => tables::markdown(&tables, arguments.all),
+        Format::Latex => tables::latex(&tables, arguments.all),
+        Format::Json => format!("{:#}\n", tables::json(&tables, arguments.all)),
+    };
+    print(&text)
+}
