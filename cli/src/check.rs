@@ -100,12 +100,14 @@ fn integrability(generated: &Generated) -> String {
     let Some(geometry) = Geometry::new(&generated.model) else {
         return String::new();
     };
-    let zero = geometry.model.graph.zero();
+    // Of either sign: a negated zero is zero.
+    let zero = geometry.model.graph.zero().node();
     let names = names::velocities(&generated.model);
-    let (integrable, other): (Vec<_>, Vec<_>) = names
-        .into_iter()
-        .enumerate()
-        .partition(|(k, _)| geometry.gamma.iter().flatten().all(|row| row[*k] == zero));
+    let (integrable, other): (Vec<_>, Vec<_>) =
+        names.into_iter().enumerate().partition(|(k, _)| {
+            let mut rows = geometry.gamma.iter().flatten();
+            rows.all(|row| row[*k].node() == zero)
+        });
     let list = |names: Vec<(usize, String)>| {
         names
             .into_iter()
@@ -116,13 +118,13 @@ fn integrability(generated: &Generated) -> String {
     let mut text = String::new();
     if !integrable.is_empty() {
         text.push_str(&format!(
-            "  integrable, γᵢⱼᵏ = 0 for k of       {}\n",
+            "  integrable (γᵢⱼᵏ = 0 for all i, j)  {}\n",
             list(integrable)
         ));
     }
     if !other.is_empty() {
         text.push_str(&format!(
-            "  not integrable (quasi-velocities)  {}\n",
+            "  not integrable (quasi-velocities)   {}\n",
             list(other)
         ));
     }

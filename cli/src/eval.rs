@@ -1,7 +1,7 @@
 //! `hamel eval`: numbers of everything at a state.
 
 use crate::failure::{Failure, print};
-use crate::interpreted::{Interpreted, constant_pivot, function};
+use crate::interpreted::{Interpreted, constant_singular, function};
 use crate::json::Json;
 use crate::names;
 use crate::source::Source;
@@ -56,12 +56,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     members.extend(geometry(&generated, &state)?);
     let mut missing: Vec<String> = Vec::new();
     members.extend(motion(&generated, &state, &mut missing)?);
-    missing.extend(
-        members
-            .iter()
-            .filter(|(_, value)| !finite(value))
-            .map(|(name, _)| format!("`{name}` is not finite at this state")),
-    );
+    let infinite = members.iter().filter(|(_, value)| !finite(value));
+    let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
+    if !infinite.is_empty() {
+        missing.push(format!("not finite at this state: {}", infinite.join(", ")));
+    }
     print(&Json::object(members).pretty())?;
     if missing.is_empty() {
         Ok(())
@@ -114,20 +113,11 @@ fn motion(
         let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);
         Ok(Json::vector(&value.unwrap_or_default()))
     };
-    let singular = |pivot: usize| {
-        format!(
-            "the mass matrix is not positive definite at this state (pivot {}), `accel` has no value",
-            pivot + 1
-        )
-    };
-    let accel = match constant_pivot(&generated.program, params) {
-        Some(pivot) => Err(pivot),
-        None => system.accel(x, xi, u).map_err(|singular| singular.pivot),
-    };
-    let accel = match accel {
-        Ok(accel) => Json::vector(&accel),
-        Err(pivot) => {
-            missing.push(singular(pivot));
+    let singular = constant_singular(&generated.program, params);
+    let accel = match system.accel(x, xi, u).ok().filter(|_| !singular) {
+        Some(accel) => Json::vector(&accel),
+        None => {
+            missing.push("the mass matrix is not positive definite, `accel` has no value".into());
             Json::Null
         }
     };

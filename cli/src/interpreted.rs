@@ -112,15 +112,13 @@ pub fn function(program: &Program, name: &str, params: &[f64]) -> Result<Interpr
     }
 }
 
-/// The first pivot of a constant mass matrix that is not positive with these parameters.
-pub fn constant_pivot(program: &Program, params: &[f64]) -> Option<usize> {
+/// Whether a mass matrix that is constant in time is not positive definite with these parameters.
+pub fn constant_singular(program: &Program, params: &[f64]) -> bool {
     let mut symbols = vec![std::f64::consts::PI];
     symbols.extend_from_slice(params);
     symbols.resize(program.graph.symbols().len(), f64::NAN);
     let pivots = evaluate(&program.graph, &program.constant_guards, &symbols);
-    pivots
-        .iter()
-        .position(|&pivot| pivot.is_nan() || pivot <= 0.0)
+    pivots.iter().any(|&pivot| pivot.is_nan() || pivot <= 0.0)
 }
 
 /// The value of a function that has one everywhere.

@@ -95,9 +95,23 @@ impl Json {
             return text.push_str(&line);
         }
         text.push(if list { '[' } else { '{' });
+        let mut column = usize::MAX;
         for (index, (name, value)) in parts.iter().enumerate() {
-            text.push_str(if index > 0 { ",\n" } else { "\n" });
-            text.push_str(&" ".repeat(indent + 2));
+            let single = !matches!(value, Json::List(_) | Json::Object(_));
+            let width = if list && single {
+                value.line().chars().count() + 2
+            } else {
+                usize::MAX
+            };
+            text.push_str(if index > 0 { "," } else { "" });
+            if column.saturating_add(width) <= WIDTH {
+                text.push(' ');
+                column += width;
+            } else {
+                text.push('\n');
+                text.push_str(&" ".repeat(indent + 2));
+                column = width.saturating_add(indent + 2);
+            }
             text.push_str(name);
             value.write(indent + 2, text);
         }
@@ -109,4 +123,27 @@ impl Json {
 
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Json;
+
+    #[test]
+    fn numbers_fill_lines_and_rows_stand_apart() {
+        let long = Json::vector(&[0.123456789; 12]);
+        let rows = Json::matrix(&vec![vec![0.5; 3]; 9]);
+        let value = Json::object([("a", long), ("b", rows), ("c", Json::Number(f64::NAN))]);
+        let text = value.pretty();
+        assert!(
+            text.lines().all(|line| line.len() <= 104) && text.lines().count() == 18,
+            "{text}"
+        );
+        let read: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(
+            (&read["a"][11], &read["b"][8][2]),
+            (&0.123456789.into(), &0.5.into())
+        );
+        assert!(read["c"].is_null());
+    }
 }

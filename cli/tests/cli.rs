@@ -224,7 +224,7 @@ fn mistakes_in_a_state_are_named_at_once() {
     assert!(errors.contains("coord.R: violates"), "{errors}");
     let errors = stderr(&["eval", &model("heavy_top.eom"), "--at", "-"], "{", 2);
     assert!(
-        errors.contains("no JSON") && errors.contains("line 1"),
+        errors.contains("not valid JSON") && errors.contains("line 1"),
         "{errors}"
     );
 }

@@ -3,5 +3,6 @@
 #![deny(warnings)]
 
 pub mod chain;
+pub mod reference;
 
 include!(concat!(env!("OUT_DIR"), "/models.rs"));

@@ -58,7 +58,11 @@ fn a_large_model_is_refused_by_the_macro_with_the_way_out() {
     let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
     let expanded = hamel_codegen::expand(tokens).to_string();
     assert!(expanded.len() < 1000, "an expansion instead of a refusal");
-    for part in ["compile_error", "statements, more than the 10000 that a macro should expand to", "build.rs"] {
+    for part in [
+        "compile_error",
+        "statements, more than the 10000 that a macro should expand to",
+        "build.rs",
+    ] {
         assert!(expanded.contains(part), "{expanded}");
     }
 }

@@ -162,6 +162,10 @@ fn generation_repeats_to_the_byte() {
     for path in models() {
         let (name, description, _) = read(&path);
         let first = source(&description, &name).expect("correct");
-        assert_eq!(first, source(&description, &name).expect("correct"), "{name}");
+        assert_eq!(
+            first,
+            source(&description, &name).expect("correct"),
+            "{name}"
+        );
     }
 }

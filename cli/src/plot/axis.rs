@@ -26,7 +26,7 @@ impl Axis {
             .map(|i| (first + i as f64) * step)
             .collect();
         let size = low.abs().max(high.abs());
-        let power = size.log10().floor() as i32;
+        let power = (size.log10().floor() as i32).clamp(-300, 300);
         let exponent = if (-3..5).contains(&power) { 0 } else { power };
         let digits = (step.log10() + 1e-9).floor() as i32 - exponent;
         Axis {

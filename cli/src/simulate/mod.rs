@@ -6,12 +6,14 @@ mod summary;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::interpreted::{Interpreted, constant_pivot};
+use crate::interpreted::{Interpreted, constant_singular};
 use crate::plot;
 use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
 use hamel::Method;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::tables::{self, Table};
 use record::{Plan, Run};
 use std::path::PathBuf;
 use write::Format;
@@ -20,6 +22,8 @@ use write::Format;
 const STEP: f64 = 1e-3;
 const FEWEST: f64 = 1e3;
 const MOST: f64 = 1e6;
+/// Systems with more velocities are run without their tables.
+const MOST_SHOWN: usize = 6;
 /// λ where --lambda is left out.
 const LAMBDA: f64 = 10.0;
 
@@ -90,11 +94,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let generated = Source::read(&arguments.file)?.derive_all()?;
     let state = State::read(&generated.model, arguments.at.as_deref())?;
-    if let Some(pivot) = constant_pivot(&generated.program, &state.params) {
-        let message = format!(
-            "the mass matrix is not positive definite with these parameters (pivot {})",
-            pivot + 1
-        );
+    if constant_singular(&generated.program, &state.params) {
+        let message = "the mass matrix is not positive definite with these parameters";
         return Err(Failure::failed(message));
     }
     let system = Interpreted::new(&generated, &state)?;
@@ -122,6 +123,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         written.push_str(&format!("wrote {}\n", path.display()));
     }
     if arguments.out.is_none() {
+        print(&coefficients(&generated))?;
         print(&summary::table(&run))?;
     }
     print(&summary::text(&run, arguments.step.is_none()))?;
@@ -129,6 +131,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match run.failure {
         Some(why) => Err(Failure::failed(why)),
         None => Ok(()),
+    }
+}
+
+/// γ, M and Γ of a small system, so that a first run shows what was derived; empty for a large one.
+fn coefficients(generated: &Generated) -> String {
+    let of = [Table::Gamma, Table::Mass, Table::Connection];
+    if generated.model.n() > MOST_SHOWN {
+        return String::new();
+    }
+    match tables::tables(generated, &of) {
+        Ok(tables) => tables::text(&tables, false) + "\n",
+        Err(_) => String::new(),
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::interpreted::Interpreted;
 use crate::names;
+use crate::number::short;
 use hamel::{Method, Monitor, State, StepError, System, integrate};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
@@ -132,12 +133,14 @@ impl<'a> Run<'a> {
             Err(error @ (StepError::InvalidStep { .. } | StepError::Shape { .. })) => {
                 return Err(Failure::usage(error.to_string()));
             }
-            Err(StepError::Singular { cause, time }) => {
-                Some(format!("the run ends at t = {time}: the {cause}"))
-            }
+            Err(StepError::Singular { time, .. }) => Some(format!(
+                "the run ends at t = {}: the mass matrix is not positive definite",
+                short(time)
+            )),
             Err(StepError::NonFinite { time }) => Some(format!(
-                "the run ends at t = {time}: the next state is not finite; try a shorter step, now {}",
-                plan.step
+                "the run ends at t = {}: the next state is not finite; try a shorter step than {}",
+                short(time),
+                short(plan.step)
             )),
             Err(error) => Some(error.to_string()),
         };

@@ -19,8 +19,9 @@ pub fn table(run: &Run) -> String {
         std::iter::once("t".to_string()).chain(run.velocity_names.iter().take(shown).cloned());
     let mut rows: Vec<Vec<String>> = vec![header.collect()];
     let last = run.samples.len().saturating_sub(1);
-    let mut indices: Vec<usize> = (0..=ROWS).map(|row| row * last / ROWS).collect();
-    indices.dedup();
+    let stride = last.div_ceil(ROWS).max(1);
+    let mut indices: Vec<usize> = (0..last).step_by(stride).collect();
+    indices.push(last);
     for index in indices {
         let sample = &run.samples[index];
         let values = std::iter::once(sample.t).chain(sample.xi.iter().take(shown).copied());

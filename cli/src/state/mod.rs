@@ -53,7 +53,8 @@ impl State {
 
     /// The start, changed by a JSON text.
     pub fn parse(model: &Model, text: &str) -> Result<Self, Vec<String>> {
-        let json = serde_json::from_str(text).map_err(|error| vec![format!("no JSON: {error}")])?;
+        let json =
+            serde_json::from_str(text).map_err(|error| vec![format!("not valid JSON: {error}")])?;
         let mut state = State::start(model);
         let mut reader = Reader::default();
         reader.state(&json, model, &mut state);

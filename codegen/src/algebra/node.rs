@@ -30,14 +30,15 @@ impl Edge {
 
     /// This edge, negated where `negative`.
     pub fn signed(self, negative: bool) -> Edge {
-        Edge(self.0 ^ negative as u32)
+        if negative { -self } else { self }
     }
 }
 
 impl std::ops::Neg for Edge {
     type Output = Edge;
+    /// Node 0 is the number 0, which is its own negative.
     fn neg(self) -> Edge {
-        Edge(self.0 ^ 1)
+        Edge(if self.node() == 0 { 0 } else { self.0 ^ 1 })
     }
 }
 

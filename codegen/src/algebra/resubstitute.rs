@@ -189,11 +189,19 @@ impl<'a> Network<'a> {
         };
         let alive = self.alive(None);
         let is_constant = |id: &&NodeId| self.graph.is_free(**id);
-        let constants: Vec<Edge> = alive.iter().filter(is_constant).map(|&id| Edge::of(id)).collect();
+        let constants: Vec<Edge> = alive
+            .iter()
+            .filter(is_constant)
+            .map(|&id| Edge::of(id))
+            .collect();
         let moved = rebuild(self.graph, into, &constants);
         image.extend(constants.iter().map(|edge| edge.node()).zip(moved));
         for id in alive {
-            let Some(&node) = self.definitions.get(&id).filter(|_| !self.graph.is_free(id)) else {
+            let Some(&node) = self
+                .definitions
+                .get(&id)
+                .filter(|_| !self.graph.is_free(id))
+            else {
                 continue;
             };
             let made = match node {

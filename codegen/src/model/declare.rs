@@ -8,7 +8,7 @@ use super::{Coordinate, Group, class};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, LANES};
 use crate::diagnostics::{Diagnostic, Report};
-use crate::syntax::ast::{CoordKind, Declaration, ItemKind, ShapeKind, System};
+use crate::syntax::ast::{CoordKind, Declaration, ItemKind, ShapeKind, Span, System};
 
 /// Makes the next symbol of a graph: free points draw a random value, constrained ones read it.
 pub type NextValue<'a> = dyn FnMut(&mut Graph) -> [Fp; LANES] + 'a;
@@ -21,9 +21,13 @@ pub struct Declared {
     pub x: Vec<Edge>,
     pub velocities: Vec<Group>,
     pub xi: Vec<Edge>,
+    pub velocity_spans: Vec<Span>,
     pub inputs: Vec<Group>,
     pub u: Vec<Edge>,
     pub xi_dot: Vec<Edge>,
+    /// Whether a coordinate or velocity is missing here because its name was taken: there is no
+    /// point in counting then.
+    pub faulty: bool,
 }
 
 /// Declares everything, in the order pi, parameters, x, ξ, u, ξ̇, and defines the constants.
@@ -44,38 +48,16 @@ pub fn declare(
             }
         }
     }
-    let groups = |graph: &mut Graph,
-                  next: &mut NextValue,
-                  scope: &mut Scope,
-                  report: &mut Report,
-                  list: &[Declaration],
-                  kind,
-                  class,
-                  all: &mut Vec<Group>,
-                  edges: &mut Vec<Edge>| {
-        for declaration in list {
-            let name = &declaration.name;
-            let (value, symbols) =
-                symbols_of(graph, next, &name.name, declaration.shape.kind, class);
-            scope.define(name, kind, Some(value.clone()), report);
-            all.push(Group {
-                name: name.name.clone(),
-                shape: declaration.shape.kind,
-                value,
-                offset: edges.len(),
-                len: symbols.len(),
-            });
-            edges.extend(symbols);
-        }
+    let mut declarer = Declarer {
+        graph,
+        next,
+        scope,
+        report,
     };
     let mut params = Vec::new();
     for item in &system.items {
         if let ItemKind::Param(list) = &item.kind {
-            groups(
-                graph,
-                next,
-                scope,
-                report,
+            declarer.groups(
                 list,
                 NameKind::Param,
                 class::PARAM,
@@ -86,67 +68,36 @@ pub fn declare(
     }
     for item in &system.items {
         if let ItemKind::Coord(list) = &item.kind {
-            for (name, kind) in list {
-                let offset = declared.x.len();
-                let entries: Vec<Edge> = entry_names(&name.name, *kind)
-                    .iter()
-                    .map(|entry| {
-                        let value = next(graph);
-                        graph.symbol(entry, class::COORD, value)
-                    })
-                    .collect();
-                scope.define(
-                    name,
-                    NameKind::Coord(*kind),
-                    Some(coordinate_value(*kind, &entries)),
-                    report,
-                );
-                declared.x.extend(entries);
-                declared.coordinates.push(Coordinate {
-                    name: name.name.clone(),
-                    kind: *kind,
-                    offset,
-                    span: name.span,
-                });
-            }
+            declarer.coordinates(list, &mut declared);
         }
     }
     for item in &system.items {
         if let ItemKind::Velocity(list) = &item.kind {
-            groups(
-                graph,
-                next,
-                scope,
-                report,
-                list,
-                NameKind::Velocity,
-                class::VELOCITY,
-                &mut declared.velocities,
-                &mut declared.xi,
-            );
+            let (groups, xi) = (&mut declared.velocities, &mut declared.xi);
+            let complete = declarer.groups(list, NameKind::Velocity, class::VELOCITY, groups, xi);
+            declared.faulty |= !complete;
+            for declaration in list {
+                let group = declared
+                    .velocities
+                    .iter()
+                    .find(|g| g.name == declaration.name.name);
+                let len = group.map_or(0, |group| group.offset + group.len);
+                let spans = declared.velocity_spans.len().max(len);
+                declared.velocity_spans.resize(spans, declaration.name.span);
+            }
         }
     }
     for item in &system.items {
         if let ItemKind::Input(list) = &item.kind {
-            groups(
-                graph,
-                next,
-                scope,
-                report,
-                list,
-                NameKind::Input,
-                class::INPUT,
-                &mut declared.inputs,
-                &mut declared.u,
-            );
+            let (groups, u) = (&mut declared.inputs, &mut declared.u);
+            declarer.groups(list, NameKind::Input, class::INPUT, groups, u);
         }
     }
-    let names: Vec<String> = graph
+    let velocities = graph
         .symbols()
         .iter()
-        .filter(|s| s.class == class::VELOCITY)
-        .map(|s| s.name.clone())
-        .collect();
+        .filter(|s| s.class == class::VELOCITY);
+    let names: Vec<String> = velocities.map(|s| s.name.clone()).collect();
     for name in names {
         let value = next(graph);
         declared
@@ -156,12 +107,85 @@ pub fn declare(
     declared
 }
 
+struct Declarer<'a, 'b> {
+    graph: &'a mut Graph,
+    next: &'a mut NextValue<'b>,
+    scope: &'a mut Scope,
+    report: &'a mut Report,
+}
+
+impl Declarer<'_, '_> {
+    /// Declares groups of symbols; whether all their names were free.
+    fn groups(
+        &mut self,
+        list: &[Declaration],
+        kind: NameKind,
+        class: u8,
+        all: &mut Vec<Group>,
+        edges: &mut Vec<Edge>,
+    ) -> bool {
+        let mut complete = true;
+        for declaration in list {
+            let (name, shape) = (&declaration.name, declaration.shape.kind);
+            if !self.scope.claim(name, kind, self.report) {
+                complete = false;
+                continue;
+            }
+            let (value, symbols) = symbols_of(self.graph, self.next, &name.name, shape, class);
+            self.scope.set(name, Some(value.clone()));
+            let (offset, len) = (edges.len(), symbols.len());
+            all.push(Group {
+                name: name.name.clone(),
+                shape,
+                value,
+                offset,
+                len,
+            });
+            edges.extend(symbols);
+        }
+        complete
+    }
+
+    fn coordinates(
+        &mut self,
+        list: &[(crate::syntax::ast::Ident, CoordKind)],
+        declared: &mut Declared,
+    ) {
+        for (name, kind) in list {
+            if !self.scope.claim(name, NameKind::Coord(*kind), self.report) {
+                declared.faulty = true;
+                continue;
+            }
+            let offset = declared.x.len();
+            let names = entry_names(&name.name, *kind);
+            let entries: Vec<Edge> = names
+                .iter()
+                .map(|entry| {
+                    let value = (self.next)(self.graph);
+                    self.graph.symbol(entry, class::COORD, value)
+                })
+                .collect();
+            self.scope
+                .set(name, Some(coordinate_value(*kind, &entries)));
+            declared.x.extend(entries);
+            let (name, span) = (name.name.clone(), name.span);
+            declared.coordinates.push(Coordinate {
+                name,
+                kind: *kind,
+                offset,
+                span,
+            });
+        }
+    }
+}
+
 fn define_const(
     declaration: &Declaration,
     graph: &mut Graph,
     scope: &mut Scope,
     report: &mut Report,
 ) {
+    let name = &declaration.name;
     let value = match &declaration.value {
         Some(expr) => {
             let value = Evaluator {
@@ -170,79 +194,76 @@ fn define_const(
                 report,
             }
             .value(expr);
-            value.filter(|value| {
-                let constant = value
-                    .entries()
-                    .iter()
-                    .all(|edge| graph.class(edge.node()) == 0);
-                if !constant {
-                    report.push(
-                        Diagnostic::new(
-                            expr.span,
-                            format!(
-                                "`{}` is no constant: it depends on symbols",
-                                declaration.name.name
-                            ),
-                        )
-                        .help(format!("write `let {} = …;`", declaration.name.name)),
-                    );
-                }
-                constant && shape_fits(declaration, value, report)
-            })
+            value.filter(|value| shape_fits(declaration, value, report))
         }
         None => {
             report.push(
-                Diagnostic::new(
-                    declaration.name.span,
-                    format!("`{}` has no value", declaration.name.name),
-                )
-                .help(format!("write `const {} = 1;`", declaration.name.name)),
+                Diagnostic::new(name.span, format!("`{}` has no value", name.name))
+                    .help(format!("write `const {} = 1;`", name.name)),
             );
             None
         }
     };
-    scope.define(&declaration.name, NameKind::Const, value, report);
+    scope.define(name, NameKind::Const, value, report);
 }
 
 /// Whether a value has the declared shape; a declaration without a shape takes any.
 pub fn shape_fits(declaration: &Declaration, value: &Value, report: &mut Report) -> bool {
-    let fits = match declaration.shape.kind {
+    let (name, shape) = (&declaration.name.name, declaration.shape);
+    let fits = match shape.kind {
         ShapeKind::Scalar => return true,
         ShapeKind::Vector(n) => matches!(value, Value::Vector(v) if v.len() == n),
         ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => {
             matches!(value, Value::Matrix(m) if m.len() == n && m.iter().all(|row| row.len() == n))
         }
     };
+    let span = declaration
+        .value
+        .as_ref()
+        .map_or(declaration.name.span, |value| value.span);
     if !fits {
-        let span = declaration
-            .value
-            .as_ref()
-            .map_or(declaration.name.span, |value| value.span);
+        let wanted = shape_words(shape.kind);
         report.push(
             Diagnostic::new(
                 span,
                 format!(
-                    "`{}` was declared as {}, its value is {}",
-                    declaration.name.name,
-                    shape_words(declaration.shape.kind),
+                    "`{name}` was declared as {wanted}, its value is {}",
                     value.shape()
                 ),
             )
-            .note(declaration.shape.span, "declared here"),
+            .help("make the shape and the value agree")
+            .note(shape.span, "declared here"),
         );
+        return false;
     }
-    fits
+    if let (ShapeKind::Symmetric(n), Value::Matrix(m)) = (shape.kind, value) {
+        let mut pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+        if let Some((i, j)) = pairs.find(|&(i, j)| m[i][j] != m[j][i]) {
+            let (i, j) = (i + 1, j + 1);
+            report.push(
+                Diagnostic::new(
+                    span,
+                    format!("`{name}` is not symmetric: entries [{i},{j}] and [{j},{i}] differ"),
+                )
+                .help(format!(
+                    "write the same value in both places, or declare it `mat{n}`"
+                ))
+                .note(shape.span, "declared symmetric here"),
+            );
+            return false;
+        }
+    }
+    true
 }
 
 /// A declared shape in words.
-pub fn shape_words(shape: ShapeKind) -> String {
+fn shape_words(shape: ShapeKind) -> String {
     match shape {
         ShapeKind::Scalar => "a scalar".into(),
         ShapeKind::Vector(n) => format!("a vector of {n}"),
         ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => format!("a {n}×{n} matrix"),
     }
 }
-
 fn symbols_of(
     graph: &mut Graph,
     next: &mut NextValue,

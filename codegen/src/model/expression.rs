@@ -1,18 +1,19 @@
-//! Expressions to values: names looked up, shapes checked, exact numbers folded.
+//! Expressions become shaped values of the graph.
 
-use super::scope::{NameKind, Scope};
+use super::scope::{NameKind, RESERVED, Scope};
 use super::value::Value;
-use crate::algebra::graph::{Edge, Function, Graph};
-use crate::algebra::linear::{add3, apply3, multiply, multiply3, transpose};
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::{identity3, transpose};
 use crate::diagnostics::{Diagnostic, Report};
-use crate::syntax::ast::{BinaryOp, CoordKind, Expr, ExprKind, Ident, Span};
-use num_rational::BigRational;
-use num_traits::{One, Signed, ToPrimitive, Zero};
+use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
+use num_traits::ToPrimitive;
 
-/// Largest size in bits of an exact number.
-const LARGEST_NUMBER: u64 = 20_000;
-/// Largest whole exponent.
-const LARGEST_EXPONENT: i64 = 1000;
+/// Largest graph of one description: what grows beyond is a mistake, such as products of large
+/// matrices of parameters.
+const MOST_NODES: usize = 200_000;
+
+/// Largest number of entries of an array.
+const MOST_ENTRIES: usize = 64;
 
 /// Evaluates expressions; `None` means that an error has been reported.
 pub struct Evaluator<'a> {
@@ -27,8 +28,15 @@ pub struct Evaluator<'a> {
 impl Evaluator<'_> {
     /// The value of an expression.
     pub fn value(&mut self, expr: &Expr) -> Option<Value> {
-        match &expr.kind {
-            ExprKind::Number(number) => Some(Value::Scalar(self.graph.rational(number))),
+        if self.graph.len() > MOST_NODES {
+            // Reported where it was crossed.
+            return None;
+        }
+        let value = match &expr.kind {
+            ExprKind::Number(number) => {
+                let edge = self.graph.rational(number);
+                self.bounded(Value::Scalar(edge), expr.span)
+            }
             ExprKind::Name(name) => self.name(name, expr.span),
             ExprKind::Field(base, field) => self.field(base, field),
             ExprKind::Index(base, indices) => self.index(base, indices, expr.span),
@@ -39,7 +47,17 @@ impl Evaluator<'_> {
                 self.binary(*op, a?, b?, left, right, expr.span)
             }
             ExprKind::Array(items) => self.array(items, expr.span),
+        };
+        if self.graph.len() > MOST_NODES && value.is_some() {
+            return self.error(
+                Diagnostic::new(
+                    expr.span,
+                    "the description grows too large with this expression",
+                )
+                .help("use smaller matrices, or write out the entries that matter"),
+            );
         }
+        value.map(|value| value.unsigned_zeros(self.graph))
     }
 
     /// The value of an expression that has to be a scalar.
@@ -67,10 +85,20 @@ impl Evaluator<'_> {
         wanted: &str,
         found: &Value,
     ) -> Option<T> {
-        self.error(Diagnostic::new(
-            span,
-            format!("{what} has to be {wanted}, this is {}", found.shape()),
-        ))
+        let help = match (wanted, found) {
+            ("a scalar", Value::Vector(_)) => {
+                "an entry is written `v[1]`, a length `norm(v)`, a product `dot(a, b)`"
+            }
+            ("a scalar", Value::Matrix(_)) => "an entry is written `M[1, 2]`",
+            ("a vector of 3", Value::Scalar(_)) => "a vector is written `[a, b, c]`",
+            ("a vector of 3", Value::Vector(v)) if v.len() == 2 => {
+                "in the plane, write `[v[1], v[2], 0]`"
+            }
+            (_, Value::Pose(..)) => "its parts are `.R` and `.p`",
+            _ => "a vector is written `[a, b, c]`, a matrix by rows `[[a, b], [c, d]]`",
+        };
+        let message = format!("{what} has to be {wanted}, this is {}", found.shape());
+        self.error(Diagnostic::new(span, message).help(help))
     }
 
     /// Reports an error.
@@ -79,25 +107,15 @@ impl Evaluator<'_> {
         None
     }
 
+    /// The pose of the world in itself.
+    pub fn world(&self) -> Value {
+        Value::Pose(identity3(self.graph), [self.graph.zero(); 3])
+    }
+
     fn name(&mut self, name: &str, span: Span) -> Option<Value> {
         match self.scope.get(name) {
-            Some(entry) if entry.kind == NameKind::Output => self.error(
-                Diagnostic::new(
-                    span,
-                    format!("`{name}` is an output, which other expressions cannot use"),
-                )
-                .help(format!(
-                    "name the expression with `let` and use that, also in `output {name}`"
-                )),
-            ),
             Some(entry) => entry.value.clone(),
-            None if name == "world" => {
-                let graph = &*self.graph;
-                Some(Value::Pose(
-                    crate::algebra::linear::identity3(graph),
-                    [graph.zero(); 3],
-                ))
-            }
+            None if name == "world" => Some(self.world()),
             None if name == "pi" => {
                 let known = self
                     .graph
@@ -107,92 +125,93 @@ impl Evaluator<'_> {
                     .map(|s| s.node);
                 known.map(|node| Value::Scalar(Edge::of(node)))
             }
+            None if RESERVED.contains(&name) => self.error(
+                Diagnostic::new(span, format!("`{name}` is a function"))
+                    .help(format!("write its arguments in parentheses: `{name}(…)`")),
+            ),
             None => {
-                let error = self.scope.unknown(
-                    span,
-                    name,
-                    "parameter, constant, coordinate, velocity, input or expression",
-                    |_| true,
-                );
+                let error = self.scope.unknown(span, name, None, |_| true);
                 self.error(error)
             }
         }
     }
 
     fn field(&mut self, base: &Expr, field: &Ident) -> Option<Value> {
-        if let ExprKind::Name(name) = &base.kind
-            && let Some(entry) = self.scope.get(name)
-            && entry.kind == NameKind::Coord(CoordKind::S1)
-        {
-            let entries = entry.value.as_ref()?.entries();
-            match field.name.as_str() {
-                "c" => return Some(Value::Scalar(entries[0])),
-                "s" => return Some(Value::Scalar(entries[1])),
-                _ => {}
-            }
-        }
         let value = self.value(base)?;
-        match (&value, field.name.as_str()) {
-            (Value::Matrix(m), "T") => Some(Value::Matrix(transpose(m))),
-            (Value::Pose(r, _), "R") => Some(Value::from_mat3(r)),
-            (Value::Pose(_, p), "p") => Some(Value::Vector(p.to_vec())),
-            _ => self.error(
-                Diagnostic::new(field.span, format!("{} has no part `.{}`", value.shape(), field.name))
-                    .help("parts are `.R` and `.p` of a pose, `.c` and `.s` of an S1 coordinate, `.T` of a matrix"),
-            ),
-        }
+        let circle = matches!(&base.kind, ExprKind::Name(name)
+            if self.scope.get(name).is_some_and(|e| e.kind == NameKind::Coord(CoordKind::S1)));
+        let help = match (&value, field.name.as_str()) {
+            (Value::Vector(v), "c") if circle => return v.first().copied().map(Value::Scalar),
+            (Value::Vector(v), "s") if circle => return v.get(1).copied().map(Value::Scalar),
+            (Value::Matrix(m), "T") => return Some(Value::Matrix(transpose(m))),
+            (Value::Pose(r, _), "R") => return Some(Value::from_mat3(r)),
+            (Value::Pose(_, p), "p") => return Some(Value::Vector(p.to_vec())),
+            (Value::Vector(_), _) if circle => {
+                "an S1 coordinate has `.c` and `.s`, its cosine and sine"
+            }
+            (Value::Vector(_), "T") => "write `dot(a, b)` or `outer(a, b)`",
+            (Value::Vector(_), _) => "entries are written `v[1]`, `v[2]`, …",
+            (Value::Matrix(_), _) => {
+                "a matrix has `.T`, its transpose; entries are written `M[1, 2]`"
+            }
+            (Value::Pose(..), _) => "a pose has `.R` and `.p`",
+            (Value::Scalar(_), _) => "a scalar has no parts",
+        };
+        let message = format!("{} has no part `.{}`", value.shape(), field.name);
+        self.error(Diagnostic::new(field.span, message).help(help))
     }
 
     fn index(&mut self, base: &Expr, indices: &[Expr], span: Span) -> Option<Value> {
-        let value = self.value(base)?;
+        let value = self.value(base);
         let places: Vec<Option<usize>> = indices.iter().map(|index| self.place(index)).collect();
+        let value = value?;
         let places = places.into_iter().collect::<Option<Vec<usize>>>()?;
-        let out_of_range = |this: &mut Self, place: usize, length: usize| {
+        let entry = |this: &mut Self, length: usize, which: usize| {
+            let place = places[which];
+            if (1..=length).contains(&place) {
+                return Some(place - 1);
+            }
+            let message = format!(
+                "index {place} is out of range, {} has {length}",
+                value.shape()
+            );
+            let what = match (&value, which) {
+                (Value::Matrix(_), 0) => " rows",
+                (Value::Matrix(_), _) => " columns",
+                _ => " entries",
+            };
             this.error(
-                Diagnostic::new(
-                    span,
-                    format!(
-                        "index {place} is out of range, {} has {length}",
-                        value.shape()
-                    ),
-                )
-                .help(format!("indices run from 1 to {length}, as in the paper")),
+                Diagnostic::new(indices[which].span, message + what)
+                    .help(format!("indices run from 1 to {length}")),
             )
         };
-        match (&value, places.as_slice()) {
-            (Value::Vector(v), [i]) => match v.get(i.wrapping_sub(1)) {
-                Some(&edge) => Some(Value::Scalar(edge)),
-                None => out_of_range(self, *i, v.len()),
-            },
-            (Value::Matrix(m), [i]) => match m.get(i.wrapping_sub(1)) {
-                Some(row) => Some(Value::Vector(row.clone())),
-                None => out_of_range(self, *i, m.len()),
-            },
-            (Value::Matrix(m), [i, j]) => match m.get(i.wrapping_sub(1)) {
-                Some(row) => match row.get(j.wrapping_sub(1)) {
-                    Some(&edge) => Some(Value::Scalar(edge)),
-                    None => out_of_range(self, *j, row.len()),
-                },
-                None => out_of_range(self, *i, m.len()),
-            },
-            _ => self.error(
-                Diagnostic::new(
-                    span,
-                    format!("{} cannot take {} indices", value.shape(), places.len()),
-                )
-                .help("a vector takes one index, a matrix one (a row) or two"),
+        match (&value, places.len()) {
+            (Value::Vector(v), 1) => Some(Value::Scalar(v[entry(self, v.len(), 0)?])),
+            (Value::Matrix(m), 1) => Some(Value::Vector(m[entry(self, m.len(), 0)?].clone())),
+            (Value::Matrix(m), 2) => {
+                let row = entry(self, m.len(), 0);
+                let column = entry(self, m.first().map_or(0, Vec::len), 1);
+                Some(Value::Scalar(m[row?][column?]))
+            }
+            (Value::Pose(..), _) => self.error(
+                Diagnostic::new(span, "a pose cannot be indexed")
+                    .help("its parts are `.R` and `.p`, as in `f.p[1]`"),
             ),
+            (_, count) => {
+                let plural = if count == 1 { "index" } else { "indices" };
+                let message = format!("{} cannot take {count} {plural}", value.shape());
+                self.error(
+                    Diagnostic::new(span, message)
+                        .help("a vector takes one index, a matrix one (for a row) or two"),
+                )
+            }
         }
     }
 
     fn place(&mut self, index: &Expr) -> Option<usize> {
         let edge = self.scalar(index, "an index")?;
-        let number = self
-            .graph
-            .as_rational(edge)
-            .filter(|n| n.is_integer())
-            .and_then(|n| n.to_integer().to_usize());
-        match number {
+        let number = self.graph.as_rational(edge).filter(|n| n.is_integer());
+        match number.and_then(|n| n.to_integer().to_usize()) {
             Some(place) => Some(place),
             None => self.error(
                 Diagnostic::new(
@@ -205,238 +224,42 @@ impl Evaluator<'_> {
     }
 
     fn array(&mut self, items: &[Expr], span: Span) -> Option<Value> {
+        const HELP: &str =
+            "entries of a vector are scalars, entries of a matrix are rows of equal length";
         let values: Vec<Option<Value>> = items.iter().map(|item| self.value(item)).collect();
         let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
         let first = values.first()?;
-        if let Some((item, other)) = items
-            .iter()
-            .zip(&values)
-            .find(|(_, v)| !v.same_shape(first))
-        {
+        if items.len() > MOST_ENTRIES {
             return self.error(
-                Diagnostic::new(
-                    item.span,
-                    format!(
-                        "this entry is {}, the first is {}",
-                        other.shape(),
-                        first.shape()
-                    ),
-                )
-                .help(
-                    "entries of a vector are scalars, entries of a matrix are rows of equal length",
+                Diagnostic::new(span, format!("an array of {} entries", items.len())).help(
+                    format!("vectors and matrices reach to {MOST_ENTRIES} rows and columns"),
                 ),
             );
+        }
+        let other = items
+            .iter()
+            .zip(&values)
+            .find(|(_, v)| !v.same_shape(first));
+        if let Some((item, other)) = other {
+            let message = format!(
+                "this entry is {}, the first is {}",
+                other.shape(),
+                first.shape()
+            );
+            return self.error(Diagnostic::new(item.span, message).help(HELP));
         }
         match first {
             Value::Scalar(_) => Some(Value::Vector(
                 values.iter().flat_map(Value::entries).collect(),
             )),
             Value::Vector(_) => Some(Value::Matrix(values.iter().map(Value::entries).collect())),
-            _ => self.error(
+            Value::Matrix(_) | Value::Pose(..) => self.error(
                 Diagnostic::new(
                     span,
-                    format!(
-                        "an array of {} is no vector and no matrix",
-                        first.shape().trim_start_matches("a ")
-                    ),
+                    format!("an array whose entries are each {}", first.shape()),
                 )
-                .help(
-                    "entries of a vector are scalars, entries of a matrix are rows of equal length",
-                ),
+                .help(HELP),
             ),
         }
-    }
-
-    fn binary(
-        &mut self,
-        op: BinaryOp,
-        a: Value,
-        b: Value,
-        left: &Expr,
-        right: &Expr,
-        span: Span,
-    ) -> Option<Value> {
-        let graph = &mut *self.graph;
-        let result = match op {
-            BinaryOp::Add | BinaryOp::Sub => {
-                if !a.same_shape(&b) || matches!(a, Value::Pose(..)) {
-                    let (verb, word) = if op == BinaryOp::Add {
-                        ("add", "to")
-                    } else {
-                        ("subtract", "from")
-                    };
-                    let (first, second) = if op == BinaryOp::Add {
-                        (&a, &b)
-                    } else {
-                        (&b, &a)
-                    };
-                    return self.error(
-                        Diagnostic::new(
-                            span,
-                            format!("cannot {verb} {} {word} {}", first.shape(), second.shape()),
-                        )
-                        .help("both sides need the same shape"),
-                    );
-                }
-                if op == BinaryOp::Add {
-                    a.zip(&b, |x, y| graph.add(x, y))
-                } else {
-                    a.zip(&b, |x, y| graph.sub(x, y))
-                }
-            }
-            BinaryOp::Mul => return self.product(a, b, span),
-            BinaryOp::Div => {
-                let Value::Scalar(divisor) = b else {
-                    return self.error(
-                        Diagnostic::new(right.span, format!("cannot divide by {}", b.shape()))
-                            .help("divide by a scalar"),
-                    );
-                };
-                if divisor == graph.zero() {
-                    return self.error(
-                        Diagnostic::new(
-                            right.span,
-                            "division by something that is identically zero",
-                        )
-                        .help("this is 0 for every configuration that satisfies the constraint"),
-                    );
-                }
-                a.map(|edge| graph.div(edge, divisor).unwrap_or(edge))
-            }
-            BinaryOp::Pow => return self.power(a, b, left, right),
-        };
-        self.bounded(result, span)
-    }
-
-    /// The value, unless one of its numbers has grown beyond all use.
-    fn bounded(&mut self, value: Value, span: Span) -> Option<Value> {
-        let large = |edge: &Edge| {
-            self.graph
-                .as_rational(*edge)
-                .is_some_and(|n| n.numer().bits().max(n.denom().bits()) > LARGEST_NUMBER)
-        };
-        if value.entries().iter().any(large) {
-            return self.error(
-                Diagnostic::new(span, "this number has too many digits")
-                    .help("scale the units of the model"),
-            );
-        }
-        Some(value)
-    }
-
-    fn product(&mut self, a: Value, b: Value, span: Span) -> Option<Value> {
-        let graph = &mut *self.graph;
-        let columns = |m: &[Vec<Edge>]| m.first().map_or(0, Vec::len);
-        let result = match (&a, &b) {
-            (Value::Scalar(k), Value::Scalar(_) | Value::Vector(_) | Value::Matrix(_)) => {
-                b.map(|edge| graph.mul(*k, edge))
-            }
-            (Value::Vector(_) | Value::Matrix(_), Value::Scalar(k)) => {
-                a.map(|edge| graph.mul(edge, *k))
-            }
-            (Value::Matrix(m), Value::Vector(v)) if columns(m) == v.len() => {
-                Value::Vector(m.iter().map(|row| graph.dot(row, v)).collect())
-            }
-            (Value::Matrix(m), Value::Matrix(n)) if columns(m) == n.len() => {
-                Value::Matrix(multiply(graph, m, n))
-            }
-            (Value::Pose(r, p), Value::Pose(r2, p2)) => {
-                let moved = apply3(graph, r, *p2);
-                Value::Pose(multiply3(graph, r, r2), add3(graph, *p, moved))
-            }
-            (Value::Pose(r, p), Value::Vector(_)) if b.as_vec3().is_some() => {
-                let point = b.as_vec3()?;
-                let moved = apply3(graph, r, point);
-                Value::Vector(add3(graph, *p, moved).to_vec())
-            }
-            _ => {
-                let help = match (&a, &b) {
-                    (Value::Vector(_), Value::Vector(_)) => {
-                        "write `dot(a, b)`, `cross(a, b)` or `outer(a, b)`"
-                    }
-                    (Value::Vector(_), Value::Matrix(_)) => {
-                        "write the matrix first, transposed: `M.T * v`"
-                    }
-                    _ => "the columns of the left have to be as many as the rows of the right",
-                };
-                return self.error(
-                    Diagnostic::new(
-                        span,
-                        format!("cannot multiply {} by {}", a.shape(), b.shape()),
-                    )
-                    .help(help),
-                );
-            }
-        };
-        self.bounded(result, span)
-    }
-
-    fn power(&mut self, a: Value, b: Value, left: &Expr, right: &Expr) -> Option<Value> {
-        let Value::Scalar(base) = a else {
-            return self.error(
-                Diagnostic::new(left.span, format!("cannot raise {} to a power", a.shape()))
-                    .help("powers are of scalars; write `dot(v, v)` or `M * M`"),
-            );
-        };
-        let exponent = match &b {
-            Value::Scalar(edge) => self.graph.as_rational(*edge),
-            _ => None,
-        };
-        let Some(exponent) = exponent else {
-            return self.error(
-                Diagnostic::new(
-                    right.span,
-                    "an exponent has to be a rational number known at build time",
-                )
-                .help("for other powers write `exp(b * log(a))`"),
-            );
-        };
-        let whole = exponent
-            .is_integer()
-            .then(|| exponent.to_integer().to_i64())
-            .flatten();
-        if base == self.graph.zero() && !exponent.is_positive() {
-            return self.error(
-                Diagnostic::new(left.span, "division by something that is identically zero")
-                    .help("a power of 0 needs a positive exponent"),
-            );
-        }
-        let twice = &exponent + &exponent;
-        let result = if let Some(n) = whole.filter(|n| n.abs() <= LARGEST_EXPONENT) {
-            let bits = self
-                .graph
-                .as_rational(base)
-                .map_or(0, |n| n.numer().bits().max(n.denom().bits()));
-            if bits.saturating_mul(n.unsigned_abs()) > 2 * LARGEST_NUMBER {
-                return self.error(
-                    Diagnostic::new(left.span, "this power has too many digits")
-                        .help("scale the units of the model"),
-                );
-            }
-            self.graph.powi(base, n)
-        } else if let Some(n) = twice
-            .is_integer()
-            .then(|| twice.to_integer().to_i64())
-            .flatten()
-            .filter(|n| n.abs() <= LARGEST_EXPONENT)
-        {
-            let root = self.graph.apply(Function::Sqrt, base);
-            self.graph.powi(root, n)
-        } else if exponent.is_zero() {
-            Some(self.graph.one())
-        } else if exponent.abs()
-            > BigRational::one() * BigRational::from_integer(LARGEST_EXPONENT.into())
-        {
-            return self.error(
-                Diagnostic::new(right.span, "this exponent is too large")
-                    .help(format!("exponents reach to {LARGEST_EXPONENT}")),
-            );
-        } else {
-            let factor = self.graph.rational(&exponent);
-            let log = self.graph.apply(Function::Log, base);
-            let product = self.graph.mul(factor, log);
-            Some(self.graph.apply(Function::Exp, product))
-        };
-        self.bounded(Value::Scalar(result?), left.span.to(right.span))
     }
 }

@@ -1,14 +1,20 @@
 //! The functions of the language.
 
 use super::expression::Evaluator;
-use super::scope::{RESERVED, closest};
+use super::rotations::{axis_angle, hat, quaternion_matrix, turn};
+use super::scope::{NameKind, RESERVED};
 use super::value::Value;
+use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Function, Graph};
-use crate::algebra::linear::{
-    Mat3, Vec3, apply3, cross, identity3, multiply3, transpose, transpose3,
-};
+use crate::algebra::linear::{apply3, cross, multiply3, transpose, transpose3};
 use crate::diagnostics::Diagnostic;
-use crate::syntax::ast::{Expr, Ident, Span};
+use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
+use crate::syntax::suggest::closest;
+use num_rational::BigRational;
+use num_traits::{Signed, ToPrimitive};
+
+/// Largest number of rows that a function makes.
+const MOST_ROWS: usize = 64;
 
 impl Evaluator<'_> {
     /// A call; wrong names, counts and shapes are reported.
@@ -18,41 +24,69 @@ impl Evaluator<'_> {
             .map(|argument| self.value(argument))
             .collect();
         let Some(usage) = usage(&function.name) else {
-            let error = Diagnostic::new(
-                function.span,
-                format!("no function is called `{}`", function.name),
-            );
-            let known = RESERVED
-                .iter()
-                .copied()
-                .filter(|name| usage_of(name).is_some());
-            return match closest(&function.name, known) {
-                Some(known) => self.error(error.help(format!("did you mean `{known}`?"))),
-                None => self.error(error.help("functions are sin, cos, tan, atan2, sqrt, exp, log, dot, cross, norm, hat, vee, transpose, trace, diag, outer, identity, rotx, roty, rotz, rpy, axis_angle, rot, qmul, pose, inverse")),
-            };
+            return self.no_function(function);
         };
         let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
-        match evaluate(self.graph, &function.name, &values) {
+        match evaluate(self.graph, &function.name, &values, self.scope.free) {
             Ok(value) => Some(value),
             Err(Fault::Usage) => {
                 let found: Vec<String> = values.iter().map(Value::shape).collect();
-                self.error(
-                    Diagnostic::new(
-                        span,
-                        format!(
-                            "`{}` cannot take {}",
-                            function.name,
-                            if found.is_empty() {
-                                "no argument".into()
-                            } else {
-                                found.join(" and ")
-                            }
-                        ),
-                    )
-                    .help(format!("write {usage}")),
-                )
+                let found = match found.as_slice() {
+                    [] => "no argument".into(),
+                    [one] => one.clone(),
+                    [first @ .., last] => format!("{} and {last}", first.join(", ")),
+                };
+                let message = format!("`{}` cannot take {found}", function.name);
+                let help = match self.circle_part(&function.name, arguments) {
+                    Some(part) => format!("write `{part}`"),
+                    None => format!("write {usage}"),
+                };
+                self.error(Diagnostic::new(span, message).help(help))
             }
             Err(Fault::Why(message, help)) => self.error(Diagnostic::new(span, message).help(help)),
+        }
+    }
+
+    fn no_function(&mut self, function: &Ident) -> Option<Value> {
+        let name = &function.name;
+        let error = Diagnostic::new(function.span, format!("no function is called `{name}`"));
+        let known = || {
+            RESERVED
+                .iter()
+                .copied()
+                .filter(|name| usage(name).is_some())
+        };
+        if self.scope.get(name).is_some() {
+            return self.error(error.help("a product is written with `*`"));
+        }
+        match closest(name, known()) {
+            Some(known) => self.error(error.help(format!("did you mean `{known}`?"))),
+            None => {
+                let all: Vec<&str> = known().collect();
+                self.error(error.help(format!("the functions are {}", all.join(", "))))
+            }
+        }
+    }
+
+    /// The part of an S1 coordinate that stands for its sine or cosine.
+    fn circle_part(&self, function: &str, arguments: &[Expr]) -> Option<String> {
+        let [
+            Expr {
+                kind: ExprKind::Name(name),
+                ..
+            },
+        ] = arguments
+        else {
+            return None;
+        };
+        if self.scope.get(name)?.kind != NameKind::Coord(CoordKind::S1) {
+            return None;
+        }
+        match function {
+            "sin" => Some(format!("{name}.s")),
+            "cos" => Some(format!("{name}.c")),
+            "tan" => Some(format!("{name}.s / {name}.c")),
+            _ => None,
         }
     }
 }
@@ -62,17 +96,23 @@ enum Fault {
     /// Number or shapes of the arguments.
     Usage,
     /// A mathematical reason, and what to do.
-    Why(String, String),
+    Why(&'static str, &'static str),
 }
 
+const ZERO_DIVISOR: Fault = Fault::Why(
+    "division by something that is identically zero",
+    "this is 0 for every configuration that satisfies the constraints",
+);
+
+/// How a function is called.
 fn usage(name: &str) -> Option<&'static str> {
-    usage_of(name)
-}
-
-fn usage_of(name: &str) -> Option<&'static str> {
     Some(match name {
-        "sin" | "cos" | "tan" => "`sin(angle)` of a scalar, and so cos and tan",
-        "sqrt" | "exp" | "log" => "`sqrt(a)` of a scalar, and so exp and log",
+        "sin" => "`sin(angle)` of a scalar",
+        "cos" => "`cos(angle)` of a scalar",
+        "tan" => "`tan(angle)` of a scalar",
+        "sqrt" => "`sqrt(a)` of a scalar",
+        "exp" => "`exp(a)` of a scalar",
+        "log" => "`log(a)` of a scalar",
         "atan2" => "`atan2(y, x)` of scalars",
         "dot" => "`dot(a, b)` of vectors of equal length",
         "cross" => "`cross(a, b)` of vectors of 3",
@@ -83,10 +123,10 @@ fn usage_of(name: &str) -> Option<&'static str> {
         "transpose" => "`transpose(M)` of a matrix",
         "trace" => "`trace(M)` of a square matrix",
         "diag" => "`diag(a, b, c)` of scalars or `diag(v)` of a vector",
-        "identity" => "`identity(n)` with n from 1 to 64",
-        "rotx" | "roty" | "rotz" => {
-            "`rotx(angle)`, `rotx(c, s)` or `rotx(q)` with an S1 coordinate q, and so roty and rotz"
-        }
+        "identity" => "`identity(n)` with a number n from 1 to 64, known at build time",
+        "rotx" => "`rotx(angle)`, `rotx(c, s)` or `rotx(q)` with an S1 coordinate q",
+        "roty" => "`roty(angle)`, `roty(c, s)` or `roty(q)` with an S1 coordinate q",
+        "rotz" => "`rotz(angle)`, `rotz(c, s)` or `rotz(q)` with an S1 coordinate q",
         "rpy" => "`rpy(roll, pitch, yaw)` of scalars",
         "axis_angle" => "`axis_angle(axis, angle)` of a unit vector of 3 and a scalar",
         "rot" => "`rot(q)` of a unit quaternion, scalar first",
@@ -97,7 +137,8 @@ fn usage_of(name: &str) -> Option<&'static str> {
     })
 }
 
-fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fault> {
+/// The value of a call; `free` where points are off the variety.
+fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Result<Value, Fault> {
     use Value::{Matrix, Pose, Scalar, Vector};
     let value = match (name, values) {
         ("sin", [Scalar(a)]) => Scalar(graph.apply(Function::Sin, *a)),
@@ -107,17 +148,26 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
                 graph.apply(Function::Sin, *a),
                 graph.apply(Function::Cos, *a),
             );
-            Scalar(graph.div(s, c).ok_or(Fault::Usage)?)
+            Scalar(graph.div(s, c).ok_or(ZERO_DIVISOR)?)
         }
         ("exp", [Scalar(a)]) => Scalar(graph.apply(Function::Exp, *a)),
-        ("log", [Scalar(a)]) if *a == graph.zero() => {
+        ("log", [Scalar(a)]) => {
+            let number = graph.as_rational(*a);
+            if number.is_some_and(|n| !n.is_positive()) {
+                return Err(Fault::Why(
+                    "the logarithm of a number that is not positive",
+                    "check the argument: it is this number for every configuration",
+                ));
+            }
+            Scalar(graph.apply(Function::Log, *a))
+        }
+        ("sqrt", [Scalar(a)]) => Scalar(real_root(graph, *a)?),
+        ("atan2", [Scalar(y), Scalar(x)]) if *y == graph.zero() && *x == graph.zero() => {
             return Err(Fault::Why(
-                "logarithm of something that is identically zero".into(),
-                "the argument has to be positive".into(),
+                "the angle of a zero vector",
+                "one of the arguments has to differ from 0",
             ));
         }
-        ("log", [Scalar(a)]) => Scalar(graph.apply(Function::Log, *a)),
-        ("sqrt", [Scalar(a)]) => Scalar(root(graph, *a)?),
         ("atan2", [Scalar(y), Scalar(x)]) => Scalar(graph.atan2(*y, *x)),
         ("dot", [Vector(a), Vector(b)]) if a.len() == b.len() => Scalar(graph.dot(a, b)),
         ("outer", [Vector(a), Vector(b)]) => Matrix(
@@ -127,7 +177,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
         ),
         ("norm", [Vector(a)]) => {
             let square = graph.dot(a, a);
-            Scalar(root(graph, square)?)
+            Scalar(real_root(graph, square)?)
         }
         ("transpose", [Matrix(m)]) => Matrix(transpose(m)),
         ("trace", [Matrix(m)]) if m.len() == m.first().map_or(0, Vec::len) => {
@@ -136,7 +186,8 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
         }
         ("diag", [Vector(v)]) => diagonal(graph, v),
         ("diag", scalars)
-            if !scalars.is_empty() && scalars.iter().all(|v| matches!(v, Scalar(_))) =>
+            if (1..=MOST_ROWS).contains(&scalars.len())
+                && scalars.iter().all(|v| matches!(v, Scalar(_))) =>
         {
             let entries: Vec<Edge> = scalars.iter().flat_map(Value::entries).collect();
             diagonal(graph, &entries)
@@ -148,7 +199,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
                 .map(|n| n.to_integer());
             let size = size
                 .and_then(|n| usize::try_from(n).ok())
-                .filter(|n| (1..=64).contains(n))
+                .filter(|n| (1..=MOST_ROWS).contains(n))
                 .ok_or(Fault::Usage)?;
             diagonal(graph, &vec![graph.one(); size])
         }
@@ -182,7 +233,13 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
         }
         ("axis_angle", [axis, Scalar(angle)]) => {
             let axis = axis.as_vec3().ok_or(Fault::Usage)?;
-            axis_angle(graph, axis, *angle)?
+            if !free && graph.dot(&axis, &axis) != graph.one() {
+                return Err(Fault::Why(
+                    "the axis of `axis_angle` is no unit vector",
+                    "divide it by its length: `axis_angle(a / norm(a), angle)`",
+                ));
+            }
+            axis_angle(graph, axis, *angle)
         }
         ("rot", [Vector(q)]) if q.len() == 4 => {
             Value::from_mat3(&quaternion_matrix(graph, [q[0], q[1], q[2], q[3]]))
@@ -230,17 +287,29 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value]) -> Result<Value, Fa
     Ok(value)
 }
 
-fn root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {
-    if graph
-        .as_rational(square)
-        .is_some_and(|n| n < num_traits::Zero::zero())
-    {
+fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {
+    if graph.as_rational(square).is_some_and(|n| n.is_negative()) {
         return Err(Fault::Why(
-            "square root of a negative number".into(),
-            "check the sign of the argument".into(),
+            "the square root of a negative number",
+            "check the argument: it is this number for every configuration",
         ));
     }
-    Ok(graph.apply(Function::Sqrt, square))
+    Ok(root(graph, square))
+}
+
+/// The square root. A number whose root does not exist modulo p, such as 3, has the one that
+/// floating point gives.
+pub fn root(graph: &mut Graph, square: Edge) -> Edge {
+    if let Some(number) = graph.as_rational(square)
+        && Fp::from_rational(&number).is_none_or(|image| image.sqrt().is_none())
+        && let Some(root) = number
+            .to_f64()
+            .map(f64::sqrt)
+            .and_then(BigRational::from_float)
+    {
+        return graph.rational(&root);
+    }
+    graph.apply(Function::Sqrt, square)
 }
 
 fn diagonal(graph: &Graph, entries: &[Edge]) -> Value {
@@ -254,68 +323,4 @@ fn diagonal(graph: &Graph, entries: &[Edge]) -> Value {
             })
             .collect(),
     )
-}
-
-/// ŵ, with ŵ a = w × a.
-pub fn hat(graph: &Graph, w: Vec3) -> Mat3 {
-    let o = graph.zero();
-    [[o, -w[2], w[1]], [w[2], o, -w[0]], [-w[1], w[0], o]]
-}
-
-/// Rotation about a coordinate axis.
-fn turn(graph: &Graph, axis: usize, c: Edge, s: Edge) -> Mat3 {
-    let mut m = identity3(graph);
-    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-    m[j][j] = c;
-    m[k][k] = c;
-    m[j][k] = -s;
-    m[k][j] = s;
-    m
-}
-
-/// I + sin a n̂ + (1 − cos a) n̂² for a unit vector n.
-fn axis_angle(graph: &mut Graph, axis: Vec3, angle: Edge) -> Result<Value, Fault> {
-    if graph.dot(&axis, &axis) != graph.one() {
-        return Err(Fault::Why(
-            "the axis of `axis_angle` is no unit vector".into(),
-            "divide it by its length: `axis_angle(a / norm(a), angle)`".into(),
-        ));
-    }
-    let (c, s) = (
-        graph.apply(Function::Cos, angle),
-        graph.apply(Function::Sin, angle),
-    );
-    let versine = graph.sub(graph.one(), c);
-    let n = hat(graph, axis);
-    let square = multiply3(graph, &n, &n);
-    let mut m = identity3(graph);
-    for i in 0..3 {
-        for j in 0..3 {
-            let (a, b) = (graph.mul(s, n[i][j]), graph.mul(versine, square[i][j]));
-            let sum = graph.add(m[i][j], a);
-            m[i][j] = graph.add(sum, b);
-        }
-    }
-    Ok(Value::from_mat3(&m))
-}
-
-/// Rotation matrix of a unit quaternion (w, v): (w² − v·v) I + 2 v vᵀ + 2 w v̂.
-pub fn quaternion_matrix(graph: &mut Graph, q: [Edge; 4]) -> Mat3 {
-    let [w, v @ ..] = q;
-    let (ww, vv) = (graph.mul(w, w), graph.dot(&v, &v));
-    let base = graph.sub(ww, vv);
-    let two = graph.ratio(2, 1);
-    let skew = hat(graph, v);
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| {
-            let (outer, turn) = (graph.mul(v[i], v[j]), graph.mul(w, skew[i][j]));
-            let sum = graph.add(outer, turn);
-            let double = graph.mul(two, sum);
-            if i == j {
-                graph.add(base, double)
-            } else {
-                double
-            }
-        })
-    })
 }

@@ -1,18 +1,17 @@
-//! Rates: ẋ = A ξ, linear in ξ and tangent to φ = 0, with as many velocities as dim X.
+//! Rates: ẋ = A ξ, read statement by statement.
 
-use super::class;
+use super::Coordinate;
 use super::declare::{Declared, coordinate_value, size};
 use super::expression::Evaluator;
-use super::points::Points;
 use super::scope::{NameKind, Scope};
+use super::tangency::{check_constraints, linear_part};
 use super::value::Value;
-use crate::algebra::derivation::Derivation;
-use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph, LANES};
-use crate::algebra::lane::Lane;
-use crate::algebra::numeric::{evaluate_at, rank};
+use super::variety::Variety;
+use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
-use crate::syntax::ast::{CoordKind, Expr, Ident, ItemKind, Span, System, Target};
+use crate::syntax::ast::{
+    BinaryOp, CoordKind, Expr, ExprKind, Ident, ItemKind, ShapeKind, System, Target,
+};
 
 /// ẋ and A.
 pub struct Kinematics {
@@ -20,380 +19,267 @@ pub struct Kinematics {
     pub a: Vec<Vec<Edge>>,
 }
 
+/// The rate of one entry of x, and the statement that gives it.
+#[derive(Clone, Copy)]
+pub struct Rate {
+    pub edge: Edge,
+    pub item: usize,
+}
+
 /// Reads all `rate` statements.
 pub fn read(
     system: &System,
     graph: &mut Graph,
     scope: &Scope,
-    points: &Points,
-    phi: &[(Edge, String)],
+    variety: &Variety,
     declared: &Declared,
     report: &mut Report,
 ) -> Option<Kinematics> {
-    let mut rate: Vec<Option<(Edge, Span)>> = vec![None; declared.x.len()];
-    let mut complete = true;
-    for item in &system.items {
-        let ItemKind::Rate { target, value } = &item.kind else {
+    let mut rates: Vec<Option<Rate>> = vec![None; declared.x.len()];
+    // Coordinates with a statement, be it in error.
+    let mut tried: Vec<&str> = Vec::new();
+    for (item, statement) in system.items.iter().enumerate() {
+        let ItemKind::Rate { target, value } = &statement.kind else {
             continue;
         };
-        let done = read_rate(target, value, graph, scope, declared, &mut rate, report);
-        complete &= done.is_some();
+        tried.push(&target.name.name);
+        let evaluator = Evaluator {
+            graph,
+            scope,
+            report,
+        };
+        read_rate(target, value, item, evaluator, declared, &mut rates, system);
     }
     for coordinate in &declared.coordinates {
-        let entries = &rate[coordinate.offset..coordinate.offset + size(coordinate.kind)];
-        if complete && entries.iter().any(Option::is_none) {
-            complete = false;
-            report.push(
-                Diagnostic::new(
-                    coordinate.span,
-                    format!("coordinate `{}` has no rate", coordinate.name),
-                )
-                .help(rate_help(&coordinate.name, coordinate.kind)),
-            );
+        let range = coordinate.offset..coordinate.offset + size(coordinate.kind);
+        let missing = rates[range.clone()].iter().any(Option::is_none);
+        let parts = !rates[range].iter().all(Option::is_none);
+        if missing && (parts || !tried.contains(&coordinate.name.as_str())) {
+            let name = &coordinate.name;
+            let message = if parts {
+                format!("a part of coordinate `{name}` has no rate")
+            } else {
+                format!("coordinate `{name}` has no rate")
+            };
+            let help = rate_help(coordinate, &velocity_for(coordinate, None, declared));
+            report.push(Diagnostic::new(coordinate.span, message).help(help));
         }
     }
-    if !complete {
-        return None;
-    }
-    let (rate, spans): (Vec<Edge>, Vec<Span>) = rate.into_iter().flatten().unzip();
-    let a = linear_part(graph, &rate, &spans, declared, report)?;
-    let jacobian = jacobian(points, graph, phi, declared);
-    check_tangent(
+    let rates: Option<Vec<Rate>> = rates.into_iter().collect();
+    let a = rates
+        .as_ref()
+        .and_then(|rates| linear_part(system, graph, rates, declared, report));
+    let kinematics = rates.zip(a);
+    check_constraints(
+        system,
         graph,
-        &a,
-        &spans,
-        phi,
-        jacobian.as_deref(),
+        variety,
+        kinematics.as_ref(),
         declared,
         report,
-    )?;
-    check_count(system, graph, &a, jacobian.as_deref(), declared, report)?;
-    Some(Kinematics { rate, a })
+    );
+    let (rates, a) = kinematics?;
+    Some(Kinematics {
+        rate: rates.iter().map(|rate| rate.edge).collect(),
+        a,
+    })
 }
 
 fn read_rate(
     target: &Target,
     value: &Expr,
-    graph: &mut Graph,
-    scope: &Scope,
+    item: usize,
+    mut evaluator: Evaluator,
     declared: &Declared,
-    rate: &mut [Option<(Edge, Span)>],
-    report: &mut Report,
+    rates: &mut [Option<Rate>],
+    system: &System,
 ) -> Option<()> {
-    let found = part(target, scope, declared, report);
-    let value_of = Evaluator {
-        graph,
-        scope,
-        report,
-    }
-    .value(value);
+    let found = part(target, &mut evaluator, declared);
+    let value_of = evaluator.value(value);
     let (range, wanted) = found?;
     let mut entries = value_of?;
+    let coordinate = declared
+        .coordinates
+        .iter()
+        .rfind(|c| c.offset <= range.start)?;
     // A scalar rate of an S1 coordinate is its angular velocity: (c, s)' = (−s, c) ω.
-    if let (Value::Scalar(w), Value::Vector(x)) = (&entries, &wanted)
-        && declared
-            .coordinates
-            .iter()
-            .any(|c| c.kind == CoordKind::S1 && c.offset == range.start && x.len() == 2)
+    if let (Value::Scalar(w), Value::Vector(x), CoordKind::S1) =
+        (&entries, &wanted, coordinate.kind)
     {
-        let (c, s) = (x[0], x[1]);
-        entries = Value::Vector(vec![-graph.mul(s, *w), graph.mul(c, *w)]);
+        let graph = &mut *evaluator.graph;
+        let turned = [-graph.mul(x[1], *w), graph.mul(x[0], *w)];
+        entries = Value::Vector(turned.to_vec()).unsigned_zeros(graph);
     }
     if !entries.same_shape(&wanted) {
-        report.push(Diagnostic::new(value.span, format!("the rate of `{}` has to be {}, this is {}", target.name.name, wanted.shape(), entries.shape())).help(
-            "a rate has the shape of its coordinate; give the parts `.p` and `.R` of an SE3 coordinate their own rates",
-        ));
-        return None;
+        let message = format!(
+            "the rate of `{}` has to be {}, this is {}",
+            written(target),
+            wanted.shape(),
+            entries.shape()
+        );
+        let turning = entries.as_vec3().and_then(|_| factor_of(coordinate, value));
+        let velocity = turning.unwrap_or_else(|| velocity_for(coordinate, Some(value), declared));
+        let help = rate_help(coordinate, &velocity);
+        return evaluator.error(Diagnostic::new(value.span, message).help(help));
+    }
+    let twice = rates[range.clone()]
+        .iter()
+        .flatten()
+        .next()
+        .map(|rate| rate.item);
+    if let Some(ItemKind::Rate { target: first, .. }) = twice.map(|item| &system.items[item].kind) {
+        return evaluator.error(
+            Diagnostic::new(
+                target.span(),
+                format!("the rate of `{}` is given twice", written(target)),
+            )
+            .help("remove one of the two")
+            .note(first.span(), "first given here"),
+        );
     }
     for (place, edge) in range.zip(entries.entries()) {
-        if let Some((_, first)) = rate[place] {
-            report.push(
-                Diagnostic::new(
-                    target.span(),
-                    format!("the rate of `{}` is given twice", target.name.name),
-                )
-                .help("remove one of the two")
-                .note(first, "first given here"),
-            );
-            return None;
-        }
-        rate[place] = Some((edge, value.span));
+        rates[place] = Some(Rate { edge, item });
     }
     Some(())
+}
+
+/// A target as it stands in the text.
+pub fn written(target: &Target) -> String {
+    match &target.field {
+        Some(field) => format!("{}.{}", target.name.name, field.name),
+        None => target.name.name.clone(),
+    }
+}
+
+/// The w of a rate `R * w`, which lacks its `hat`.
+fn factor_of(coordinate: &Coordinate, rate: &Expr) -> Option<String> {
+    let ExprKind::Binary(BinaryOp::Mul, left, right) = &rate.kind else {
+        return None;
+    };
+    match (&left.kind, &right.kind) {
+        (ExprKind::Name(left), ExprKind::Name(right)) if *left == coordinate.name => {
+            Some(right.clone())
+        }
+        _ => None,
+    }
 }
 
 /// The entries of x that a target names, and its value.
 pub fn part(
     target: &Target,
-    scope: &Scope,
+    evaluator: &mut Evaluator,
     declared: &Declared,
-    report: &mut Report,
 ) -> Option<(std::ops::Range<usize>, Value)> {
     let name = &target.name;
     let Some(coordinate) = declared.coordinates.iter().find(|c| c.name == name.name) else {
-        let error = match scope.get(&name.name) {
-            Some(entry) => Diagnostic::new(
-                name.span,
-                format!(
-                    "`{}` is {}, it has no rate of its own",
-                    name.name,
-                    entry.kind.describe()
-                ),
-            )
-            .help("rates belong to coordinates")
-            .note(entry.span, "defined here"),
-            None => scope.unknown(name.span, &name.name, "coordinate", |kind| {
-                matches!(kind, NameKind::Coord(_))
-            }),
+        let error = match evaluator.scope.get(&name.name) {
+            // Its own definition was in error.
+            Some(entry) if matches!(entry.kind, NameKind::Coord(_)) => return None,
+            Some(entry) => {
+                let kind = entry.kind.describe();
+                let message = format!("`{}` is {kind}, it has no rate of its own", name.name);
+                let error = Diagnostic::new(name.span, message).note(entry.span, "defined here");
+                error.help("rates belong to coordinates")
+            }
+            None => {
+                let is_coordinate = |kind| matches!(kind, NameKind::Coord(_));
+                evaluator
+                    .scope
+                    .unknown(name.span, &name.name, Some("coordinate"), is_coordinate)
+            }
         };
-        report.push(error);
-        return None;
+        return evaluator.error(error);
     };
     let entries = &declared.x[coordinate.offset..coordinate.offset + size(coordinate.kind)];
-    let whole = coordinate.offset..coordinate.offset + entries.len();
     let at = |from: usize, len: usize| coordinate.offset + from..coordinate.offset + from + len;
-    match (&target.field, coordinate.kind) {
-        (None, kind) => Some((whole, coordinate_value(kind, entries))),
-        (Some(field), CoordKind::SE3) if field.name == "p" => {
-            Some((at(0, 3), Value::Vector(entries[..3].to_vec())))
-        }
-        (Some(field), CoordKind::SE3) if field.name == "R" => {
-            Some((at(3, 9), coordinate_value(CoordKind::SO3, &entries[3..])))
-        }
-        (Some(field), CoordKind::S1) if field.name == "c" => {
-            Some((at(0, 1), Value::Scalar(entries[0])))
-        }
-        (Some(field), CoordKind::S1) if field.name == "s" => {
-            Some((at(1, 1), Value::Scalar(entries[1])))
-        }
-        (Some(field), _) => {
-            report.push(no_part(name, field));
-            None
-        }
+    let field = target.field.as_ref().map(|field| field.name.as_str());
+    Some(match (field, coordinate.kind) {
+        (None, kind) => (at(0, entries.len()), coordinate_value(kind, entries)),
+        (Some("p"), CoordKind::SE3) => (at(0, 3), Value::Vector(entries[..3].to_vec())),
+        (Some("R"), CoordKind::SE3) => (at(3, 9), coordinate_value(CoordKind::SO3, &entries[3..])),
+        (Some("c"), CoordKind::S1) => (at(0, 1), Value::Scalar(entries[0])),
+        (Some("s"), CoordKind::S1) => (at(1, 1), Value::Scalar(entries[1])),
+        (Some(_), kind) => return evaluator.error(no_part(name, target.field.as_ref()?, kind)),
+    })
+}
+
+fn no_part(name: &Ident, field: &Ident, kind: CoordKind) -> Diagnostic {
+    let message = format!("`{}` has no part `.{}`", name.name, field.name);
+    let error = Diagnostic::new(field.span, message);
+    match kind {
+        CoordKind::SE3 => error.help("its parts are `.p` and `.R`"),
+        CoordKind::S1 => error.help("its parts are `.c` and `.s`"),
+        _ => error.help(format!(
+            "write `{}` alone: it is given as a whole",
+            name.name
+        )),
     }
 }
 
-fn no_part(name: &Ident, field: &Ident) -> Diagnostic {
-    Diagnostic::new(
-        field.span,
-        format!("`{}` has no part `.{}`", name.name, field.name),
-    )
-    .help("parts are `.p` and `.R` of an SE3 coordinate, `.c` and `.s` of an S1 coordinate")
-}
-
-fn rate_help(name: &str, kind: CoordKind) -> String {
-    match kind {
-        CoordKind::Real => format!("write `rate {name} = u;` with a velocity u"),
-        CoordKind::Euclidean(n) => format!("write `rate {name} = v;` with a velocity v: vec{n}"),
-        CoordKind::S1 => format!("write `rate {name} = w;` with its angular velocity w"),
-        CoordKind::S3 => format!("write `rate {name} = qmul({name}, [0, w[1], w[2], w[3]]) / 2;`"),
-        CoordKind::SO3 => format!("write `rate {name} = {name} * hat(w);` with a velocity w: vec3"),
+/// How the rate of a coordinate is written, with the name of a velocity.
+pub fn rate_help(coordinate: &Coordinate, velocity: &str) -> String {
+    let name = &coordinate.name;
+    match coordinate.kind {
+        CoordKind::Real => format!("write `rate {name} = {velocity};` with a scalar velocity"),
+        CoordKind::Euclidean(n) => {
+            format!("write `rate {name} = {velocity};` with a velocity of shape vec{n}")
+        }
+        CoordKind::S1 => {
+            format!("write `rate {name} = {velocity};` with the angular velocity {velocity}")
+        }
+        CoordKind::S3 => format!(
+            "write `rate {name} = qmul({name}, [0, {velocity}[1], {velocity}[2], {velocity}[3]]) / 2;` with the angular velocity {velocity} in body axes"
+        ),
+        CoordKind::SO3 => format!(
+            "write `rate {name} = {name} * hat({velocity});` with the angular velocity {velocity} in body axes, or `hat({velocity}) * {name}` in world axes"
+        ),
         CoordKind::SE3 => format!(
-            "write `rate {name}.p = {name}.R * v;` and `rate {name}.R = {name}.R * hat(w);`"
+            "write `rate {name}.p = {name}.R * v;` and `rate {name}.R = {name}.R * hat({velocity});`"
         ),
     }
 }
 
-/// A = ∂ẋ/∂ξ, with ẋ − A ξ = 0 and A free of ξ and u.
-fn linear_part(
-    graph: &mut Graph,
-    rate: &[Edge],
-    spans: &[Span],
-    declared: &Declared,
-    report: &mut Report,
-) -> Option<Vec<Vec<Edge>>> {
-    let mut a = vec![Vec::new(); rate.len()];
-    for &xi in &declared.xi {
-        let mut derivation = Derivation::new([(xi.node(), graph.one())]);
-        for (row, &entry) in a.iter_mut().zip(rate) {
-            row.push(derivation.of(graph, entry));
-        }
-    }
-    let mut bad = false;
-    let mut last: Option<Span> = None;
-    for ((row, &entry), &span) in a.iter().zip(rate).zip(spans) {
-        let whole = graph.dot(row, &declared.xi);
-        let class = row
-            .iter()
-            .fold(0, |class, edge| class | graph.class(edge.node()));
-        if whole == entry && class & !(class::PARAM | class::COORD) == 0 {
-            continue;
-        }
-        bad = true;
-        // Entries of one statement share its span; one error for them all.
-        if last.is_some_and(|last| same(last, span)) {
-            continue;
-        }
-        last = Some(span);
-        report.push(
-            Diagnostic::new(span, "this rate is not linear in the velocities")
-                .help("a rate is A(x) ξ: every term has exactly one velocity as a factor, times coordinates and parameters"),
-        );
-    }
-    (!bad).then_some(a)
-}
-
-fn same(a: Span, b: Span) -> bool {
-    format!("{:?}{:?}", a.lo, a.hi) == format!("{:?}{:?}", b.lo, b.hi)
-}
-
-/// ∂φ/∂x at the lanes' points of X; one matrix a lane.
-fn jacobian(
-    points: &Points,
-    graph: &Graph,
-    phi: &[(Edge, String)],
-    declared: &Declared,
-) -> Option<Vec<Vec<Vec<Fp>>>> {
-    let mut free = points.free.clone();
-    let nu = declared.x.len();
-    let x: Vec<Edge> = (points.first..points.first + nu)
-        .map(|i| Edge::of(free.symbols()[i].node))
-        .collect();
-    let mut entries = Vec::new();
-    for &(row, _) in phi {
-        for edge in &x {
-            let mut derivation = Derivation::new([(edge.node(), free.one())]);
-            entries.push(derivation.of(&mut free, row));
-        }
-    }
-    (0..LANES)
-        .map(|lane| {
-            let mut point = Lane::new(lane as u64);
-            for symbol in graph.symbols() {
-                point.push_symbol(graph.value(Edge::of(symbol.node))[lane]);
-            }
-            let values = evaluate_at(&free, &entries, &mut point)?;
-            Some(values.chunks(nu).map(<[Fp]>::to_vec).collect())
-        })
-        .collect()
-}
-
-/// (∂φ/∂x) A = 0 on X.
-fn check_tangent(
-    graph: &Graph,
-    a: &[Vec<Edge>],
-    spans: &[Span],
-    phi: &[(Edge, String)],
-    jacobian: Option<&[Vec<Vec<Fp>>]>,
-    declared: &Declared,
-    report: &mut Report,
-) -> Option<()> {
-    let Some(jacobian) = jacobian else {
-        return Some(());
+/// The velocity that probably moves a coordinate: one that its rate mentions, else the first
+/// or (for a rotation) last one of fitting shape, else a name for it.
+pub fn velocity_for(coordinate: &Coordinate, rate: Option<&Expr>, declared: &Declared) -> String {
+    let (shape, otherwise) = match coordinate.kind {
+        CoordKind::Real => (ShapeKind::Scalar, "u"),
+        CoordKind::S1 => (ShapeKind::Scalar, "w"),
+        CoordKind::Euclidean(n) => (ShapeKind::Vector(n), "v"),
+        CoordKind::S3 | CoordKind::SO3 | CoordKind::SE3 => (ShapeKind::Vector(3), "w"),
     };
-    let mut bad = false;
-    let mut reported: Vec<Span> = Vec::new();
-    for (row, (_, text)) in phi.iter().enumerate() {
-        for i in 0..declared.xi.len() {
-            let leaves = (0..LANES).any(|lane| {
-                let sum = a
-                    .iter()
-                    .enumerate()
-                    .fold(Fp::ZERO, |sum, (alpha, entries)| {
-                        sum + jacobian[lane][row][alpha] * graph.value(entries[i])[lane]
-                    });
-                !sum.is_zero()
-            });
-            if !leaves {
-                continue;
-            }
-            bad = true;
-            // The first coordinate that the row is about carries the place.
-            let Some(alpha) =
-                (0..declared.x.len()).find(|&alpha| !jacobian[0][row][alpha].is_zero())
-            else {
-                continue;
-            };
-            let span = spans[alpha];
-            if reported.iter().any(|&known| same(known, span)) {
-                continue;
-            }
-            reported.push(span);
-            let coordinate = declared.coordinates.iter().rfind(|c| c.offset <= alpha);
-            let velocity = graph
-                .symbols()
-                .iter()
-                .find(|s| s.node == declared.xi[i].node())
-                .map_or("", |s| s.name.as_str());
-            let help = coordinate.map_or(String::new(), |c| match c.kind {
-                CoordKind::Real | CoordKind::Euclidean(_) => {
-                    "choose rates whose motion keeps the constraint: (∂φ/∂x) A = 0".into()
-                }
-                kind => rate_help(&c.name, kind),
-            });
-            report.push(Diagnostic::new(span, format!("this rate leaves the constraint {text}: a motion along `{velocity}` changes it")).help(help));
-        }
+    let fits = || {
+        declared
+            .velocities
+            .iter()
+            .filter(|group| group.shape == shape)
+    };
+    let mut mentioned = Vec::new();
+    if let Some(rate) = rate {
+        names_in(rate, &mut mentioned);
     }
-    (!bad).then_some(())
+    let found = fits().find(|group| mentioned.contains(&group.name.as_str()));
+    let likely = match coordinate.kind {
+        CoordKind::Real | CoordKind::Euclidean(_) => fits().next(),
+        _ => fits().next_back(),
+    };
+    found
+        .or(likely)
+        .map_or(otherwise.into(), |group| group.name.clone())
 }
 
-/// n = dim X = ν − rank ∂φ/∂x, and A of rank n.
-fn check_count(
-    system: &System,
-    graph: &Graph,
-    a: &[Vec<Edge>],
-    jacobian: Option<&[Vec<Vec<Fp>>]>,
-    declared: &Declared,
-    report: &mut Report,
-) -> Option<()> {
-    let n = declared.xi.len();
-    let rank_phi = jacobian.map_or(0, |lanes| rank(lanes[0].clone()));
-    let dimension = declared.x.len() - rank_phi;
-    let span = system
-        .items
-        .iter()
-        .find_map(|item| match &item.kind {
-            ItemKind::Velocity(list) => list.first().map(|first| {
-                first
-                    .name
-                    .span
-                    .to(list.last().map_or(first.name.span, |l| l.name.span))
-            }),
-            _ => None,
-        })
-        .unwrap_or(system.name.span);
-    if n != dimension {
-        let (few, help) = if n < dimension {
-            (
-                "too few",
-                "add velocities until they are as many as the system has degrees of freedom",
-            )
-        } else {
-            (
-                "too many",
-                "remove velocities, or a constraint that is not meant",
-            )
-        };
-        report.push(
-            Diagnostic::new(span, format!("{few} velocities: there are {n}, the configurations form a set of dimension {dimension} ({} coordinates less {rank_phi} independent constraints)", declared.x.len())).help(help),
-        );
-        return None;
+fn names_in<'a>(expr: &'a Expr, names: &mut Vec<&'a str>) {
+    match &expr.kind {
+        ExprKind::Number(_) => {}
+        ExprKind::Name(name) => names.push(name),
+        ExprKind::Field(base, _) | ExprKind::Neg(base) => names_in(base, names),
+        ExprKind::Index(base, _) => names_in(base, names),
+        ExprKind::Call(_, list) | ExprKind::Array(list) => {
+            list.iter().for_each(|entry| names_in(entry, names));
+        }
+        ExprKind::Binary(_, left, right) => {
+            names_in(left, names);
+            names_in(right, names);
+        }
     }
-    let values: Vec<Vec<Fp>> = a
-        .iter()
-        .map(|row| row.iter().map(|&edge| graph.value(edge)[0]).collect())
-        .collect();
-    let rank_a = rank(values.clone());
-    if rank_a < n {
-        // The first column that depends on those before it.
-        let dependent = (0..n)
-            .find(|&i| rank(values.iter().map(|row| row[..=i].to_vec()).collect()) <= i)
-            .unwrap_or(0);
-        let name = graph
-            .symbols()
-            .iter()
-            .find(|s| s.node == declared.xi[dependent].node())
-            .map_or("", |s| s.name.as_str());
-        report.push(
-            Diagnostic::new(
-                span,
-                format!("the velocities are not independent: A has rank {rank_a}, not {n}"),
-            )
-            .help(format!(
-                "`{name}` moves nothing that the velocities before it do not move"
-            )),
-        );
-        return None;
-    }
-    Some(())
 }

@@ -3,17 +3,25 @@
 //! Names are resolved, shapes checked, and every semantic error is found here: stages after this
 //! one cannot fail on user input.
 
+mod arithmetic;
+mod bodies;
 mod build;
 mod declare;
+mod defaults;
 mod dynamics;
 pub mod expression;
+mod frames;
 mod functions;
 mod kinematics;
 pub mod layout;
+mod loads;
 pub mod points;
+mod rotations;
 pub mod scope;
 mod start;
+mod tangency;
 pub mod value;
+mod variety;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
@@ -146,6 +154,8 @@ pub struct Model {
     pub velocities: Vec<Group>,
     /// ξ.
     pub xi: Vec<Edge>,
+    /// Where each ξⁱ was declared, for errors found later.
+    pub velocity_spans: Vec<Span>,
     /// ξ̇ as symbols.
     pub xi_dot: Vec<Edge>,
     /// Inputs.

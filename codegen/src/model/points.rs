@@ -1,11 +1,25 @@
 //! Points of X over F_p: random values of all symbols that satisfy φ = 0.
 
+use super::class;
 use super::layout::{Block, sample};
 use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::graph::{Edge, Function, Graph, LANES, Node};
 use crate::algebra::lane::Lane;
+use crate::algebra::numeric::evaluate_at;
 use crate::algebra::poly;
-use crate::algebra::topoly::polynomial_at;
+use crate::algebra::poly::monomial::Var;
+use crate::algebra::poly::polynomial::Poly;
+use crate::algebra::transplant::copy;
+use rustc_hash::FxHashMap;
+
+/// Points tried until all square roots have values; each root halves the chance.
+const TRIES: usize = 4000;
+/// Systems of constraints without a solution before giving up.
+const FAILURES: usize = 3;
+/// Largest degree of a constraint in the coordinates.
+pub const HIGHEST_DEGREE: u32 = 32;
+/// Largest number of terms of a constraint.
+const MOST_TERMS: usize = 2000;
 
 /// The variety X as the generator samples it.
 #[derive(Clone, Debug)]
@@ -20,11 +34,55 @@ pub struct Points {
     pub first: usize,
     /// Number of symbols before and after creation of the model's own ones.
     pub symbols: usize,
+    /// Square roots that need values at every point, in `free`.
+    radicals: Vec<Edge>,
 }
 
 impl Points {
-    /// Values of all symbols at a random point of X; `None` where no point was found.
-    pub fn choose(&self, random: &mut Random) -> Option<Vec<Fp>> {
+    /// The variety of constraints that live in a graph with unconstrained points.
+    pub fn new(free: Graph, constraints: Vec<Edge>, blocks: Vec<Block>, first: usize) -> Self {
+        let symbols = free.symbols().len();
+        Points {
+            free,
+            constraints,
+            blocks,
+            first,
+            symbols,
+            radicals: Vec::new(),
+        }
+    }
+
+    /// Values of all symbols at a random point of X, where functions have the values of the lane
+    /// with this seed; `None` where no point was found.
+    pub fn choose(&self, random: &mut Random, seed: u64) -> Option<Vec<Fp>> {
+        let mut failures = 0;
+        for _ in 0..TRIES {
+            let mut values = self.unconstrained(random);
+            if !self.constraints.is_empty() {
+                // Functions of parameters in the constraints may lack a value here.
+                let Some(system) = self.system(&values, seed) else {
+                    continue;
+                };
+                let Some(solution) = self.solve(system, random) else {
+                    failures += 1;
+                    if failures == FAILURES {
+                        return None;
+                    }
+                    continue;
+                };
+                for (var, value) in solution {
+                    values[var as usize] = value;
+                }
+            }
+            if self.has_roots(&values, seed) {
+                return Some(values);
+            }
+        }
+        None
+    }
+
+    /// A point of the blocks of x.
+    fn unconstrained(&self, random: &mut Random) -> Vec<Fp> {
         let mut values: Vec<Fp> = (0..self.symbols).map(|_| random.element()).collect();
         let mut place = self.first;
         for &block in &self.blocks {
@@ -33,38 +91,42 @@ impl Points {
                 place += 1;
             }
         }
-        if self.constraints.is_empty() {
-            return Some(values);
-        }
-        let solved = self.solve(&values, random)?;
-        for (var, value) in solved {
-            values[var as usize] = value;
-        }
-        Some(values)
+        values
+    }
+
+    fn has_roots(&self, values: &[Fp], seed: u64) -> bool {
+        self.radicals.is_empty()
+            || evaluate_at(&self.free, &self.radicals, &mut lane_of(values, seed)).is_some()
+    }
+
+    /// From now on, chooses points at which the square roots of another graph have values.
+    pub fn require_roots(&mut self, graph: &Graph) {
+        let is_root = |&id: &u32| matches!(graph.node(id), Node::Apply(Function::Sqrt, _));
+        let roots: Vec<Edge> = (0..graph.len() as u32)
+            .filter(is_root)
+            .map(Edge::of)
+            .collect();
+        self.radicals = copy(graph, &mut self.free, &roots);
+    }
+
+    /// The user's constraints as polynomials in the coordinates.
+    fn system(&self, values: &[Fp], seed: u64) -> Option<Vec<Poly<Fp>>> {
+        let constraints = self.constraints.iter();
+        constraints
+            .map(|&constraint| self.polynomial(constraint, values, seed))
+            .collect()
     }
 
     /// Coordinates that satisfy the user's constraints, by elimination over F_p.
-    fn solve(&self, values: &[Fp], random: &mut Random) -> Option<Vec<(poly::monomial::Var, Fp)>> {
-        let last = self.first + self.blocks.iter().map(|block| block.len()).sum::<usize>();
-        let unknown = |symbol: usize| (self.first..last).contains(&symbol);
-        let mut generators = Vec::new();
-        for &constraint in &self.constraints {
-            generators.push(polynomial_at(&self.free, constraint, values, &unknown)?);
-        }
-        let used = |generators: &[poly::polynomial::Poly<Fp>]| {
-            let mut used: Vec<poly::monomial::Var> =
-                generators.iter().flat_map(|g| g.variables()).collect();
-            used.sort_unstable();
-            used.dedup();
-            used
-        };
-        let mut variables = used(&generators);
+    fn solve(&self, mut generators: Vec<Poly<Fp>>, random: &mut Random) -> Option<Vec<(Var, Fp)>> {
+        let mut variables: Vec<Var> = generators.iter().flat_map(|g| g.variables()).collect();
+        variables.sort_unstable();
+        variables.dedup();
         // A constrained block that takes part brings its own φ.
-        let mut place = self.first as poly::monomial::Var;
+        let mut place = self.first as Var;
         for &block in &self.blocks {
-            let range: Vec<poly::monomial::Var> =
-                (place..place + block.len() as poly::monomial::Var).collect();
-            place += block.len() as poly::monomial::Var;
+            let range: Vec<Var> = (place..place + block.len() as Var).collect();
+            place += block.len() as Var;
             if range.iter().any(|var| variables.contains(var)) {
                 generators.extend(match block {
                     Block::Flat(_) => Vec::new(),
@@ -84,13 +146,66 @@ impl Points {
         poly::solve::point(&generators, &variables, random)
     }
 
+    /// The polynomial in the coordinates that a constraint is, all other symbols having values;
+    /// what is free of coordinates is evaluated, functions of parameters included.
+    fn polynomial(&self, edge: Edge, values: &[Fp], seed: u64) -> Option<Poly<Fp>> {
+        let graph = &self.free;
+        let nodes = graph.reachable(&[edge]);
+        let moves = |id: u32| graph.class(id) & class::COORD != 0;
+        let fixed: Vec<Edge> = nodes
+            .iter()
+            .filter(|&&id| !moves(id))
+            .map(|&id| Edge::of(id))
+            .collect();
+        let numbers = evaluate_at(graph, &fixed, &mut lane_of(values, seed))?;
+        let constants = fixed
+            .iter()
+            .zip(numbers)
+            .map(|(edge, n)| (edge.node(), Poly::constant(n)));
+        let mut memo: FxHashMap<u32, Poly<Fp>> = constants.collect();
+        for id in nodes.into_iter().filter(|&id| moves(id)) {
+            let read = |edge: Edge| {
+                let polynomial = memo.get(&edge.node())?;
+                Some(if edge.is_negative() {
+                    polynomial.neg()
+                } else {
+                    polynomial.clone()
+                })
+            };
+            let polynomial = match graph.node(id) {
+                Node::Symbol(index) => Poly::var(index),
+                Node::Add(a, b) => read(a)?.add(&read(b)?),
+                Node::Mul(a, b) => read(a)?.mul_limited(&read(b)?, MOST_TERMS)?,
+                Node::Div(a, b) => read(a)?.scale(&read(b)?.as_constant()?.inv()?),
+                Node::Constant(_) | Node::Apply(..) | Node::Atan2(..) => return None,
+            };
+            memo.insert(id, polynomial);
+        }
+        let polynomial = memo.get(&edge.node())?;
+        Some(if edge.is_negative() {
+            polynomial.neg()
+        } else {
+            polynomial.clone()
+        })
+    }
+
     /// A lane at a fresh point.
     pub fn lane(&self, seed: u64) -> Option<Lane> {
-        let mut lane = Lane::new(seed);
-        let values = self.choose(&mut Random::new(seed ^ 0x0b5e))?;
-        for value in values {
-            lane.push_symbol(value);
-        }
-        Some(lane)
+        let values = self.choose(&mut Random::new(seed ^ 0x0b5e), seed)?;
+        Some(lane_of(&values, seed))
     }
+}
+
+/// Seed of a lane of a graph that was made with a seed.
+pub fn lane_seed(graph_seed: u64, lane: usize) -> u64 {
+    debug_assert!(lane < LANES);
+    graph_seed.wrapping_mul(31).wrapping_add(lane as u64)
+}
+
+fn lane_of(values: &[Fp], seed: u64) -> Lane {
+    let mut lane = Lane::new(seed);
+    for &value in values {
+        lane.push_symbol(value);
+    }
+    lane
 }

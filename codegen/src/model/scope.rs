@@ -2,7 +2,8 @@
 
 use super::value::Value;
 use crate::diagnostics::{Diagnostic, Report};
-use crate::syntax::ast::{CoordKind, Ident, Span};
+use crate::syntax::ast::{CoordKind, Ident, ItemKind, Span, System};
+use crate::syntax::suggest::closest;
 use std::collections::BTreeMap;
 
 /// What kind of thing a name is.
@@ -85,31 +86,66 @@ pub const RESERVED: &[&str] = &[
     "world",
 ];
 
+/// Names listed where none is close to a misspelt one.
+const LISTED: usize = 12;
+
 /// The names of a description.
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
     names: BTreeMap<String, Entry>,
+    /// What the description defines anywhere, for names that are used too early.
+    written: BTreeMap<String, (NameKind, Span)>,
+    /// Whether values are those at points off the variety: what holds on it alone is not checked.
+    pub free: bool,
 }
 
 impl Scope {
-    /// Defines a name; a second definition is an error.
-    pub fn define(
-        &mut self,
-        name: &Ident,
-        kind: NameKind,
-        value: Option<Value>,
-        report: &mut Report,
-    ) {
-        if RESERVED.contains(&name.name.as_str()) {
-            report.push(
-                Diagnostic::new(
-                    name.span,
-                    format!("`{}` is a word of the language", name.name),
-                )
-                .help("choose another name"),
-            );
-            return;
+    /// No names yet, but the knowledge of which ones will come.
+    pub fn new(system: &System, free: bool) -> Self {
+        let mut written = BTreeMap::new();
+        let mut note = |name: &Ident, kind| {
+            written
+                .entry(name.name.clone())
+                .or_insert((kind, name.span));
+        };
+        for item in &system.items {
+            let (list, kind) = match &item.kind {
+                ItemKind::Param(list) => (list, NameKind::Param),
+                ItemKind::Const(list) => (list, NameKind::Const),
+                ItemKind::Let(list) => (list, NameKind::Let),
+                ItemKind::Velocity(list) => (list, NameKind::Velocity),
+                ItemKind::Input(list) => (list, NameKind::Input),
+                ItemKind::Coord(list) => {
+                    list.iter()
+                        .for_each(|(name, kind)| note(name, NameKind::Coord(*kind)));
+                    continue;
+                }
+                ItemKind::Frame { name, .. } => {
+                    note(name, NameKind::Frame);
+                    continue;
+                }
+                _ => continue,
+            };
+            list.iter()
+                .for_each(|declaration| note(&declaration.name, kind));
         }
+        // An output may share the name of the expression that it returns.
+        for item in &system.items {
+            if let ItemKind::Output { name, .. } = &item.kind {
+                note(name, NameKind::Output);
+            }
+        }
+        Scope {
+            names: BTreeMap::new(),
+            written,
+            free,
+        }
+    }
+
+    /// Takes a name, its value to follow; a second definition is an error. Whether it was free.
+    ///
+    /// A word of the language is taken all the same, so that its uses are no further errors.
+    pub fn claim(&mut self, name: &Ident, kind: NameKind, report: &mut Report) -> bool {
         if let Some(first) = self.names.get(&name.name) {
             report.push(
                 Diagnostic::new(name.span, format!("`{}` is defined twice", name.name))
@@ -119,16 +155,47 @@ impl Scope {
                         format!("first defined here, as {}", first.kind.describe()),
                     ),
             );
-            return;
+            return false;
         }
-        self.names.insert(
-            name.name.clone(),
-            Entry {
-                kind,
-                value,
-                span: name.span,
-            },
-        );
+        let entry = Entry {
+            kind,
+            value: None,
+            span: name.span,
+        };
+        self.names.insert(name.name.clone(), entry);
+        let reserved = RESERVED.contains(&name.name.as_str());
+        if reserved {
+            report.push(
+                Diagnostic::new(
+                    name.span,
+                    format!("`{}` is a word of the language", name.name),
+                )
+                .help(format!("choose another name, such as `{}_1`", name.name)),
+            );
+        }
+        !reserved
+    }
+
+    /// Gives a claimed name its value.
+    pub fn set(&mut self, name: &Ident, value: Option<Value>) {
+        if let Some(entry) = self.names.get_mut(&name.name) {
+            entry.value = value;
+        }
+    }
+
+    /// Defines a name; whether it was free.
+    pub fn define(
+        &mut self,
+        name: &Ident,
+        kind: NameKind,
+        value: Option<Value>,
+        report: &mut Report,
+    ) -> bool {
+        let free = self.claim(name, kind, report);
+        if free {
+            self.set(name, value);
+        }
+        free
     }
 
     /// The entry of a name.
@@ -136,72 +203,69 @@ impl Scope {
         self.names.get(name)
     }
 
-    /// Gives an already defined name its value.
-    pub fn set(&mut self, name: &str, value: Option<Value>) {
-        if let Some(entry) = self.names.get_mut(name) {
-            entry.value = value;
-        }
-    }
-
-    /// An error for an unknown name, with the closest known one of the wanted kind.
+    /// An error for a name that stands for nothing of the wanted kind (or for nothing at all,
+    /// where `wanted` is `None`), with the closest name that does.
     pub fn unknown(
         &self,
         span: Span,
         name: &str,
-        wanted: &str,
+        wanted: Option<&str>,
         accept: impl Fn(NameKind) -> bool,
     ) -> Diagnostic {
-        let known = self
-            .names
-            .iter()
-            .filter(|(_, e)| accept(e.kind))
-            .map(|(n, _)| n.as_str());
-        let error = Diagnostic::new(span, format!("no {wanted} is called `{name}`"));
-        match closest(name, known) {
-            Some(known) => error.help(format!("did you mean `{known}`?")),
-            None => {
-                let all: Vec<String> = self
-                    .names
-                    .iter()
-                    .filter(|(_, e)| accept(e.kind))
-                    .map(|(n, _)| format!("`{n}`"))
-                    .take(12)
-                    .collect();
-                if all.is_empty() {
-                    error.help("define it first")
-                } else {
-                    error.help(format!("known here: {}", all.join(", ")))
-                }
+        let known = || {
+            self.names
+                .iter()
+                .filter(|(_, e)| accept(e.kind))
+                .map(|(n, _)| n.as_str())
+        };
+        let error = match (self.names.get(name), self.written.get(name), wanted) {
+            (Some(entry), _, Some(wanted)) => {
+                let message = format!("`{name}` is {}, not a {wanted}", entry.kind.describe());
+                Diagnostic::new(span, message).note(entry.span, "defined here")
             }
+            (None, Some(&(kind, place)), _) if kind != NameKind::Output => {
+                return early(span, name, kind, place);
+            }
+            (_, Some(_), None) => {
+                return Diagnostic::new(
+                    span,
+                    format!("`{name}` is an output, which other expressions cannot use"),
+                )
+                .help(format!("name the expression with `let {name} = …;`"));
+            }
+            (_, _, wanted) => {
+                let wanted = wanted.map_or("nothing".into(), |wanted| format!("no {wanted}"));
+                Diagnostic::new(span, format!("{wanted} is called `{name}`"))
+            }
+        };
+        if let Some(near) = closest(name, known().filter(|&near| near != name)) {
+            return error.help(format!("did you mean `{near}`?"));
+        }
+        let all: Vec<String> = known()
+            .take(LISTED)
+            .map(|name| format!("`{name}`"))
+            .collect();
+        match (all.is_empty(), wanted) {
+            (true, Some("frame")) => error.help(format!("define it: `frame {name} = pose(R, p);`")),
+            (true, _) => error.help("define it first"),
+            (false, _) => error.help(format!("known here: {}", all.join(", "))),
         }
     }
 }
 
-/// The known word nearest to a misspelt one, if it is near enough.
-pub fn closest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = if word.chars().count() <= 3 { 1 } else { 2 };
-    known
-        .map(|k| (distance(word, k), k))
-        .filter(|(d, _)| *d <= limit)
-        .min()
-        .map(|(_, k)| k)
-}
-
-/// Levenshtein distance, letters of different case being near to equal.
-fn distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (
-        a.to_lowercase().chars().collect(),
-        b.to_lowercase().chars().collect(),
-    );
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.iter().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + (x != y) as usize;
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+/// A name that is defined, but not yet where it is used.
+fn early(span: Span, name: &str, kind: NameKind, place: Span) -> Diagnostic {
+    let error = match kind {
+        NameKind::Const | NameKind::Let | NameKind::Frame | NameKind::Output => {
+            Diagnostic::new(span, format!("`{name}` is used before it is defined"))
+                .help("move its definition before this statement")
         }
-    }
-    row[b.len()]
+        _ => {
+            let message = format!("a constant cannot depend on `{name}`, {}", kind.describe());
+            Diagnostic::new(span, message).help(
+                "constants are made of numbers and constants; name this expression with `let`",
+            )
+        }
+    };
+    error.note(place, "defined here")
 }

@@ -1,19 +1,28 @@
-//! The start: numbers for x and ξ, on the constraint, with a positive definite mass matrix.
+//! The start: numbers for x and ξ, on the constraint.
 
+use super::class;
 use super::declare::Declared;
 use super::expression::Evaluator;
-use super::kinematics::part;
+use super::kinematics::{part, written};
 use super::layout::{blocks, identity};
 use super::scope::{NameKind, Scope};
 use super::value::Value;
-use super::{Model, class};
-use crate::algebra::graph::Graph;
+use super::variety::{Origin, Variety};
+use crate::algebra::graph::{Function, Graph, Node};
 use crate::algebra::numeric::evaluate;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 
 /// Largest violation of φ at the start that counts as rounding of the numbers given.
 const ROUNDING: f64 = 1e-9;
+
+/// x and ξ so far, and where each entry was given.
+struct Start {
+    x: Vec<f64>,
+    xi: Vec<f64>,
+    given_x: Vec<Option<Span>>,
+    given_xi: Vec<Option<Span>>,
+}
 
 /// x and ξ from the `start` statements; what is not given is at the identity and at rest.
 pub fn read(
@@ -24,11 +33,19 @@ pub fn read(
     defaults: &[f64],
     report: &mut Report,
 ) -> Option<(Vec<f64>, Vec<f64>)> {
-    let mut x = Vec::new();
-    for coordinate in &declared.coordinates {
-        x.extend(blocks(coordinate.kind).into_iter().flat_map(identity));
-    }
-    let mut xi = vec![0.0; declared.xi.len()];
+    let kinds = declared
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.kind);
+    let x: Vec<f64> = kinds.flat_map(blocks).flat_map(identity).collect();
+    let xi = vec![0.0; declared.xi.len()];
+    let (given_x, given_xi) = (vec![None; x.len()], vec![None; xi.len()]);
+    let mut start = Start {
+        x,
+        xi,
+        given_x,
+        given_xi,
+    };
     let mut symbols = vec![std::f64::consts::PI];
     symbols.extend_from_slice(defaults);
     symbols.resize(graph.symbols().len(), f64::NAN);
@@ -37,158 +54,240 @@ pub fn read(
         let ItemKind::Start { target, value } = &item.kind else {
             continue;
         };
-        complete &= read_one(
-            target, value, graph, scope, declared, &symbols, &mut x, &mut xi, report,
-        )
-        .is_some();
+        let evaluator = Evaluator {
+            graph,
+            scope,
+            report,
+        };
+        complete &= start
+            .read(target, value, evaluator, declared, &symbols)
+            .is_some();
     }
-    complete.then_some((x, xi))
+    complete.then_some((start.x, start.xi))
 }
 
-fn read_one(
-    target: &Target,
-    expr: &Expr,
-    graph: &mut Graph,
-    scope: &Scope,
-    declared: &Declared,
-    symbols: &[f64],
-    x: &mut [f64],
-    xi: &mut [f64],
-    report: &mut Report,
-) -> Option<()> {
-    let value = Evaluator {
-        graph,
-        scope,
-        report,
+impl Start {
+    fn read(
+        &mut self,
+        target: &Target,
+        expr: &Expr,
+        mut evaluator: Evaluator,
+        declared: &Declared,
+        symbols: &[f64],
+    ) -> Option<()> {
+        let name = &target.name.name;
+        let value = evaluator.value(expr);
+        let (range, wanted, of_x) = place(target, &mut evaluator, declared)?;
+        let mut value = value?;
+        let is_circle = |c: &&super::Coordinate| c.kind == CoordKind::S1 && c.offset == range.start;
+        if let Value::Scalar(angle) = value
+            && of_x
+            && range.len() == 2
+            && declared.coordinates.iter().any(|c| is_circle(&c))
+        {
+            let graph = &mut *evaluator.graph;
+            let (c, s) = (
+                graph.apply(Function::Cos, angle),
+                graph.apply(Function::Sin, angle),
+            );
+            value = Value::Vector(vec![c, s]);
+        }
+        if !value.same_shape(&wanted) {
+            let what = format!("the start of `{}`", written(target));
+            let kind = declared.coordinates.iter().find(|c| c.name == *name);
+            let help = match kind.map(|coordinate| coordinate.kind) {
+                Some(CoordKind::S1) if range.len() == 2 => "give the angle, as in `start q = 0.3;`",
+                Some(CoordKind::S3) => "give a unit quaternion, scalar first",
+                Some(CoordKind::SO3 | CoordKind::SE3) if range.len() >= 9 => {
+                    "build the rotation by `rotx(angle)`, `rpy(…)`, `axis_angle(…)`, and a pose by `pose(R, p)`"
+                }
+                _ => return evaluator.wrong_shape(expr.span, &what, &wanted.shape(), &value),
+            };
+            let (wanted, found) = (wanted.shape(), value.shape());
+            let message = format!("{what} has to be {wanted}, this is {found}");
+            return evaluator.error(Diagnostic::new(expr.span, message).help(help));
+        }
+        let entries = value.entries();
+        let class = entries
+            .iter()
+            .fold(0, |class, e| class | evaluator.graph.class(e.node()));
+        if class & !class::PARAM != 0 {
+            return evaluator.error(
+                Diagnostic::new(expr.span, format!("the start of `{name}` is no number"))
+                    .help("a start is made of numbers, constants and parameters"),
+            );
+        }
+        let params = symbols.iter().zip(evaluator.graph.symbols());
+        let unknown =
+            |(n, s): (&f64, &crate::algebra::graph::Symbol)| s.class == class::PARAM && n.is_nan();
+        if class != 0 && params.into_iter().any(unknown) {
+            // A default is in error; the start cannot be known.
+            return None;
+        }
+        let numbers = evaluate(evaluator.graph, &entries, symbols);
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return evaluator.error(
+                Diagnostic::new(expr.span, format!("the start of `{name}` is not finite"))
+                    .help("write numbers that floating point can hold"),
+            );
+        }
+        let (into, given) = if of_x {
+            (&mut self.x, &mut self.given_x)
+        } else {
+            (&mut self.xi, &mut self.given_xi)
+        };
+        if let Some(first) = given[range.clone()].iter().flatten().next() {
+            return evaluator.error(
+                Diagnostic::new(
+                    target.span(),
+                    format!("the start of `{}` is given twice", written(target)),
+                )
+                .help("remove one of the two")
+                .note(*first, "first given here"),
+            );
+        }
+        given[range.clone()].fill(Some(target.span()));
+        into[range].copy_from_slice(&numbers);
+        Some(())
     }
-    .value(expr);
-    let group = declared
-        .velocities
-        .iter()
-        .find(|group| group.name == target.name.name && target.field.is_none());
-    let coordinate = declared
-        .coordinates
-        .iter()
-        .any(|c| c.name == target.name.name);
-    let (range, wanted, of_x) = if let Some(group) = group {
-        (
+}
+
+/// The entries of x or ξ that a start is about, and their value; whether they are of x.
+fn place(
+    target: &Target,
+    evaluator: &mut Evaluator,
+    declared: &Declared,
+) -> Option<(std::ops::Range<usize>, Value, bool)> {
+    let name = &target.name.name;
+    if let Some(group) = declared.velocities.iter().find(|group| group.name == *name) {
+        if let Some(field) = &target.field {
+            return evaluator.error(
+                Diagnostic::new(
+                    field.span,
+                    format!("`{name}` has no part `.{}`", field.name),
+                )
+                .help(format!("give the whole of it: `start {name} = …;`")),
+            );
+        }
+        return Some((
             group.offset..group.offset + group.len,
             group.value.clone(),
             false,
-        )
-    } else if coordinate {
-        let (range, wanted) = part(target, scope, declared, report)?;
-        (range, wanted, true)
-    } else {
-        let accept = |kind: NameKind| matches!(kind, NameKind::Coord(_) | NameKind::Velocity);
-        report.push(scope.unknown(
-            target.name.span,
-            &target.name.name,
-            "coordinate or velocity",
-            accept,
         ));
-        return None;
-    };
-    let mut value = value?;
-    if let (Value::Scalar(angle), Some(c)) = (
-        &value,
-        declared
-            .coordinates
-            .iter()
-            .find(|c| of_x && c.offset == range.start),
-    ) && c.kind == CoordKind::S1
-        && range.len() == 2
+    }
+    if declared.coordinates.iter().any(|c| c.name == *name) {
+        let (range, wanted) = part(target, evaluator, declared)?;
+        return Some((range, wanted, true));
+    }
+    let accept = |kind: NameKind| matches!(kind, NameKind::Coord(_) | NameKind::Velocity);
+    if evaluator
+        .scope
+        .get(name)
+        .is_some_and(|entry| accept(entry.kind))
     {
-        let angle = *angle;
-        let (c, s) = (
-            graph.apply(crate::algebra::graph::Function::Cos, angle),
-            graph.apply(crate::algebra::graph::Function::Sin, angle),
-        );
-        value = Value::Vector(vec![c, s]);
-    }
-    if !value.same_shape(&wanted) {
-        report.push(Diagnostic::new(
-            expr.span,
-            format!(
-                "the start of `{}` has to be {}, this is {}",
-                target.name.name,
-                wanted.shape(),
-                value.shape()
-            ),
-        ));
+        // Its own definition was in error.
         return None;
     }
-    let class = value
-        .entries()
-        .iter()
-        .fold(0, |class, edge| class | graph.class(edge.node()));
-    if class & !class::PARAM != 0 {
-        report.push(
-            Diagnostic::new(
-                expr.span,
-                format!("the start of `{}` is no number", target.name.name),
-            )
-            .help("a start is made of numbers, constants and parameters"),
-        );
-        return None;
-    }
-    let numbers = evaluate(graph, &value.entries(), symbols);
-    if numbers.iter().any(|number| !number.is_finite()) {
-        report.push(
-            Diagnostic::new(
-                expr.span,
-                format!("the start of `{}` is not finite", target.name.name),
-            )
-            .help("write finite numbers"),
-        );
-        return None;
-    }
-    let into = if of_x { x } else { xi };
-    into[range].copy_from_slice(&numbers);
-    Some(())
+    let wanted = Some("coordinate or velocity");
+    let error = evaluator
+        .scope
+        .unknown(target.name.span, name, wanted, accept);
+    evaluator.error(error)
 }
 
 /// φ(x) = 0 at the start.
-pub fn check(system: &System, model: &Model, report: &mut Report) {
-    let numbers = model.numbers(
-        &model.defaults,
-        &model.start_x,
-        &model.start_xi,
-        &vec![0.0; model.u.len()],
-        &vec![0.0; model.n()],
-    );
-    let rows: Vec<_> = model.phi.iter().map(|(edge, _)| *edge).collect();
-    let residuals = evaluate(&model.points.free, &rows, &numbers);
-    let place = |model: &Model, row: usize| -> Span {
-        let names: Vec<&str> = model
-            .coordinates
-            .iter()
-            .map(|c| c.name.as_str())
-            .filter(|name| mentions(&model.phi[row].1, name))
-            .collect();
-        let starts = system.items.iter().filter_map(|item| match &item.kind {
-            ItemKind::Start { target, value } => Some((target.name.name.as_str(), value.span)),
-            _ => None,
-        });
-        let mut last = None;
-        for (name, span) in starts {
-            if names.contains(&name) || last.is_none() {
-                last = Some(span);
-            }
+pub fn check(
+    system: &System,
+    variety: &Variety,
+    declared: &Declared,
+    defaults: &[f64],
+    x: &[f64],
+    report: &mut Report,
+) {
+    if defaults.iter().any(|number| number.is_nan()) {
+        return;
+    }
+    let mut numbers = vec![std::f64::consts::PI];
+    numbers.extend(defaults.iter().chain(x));
+    numbers.resize(variety.points.symbols, 0.0);
+    let rows: Vec<_> = variety.phi.iter().map(|(edge, _)| *edge).collect();
+    let residuals = evaluate(&variety.points.free, &rows, &numbers);
+    let mut reported: Vec<Origin> = Vec::new();
+    for (row, &residual) in residuals.iter().enumerate() {
+        let origin = variety.origins[row];
+        if residual.abs() <= ROUNDING || reported.contains(&origin) {
+            continue;
         }
-        last.unwrap_or(system.name.span)
-    };
-    if let Some(row) =
-        (0..rows.len()).find(|&row| residuals[row].abs() > ROUNDING || residuals[row].is_nan())
-    {
-        report.push(
-            Diagnostic::new(place(model, row), format!("the start violates {}: the difference is {:.3e}", model.phi[row].1, residuals[row]))
-                .help("give a start that satisfies the constraint; rotations by `rotx(angle)`, `rpy(…)`, `axis_angle(…)`"),
-        );
+        reported.push(origin);
+        report.push(violation(system, variety, declared, row, residual));
     }
 }
 
-fn mentions(text: &str, name: &str) -> bool {
-    text.split(|c: char| !(c.is_alphanumeric() || c == '_'))
-        .any(|word| word == name)
+fn violation(
+    system: &System,
+    variety: &Variety,
+    declared: &Declared,
+    row: usize,
+    residual: f64,
+) -> Diagnostic {
+    let text = &variety.phi[row].1;
+    let names = coordinates_of(variety, declared, row);
+    let given = system.items.iter().rev().find_map(|item| match &item.kind {
+        ItemKind::Start { target, value } => names
+            .contains(&target.name.name.as_str())
+            .then_some(value.span),
+        _ => None,
+    });
+    let difference = format!("the difference is {residual:.3e}");
+    match variety.origins[row] {
+        Origin::Coordinate(index) => {
+            let coordinate = &declared.coordinates[index];
+            let text = text.split(", entry").next().unwrap_or(text);
+            let message = format!("the start violates {text}: {difference}");
+            let error = Diagnostic::new(given.unwrap_or(coordinate.span), message);
+            error.help(match coordinate.kind {
+                CoordKind::S1 => format!("give the angle: `start {} = 0.3;`", coordinate.name),
+                CoordKind::S3 => "divide the quaternion by its length".into(),
+                _ => "build the rotation by `rotx(angle)`, `rpy(…)`, `axis_angle(…)`".into(),
+            })
+        }
+        Origin::Statement(item) => {
+            let place = match &system.items[item].kind {
+                ItemKind::Constraint { left, right } => left.span.to(right.span),
+                _ => system.items[item].span,
+            };
+            let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+            let message = format!("the start violates this constraint: {difference}");
+            let Some(given) = given else {
+                return Diagnostic::new(place, message).help(format!(
+                    "give a `start` of {}; what has none starts at 0",
+                    list.join(", ")
+                ));
+            };
+            Diagnostic::new(given, message.replace("this constraint", "a constraint"))
+                .help(format!(
+                    "give {} a start that satisfies it",
+                    list.join(", ")
+                ))
+                .note(place, "this constraint")
+        }
+    }
+}
+
+/// The coordinates that a row of φ is about.
+fn coordinates_of<'a>(variety: &Variety, declared: &'a Declared, row: usize) -> Vec<&'a str> {
+    let free = &variety.points.free;
+    let first = variety.points.first;
+    let mut names = Vec::new();
+    for id in free.reachable(&[variety.phi[row].0]) {
+        if let Node::Symbol(index) = free.node(id)
+            && let Some(alpha) = (index as usize).checked_sub(first)
+            && alpha < declared.x.len()
+            && let Some(coordinate) = declared.coordinates.iter().rfind(|c| c.offset <= alpha)
+            && !names.contains(&coordinate.name.as_str())
+        {
+            names.push(coordinate.name.as_str());
+        }
+    }
+    names
 }

@@ -98,6 +98,16 @@ impl Value {
 
     /// Whether every entry is 0 on X.
     pub fn is_zero(&self, graph: &Graph) -> bool {
-        self.entries().iter().all(|&edge| edge == graph.zero())
+        self.entries().iter().all(|edge| edge.abs() == graph.zero())
+    }
+
+    /// The same value without −0, so that what is 0 is the same edge.
+    pub fn unsigned_zeros(self, graph: &Graph) -> Value {
+        let zero = graph.zero();
+        if self.entries().contains(&-zero) {
+            self.map(|edge| if edge == -zero { zero } else { edge })
+        } else {
+            self
+        }
     }
 }

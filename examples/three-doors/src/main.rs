@@ -28,14 +28,35 @@ mod expanded {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let (built, expanded) = (built::Pendulum::<f64>::default(), expanded::Pendulum::<f64>::default());
+    let (built, expanded) = (
+        built::Pendulum::<f64>::default(),
+        expanded::Pendulum::<f64>::default(),
+    );
     let mut state = State::start(&built);
-    println!("ξ̇ of the built one    {:?}", built.accel(&state.x, &state.xi, &[])?);
-    println!("ξ̇ of the expanded one {:?}", expanded.accel(&state.x, &state.xi, &[])?);
+    println!(
+        "ξ̇ of the built one    {:?}",
+        built.accel(&state.x, &state.xi, &[])?
+    );
+    println!(
+        "ξ̇ of the expanded one {:?}",
+        expanded.accel(&state.x, &state.xi, &[])?
+    );
 
     let mut monitor = Monitor::new(&built, &state);
-    integrate(&built, Method::Rkmk4, &mut state, 1e-3, 10.0, |_, _, _| [], |state| monitor.observe(&built, state))?;
-    println!("after {} s the mass is at {:?}", state.t, built.bob(&state.x, &state.xi, &[]));
+    integrate(
+        &built,
+        Method::Rkmk4,
+        &mut state,
+        1e-3,
+        10.0,
+        |_, _, _| [],
+        |state| monitor.observe(&built, state),
+    )?;
+    println!(
+        "after {} s the mass is at {:?}",
+        state.t,
+        built.bob(&state.x, &state.xi, &[])
+    );
     println!("energy kept to {:.1e}", monitor.relative_energy_deviation());
     Ok(())
 }

@@ -1,0 +1,63 @@
+//! Rotation matrices.
+
+use super::value::Value;
+use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::linear::{Mat3, Vec3, identity3, multiply3};
+
+/// ŵ, with ŵ a = w × a.
+pub fn hat(graph: &Graph, w: Vec3) -> Mat3 {
+    let o = graph.zero();
+    [[o, -w[2], w[1]], [w[2], o, -w[0]], [-w[1], w[0], o]]
+}
+
+/// Rotation about a coordinate axis.
+pub fn turn(graph: &Graph, axis: usize, c: Edge, s: Edge) -> Mat3 {
+    let mut m = identity3(graph);
+    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+    m[j][j] = c;
+    m[k][k] = c;
+    m[j][k] = -s;
+    m[k][j] = s;
+    m
+}
+
+/// I + sin a n̂ + (1 − cos a) n̂² for a unit vector n.
+pub fn axis_angle(graph: &mut Graph, axis: Vec3, angle: Edge) -> Value {
+    let (c, s) = (
+        graph.apply(Function::Cos, angle),
+        graph.apply(Function::Sin, angle),
+    );
+    let versine = graph.sub(graph.one(), c);
+    let n = hat(graph, axis);
+    let square = multiply3(graph, &n, &n);
+    let mut m = identity3(graph);
+    for i in 0..3 {
+        for j in 0..3 {
+            let (a, b) = (graph.mul(s, n[i][j]), graph.mul(versine, square[i][j]));
+            let sum = graph.add(m[i][j], a);
+            m[i][j] = graph.add(sum, b);
+        }
+    }
+    Value::from_mat3(&m)
+}
+
+/// Rotation matrix of a unit quaternion (w, v): (w² − v·v) I + 2 v vᵀ + 2 w v̂.
+pub fn quaternion_matrix(graph: &mut Graph, q: [Edge; 4]) -> Mat3 {
+    let [w, v @ ..] = q;
+    let (ww, vv) = (graph.mul(w, w), graph.dot(&v, &v));
+    let base = graph.sub(ww, vv);
+    let two = graph.ratio(2, 1);
+    let skew = hat(graph, v);
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let (outer, turn) = (graph.mul(v[i], v[j]), graph.mul(w, skew[i][j]));
+            let sum = graph.add(outer, turn);
+            let double = graph.mul(two, sum);
+            if i == j {
+                graph.add(base, double)
+            } else {
+                double
+            }
+        })
+    })
+}

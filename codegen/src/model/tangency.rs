@@ -1,0 +1,341 @@
+//! What ẋ = A ξ has to satisfy: linear in ξ, tangent to φ = 0, and A a basis of the tangent space.
+
+use super::class;
+use super::declare::Declared;
+use super::kinematics::{Rate, rate_help, velocity_for};
+use super::points::lane_seed;
+use super::variety::{Origin, Variety};
+use crate::algebra::derivation::Derivation;
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Graph, LANES};
+use crate::algebra::lane::Lane;
+use crate::algebra::numeric::{evaluate_at, rank};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System};
+
+/// A = ∂ẋ/∂ξ, with ẋ − A ξ = 0 and A free of ξ and u.
+pub fn linear_part(
+    system: &System,
+    graph: &mut Graph,
+    rates: &[Rate],
+    declared: &Declared,
+    report: &mut Report,
+) -> Option<Vec<Vec<Edge>>> {
+    let mut a = vec![Vec::new(); rates.len()];
+    for &xi in &declared.xi {
+        let mut derivation = Derivation::new([(xi.node(), graph.one())]);
+        for (row, rate) in a.iter_mut().zip(rates) {
+            row.push(derivation.of(graph, rate.edge));
+        }
+    }
+    // One error a statement.
+    let mut bad: Vec<usize> = Vec::new();
+    for (row, rate) in a.iter().zip(rates) {
+        let whole = graph.dot(row, &declared.xi);
+        let class = row
+            .iter()
+            .fold(0, |class, edge| class | graph.class(edge.node()));
+        if (whole == rate.edge && class & !(class::PARAM | class::COORD) == 0)
+            || bad.contains(&rate.item)
+        {
+            continue;
+        }
+        bad.push(rate.item);
+        let rest = graph.sub(rate.edge, whole);
+        let rest = graph.class(rest.node());
+        let Some(span) = value_of(system, rate.item).map(|value| value.span) else {
+            continue;
+        };
+        let error = if (class | rest) & class::INPUT != 0 {
+            Diagnostic::new(span, "a rate cannot depend on inputs").help(
+                "inputs act by `force`, `torque`, `wrench` or `generalized force`; a prescribed motion is no part of this version",
+            )
+        } else if class & class::VELOCITY == 0 && rest & class::VELOCITY == 0 {
+            Diagnostic::new(span, "this rate has a term without a velocity").help(
+                "a rate is A(x) ξ: every term has exactly one velocity as a factor, times coordinates and parameters",
+            )
+        } else {
+            Diagnostic::new(span, "this rate is not linear in the velocities").help(
+                "a rate is A(x) ξ: every term has exactly one velocity as a factor, times coordinates and parameters",
+            )
+        };
+        report.push(error);
+    }
+    bad.is_empty().then_some(a)
+}
+
+fn value_of(system: &System, item: usize) -> Option<&Expr> {
+    match system.items.get(item).map(|item| &item.kind) {
+        Some(ItemKind::Rate { value, .. }) => Some(value),
+        _ => None,
+    }
+}
+
+/// All that relates A, ξ and φ, as far as they are known.
+pub fn check_constraints(
+    system: &System,
+    graph: &Graph,
+    variety: &Variety,
+    kinematics: Option<&(Vec<Rate>, Vec<Vec<Edge>>)>,
+    declared: &Declared,
+    report: &mut Report,
+) {
+    if !variety.complete || declared.faulty || declared.x.is_empty() || declared.xi.is_empty() {
+        return;
+    }
+    let Some(jacobian) = jacobian(variety, graph, declared) else {
+        return;
+    };
+    if !check_redundancy(system, variety, &jacobian, report) {
+        return;
+    }
+    let mut checker = Checker {
+        system,
+        graph,
+        variety,
+        declared,
+        jacobian,
+        report,
+    };
+    let tangent = kinematics.is_none_or(|(rates, a)| checker.tangent(rates, a));
+    let counted = checker.count();
+    if let (Some((_, a)), true, true) = (kinematics, tangent, counted) {
+        checker.independent(a);
+    }
+}
+
+/// ∂φ/∂x at the lanes' points of X; one matrix a lane.
+fn jacobian(variety: &Variety, graph: &Graph, declared: &Declared) -> Option<Vec<Vec<Vec<Fp>>>> {
+    let points = &variety.points;
+    let mut free = points.free.clone();
+    let nu = declared.x.len();
+    let symbols = points.first..points.first + nu;
+    let x: Vec<Edge> = symbols.map(|i| Edge::of(free.symbols()[i].node)).collect();
+    let mut columns: Vec<Derivation> = x
+        .iter()
+        .map(|x| Derivation::new([(x.node(), free.one())]))
+        .collect();
+    let mut entries = Vec::new();
+    for &(row, _) in &variety.phi {
+        for column in &mut columns {
+            entries.push(column.of(&mut free, row));
+        }
+    }
+    (0..LANES)
+        .map(|lane| {
+            let mut point = Lane::new(lane_seed(variety.seed, lane));
+            for symbol in graph.symbols() {
+                point.push_symbol(graph.value(Edge::of(symbol.node))[lane]);
+            }
+            let values = evaluate_at(&free, &entries, &mut point)?;
+            Some(values.chunks(nu).map(<[Fp]>::to_vec).collect())
+        })
+        .collect()
+}
+
+/// Every row of the user adds to the rank of ∂φ/∂x; whether none is singular on all of X.
+fn check_redundancy(
+    system: &System,
+    variety: &Variety,
+    jacobian: &[Vec<Vec<Fp>>],
+    report: &mut Report,
+) -> bool {
+    let rows = &jacobian[0];
+    let mut reported = Vec::new();
+    let mut regular = true;
+    for (row, origin) in variety.origins.iter().enumerate() {
+        let Origin::Statement(item) = *origin else {
+            continue;
+        };
+        if reported.contains(&item) || rank(rows[..=row].to_vec()) > rank(rows[..row].to_vec()) {
+            continue;
+        }
+        reported.push(item);
+        let span = constraint_span(system, item);
+        let parts = variety.origins.iter().filter(|&o| o == origin).count() > 1;
+        let this = if parts {
+            "an entry of this one"
+        } else {
+            "this one"
+        };
+        report.push(if rows[row].iter().all(|entry| entry.is_zero()) {
+            regular = false;
+            Diagnostic::new(
+                span,
+                "the derivative of this constraint vanishes where it holds",
+            )
+            .help("write the equation without its square: `a = b` for `(a - b)^2 = 0`")
+        } else {
+            Diagnostic::new(
+                span,
+                format!("the constraints are redundant: {this} follows from those before it"),
+            )
+            .help("remove it; the kind of a coordinate, such as S1 or SO3, is a constraint already")
+        });
+    }
+    regular
+}
+
+fn constraint_span(system: &System, item: usize) -> Span {
+    match &system.items[item].kind {
+        ItemKind::Constraint { left, right } => left.span.to(right.span),
+        _ => system.items[item].span,
+    }
+}
+
+struct Checker<'a> {
+    system: &'a System,
+    graph: &'a Graph,
+    variety: &'a Variety,
+    declared: &'a Declared,
+    jacobian: Vec<Vec<Vec<Fp>>>,
+    report: &'a mut Report,
+}
+
+impl Checker<'_> {
+    /// (∂φ/∂x) A = 0 on X.
+    fn tangent(&mut self, rates: &[Rate], a: &[Vec<Edge>]) -> bool {
+        let mut tangent = true;
+        let mut reported: Vec<usize> = Vec::new();
+        for row in 0..self.variety.phi.len() {
+            for i in 0..self.declared.xi.len() {
+                if !self.leaves(a, row, i) {
+                    continue;
+                }
+                tangent = false;
+                let item = self.culprit(rates, a, row, i);
+                if let Some(item) = item.filter(|item| !reported.contains(item)) {
+                    reported.push(item);
+                    self.report_tangent(row, i, item);
+                }
+            }
+        }
+        tangent
+    }
+
+    /// Whether a motion along ξⁱ changes a row of φ.
+    fn leaves(&self, a: &[Vec<Edge>], row: usize, i: usize) -> bool {
+        (0..LANES).any(|lane| {
+            let gradient = &self.jacobian[lane][row];
+            let terms = a.iter().zip(gradient);
+            let change = terms.fold(Fp::ZERO, |sum, (entries, &slope)| {
+                sum + slope * self.graph.value(entries[i])[lane]
+            });
+            !change.is_zero()
+        })
+    }
+
+    /// The statement to blame: the first rate that takes part in the change.
+    fn culprit(&self, rates: &[Rate], a: &[Vec<Edge>], row: usize, i: usize) -> Option<usize> {
+        let alpha = (0..a.len()).find(|&alpha| {
+            !self.jacobian[0][row][alpha].is_zero() && a[alpha][i] != self.graph.zero()
+        })?;
+        Some(rates[alpha].item)
+    }
+
+    fn velocity(&self, i: usize) -> &str {
+        let node = self.declared.xi[i].node();
+        self.graph
+            .symbols()
+            .iter()
+            .find(|s| s.node == node)
+            .map_or("", |s| s.name.as_str())
+    }
+
+    fn report_tangent(&mut self, row: usize, i: usize, item: usize) {
+        let Some(value) = value_of(self.system, item) else {
+            return;
+        };
+        let velocity = self.velocity(i);
+        let text = &self.variety.phi[row].1;
+        let error = match self.variety.origins[row] {
+            Origin::Coordinate(index) => {
+                let coordinate = &self.declared.coordinates[index];
+                let message = match text.split_once(", entry ") {
+                    Some((text, entry)) => format!(
+                        "this rate leaves the constraint {text}: a motion along `{velocity}` changes entry {entry}"
+                    ),
+                    None => format!(
+                        "this rate leaves the constraint {text}: a motion along `{velocity}` changes it"
+                    ),
+                };
+                let name = velocity_for(coordinate, Some(value), self.declared);
+                let help = match (coordinate.kind, &value.kind) {
+                    (CoordKind::S1, _) => format!(
+                        "write `rate {0} = w;` with its angular velocity w, which stands for (-{0}.s * w, {0}.c * w)",
+                        coordinate.name
+                    ),
+                    _ => rate_help(coordinate, &name),
+                };
+                Diagnostic::new(value.span, message).help(help)
+            }
+            Origin::Statement(statement) => Diagnostic::new(
+                value.span,
+                format!("this rate leaves a constraint: a motion along `{velocity}` changes it"),
+            )
+            .help("choose rates whose motion keeps the constraint: (∂φ/∂x) A = 0")
+            .note(constraint_span(self.system, statement), "this constraint"),
+        };
+        self.report.push(error);
+    }
+
+    /// n = dim X = ν − rank ∂φ/∂x.
+    fn count(&mut self) -> bool {
+        let n = self.declared.xi.len();
+        let nu = self.declared.x.len();
+        let rank_phi = rank(self.jacobian[0].clone());
+        let dimension = nu - rank_phi;
+        if n == dimension {
+            return true;
+        }
+        let (few, help) = if n < dimension {
+            (
+                "too few",
+                "add velocities until they are as many as the degrees of freedom",
+            )
+        } else {
+            (
+                "too many",
+                "remove velocities, or a constraint that is not meant",
+            )
+        };
+        let plural = if rank_phi == 1 { "" } else { "s" };
+        let message = format!(
+            "{few} velocities: {n}, for a configuration space of dimension {dimension} ({nu} coordinates less {rank_phi} independent constraint{plural})"
+        );
+        self.report
+            .push(Diagnostic::new(self.velocities_span(), message).help(help));
+        false
+    }
+
+    /// A has rank n.
+    fn independent(&mut self, a: &[Vec<Edge>]) {
+        let n = self.declared.xi.len();
+        let value = |edge: &Edge| self.graph.value(*edge)[0];
+        let values: Vec<Vec<Fp>> = a
+            .iter()
+            .map(|row| row.iter().map(value).collect())
+            .collect();
+        let rank_a = rank(values.clone());
+        if rank_a == n {
+            return;
+        }
+        // The first column that depends on those before it.
+        let first = |i: usize| values.iter().map(|row| row[..=i].to_vec()).collect();
+        let dependent = (0..n).find(|&i| rank(first(i)) <= i).unwrap_or(0);
+        let name = self.velocity(dependent);
+        let help = format!("`{name}` moves nothing that the velocities before it do not move");
+        let message = format!("the velocities are not independent: A has rank {rank_a}, not {n}");
+        self.report
+            .push(Diagnostic::new(self.velocities_span(), message).help(help));
+    }
+
+    /// From the first velocity of the first statement to the last of it.
+    fn velocities_span(&self) -> Span {
+        let spans = self.system.items.iter().find_map(|item| match &item.kind {
+            ItemKind::Velocity(list) => Some(list.first()?.name.span.to(list.last()?.name.span)),
+            _ => None,
+        });
+        spans.unwrap_or(self.system.name.span)
+    }
+}
