@@ -1,3 +1,5 @@
+//! States as users write them: what is read, and what is refused.
+
 use super::State;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::model::Model;

@@ -1,0 +1,8 @@
+//! The macro in the compiler: errors stand inside of the description.
+
+#[test]
+fn errors_are_placed_in_the_description() {
+    let cases = trybuild::TestCases::new();
+    cases.pass("ui/right.rs");
+    cases.compile_fail("ui/wrong_*.rs");
+}

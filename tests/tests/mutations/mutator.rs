@@ -1,0 +1,319 @@
+//! Mutations of descriptions, token by token and statement by statement.
+
+use std::path::Path;
+
+/// Words, numbers and signs that fixtures may lack.
+const WORDS: &[&str] = &[
+    "0",
+    "1",
+    "-1",
+    "2",
+    "3",
+    "0.5",
+    "1/3",
+    "64",
+    "65",
+    "1e400",
+    "1e-400",
+    "1e308",
+    "1e401",
+    "9223372036854775808",
+    "-9223372036854775808",
+    "1000",
+    "1001",
+    "0.1e1",
+    "1_0",
+    "1f64",
+    "0x1",
+    "+",
+    "-",
+    "*",
+    "/",
+    "^",
+    "=",
+    ".",
+    ",",
+    ";",
+    ":",
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    "==",
+    "%",
+    "pi",
+    "world",
+    "sqrt",
+    "log",
+    "exp",
+    "sin",
+    "cos",
+    "tan",
+    "atan2",
+    "norm",
+    "dot",
+    "cross",
+    "outer",
+    "hat",
+    "vee",
+    "diag",
+    "trace",
+    "identity",
+    "transpose",
+    "rotx",
+    "rpy",
+    "axis_angle",
+    "rot",
+    "qmul",
+    "pose",
+    "inverse",
+    "vec3",
+    "vec64",
+    "mat3",
+    "mat64",
+    "sym3",
+    "sym64",
+    "R1",
+    "R3",
+    "R64",
+    "S1",
+    "S3",
+    "SO3",
+    "SE3",
+    "about",
+    "com",
+    "origin",
+    "on",
+    "at",
+    "in",
+    "body",
+    "constraint",
+    "invariant",
+    "joint",
+    "pub",
+    "system",
+    "c",
+    "s",
+    "T",
+    "R",
+    "p",
+    "é",
+    "\"",
+    "'",
+    "#",
+    "///",
+    "//",
+    "/*",
+    "*/",
+    "r#a",
+    "\u{0}",
+    "\u{202e}",
+    "𝒙",
+    "ω̂",
+];
+
+/// A small generator of pseudo-random numbers, SplitMix64.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number below a bound that is not 0.
+    fn below(&mut self, bound: usize) -> usize {
+        (self.next() % bound.max(1) as u64) as usize
+    }
+}
+
+/// The tokens of a text without its comments; joined by blanks they mean the same.
+pub fn tokens(text: &str) -> Vec<String> {
+    let mut tokens: Vec<String> = Vec::new();
+    for line in text.lines() {
+        let code = line.split("//").next().unwrap_or_default();
+        let mut word = String::new();
+        for letter in code.chars().chain([' ']) {
+            let number = word.starts_with(|c: char| c.is_ascii_digit());
+            if letter.is_alphanumeric() || letter == '_' || (letter == '.' && number) {
+                word.push(letter);
+                continue;
+            }
+            tokens.extend((!word.is_empty()).then(|| std::mem::take(&mut word)));
+            tokens.extend((!letter.is_whitespace()).then(|| letter.to_string()));
+        }
+    }
+    tokens
+}
+
+/// Descriptions to start from, and all their words.
+pub struct Corpus {
+    all: Vec<Vec<String>>,
+    /// Those that are quickly generated.
+    small: Vec<usize>,
+    words: Vec<String>,
+}
+
+impl Corpus {
+    /// All fixtures.
+    pub fn read() -> Self {
+        let mut texts = Vec::new();
+        for folder in ["models", "wrong"] {
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+            let entries = std::fs::read_dir(folder).expect("a folder");
+            let mut paths: Vec<_> = entries
+                .map(|entry| entry.expect("an entry").path())
+                .collect();
+            paths.sort();
+            for path in paths
+                .iter()
+                .filter(|path| path.extension().is_some_and(|e| e == "eom"))
+            {
+                texts.push(std::fs::read_to_string(path).expect("readable"));
+            }
+        }
+        // A rotation makes a description expensive.
+        let cheap = |text: &&String| !["SO3", "S3;", "SE3"].iter().any(|kind| text.contains(kind));
+        let small = (0..texts.len()).filter(|&i| cheap(&&texts[i])).collect();
+        let all: Vec<Vec<String>> = texts.iter().map(|text| tokens(text)).collect();
+        let mut words: Vec<String> = all.iter().flatten().cloned().collect();
+        words.sort();
+        words.dedup();
+        words.extend(WORDS.iter().map(|word| word.to_string()));
+        Corpus { all, small, words }
+    }
+
+    /// A mutated description; `quick` prefers those that are cheap to generate.
+    pub fn mutate(&self, random: &mut Random, quick: bool) -> String {
+        let any = random.below(self.all.len());
+        let index = if quick && random.below(20) > 0 {
+            self.small[random.below(self.small.len())]
+        } else {
+            any
+        };
+        let mut tokens = self.all[index].clone();
+        for _ in 0..1 + random.below(4) {
+            self.step(&mut tokens, random);
+        }
+        let mut text = tokens.join(" ");
+        if random.below(50) == 0 {
+            self.bytes(&mut text, random);
+        }
+        text
+    }
+
+    fn step(&self, tokens: &mut Vec<String>, random: &mut Random) {
+        let at = random.below(tokens.len());
+        let end = (at + 1 + random.below(3)).min(tokens.len());
+        let word = self.words[random.below(self.words.len())].clone();
+        match random.below(10) {
+            0 => drop(tokens.drain(at.min(end)..end)),
+            1 => {
+                let copy = tokens[at.min(end)..end].to_vec();
+                tokens.splice(at.min(tokens.len())..at.min(tokens.len()), copy);
+            }
+            2 if !tokens.is_empty() => {
+                let other = random.below(tokens.len());
+                tokens.swap(at, other);
+            }
+            3 => tokens.insert(at, word),
+            // A word for a word, a number for a number, a sign for a sign: most often still a text.
+            4..=6 if !tokens.is_empty() => {
+                let kind = |token: &str| {
+                    let first = token.chars().next().unwrap_or(' ');
+                    (first.is_alphabetic(), first.is_ascii_digit())
+                };
+                let alike = |token: &&String| kind(token) == kind(&tokens[at]);
+                let alike: Vec<&String> = self.words.iter().filter(alike).collect();
+                let own: Vec<&String> = tokens.iter().filter(alike).collect();
+                let from = if random.below(2) == 0 { own } else { alike };
+                if !from.is_empty() {
+                    tokens[at] = from[random.below(from.len())].clone();
+                }
+            }
+            7 => self.statement(tokens, random),
+            8 => {
+                let other = &self.all[random.below(self.all.len())];
+                let statements = statements(other);
+                if let Some(range) = statements.get(random.below(statements.len())) {
+                    let own = self::statements(tokens);
+                    let place = own
+                        .get(random.below(own.len()))
+                        .map_or(tokens.len(), |r| r.start);
+                    tokens.splice(place..place, other[range.clone()].to_vec());
+                }
+            }
+            _ if !tokens.is_empty() => tokens[at] = word,
+            _ => tokens.push(word),
+        }
+    }
+
+    /// Deletes, doubles or moves a whole statement.
+    fn statement(&self, tokens: &mut Vec<String>, random: &mut Random) {
+        let all = statements(tokens);
+        let Some(range) = all.get(random.below(all.len())).cloned() else {
+            return;
+        };
+        let copy = tokens[range.clone()].to_vec();
+        let action = random.below(3);
+        if action < 2 {
+            tokens.drain(range);
+        }
+        if action > 0 {
+            let all = statements(tokens);
+            let place = all
+                .get(random.below(all.len()))
+                .map_or(tokens.len(), |r| r.start);
+            tokens.splice(place..place, copy);
+        }
+    }
+
+    /// Overwrites, inserts and cuts letters anywhere.
+    fn bytes(&self, text: &mut String, random: &mut Random) {
+        let mut letters: Vec<char> = text.chars().collect();
+        for _ in 0..1 + random.below(8) {
+            let at = random.below(letters.len());
+            let letter = char::from_u32(random.below(0x300) as u32).unwrap_or('?');
+            match random.below(3) {
+                0 => letters.insert(at, letter),
+                1 if !letters.is_empty() => letters[at] = letter,
+                _ => letters.truncate(letters.len() - random.below(2).min(letters.len())),
+            }
+        }
+        *text = letters.into_iter().collect();
+    }
+}
+
+/// The statements of a system: up to each `;` and each `}`.
+fn statements(tokens: &[String]) -> Vec<std::ops::Range<usize>> {
+    let start = tokens
+        .iter()
+        .position(|token| token == "{")
+        .map_or(0, |open| open + 1);
+    let mut all = Vec::new();
+    let mut first = start;
+    let mut depth = 0usize;
+    for (at, token) in tokens.iter().enumerate().skip(start) {
+        match token.as_str() {
+            "{" => depth += 1,
+            "}" => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth == 0 && matches!(token.as_str(), ";" | "}") {
+            all.push(first..at + 1);
+            first = at + 1;
+        }
+    }
+    // The last one ends the system.
+    all.pop();
+    all
+}

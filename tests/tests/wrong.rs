@@ -1,0 +1,159 @@
+//! Wrong descriptions, `wrong/*.eom`, and the exact messages that they get: every message has a
+//! place in the text and says what to do. And descriptions that look alike but are right.
+
+use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::generate::from_text;
+use hamel_codegen::render::render;
+
+/// The errors of a description that has to have some.
+fn errors(text: &str) -> Vec<Diagnostic> {
+    match from_text(text) {
+        Ok(generated) => panic!("`{}` was accepted", generated.model.name),
+        Err(errors) => errors,
+    }
+}
+
+#[test]
+fn messages() {
+    insta::glob!("../wrong", "*.eom", |path| {
+        let text = std::fs::read_to_string(path).expect("readable");
+        let name = path.file_name().expect("a name").to_string_lossy();
+        let errors = errors(&text);
+        for error in &errors {
+            let (first, last) = (error.span.lo.byte_range(), error.span.hi.byte_range());
+            let placed = !first.is_empty() && first.start < last.end && last.end <= text.len();
+            assert!(
+                placed || text.is_empty(),
+                "{name}: no place: {}",
+                error.message
+            );
+            assert!(error.help.is_some(), "{name}: no help: {}", error.message);
+        }
+        insta::with_settings!({omit_expression => true, prepend_module_to_snapshot => true}, {
+            insta::assert_snapshot!(render(&errors, &name, &text, false));
+        });
+    });
+}
+
+/// A system of one coordinate, with more statements.
+fn system(statements: &str) -> String {
+    format!("system S {{ coord x; velocity v; rate x = v; kinetic v^2; {statements} }}")
+}
+
+fn message(statements: &str) -> String {
+    let errors = errors(&system(statements));
+    assert_eq!(errors.len(), 1, "one mistake, one error: {errors:?}");
+    errors[0].message.clone()
+}
+
+/// A name that is in error where it is defined is no further error where it is used.
+#[test]
+fn one_mistake_is_one_error() {
+    for statements in [
+        "let a = unknown; let b = a + 1; output c = b;",
+        "frame f = pose(unknown, [0, 0, 0]); particle mass 1 at [0, 0, x] on f; frame g on f = world;",
+        "frame f = pose(diag(1, 2, 3), [0, 0, 0]); torque [0, 0, v] on f in body;",
+        "param p = unknown; start x = p; output q = p;",
+        "const k = unknown; const l = k * 2; param p = l;",
+        "output speed = unknown; generate speed;",
+        "velocity x; generalized force v = 1;",
+        "coord x; start x = 1;",
+        "coord sin; start sin = 1; rate sin = v;",
+        "velocity norm; generalized force norm = 1; start norm = 1;",
+        "param m = 1 / 0; particle mass m at [x, 0, 0]; start v = m;",
+        "constraint x = unknown;",
+        "constraint v = 1;",
+        "constraint (x - 1)^2 = 0;",
+    ] {
+        message(statements);
+    }
+}
+
+#[test]
+fn products_of_large_matrices_are_refused_in_time() {
+    let statements =
+        "param A: mat64 = identity(64), v64: vec64 = A[1]; output b = A * A * A * v64;";
+    let errors = errors(&system(statements));
+    assert!(
+        errors
+            .iter()
+            .any(|error| error.message.contains("too large")),
+        "{errors:?}"
+    );
+}
+
+/// Powers of powers reach degrees that polynomials cannot have.
+#[test]
+fn towers_of_powers_are_refused_in_constraints() {
+    let found = message("constraint (((x^1000)^1000)^1000)^1000 = 1;");
+    assert_eq!(found, "a constraint of a degree beyond 32");
+}
+
+/// What only looks wrong.
+#[test]
+fn right_descriptions_are_accepted() {
+    for text in [
+        // Functions of parameters in constraints, directly and by name.
+        "system A {
+            param l = 4, alpha = 0.3;
+            coord x, y;
+            constraint x * cos(alpha) = y * sin(alpha);
+            velocity v;
+            rate x = v * sin(alpha);
+            rate y = v * cos(alpha);
+            particle mass sqrt(l) at [x, y, 0];
+        }",
+        "system B {
+            param l = 4;
+            let r = sqrt(l);
+            coord x, y;
+            constraint dot([x, y], [x, y]) = r;
+            velocity v;
+            rate x = -y * v;
+            rate y = x * v;
+            particle mass 1 at [x, y, 0];
+            start x = l^(1/4);
+        }",
+        // Square roots, each of which has a value at every second point only; roots of 3 and 5.
+        "system C {
+            param a = 1, b = 2, c = 3, d = 5;
+            coord x;
+            velocity v;
+            rate x = v;
+            kinetic (sqrt(a) + sqrt(b) + sqrt(c) + sqrt(d) + sqrt(a + x^2) + norm([b, x])) * v^2;
+            potential sqrt(3) * x - sqrt(5) * x;
+        }",
+        // A loop closed through a frame.
+        "system D {
+            param l = 1;
+            coord q: S1, x, y;
+            frame rod = pose(rotz(q), [x, y, 0]);
+            let tip = rod * [l, 0, 0];
+            constraint [tip[1], tip[2]] = [0, 0];
+            velocity w;
+            rate q = w;
+            rate x = l * q.s * w;
+            rate y = -l * q.c * w;
+            body on rod { mass 1; inertia diag(0, 0, 1); }
+            start x = -l;
+        }",
+        // Zeros with a sign; an axis that is a unit vector on the variety alone.
+        "system E {
+            param angle = 1, nought = -0;
+            coord R: SO3;
+            velocity w: vec3;
+            rate R = R * hat(w);
+            frame f = pose(R, [0, 0, 0]);
+            frame g on f = pose(axis_angle(R[1], angle), [0, 0, 0]);
+            body on f { mass 1; com [0, -0, 0]; inertia diag(1, 2, 3); }
+        }",
+        // An output of the name of the expression that it returns.
+        &system("let speed = v; output speed = speed;"),
+        // A kinetic energy that is quadratic only after cancelling.
+        &system("kinetic v^3 / v + (v + x)^2 - x * (2 * v + x);"),
+    ] {
+        if let Err(errors) = from_text(text) {
+            panic!("{}", render(&errors, "right.eom", text, false));
+        }
+    }
+}
