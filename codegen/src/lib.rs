@@ -10,7 +10,7 @@
 //! | [`syntax`] | grammar and spans |
 //! | [`algebra`] | expression graph, polynomials, normal forms; no mechanics |
 //! | [`model`] | names, shapes, every semantic error |
-//! | [`derive`] | the symbols of the formalism, ξ̇ by the cheapest route, validation |
+//! | [`mod@derive`] | the symbols of the formalism, ξ̇ by the cheapest route, validation |
 //! | [`program`] | binding times, operation counts, interpretation |
 //! | [`emit`] | Rust text; no algebra |
 //! | [`tables`] | what people read |

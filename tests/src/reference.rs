@@ -96,7 +96,7 @@ pub fn relative(a: &[f64], b: &[f64]) -> f64 {
 /// `state` moved to `until` in `n` steps, without inputs.
 ///
 /// # Errors
-/// Those of [`integrate`].
+/// Those of [`integrate()`].
 pub fn run<Sys: System>(
     system: &Sys,
     method: Method,

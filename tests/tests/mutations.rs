@@ -33,7 +33,7 @@ fn number(variable: &str, otherwise: usize) -> usize {
 /// What a worker does now: the text, and since when.
 type Work = Mutex<Option<(String, Instant)>>;
 
-/// Runs all cases; the text of the first that panics or takes too long.
+/// Runs all cases; the text of the first that panics. Prints the slowest.
 fn run(
     count: usize,
     make: impl Fn(usize) -> String + Sync,
@@ -43,6 +43,7 @@ fn run(
     let work: Vec<Work> = (0..workers).map(|_| Mutex::new(None)).collect();
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let failure: Mutex<Option<String>> = Mutex::new(None);
+    let slowest: Mutex<(Duration, String)> = Mutex::default();
     let set = |text: &str| *failure.lock().expect("unpoisoned") = Some(text.to_string());
     std::thread::scope(|scope| {
         for work in &work {
@@ -54,7 +55,14 @@ fn run(
                     }
                     let text = make(case);
                     *work.lock().expect("unpoisoned") = Some((text.clone(), Instant::now()));
-                    if panics(&text, &check) {
+                    let start = Instant::now();
+                    let panicked = panics(&text, &check);
+                    let mut slow = slowest.lock().expect("unpoisoned");
+                    if start.elapsed() > slow.0 {
+                        *slow = (start.elapsed(), text.clone());
+                    }
+                    drop(slow);
+                    if panicked {
                         set(&smallest(&text, |text| panics(text, &check)));
                     }
                 }
@@ -79,6 +87,8 @@ fn run(
             }
         }
     });
+    let (time, text) = slowest.into_inner().expect("unpoisoned");
+    println!("{count} cases, the slowest in {time:?}:\n{text}");
     failure.into_inner().expect("unpoisoned")
 }
 
@@ -109,13 +119,15 @@ fn smallest(text: &str, fails: impl Fn(&str) -> bool) -> String {
     tokens.join(" ")
 }
 
-/// All stages, and the text of the errors.
-fn generate(text: &str) {
-    if let Err(errors) = from_text(text) {
+/// All stages, and the text of the errors; whether the text is right.
+fn generate(text: &str) -> bool {
+    let generated = from_text(text);
+    if let Err(errors) = &generated {
         assert!(!errors.is_empty(), "refused without a reason");
-        let text = render(&errors, "mutated.eom", text, false);
+        let text = render(errors, "mutated.eom", text, false);
         assert!(!text.contains("internal check failed"), "{text}");
     }
+    generated.is_ok()
 }
 
 #[test]
@@ -132,7 +144,11 @@ fn no_text_panics() {
         failure.unwrap_or_default()
     );
     let mutate = |case: usize| corpus.mutate(&mut Random::new(seed + case as u64), true);
-    let failure = run(cases, mutate, generate);
+    let right = AtomicUsize::new(0);
+    let failure = run(cases, mutate, |text| {
+        right.fetch_add(usize::from(generate(text)), Ordering::Relaxed);
+    });
+    println!("{} of them are right", right.into_inner());
     assert!(
         failure.is_none(),
         "the generator fails on:\n{}",

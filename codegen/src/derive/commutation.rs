@@ -5,7 +5,7 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::Edge;
 use crate::model::Model;
 
-/// γ[i][j][k] = γᵢⱼᵏ = (∂ᵢAⱼ^β − ∂ⱼAᵢ^β) Y_β^k, KR18 (12). `y`: n rows of ν.
+/// `γ[i][j][k]` = γᵢⱼᵏ = (∂ᵢAⱼ^β − ∂ⱼAᵢ^β) Y_β^k, KR18 (12). `y`: n rows of ν.
 pub fn gamma(model: &mut Model, calculus: &mut Calculus, y: &[Vec<Edge>]) -> Vec<Vec<Vec<Edge>>> {
     let (n, zero) = (model.n(), model.graph.zero());
     let mut gamma = vec![vec![vec![zero; n]; n]; n];
@@ -28,7 +28,7 @@ pub fn gamma(model: &mut Model, calculus: &mut Calculus, y: &[Vec<Edge>]) -> Vec
     gamma
 }
 
-/// γ[i][j][k] = (∂Y_α^k/∂x^β − ∂Y_β^k/∂x^α) Aᵢ^α Aⱼ^β, KR18 (13), which must agree with (12) on X.
+/// `γ[i][j][k]` = (∂Y_α^k/∂x^β − ∂Y_β^k/∂x^α) Aᵢ^α Aⱼ^β, KR18 (13), which must agree with (12) on X.
 ///
 /// The curl of Y is contracted with tangent vectors on both sides; with A held fixed each half is
 /// the derivative of Y(x) a along b for constant a, b, so no derivative off X is taken:

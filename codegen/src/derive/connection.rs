@@ -4,7 +4,7 @@ use super::calculus::Calculus;
 use crate::algebra::graph::Edge;
 use crate::model::Model;
 
-/// Γ[i][j][k] = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si).
+/// `Γ[i][j][k]` = ½ (∂ₖM_ij + ∂ⱼM_ik − ∂ᵢM_jk + γᵢⱼˢ M_sk + γᵢₖˢ M_sj − γⱼₖˢ M_si).
 pub fn connection(
     model: &mut Model,
     calculus: &mut Calculus,

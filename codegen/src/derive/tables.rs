@@ -17,11 +17,11 @@ pub struct Geometry {
     pub calculus: Calculus,
     /// Y, n rows of ν.
     pub y: Vec<Vec<Edge>>,
-    /// γ[i][j][k] = γᵢⱼᵏ.
+    /// `γ[i][j][k]` = γᵢⱼᵏ.
     pub gamma: Vec<Vec<Vec<Edge>>>,
     /// M.
     pub mass: Vec<Vec<Edge>>,
-    /// Γ[i][j][k] = Γᵢⱼₖ.
+    /// `Γ[i][j][k]` = Γᵢⱼₖ.
     pub connection: Vec<Vec<Vec<Edge>>>,
     /// V.
     pub potential: Edge,

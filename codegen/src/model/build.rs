@@ -60,7 +60,7 @@ struct Reading<'a> {
 }
 
 /// What failed, and the graph where there is one.
-type Failure = (Vec<Diagnostic>, Option<Graph>);
+type Failure = (Vec<Diagnostic>, Option<Box<Graph>>);
 
 impl<'a> Reading<'a> {
     fn new(
@@ -105,7 +105,7 @@ impl<'a> Reading<'a> {
             start::check(system, variety, declared, &defaults, x, report);
         }
         if let Err(errors) = self.report.finish() {
-            return Err((errors, Some(self.graph)));
+            return Err((errors, Some(Box::new(self.graph))));
         }
         let (Some(kinematics), Some((start_x, start_xi))) = (kinematics, starts) else {
             let error = Diagnostic::new(system.name.span, "the description could not be read");

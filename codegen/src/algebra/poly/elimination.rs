@@ -1,4 +1,4 @@
-//! The minimal polynomial of a variable modulo an ideal: the generator μ of I ∩ F[x_v].
+//! The minimal polynomial of a variable modulo an ideal: the generator μ of I ∩ `F[x_v]`.
 //!
 //! μ is the first linear dependence among NF(1), NF(x_v), NF(x_v²), …; there is one exactly
 //! where x_v takes finitely many values on the variety.
