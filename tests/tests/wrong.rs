@@ -23,7 +23,7 @@ fn messages() {
             let (first, last) = (error.span.lo.byte_range(), error.span.hi.byte_range());
             let placed = !first.is_empty() && first.start < last.end && last.end <= text.len();
             assert!(
-                placed || text.is_empty(),
+                placed || text.trim().is_empty(),
                 "{name}: no place: {}",
                 error.message
             );
@@ -63,7 +63,7 @@ fn one_mistake_is_one_error() {
         "param m = 1 / 0; particle mass m at [x, 0, 0]; start v = m;",
         "constraint x = unknown;",
         "constraint v = 1;",
-        "constraint (x - 1)^2 = 0;",
+        "constraint x^2 = 0;",
     ] {
         message(statements);
     }
