@@ -5,6 +5,7 @@
 
 use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
+use super::poly::field::Field;
 use super::poly::monomial::Var;
 use super::poly::polynomial::Poly;
 use num_rational::BigRational;
@@ -15,6 +16,18 @@ pub const OPAQUE: Var = 1 << 24;
 
 /// Largest number of terms of an intermediate polynomial.
 pub const MOST_TERMS: usize = 4000;
+
+/// Highest degree of an intermediate polynomial: towers of powers reach degrees that no exponent
+/// could hold.
+pub const HIGHEST_DEGREE: u32 = 1000;
+
+/// a b, unless it has too many terms or too high a degree.
+fn product<F: Field>(a: &Poly<F>, b: &Poly<F>) -> Option<Poly<F>> {
+    if a.degree() + b.degree() > HIGHEST_DEGREE {
+        return None;
+    }
+    a.mul_limited(b, MOST_TERMS)
+}
 
 /// Polynomials over Q of nodes; remembers what it has expanded.
 #[derive(Default)]
@@ -51,7 +64,7 @@ impl Expander {
                 let sum = self.signed(a)?.add(&self.signed(b)?);
                 (sum.terms().len() <= MOST_TERMS).then_some(sum)
             }
-            Node::Mul(a, b) => self.signed(a)?.mul_limited(&self.signed(b)?, MOST_TERMS),
+            Node::Mul(a, b) => product(&self.signed(a)?, &self.signed(b)?),
             Node::Div(..) | Node::Apply(..) | Node::Atan2(..) => Some(Poly::var(OPAQUE + id)),
         }
     }
@@ -92,7 +105,7 @@ pub fn polynomial_at(
             Node::Symbol(index) if unknown(index as usize) => Poly::var(index),
             Node::Symbol(index) => Poly::constant(*values.get(index as usize)?),
             Node::Add(a, b) => read(&memo, a)?.add(&read(&memo, b)?),
-            Node::Mul(a, b) => read(&memo, a)?.mul_limited(&read(&memo, b)?, MOST_TERMS)?,
+            Node::Mul(a, b) => product(&read(&memo, a)?, &read(&memo, b)?)?,
             Node::Div(a, b) => {
                 let divisor = read(&memo, b)?.as_constant()?.inv()?;
                 read(&memo, a)?.scale(&divisor)
