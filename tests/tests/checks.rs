@@ -58,6 +58,31 @@ fn lie_group_identities_are_proved() {
     }
 }
 
+/// A function of parameters in a constraint stays what it is, in every form of the equations.
+#[test]
+fn constraints_may_have_functions_of_parameters() {
+    for (length, value) in [
+        ("l1^(1/3)", "1"),
+        ("1 / (4 * l1)", "0.25"),
+        ("sqrt(l1 + 1.25)", "1.5"),
+    ] {
+        let text = text("rod_particles")
+            .replace("= l1^2", &format!("= ({length})^2"))
+            .replace("x1 = 1;", &format!("x1 = {value};"))
+            .replace("x2 = 1;", &format!("x2 = {value};"))
+            .replace("x3 = 1.6;", &format!("x3 = {value} + 0.6;"));
+        let generated = from_text(&text).unwrap_or_else(|errors| panic!("{length}: {errors:?}"));
+        for identity in check(&generated.model, &generated.program) {
+            let failed = matches!(identity.verdict, Verdict::Failed(_));
+            assert!(
+                !failed,
+                "{length}: {} {:?}",
+                identity.label, identity.verdict
+            );
+        }
+    }
+}
+
 /// A wrong acceleration is caught: by the equation of motion and by the power balance.
 #[test]
 fn a_wrong_sign_is_noticed() {

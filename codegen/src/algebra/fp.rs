@@ -73,15 +73,15 @@ impl Fp {
         if self.is_zero() {
             return None;
         }
-        // Extended Euclid on (p, a), in i128 to hold the signed cofactors.
-        let (mut r0, mut r1) = (P as i128, self.0 as i128);
-        let (mut t0, mut t1) = (0i128, 1i128);
+        // Extended Euclid on (p, a); the cofactors stay within ±p.
+        let (mut r0, mut r1) = (P as i64, self.0 as i64);
+        let (mut t0, mut t1) = (0i64, 1i64);
         while r1 != 0 {
             let q = r0 / r1;
             (r0, r1) = (r1, r0 - q * r1);
             (t0, t1) = (t1, t0 - q * t1);
         }
-        Some(Fp(t0.rem_euclid(P as i128) as u64))
+        Some(Fp(t0.rem_euclid(P as i64) as u64))
     }
 
     /// A square root a^((p+1)/4); `None` where self is no square.
@@ -92,9 +92,9 @@ impl Fp {
 
     /// The rational n/d with |n|, d < 2^bits (bits ≤ 29) that this is the class of, if there is one.
     pub fn to_small_rational(self, bits: u32) -> Option<(i64, i64)> {
-        let bound = 1i128 << bits.min(29);
-        let (mut r0, mut r1) = (P as i128, self.0 as i128);
-        let (mut t0, mut t1) = (0i128, 1i128);
+        let bound = 1i64 << bits.min(29);
+        let (mut r0, mut r1) = (P as i64, self.0 as i64);
+        let (mut t0, mut t1) = (0i64, 1i64);
         while r1 >= bound {
             let q = r0 / r1;
             (r0, r1) = (r1, r0 - q * r1);
@@ -104,7 +104,7 @@ impl Fp {
             return None;
         }
         let (n, d) = if t1 < 0 { (-r1, -t1) } else { (r1, t1) };
-        (n.gcd(&d) == 1).then_some((n as i64, d as i64))
+        (n.gcd(&d) == 1).then_some((n, d))
     }
 }
 

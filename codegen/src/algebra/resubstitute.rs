@@ -30,19 +30,25 @@ struct Network<'a> {
     graph: &'a Graph,
     roots: &'a [Edge],
     definitions: FxHashMap<NodeId, Node>,
+    /// 1 / value of every node whose value is nowhere zero.
+    inverses: FxHashMap<NodeId, [Fp; LANES]>,
 }
 
 impl<'a> Network<'a> {
     fn new(graph: &'a Graph, roots: &'a [Edge]) -> Self {
-        let definitions = graph
-            .reachable(roots)
-            .into_iter()
-            .map(|id| (id, graph.node(id)))
-            .collect();
+        let nodes = graph.reachable(roots);
+        let inverse = |id: NodeId| {
+            let mut inverse = graph.value(Edge::of(id));
+            for value in &mut inverse {
+                *value = value.inv()?;
+            }
+            Some((id, inverse))
+        };
         Network {
             graph,
             roots,
-            definitions,
+            inverses: nodes.iter().copied().filter_map(inverse).collect(),
+            definitions: nodes.iter().map(|&id| (id, graph.node(id))).collect(),
         }
     }
 
@@ -154,10 +160,8 @@ impl<'a> Network<'a> {
         };
         let target = self.value(id);
         usable.iter().find_map(|&x| {
+            let inverse = self.inverses.get(&x)?;
             let value = self.value(x);
-            if value.iter().any(|v| v.is_zero()) {
-                return None;
-            }
             let difference = std::array::from_fn(|lane| target[lane] - value[lane]);
             if let Some(y) = signed(difference) {
                 return Some(Node::Add(Edge::of(x), y));
@@ -166,10 +170,7 @@ impl<'a> Network<'a> {
             if let Some(y) = signed(sum) {
                 return Some(Node::Add(-Edge::of(x), y));
             }
-            let mut quotient = [Fp::ZERO; LANES];
-            for lane in 0..LANES {
-                quotient[lane] = target[lane] * value[lane].inv()?;
-            }
+            let quotient = std::array::from_fn(|lane| target[lane] * inverse[lane]);
             let y = signed(quotient).filter(|y| !y.is_negative())?;
             Some(Node::Mul(Edge::of(x), y))
         })

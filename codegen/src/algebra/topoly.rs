@@ -19,7 +19,7 @@ pub const MOST_TERMS: usize = 4000;
 
 /// Highest degree of an intermediate polynomial: towers of powers reach degrees that no exponent
 /// could hold.
-pub const HIGHEST_DEGREE: u32 = 1000;
+pub const HIGHEST_DEGREE: u32 = 100;
 
 /// a b, unless it has too many terms or too high a degree.
 fn product<F: Field>(a: &Poly<F>, b: &Poly<F>) -> Option<Poly<F>> {

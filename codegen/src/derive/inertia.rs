@@ -129,7 +129,7 @@ pub fn positive_definite(model: &mut Model, mass: &[Vec<Edge>]) -> Result<(), Di
         .find(|s| s.node == model.xi[pivot].node())
         .map_or("", |s| s.name.as_str());
     Err(Diagnostic::new(
-        model.span,
+        model.velocity_spans.get(pivot).copied().unwrap_or(model.span),
         format!("the mass matrix is not positive definite at the start: pivot {} (`{name}`) is not positive", pivot + 1),
     )
     .help("every velocity needs inertia: check masses, inertias and their default values"))

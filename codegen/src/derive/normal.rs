@@ -49,6 +49,10 @@ impl NormalForms {
             let Some(polynomial) = expander.expand(&points.free, constraint) else {
                 continue;
             };
+            // A function or a quotient is a node of the free graph, which means nothing elsewhere.
+            if polynomial.variables().iter().any(|v| *v >= OPAQUE) {
+                continue;
+            }
             // Joined with the ideals that share coordinates with it.
             let mut joined = vec![polynomial];
             let mut rest = Vec::new();
