@@ -53,6 +53,13 @@ impl Graph {
         graph
     }
 
+    /// An empty graph at the same points, for some of the symbols.
+    pub fn fresh(&self) -> Self {
+        let mut graph = Graph::new(0, self.free_class);
+        graph.lanes = std::array::from_fn(|lane| self.lanes[lane].fresh());
+        graph
+    }
+
     /// The number 0.
     pub fn zero(&self) -> Edge {
         Edge::of(0)

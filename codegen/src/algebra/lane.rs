@@ -37,6 +37,16 @@ impl Lane {
         }
     }
 
+    /// The same functions, without symbols.
+    pub fn fresh(&self) -> Self {
+        Lane::new(self.seed)
+    }
+
+    /// Changes a symbol.
+    pub fn set_symbol(&mut self, index: usize, value: Fp) {
+        self.symbols[index] = value;
+    }
+
     /// Adds the next symbol.
     pub fn push_symbol(&mut self, value: Fp) {
         self.symbols.push(value);

@@ -5,20 +5,34 @@ use rustc_hash::FxHashMap;
 
 /// Builds the expressions again in another graph, where they merge with what is equal there.
 pub fn rebuild(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
-    carry(from, into, edges, |into, node, a, b| match node {
+    carry(from, into, edges, same_symbol, merged)
+}
+
+/// Builds the expressions again with every symbol replaced by an expression of the other graph, by
+/// the symbols' order.
+pub fn substitute(from: &Graph, into: &mut Graph, edges: &[Edge], images: &[Edge]) -> Vec<Edge> {
+    carry(from, into, edges, |_, index| images[index as usize], merged)
+}
+
+fn same_symbol(into: &Graph, index: u32) -> Edge {
+    Edge::of(into.symbols()[index as usize].node)
+}
+
+fn merged(into: &mut Graph, node: Node, a: Edge, b: Edge) -> Edge {
+    match node {
         Node::Add(..) => into.add(a, b),
         Node::Mul(..) => into.mul(a, b),
         Node::Div(..) => into.div(a, b).unwrap_or(into.zero()),
         Node::Apply(function, _) => into.apply(function, a),
         Node::Atan2(..) => into.atan2(a, b),
         Node::Constant(_) | Node::Symbol(_) => a,
-    })
+    }
 }
 
 /// Copies the expressions node by node without merging: for functions that are wanted off the
 /// variety, such as φ itself, whose value on X would make it the number 0.
 pub fn copy(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
-    carry(from, into, edges, |into, node, a, b| {
+    carry(from, into, edges, same_symbol, |into, node, a, b| {
         let node = match node {
             Node::Add(..) => Node::Add(a, b),
             Node::Mul(..) => Node::Mul(a.abs(), b.abs()),
@@ -35,6 +49,7 @@ fn carry(
     from: &Graph,
     into: &mut Graph,
     edges: &[Edge],
+    symbol: impl Fn(&Graph, u32) -> Edge,
     mut make: impl FnMut(&mut Graph, Node, Edge, Edge) -> Edge,
 ) -> Vec<Edge> {
     let mut image: FxHashMap<NodeId, Edge> = FxHashMap::default();
@@ -48,7 +63,7 @@ fn carry(
     for id in from.reachable(edges) {
         let made = match from.node(id) {
             Node::Constant(index) => into.rational(from.constant(index)),
-            Node::Symbol(index) => Edge::of(into.symbols()[index as usize].node),
+            Node::Symbol(index) => symbol(into, index),
             node => {
                 let mut children = node.children().map(|child| read(&image, into, child));
                 let a = children.next().unwrap_or(into.zero());

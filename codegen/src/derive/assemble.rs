@@ -3,7 +3,9 @@
 use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
-use super::{energy, inertia, kinematics, loads};
+use super::multipliers::multipliers;
+use super::reduction::Reduction;
+use super::{constrained, energy, inertia, kinematics, loads, reduction};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
@@ -13,7 +15,13 @@ use crate::program::{Argument, Function, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
 /// Derives all functions of a model.
-pub fn assemble(model: &Model) -> Result<Program, Diagnostic> {
+pub fn assemble(full: &Model) -> Result<Program, Diagnostic> {
+    let reduction = if full.constraints.is_empty() {
+        None
+    } else {
+        Some(reduction::reduce(full)?)
+    };
+    let model = reduction.as_ref().map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
     let mut calculus = Calculus::new(&reference);
     let mass = inertia::mass_matrix(&mut reference, &mut calculus);
@@ -31,8 +39,14 @@ pub fn assemble(model: &Model) -> Result<Program, Diagnostic> {
     builder.dynamics(&reference.graph, potential);
     builder.variety(model)?;
     builder.outputs();
+    if let Some(reduction) = &reduction {
+        builder.constraint_force(full, reduction);
+    }
     let program = builder.finish();
-    super::validate::validate(model, &program)?;
+    match &reduction {
+        Some(reduction) => constrained::validate(full, reduction, &program)?,
+        None => super::validate::validate(model, &program)?,
+    }
     Ok(program)
 }
 
@@ -101,13 +115,7 @@ impl<'a> Builder<'a> {
     fn dynamics(&mut self, reference: &Graph, potential: Edge) {
         let n = self.model.n();
         let (xi, xi_dot) = (self.model.xi.clone(), self.model.xi_dot.clone());
-        let guards: Vec<Edge> = self
-            .chosen
-            .pivots
-            .iter()
-            .copied()
-            .filter(|p| !self.graph.is_free(p.node()))
-            .collect();
+        let guards = self.guards();
         self.functions.push(Function {
             name: "accel".into(),
             docs: vec![
@@ -204,6 +212,32 @@ impl<'a> Builder<'a> {
         );
     }
 
+    /// λ of all constraints.
+    fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
+        let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut self.graph) else {
+            return;
+        };
+        let guards = self.guards();
+        self.functions.push(Function {
+            name: "constraint_force".into(),
+            docs: vec![
+                "Multipliers λ of the constraints B(x) ξ = 0, M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ, in their order: the".into(),
+                "generalised force that keeps an inactive velocity at zero, a force where B ξ is a speed.".into(),
+            ],
+            arguments: vec![Coordinates, Velocities, Inputs],
+            shape: Shape::Vector(outputs.len()),
+            outputs,
+            guards,
+            fallible: true,
+        });
+    }
+
+    /// Pivots that vary at run time.
+    fn guards(&self) -> Vec<Edge> {
+        let pivots = self.chosen.pivots.iter().copied();
+        pivots.filter(|p| !self.graph.is_free(p.node())).collect()
+    }
+
     /// φ and −Ψ φ, which are wanted off X: copied node by node from the graph with free points.
     fn variety(&mut self, model: &Model) -> Result<(), Diagnostic> {
         let mut free = model.points.free.clone();
@@ -258,10 +292,12 @@ impl<'a> Builder<'a> {
             model.wants(&function.name) || (function.name == "energy" && model.wants("energy"))
         });
         let constant_guards = if self.functions.iter().any(|f| f.name == "accel") {
+            let constants = rebuild(&model.graph, &mut self.graph, &model.constant_pivots);
             self.chosen
                 .pivots
                 .iter()
                 .copied()
+                .chain(constants)
                 .filter(|p| self.graph.is_free(p.node()))
                 .collect()
         } else {

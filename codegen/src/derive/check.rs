@@ -6,7 +6,9 @@
 
 use super::calculus::Calculus;
 use super::commutation::gamma_from_rows;
+use super::constrained;
 use super::normal::NormalForms;
+use super::reduction::reduce;
 use super::tables::Geometry;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
@@ -65,10 +67,13 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
         }];
     };
     let mut all = geometric(&mut geometry);
-    all.extend(motion(&mut geometry, program));
+    if model.constraints.is_empty() {
+        all.extend(motion(&mut geometry, program));
+    }
     let mut proofs = Proofs::new(model);
     let graph = &geometry.model.graph;
-    all.iter()
+    let mut identities: Vec<Identity> = all
+        .iter()
         .enumerate()
         .map(|(index, sides)| {
             let verdict = match at_points(model, graph, sides) {
@@ -82,7 +87,23 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
                 verdict,
             }
         })
-        .collect()
+        .collect();
+    if !model.constraints.is_empty() {
+        identities.extend(with_constraints(model, program));
+    }
+    identities
+}
+
+/// The identities of motion where there are constraints on ξ.
+fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
+    match reduce(model) {
+        Ok(reduction) => constrained::identities(model, &reduction, program),
+        Err(error) => vec![Identity {
+            label: "C",
+            equation: "B C = 0",
+            verdict: Verdict::Failed(error.message),
+        }],
+    }
 }
 
 /// The identities of kinematics and inertia.

@@ -19,20 +19,19 @@ pub const POINTS: u64 = 8;
 const TRIES: u64 = 400;
 
 /// The independent derivation: M, h = Γ ξ ξ, ∂V, f, T, V.
-struct Reference {
-    model: Model,
-    mass: Vec<Vec<Edge>>,
-    bias: Vec<Edge>,
-    slope: Vec<Edge>,
-    force: Vec<Edge>,
-    kinetic: Edge,
-    potential: Edge,
+pub(super) struct Reference {
+    pub model: Model,
+    pub mass: Vec<Vec<Edge>>,
+    pub bias: Vec<Edge>,
+    pub slope: Vec<Edge>,
+    pub force: Vec<Edge>,
+    pub kinetic: Edge,
+    pub potential: Edge,
 }
 
 impl Reference {
     /// Hamel's form (30a), from T and γ, not from traced bodies.
-    fn new(model: &Model) -> Option<Self> {
-        let mut model = model.clone();
+    pub fn new(mut model: Model) -> Option<Self> {
         let mut calculus = Calculus::new(&model);
         let mass = inertia::mass_matrix(&mut model, &mut calculus);
         let rows = kinematics::left_inverse(&mut model)?;
@@ -58,25 +57,13 @@ impl Reference {
 
 /// Validates the functions of a program; an error here is a fault of the generator, never emitted.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    let failure = |what: &str| {
-        Diagnostic::new(
-            model.span,
-            format!(
-                "internal check failed: {what} of `{}` does not satisfy its equation",
-                model.name
-            ),
-        )
-        .help(
-            "this is a fault of the generator, nothing was emitted; please report the description",
-        )
-    };
-    let reference = Reference::new(model).ok_or_else(|| failure("the kinematics"))?;
+    let reference = Reference::new(model.clone()).ok_or_else(|| failure(model, "the kinematics"))?;
     let mut seed = 0;
     for _ in 0..POINTS {
         loop {
             seed += 1;
             if seed > TRIES {
-                return Err(failure("no point was found at which the code"));
+                return Err(failure(model, "no point was found at which the code"));
             }
             let Some(lane) = model.points.lane(0x7a11 + seed) else {
                 continue;
@@ -84,11 +71,23 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             match at_point(&reference, program, lane) {
                 None => continue,
                 Some(Ok(())) => break,
-                Some(Err(what)) => return Err(failure(what)),
+                Some(Err(what)) => return Err(failure(model, what)),
             }
         }
     }
     Ok(())
+}
+
+/// A fault of the generator, which is never emitted.
+pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
+    Diagnostic::new(
+        model.span,
+        format!(
+            "internal check failed: {what} of `{}` does not satisfy its equation",
+            model.name
+        ),
+    )
+    .help("this is a fault of the generator, nothing was emitted; please report the description")
 }
 
 /// Compares at one point; `None` where it cannot be evaluated there.

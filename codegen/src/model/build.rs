@@ -5,7 +5,7 @@ use super::frames::{define_frame, define_let};
 use super::scope::Scope;
 use super::value::Value;
 use super::variety::Variety;
-use super::{Frame, Model, class, defaults, dynamics, kinematics, start};
+use super::{Frame, Model, class, closure, defaults, dynamics, kinematics, pfaffian, start};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -100,14 +100,29 @@ impl<'a> Reading<'a> {
         variety.check(system, graph, scope, report);
         let kinematics = kinematics::read(system, graph, scope, variety, declared, report);
         let dynamics = dynamics::read(system, graph, scope, &frames, declared, report);
-        let starts = start::read(system, graph, scope, declared, &defaults, report);
-        if let Some((x, _)) = &starts {
-            start::check(system, variety, declared, &defaults, x, report);
+        let constraints = pfaffian::read(
+            system,
+            graph,
+            scope,
+            declared,
+            kinematics.as_ref(),
+            report,
+        );
+        let mut starts = start::read(system, graph, scope, declared, &defaults, report);
+        if let Some(start) = &starts {
+            start::check(system, variety, declared, &defaults, &start.x, report);
+        }
+        if let (Some(start), Some(kinematics), true) =
+            (&mut starts, &kinematics, report.is_empty())
+        {
+            let mut closure =
+                closure::Closure::new(graph, declared, kinematics, &constraints, &defaults);
+            report.keep(closure.close(start));
         }
         if let Err(errors) = self.report.finish() {
             return Err((errors, Some(Box::new(self.graph))));
         }
-        let (Some(kinematics), Some((start_x, start_xi))) = (kinematics, starts) else {
+        let (Some(kinematics), Some(start)) = (kinematics, starts) else {
             let error = Diagnostic::new(system.name.span, "the description could not be read");
             return Err((vec![error], None));
         };
@@ -132,6 +147,10 @@ impl<'a> Reading<'a> {
             u: declared.u,
             rate: kinematics.rate,
             a: kinematics.a,
+            constraints,
+            spans: true,
+            constant_pivots: Vec::new(),
+            kinetic_terms: None,
             frames,
             bodies: dynamics.bodies,
             particles: dynamics.particles,
@@ -142,8 +161,8 @@ impl<'a> Reading<'a> {
             generalized: dynamics.generalized,
             outputs: dynamics.outputs,
             lets,
-            start_x,
-            start_xi,
+            start_x: start.x,
+            start_xi: start.xi,
             generate: dynamics.generate,
             span: system.name.span,
         })

@@ -25,6 +25,7 @@ pub const FUNCTIONS: &[&str] = &[
     "potential_energy",
     "energy",
     "constraint",
+    "constraint_force",
 ];
 
 /// Further functions that a program has, whose names no output can take.

@@ -6,6 +6,7 @@
 mod arithmetic;
 mod bodies;
 mod build;
+mod closure;
 mod declare;
 mod defaults;
 mod dynamics;
@@ -15,6 +16,7 @@ mod functions;
 mod kinematics;
 pub mod layout;
 mod loads;
+pub mod pfaffian;
 pub mod points;
 mod rotations;
 pub mod scope;
@@ -27,6 +29,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
 use layout::Block;
+use pfaffian::Pfaffian;
 use points::Points;
 use value::Value;
 
@@ -125,6 +128,15 @@ pub struct Wrench {
     pub axes: Axes,
 }
 
+/// What a kinetic energy that the user wrote contributes where ξ does not span the tangent space.
+#[derive(Clone, Debug)]
+pub struct KineticTerms {
+    /// Its metric.
+    pub mass: Vec<Vec<Edge>>,
+    /// Its bias, derived before the constraints were put in.
+    pub bias: Vec<Edge>,
+}
+
 /// A mechanical system: configuration, kinematics, inertia, loads.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -166,6 +178,14 @@ pub struct Model {
     pub rate: Vec<Edge>,
     /// A, ν rows of n.
     pub a: Vec<Vec<Edge>>,
+    /// Constraints B(x) ξ = 0 beyond the choice of ξ.
+    pub constraints: Vec<Pfaffian>,
+    /// Whether A spans the tangent space of X: not so where constraints have been solved.
+    pub spans: bool,
+    /// Constants that are divided by and so have to be nonzero: their squares.
+    pub constant_pivots: Vec<Edge>,
+    /// The user's kinetic energy where A does not span the tangent space.
+    pub kinetic_terms: Option<KineticTerms>,
     /// Frames.
     pub frames: Vec<Frame>,
     /// Bodies.

@@ -17,11 +17,11 @@ use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 const ROUNDING: f64 = 1e-9;
 
 /// x and ξ so far, and where each entry was given.
-struct Start {
-    x: Vec<f64>,
-    xi: Vec<f64>,
-    given_x: Vec<Option<Span>>,
-    given_xi: Vec<Option<Span>>,
+pub struct Start {
+    pub x: Vec<f64>,
+    pub xi: Vec<f64>,
+    pub given_x: Vec<Option<Span>>,
+    pub given_xi: Vec<Option<Span>>,
 }
 
 /// x and ξ from the `start` statements; what is not given is at the identity and at rest.
@@ -32,7 +32,7 @@ pub fn read(
     declared: &Declared,
     defaults: &[f64],
     report: &mut Report,
-) -> Option<(Vec<f64>, Vec<f64>)> {
+) -> Option<Start> {
     let kinds = declared
         .coordinates
         .iter()
@@ -63,7 +63,7 @@ pub fn read(
             .read(target, value, evaluator, declared, &symbols)
             .is_some();
     }
-    complete.then_some((start.x, start.xi))
+    complete.then_some(start)
 }
 
 impl Start {

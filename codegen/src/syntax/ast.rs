@@ -256,6 +256,26 @@ pub enum ItemKind {
         /// Its time derivative, linear in the velocities.
         value: Expr,
     },
+    /// `inactive v, w[3];` velocities that stay zero.
+    Inactive(Vec<Expr>),
+    /// `nonholonomic a = b;` both sides linear in the velocities.
+    Nonholonomic {
+        /// The left side.
+        left: Expr,
+        /// The right side.
+        right: Expr,
+        /// λ in d/dt (B ξ) = −2 λ B ξ (1/s), nothing where absent.
+        stabilized: Option<Expr>,
+    },
+    /// `loop a = b;` a closed loop, kept by multipliers.
+    Loop {
+        /// The left side.
+        left: Expr,
+        /// The right side.
+        right: Expr,
+        /// λ in φ̈ = −2 λ φ̇ − λ² φ (1/s), nothing where absent.
+        stabilized: Option<Expr>,
+    },
     /// `frame f [on g] = pose(R, p);`
     Frame {
         /// The new frame.

@@ -1,6 +1,6 @@
 //! The statements, by their first word.
 
-use super::ast::{Ident, Item, ItemKind, Target};
+use super::ast::{Expr, Ident, Item, ItemKind, Target};
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
 use super::parse::since;
@@ -40,6 +40,29 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
             ItemKind::Rate {
                 target,
                 value: expression(cursor)?,
+            }
+        }
+        "inactive" => {
+            let mut list = vec![expression(cursor)?];
+            while cursor.eat_punct(',') {
+                list.push(expression(cursor)?);
+            }
+            ItemKind::Inactive(list)
+        }
+        "nonholonomic" => {
+            let (left, right, stabilized) = kept(cursor)?;
+            ItemKind::Nonholonomic {
+                left,
+                right,
+                stabilized,
+            }
+        }
+        "loop" => {
+            let (left, right, stabilized) = kept(cursor)?;
+            ItemKind::Loop {
+                left,
+                right,
+                stabilized,
             }
         }
         "start" => {
@@ -115,6 +138,19 @@ fn target(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Target> {
         None
     };
     Ok(Target { name, field })
+}
+
+/// `a = b [stabilized λ]`
+fn kept(cursor: &mut Cursor<'_>) -> Parsed<(Expr, Expr, Option<Expr>)> {
+    let left = expression(cursor)?;
+    cursor.assign()?;
+    let right = expression(cursor)?;
+    let stabilized = if cursor.eat_word("stabilized") {
+        Some(expression(cursor)?)
+    } else {
+        None
+    };
+    Ok((left, right, stabilized))
 }
 
 /// `frame f [on g] = pose(R, p)`

@@ -86,6 +86,30 @@ fn told(kind: &ItemKind) -> String {
             )
         }
         Constraint { left, right } => format!("constraint {} = {}", spelled(left), spelled(right)),
+        Inactive(list) => {
+            let list: Vec<String> = list.iter().map(spelled).collect();
+            format!("inactive {}", list.join("; "))
+        }
+        Nonholonomic {
+            left,
+            right,
+            stabilized,
+        } => format!(
+            "nonholonomic {} = {} stabilized {}",
+            spelled(left),
+            spelled(right),
+            maybe(stabilized)
+        ),
+        Loop {
+            left,
+            right,
+            stabilized,
+        } => format!(
+            "loop {} = {} stabilized {}",
+            spelled(left),
+            spelled(right),
+            maybe(stabilized)
+        ),
         Rate { target, value } => format!("rate {} = {}", aimed(target), spelled(value)),
         Start { target, value } => format!("start {} = {}", aimed(target), spelled(value)),
         Generalized { target, value } => {

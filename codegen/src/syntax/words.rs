@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 21] = [
+const STATEMENTS: [(&str, &str); 24] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -12,6 +12,18 @@ const STATEMENTS: [(&str, &str); 21] = [
     ("velocity", "velocities are written `velocity v: vec3, u;`"),
     ("constraint", "a constraint is written `constraint a = b;`"),
     ("rate", "a rate is written `rate r = R * v;`"),
+    (
+        "inactive",
+        "velocities that stay zero are written `inactive v, w[3];`",
+    ),
+    (
+        "nonholonomic",
+        "a nonholonomic constraint is written `nonholonomic v + cross(w, p) = [0, 0, 0];`",
+    ),
+    (
+        "loop",
+        "a closed loop is written `loop a = b;` or `loop a = b stabilized 20;`",
+    ),
     (
         "frame",
         "a frame is written `frame f = pose(R, p);` or `frame f on g = pose(R, p);`",
@@ -59,18 +71,16 @@ const STATEMENTS: [(&str, &str); 21] = [
 ];
 
 /// Statements of later versions.
-pub(super) const LATER: [&str; 7] = [
+pub(super) const LATER: [&str; 5] = [
     "joint",
     "spring",
     "damper",
     "dissipation",
-    "inactive",
-    "nonholonomic",
     "invariant",
 ];
 
 /// Words that end an expression, and can name nothing.
-pub(super) const CONNECTIVES: [&str; 4] = ["at", "on", "in", "about"];
+pub(super) const CONNECTIVES: [&str; 5] = ["at", "on", "in", "about", "stabilized"];
 
 /// Words that no item of the generated code can have for a name.
 pub(super) const RUST_WORDS: [&str; 53] = [

@@ -6,6 +6,7 @@
 
 pub mod parts;
 pub mod polynomial;
+pub mod saddle;
 pub mod setting;
 pub mod solve;
 
@@ -32,6 +33,8 @@ pub struct Acceleration {
     pub xi_dot: Vec<Edge>,
     /// Pivots that have to be positive, in order of elimination.
     pub pivots: Vec<Edge>,
+    /// Multipliers of the constraints that the model keeps.
+    pub multipliers: Vec<Edge>,
     /// Its operations.
     pub count: Count,
     /// Its longest chain of operations after one another: of two equal counts the flatter is faster.
@@ -44,8 +47,11 @@ pub struct Acceleration {
 pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     let mut best: Option<Acceleration> = None;
     let given = Setting::given(model);
+    if !model.constraints.is_empty() {
+        return constrained(&given);
+    }
     let variant = search(&given, &mut best)?;
-    if model.n() <= SMALL {
+    if model.n() <= SMALL && model.spans {
         if let Some(twist) = Setting::twist(model) {
             search(&twist, &mut best);
         }
@@ -58,6 +64,56 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     let (traced, parts) = trace(&given, variant);
     let parts = parts.rebuilt(&traced.graph, &mut best.graph);
     Some((best, parts))
+}
+
+/// The cheapest computation with multipliers.
+fn constrained(setting: &Setting) -> Option<(Acceleration, Parts)> {
+    let n = setting.model.n();
+    let rows: Vec<Vec<Edge>> = setting
+        .model
+        .constraints
+        .iter()
+        .map(|constraint| constraint.row.clone())
+        .collect();
+    let mut best: Option<(Acceleration, Parts)> = None;
+    for variant in variants(&setting.model, n <= SMALL) {
+        let (mut traced, parts) = trace(setting, variant);
+        let right = saddle::right_side(&mut traced, &mut setting.calculus.clone());
+        let orders = [
+            (0..n).collect(),
+            (0..n).rev().collect(),
+            constant_first(&traced.graph, &parts),
+        ];
+        for order in orders {
+            let mut graph = traced.graph.clone();
+            let Some(solution) = saddle::solve(&mut graph, &parts, &rows, &right, &order) else {
+                continue;
+            };
+            let varying = |edge: &&Edge| !graph.is_free(edge.node());
+            let mut roots = solution.xi_dot.clone();
+            roots.extend(solution.pivots.iter().filter(varying));
+            let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
+            let cost = (count.weight(), depth);
+            if best
+                .as_ref()
+                .is_some_and(|(best, _)| (best.count.weight(), best.depth) <= cost)
+            {
+                continue;
+            }
+            let route = format!("{}, constraints by multipliers", route(&traced, &order, &variant));
+            let acceleration = Acceleration {
+                graph,
+                xi_dot: solution.xi_dot,
+                pivots: solution.pivots,
+                multipliers: solution.multipliers,
+                count,
+                depth,
+                route,
+            };
+            best = Some((acceleration, parts.clone()));
+        }
+    }
+    best
 }
 
 /// The chosen computation after resubstitution.
@@ -83,6 +139,7 @@ fn polished(chosen: Acceleration, model: &Model) -> Acceleration {
         route: chosen.route.clone(),
         xi_dot: xi_dot.to_vec(),
         pivots: pivots.to_vec(),
+        multipliers: Vec::new(),
         graph,
     };
     if polished.count.weight() < chosen.count.weight() {
@@ -176,6 +233,23 @@ fn attempt(
             .filter(|pivot| !graph.is_free(pivot.node())),
     );
     let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
+    let mut route = route(traced, &plan.order, variant);
+    if setting.back.is_some() {
+        route = route.replacen("traced", "traced in its own twist", 1);
+    }
+    Some(Acceleration {
+        graph,
+        xi_dot,
+        pivots: solution.pivots,
+        multipliers: Vec::new(),
+        count,
+        depth,
+        route,
+    })
+}
+
+/// What is traced and eliminated, in words.
+fn route(traced: &Model, order: &[usize], variant: &Variant) -> String {
     let axes = match variant.axes {
         Axes::Body => "body",
         Axes::World => "world",
@@ -184,27 +258,12 @@ fn attempt(
         Reference::Com => "centres of mass",
         Reference::Origin => "frame origins",
     };
-    let inner = if setting.back.is_some() {
-        " in its own twist"
+    let order = elimination(traced, order);
+    if traced.bodies.is_empty() {
+        format!("masses traced, {order}")
     } else {
-        ""
-    };
-    let route = if traced.bodies.is_empty() {
-        format!("masses traced, {}", elimination(traced, &plan.order))
-    } else {
-        format!(
-            "bodies traced{inner} about their {point} in {axes} axes, {}",
-            elimination(traced, &plan.order)
-        )
-    };
-    Some(Acceleration {
-        graph,
-        xi_dot,
-        pivots: solution.pivots,
-        count,
-        depth,
-        route,
-    })
+        format!("bodies traced about their {point} in {axes} axes, {order}")
+    }
 }
 
 /// The order of elimination in words.

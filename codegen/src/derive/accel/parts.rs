@@ -104,7 +104,12 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
         });
         accumulate(graph, &mut mass, &part);
     }
-    if model.kinetic != zero {
+    if let Some(terms) = model.kinetic_terms.clone() {
+        for (sum, &h) in inertia.iter_mut().zip(&terms.bias) {
+            *sum = model.graph.sub(*sum, h);
+        }
+        accumulate(&mut model.graph, &mut mass, &terms.mass);
+    } else if model.kinetic != zero {
         let part = kinetic_mass(model);
         let rows = kinematics::left_inverse(model).unwrap_or_default();
         let gamma = gamma(model, calculus, &rows);

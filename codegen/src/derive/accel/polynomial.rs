@@ -244,6 +244,7 @@ impl System {
         let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
         let modulo = if self.reduced { " modulo φ" } else { "" };
         Acceleration {
+            multipliers: Vec::new(),
             route: format!("right-hand side expanded{modulo} and factored, {how}"),
             graph,
             xi_dot,

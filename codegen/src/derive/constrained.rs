@@ -1,0 +1,372 @@
+//! The proof for systems with constraints: at points of X modulo p, with ξ = C ξₐ, the emitted ξ̇ₐ and
+//! multipliers satisfy M ξ̇ + h + ∂V = f + Bᵀ λ in every row of the full frame, and d/dt (B ξ) is what
+//! the constraints ask for; M, h, V and f come from T and γ of the full frame.
+
+use super::calculus::Calculus;
+use super::check::{Identity, Verdict};
+use super::reduction::{Reduction, drift};
+use super::validate::{Reference, failure};
+use crate::algebra::fp::{Fp, Random};
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::lane::Lane;
+use crate::algebra::numeric::evaluate_at;
+use crate::derive::accel::saddle;
+use crate::diagnostics::Diagnostic;
+use crate::model::{Model, class};
+use crate::program::Program;
+
+/// Points at which everything is compared.
+const POINTS: u64 = 8;
+/// Points tried where square roots have no value.
+const TRIES: u64 = 400;
+
+/// What is compared, with the label and equation that `check` prints.
+const IDENTITIES: [(&str, &str); 7] = [
+    ("C", "B C = 0 for the rows that were solved"),
+    ("(30c)", "M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ for the emitted ξ̇ and λ"),
+    ("B", "d/dt (B ξ) = −2 λ B ξ − λ² φ for the emitted ξ̇"),
+    ("M", "the emitted mass matrix is Cᵀ M C"),
+    ("(30a)", "the emitted bias is Cᵀ (Γ ξ ξ + M Ċ ξ)"),
+    ("(28)", "the emitted forces are Cᵀ f and Cᵀ ∂V"),
+    ("power", "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ = 0"),
+];
+
+/// Everything of the full frame that is compared with.
+struct Full {
+    reference: Reference,
+    /// Ċ ξₐ.
+    drift: Vec<Edge>,
+    complement: Vec<Edge>,
+    /// B, all rows.
+    rows: Vec<Edge>,
+    /// d/dt (T + V) at ξ̇ = 0.
+    change: Edge,
+    /// Kept rows in ξₐ and their right sides, in the reduced graph.
+    reduced: Model,
+    right: Vec<Edge>,
+}
+
+impl Full {
+    fn new(model: &Model, reduction: &Reduction) -> Option<Self> {
+        let full = Model {
+            graph: reduction.graph.clone(),
+            ..model.clone()
+        };
+        let mut reference = Reference::new(full)?;
+        let full = &mut reference.model;
+        let xi: Vec<Edge> = reduction.active.iter().map(|&i| full.xi[i]).collect();
+        let drift = drift(full, &xi, &reduction.complement);
+        let mut calculus = Calculus::new(full);
+        let energy = full.graph.add(reference.kinetic, reference.potential);
+        let change = calculus.rate(&mut full.graph, energy);
+        let mut reduced = reduction.model.clone();
+        let mut calculus = Calculus::new(&reduced);
+        let right = saddle::right_side(&mut reduced, &mut calculus);
+        Some(Full {
+            drift,
+            complement: reduction.complement.concat(),
+            rows: model.constraints.iter().flat_map(|c| c.row.clone()).collect(),
+            change,
+            reduced,
+            right,
+            reference,
+        })
+    }
+}
+
+/// Validates the functions of a program with constraints; an error is a fault of the generator.
+pub fn validate(
+    model: &Model,
+    reduction: &Reduction,
+    program: &Program,
+) -> Result<(), Diagnostic> {
+    for identity in identities(model, reduction, program) {
+        if let Verdict::Failed(_) = identity.verdict {
+            return Err(failure(model, identity.equation));
+        }
+    }
+    Ok(())
+}
+
+/// The identities with their verdicts.
+pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Vec<Identity> {
+    let mut failed: [Option<String>; IDENTITIES.len()] = Default::default();
+    let mut found = 0;
+    if let Some(full) = Full::new(model, reduction) {
+        for seed in 1..TRIES {
+            if found == POINTS {
+                break;
+            }
+            let Some(lane) = model.points.lane(0xb0d5 + seed) else {
+                continue;
+            };
+            let Some(results) = at_point(&full, reduction, program, &lane, seed) else {
+                continue;
+            };
+            found += 1;
+            for (failed, result) in failed.iter_mut().zip(results) {
+                *failed = failed.take().or(result.err());
+            }
+        }
+    }
+    let verdict = |failed: Option<String>| match failed {
+        _ if found == 0 => Verdict::Failed("no point was found to compare at".into()),
+        Some(message) => Verdict::Failed(message),
+        None => Verdict::Checked,
+    };
+    IDENTITIES
+        .iter()
+        .zip(failed)
+        .map(|(&(label, equation), failed)| Identity {
+            label,
+            equation,
+            verdict: verdict(failed),
+        })
+        .collect()
+}
+
+type Comparison = Result<(), String>;
+
+/// All comparisons at one point; `None` where something has no value there.
+fn at_point(
+    full: &Full,
+    reduction: &Reduction,
+    program: &Program,
+    lane: &Lane,
+    seed: u64,
+) -> Option<[Comparison; IDENTITIES.len()]> {
+    let (n, na) = (full.reference.model.n(), reduction.active.len());
+    let graph = &full.reference.model.graph;
+    let c = evaluate_at(graph, &full.complement, &mut lane.clone())?;
+    let column = |j: usize| -> Vec<Fp> { (0..n).map(|i| c[i * na + j]).collect() };
+    let project = |v: &[Fp]| -> Vec<Fp> { (0..na).map(|j| dot(&column(j), v)).collect() };
+    let rows = evaluate_at(graph, &full.rows, &mut lane.clone())?;
+    let vanish = reduction
+        .solved
+        .iter()
+        .all(|&(row, _)| (0..na).all(|j| dot(&rows[row * n..][..n], &column(j)).is_zero()));
+    let place = places(graph, class::VELOCITY);
+    let random: Vec<Fp> = reduction
+        .active
+        .iter()
+        .map(|&i| lane.symbol(place[i]))
+        .collect();
+    let at = At {
+        full,
+        reduction,
+        program,
+        lane,
+        c: &c,
+    };
+    let (point, inner) = at.lanes(&random);
+    let values = at.values(&point)?;
+    let [mass, bias, slope, force] = [&values.mass, &values.bias, &values.slope, &values.force];
+    let emitted = |name: &str| -> Option<Option<Vec<Fp>>> {
+        match program.function(name) {
+            None => Some(None),
+            Some(f) => evaluate_at(&program.graph, &f.outputs, &mut inner.clone()).map(Some),
+        }
+    };
+    let balanced = match (emitted("accel")?, emitted("constraint_force")?) {
+        (Some(xi_dot), Some(lambda)) => {
+            let xi_dot = values.lift(&c, &xi_dot);
+            (0..n).all(|i| {
+                let inertial = dot(&mass[i * n..][..n], &xi_dot);
+                let bond = (0..lambda.len())
+                    .fold(Fp::ZERO, |sum, row| sum + rows[row * n + i] * lambda[row]);
+                inertial + bias[i] + slope[i] == force[i] + bond
+            })
+        }
+        _ => true,
+    };
+    let kept: Vec<Edge> = full
+        .reduced
+        .constraints
+        .iter()
+        .flat_map(|constraint| constraint.row.iter().copied())
+        .collect();
+    let inner_graph = &full.reduced.graph;
+    let kept = evaluate_at(inner_graph, &kept, &mut inner.clone())?;
+    let right = evaluate_at(inner_graph, &full.right, &mut inner.clone())?;
+    let held = match emitted("accel")? {
+        Some(xi_dot) => right
+            .iter()
+            .zip(kept.chunks(na))
+            .all(|(&right, row)| dot(row, &xi_dot) == right),
+        None => true,
+    };
+    let reduced_mass: Vec<Fp> = (0..na)
+        .flat_map(|i| {
+            let moved: Vec<Fp> = (0..n).map(|k| dot(&mass[k * n..][..n], &column(i))).collect();
+            project(&moved)
+        })
+        .collect();
+    let carried: Vec<Fp> = (0..n)
+        .map(|k| bias[k] + dot(&mass[k * n..][..n], &values.drift))
+        .collect();
+    let equal = |name: &str, expected: Vec<Fp>| -> Option<bool> {
+        Some(emitted(name)?.is_none_or(|found| found == expected))
+    };
+    let same_mass = equal("mass_matrix", reduced_mass)?;
+    let same_bias = equal("bias", project(&carried))?;
+    let same_loads = equal("generalized_force", project(force))?
+        && equal("potential_force", project(slope))?
+        && equal("kinetic_energy", vec![values.kinetic])?
+        && equal("potential_energy", vec![values.potential])?;
+    let power = at.power(&kept, &random, seed)?;
+    let result = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_string()) };
+    Some([
+        result(vanish, "a row does not vanish"),
+        result(balanced, "the forces do not balance"),
+        result(held, "the constraint is left"),
+        result(same_mass, "M differs"),
+        result(same_bias, "the bias differs"),
+        result(same_loads, "a force or energy differs"),
+        result(power, "the power differs"),
+    ])
+}
+
+/// A point with everything that is needed to move ξ on it.
+struct At<'a> {
+    full: &'a Full,
+    reduction: &'a Reduction,
+    program: &'a Program,
+    lane: &'a Lane,
+    c: &'a [Fp],
+}
+
+/// Numbers of the full frame.
+struct Values {
+    mass: Vec<Fp>,
+    bias: Vec<Fp>,
+    slope: Vec<Fp>,
+    force: Vec<Fp>,
+    drift: Vec<Fp>,
+    kinetic: Fp,
+    potential: Fp,
+    change: Fp,
+    xi: Vec<Fp>,
+}
+
+impl Values {
+    /// ξ̇ = C ξ̇ₐ + Ċ ξₐ.
+    fn lift(&self, c: &[Fp], xi_dot: &[Fp]) -> Vec<Fp> {
+        let rows = c.chunks(xi_dot.len()).zip(&self.drift);
+        rows.map(|(row, &drift)| dot(row, xi_dot) + drift).collect()
+    }
+}
+
+impl At<'_> {
+    /// The point with ξ = C ξₐ, and the same for the reduced model.
+    fn lanes(&self, xi_active: &[Fp]) -> (Lane, Lane) {
+        let graph = &self.full.reference.model.graph;
+        let velocities = places(graph, class::VELOCITY);
+        let accelerations = places(graph, class::ACCEL);
+        let mut point = self.lane.clone();
+        for (&symbol, row) in velocities.iter().zip(self.c.chunks(xi_active.len())) {
+            point.set_symbol(symbol, dot(row, xi_active));
+        }
+        let mut inner = point.fresh();
+        for index in 0..graph.symbols().len() {
+            let solved = [&velocities, &accelerations].iter().any(|list| {
+                let found = list.iter().position(|&symbol| symbol == index);
+                found.is_some_and(|i| !self.reduction.active.contains(&i))
+            });
+            if !solved {
+                inner.push_symbol(point.symbol(index));
+            }
+        }
+        (point, inner)
+    }
+
+    fn values(&self, point: &Lane) -> Option<Values> {
+        let reference = &self.full.reference;
+        let (graph, n) = (&reference.model.graph, reference.model.n());
+        let mut roots: Vec<Edge> = reference.mass.concat();
+        for part in [
+            &reference.bias,
+            &reference.slope,
+            &reference.force,
+            &self.full.drift,
+            &reference.model.xi,
+        ] {
+            roots.extend(part);
+        }
+        roots.extend([reference.kinetic, reference.potential, self.full.change]);
+        let all = evaluate_at(graph, &roots, &mut point.clone())?;
+        let (mass, rest) = all.split_at(n * n);
+        let part = |i: usize| rest[i * n..(i + 1) * n].to_vec();
+        let [kinetic, potential, change] = rest[5 * n..] else {
+            return None;
+        };
+        Some(Values {
+            mass: mass.to_vec(),
+            bias: part(0),
+            slope: part(1),
+            force: part(2),
+            drift: part(3),
+            xi: part(4),
+            kinetic,
+            potential,
+            change,
+        })
+    }
+
+    /// d/dt (T + V) = f ξ at a ξₐ that satisfies the rows that are kept.
+    fn power(&self, kept: &[Fp], random: &[Fp], seed: u64) -> Option<bool> {
+        let Some(accel) = self.program.function("accel") else {
+            return Some(true);
+        };
+        let xi_active = in_kernel(kept, random, seed)?;
+        let (point, inner) = self.lanes(&xi_active);
+        let values = self.values(&point)?;
+        let xi_dot = evaluate_at(&self.program.graph, &accel.outputs, &mut inner.clone())?;
+        let xi_dot = values.lift(self.c, &xi_dot);
+        let n = xi_dot.len();
+        let momentum: Vec<Fp> = (0..n).map(|i| dot(&values.mass[i * n..][..n], &values.xi)).collect();
+        Some(values.change + dot(&momentum, &xi_dot) == dot(&values.force, &values.xi))
+    }
+}
+
+/// A vector near `random` on which all rows vanish: by elimination, dependent entries replaced.
+fn in_kernel(rows: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>> {
+    let n = random.len();
+    let mut rows: Vec<Vec<Fp>> = rows.chunks(n).map(<[Fp]>::to_vec).collect();
+    let mut stream = Random::new(seed);
+    let mut xi: Vec<Fp> = random.iter().map(|&v| v + stream.element()).collect();
+    let mut pivots: Vec<usize> = Vec::new();
+    for i in 0..rows.len() {
+        let pivot = (0..n).find(|&j| !rows[i][j].is_zero())?;
+        let inverse = rows[i][pivot].inv()?;
+        let row: Vec<Fp> = rows[i].iter().map(|&entry| entry * inverse).collect();
+        for (k, other) in rows.iter_mut().enumerate() {
+            if k != i {
+                let factor = other[pivot];
+                for (entry, &by) in other.iter_mut().zip(&row) {
+                    *entry = *entry - factor * by;
+                }
+            }
+        }
+        rows[i] = row;
+        pivots.push(pivot);
+    }
+    for (row, &pivot) in rows.iter().zip(&pivots) {
+        xi[pivot] = (0..n)
+            .filter(|j| !pivots.contains(j))
+            .fold(Fp::ZERO, |sum, j| sum - row[j] * xi[j]);
+    }
+    Some(xi)
+}
+
+/// The places of the symbols of a class.
+fn places(graph: &Graph, class: u8) -> Vec<usize> {
+    let symbols = graph.symbols().iter().enumerate();
+    symbols
+        .filter(|(_, symbol)| symbol.class == class)
+        .map(|(index, _)| index)
+        .collect()
+}
+
+fn dot(a: &[Fp], b: &[Fp]) -> Fp {
+    a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y)
+}

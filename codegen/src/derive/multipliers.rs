@@ -1,0 +1,93 @@
+//! The multipliers λ of all constraints: M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ.
+//!
+//! Rows that are kept have theirs from the solution for ξ̇. The others follow from the rows of the
+//! equations of motion that the solved velocities belong to, by the pivots of the reduction.
+
+use super::accel::parts::{Axes, Reference, Variant, parts};
+use super::accel::Acceleration;
+use super::calculus::Calculus;
+use super::reduction::Reduction;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::solve_symmetric;
+use crate::algebra::transplant::{rebuild, substitute};
+use crate::model::{Model, class};
+
+/// λ in the graph of the program, in order of the constraints; that of a redundant row is 0.
+pub fn multipliers(
+    full: &Model,
+    reduction: &Reduction,
+    chosen: &Acceleration,
+    graph: &mut Graph,
+) -> Option<Vec<Edge>> {
+    let mut model = full.clone();
+    model.graph = reduction.graph.clone();
+    let mut calculus = Calculus::new(&model);
+    let variant = Variant {
+        axes: Axes::Body,
+        reference: Reference::Com,
+        shift: None,
+    };
+    let parts = parts(&mut model, &mut calculus, variant);
+    // M ξ̇ + h + ∂V − f of the solved velocities.
+    let residuals: Vec<Edge> = reduction
+        .solved
+        .iter()
+        .map(|&(_, velocity)| {
+            let inner = &mut model.graph;
+            let inertial = inner.dot(&parts.mass[velocity], &model.xi_dot);
+            let column: Vec<Edge> = parts.groups.iter().map(|group| group[velocity]).collect();
+            let sum = inner.sum(&column);
+            inner.sub(inertial, sum)
+        })
+        .collect();
+    let rows: Vec<Edge> = model.constraints.iter().flat_map(|c| c.row.clone()).collect();
+    let images = rebuild(&reduction.model.graph, graph, &reduction.images);
+    let residuals = substitute(&model.graph, graph, &residuals, &images);
+    let residuals = with_accelerations(graph, &residuals, &chosen.xi_dot);
+    let rows = substitute(&model.graph, graph, &rows, &images);
+    let n = full.n();
+    let mut multipliers = vec![graph.zero(); full.constraints.len()];
+    for (&row, &multiplier) in reduction.kept.iter().zip(&chosen.multipliers) {
+        multipliers[row] = multiplier;
+    }
+    let right: Vec<Vec<Edge>> = reduction
+        .solved
+        .iter()
+        .zip(residuals)
+        .map(|(&(_, velocity), residual)| {
+            let known = reduction.kept.iter().fold(residual, |sum, &row| {
+                let product = graph.mul(rows[row * n + velocity], multipliers[row]);
+                graph.sub(sum, product)
+            });
+            vec![known]
+        })
+        .collect();
+    let matrix: Vec<Vec<Edge>> = reduction
+        .solved
+        .iter()
+        .map(|&(_, velocity)| {
+            let row = |&(row, _): &(usize, usize)| rows[row * n + velocity];
+            reduction.solved.iter().map(row).collect()
+        })
+        .collect();
+    let solution = solve_symmetric(graph, &matrix, &right)?;
+    for (&(row, _), value) in reduction.solved.iter().zip(&solution) {
+        multipliers[row] = value[0];
+    }
+    Some(multipliers)
+}
+
+/// The expressions with ξ̇ₐ put in for its symbols.
+fn with_accelerations(graph: &mut Graph, edges: &[Edge], xi_dot: &[Edge]) -> Vec<Edge> {
+    let from = graph.clone();
+    let mut values = xi_dot.iter();
+    let images: Vec<Edge> = from
+        .symbols()
+        .iter()
+        .map(|symbol| {
+            let value = (symbol.class == class::ACCEL).then(|| values.next()).flatten();
+            value.copied().unwrap_or(Edge::of(symbol.node))
+        })
+        .collect();
+    substitute(&from, graph, edges, &images)
+}
