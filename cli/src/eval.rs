@@ -39,7 +39,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::read(&arguments.file)?;
     let generated = source.derive_all()?;
-    let state = State::read(&generated.model, arguments.at.as_deref())?;
+    let state = State::read(&generated.active, arguments.at.as_deref())?;
     let mut members = vec![
         ("system", Json::Text(generated.model.name.clone())),
         (
@@ -48,8 +48,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ),
         (
             "velocities",
-            Json::texts(&names::velocities(&generated.model)),
+            Json::texts(&names::velocities(&generated.active)),
         ),
+        ("frame", Json::texts(&names::velocities(&generated.model))),
         ("x", Json::vector(&state.x)),
         ("xi", Json::vector(&state.xi)),
     ];
@@ -84,7 +85,8 @@ fn geometry(generated: &Generated, state: &State) -> Result<Vec<(&'static str, J
     let numbers = model.numbers(
         &state.params,
         &state.x,
-        &state.xi,
+        // The tables depend on x alone.
+        &vec![0.0; model.n()],
         &state.u,
         &vec![0.0; model.n()],
     );

@@ -20,6 +20,8 @@ pub struct Interpreted {
     chart_rate: Interpreter,
     accel: Interpreter,
     correction: Interpreter,
+    close: Option<Interpreter>,
+    settle: Option<Interpreter>,
     constraint: Interpreter,
     momentum: Interpreter,
     kinetic: Interpreter,
@@ -61,6 +63,8 @@ impl Interpreted {
             chart_rate: function("chart_rate")?,
             accel: function("accel")?,
             correction: function("correction")?,
+            close: function("close").ok(),
+            settle: function("settle").ok(),
             constraint: function("constraint")?,
             momentum: function("momentum")?,
             kinetic: function("kinetic_energy")?,
@@ -190,6 +194,22 @@ impl System for Interpreted {
 
     fn correction(&self, x: &Vec<f64>) -> Vec<f64> {
         value(&self.correction, x, &[], &[])
+    }
+
+    fn close(&self, x: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
+        let step = self
+            .close
+            .as_ref()
+            .map(|close| close.call(x, &[], &[], &[]));
+        step.transpose().map_err(|pivot| Singular { pivot })
+    }
+
+    fn settle(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
+        let settled = self
+            .settle
+            .as_ref()
+            .map(|settle| settle.call(x, xi, &[], &[]));
+        settled.transpose().map_err(|pivot| Singular { pivot })
     }
 
     fn constraint_norm(&self, x: &Vec<f64>) -> f64 {

@@ -1,7 +1,6 @@
 //! A description's file: reading and deriving it, with errors shown in its text.
 
 use crate::failure::Failure;
-use hamel_codegen::derive::assemble::assemble;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
@@ -57,8 +56,8 @@ impl Source {
         let mut generated = self.derive()?;
         if !generated.model.generate.is_empty() {
             generated.model.generate.clear();
-            generated.program =
-                assemble(&generated.model).map_err(|error| self.refused(&[error]))?;
+            generated = Generated::of(generated.model, generated.hash)
+                .map_err(|error| self.refused(&[error]))?;
         }
         Ok(generated)
     }

@@ -1,6 +1,7 @@
 //! From a description to its program: what all doors call.
 
 use crate::derive::assemble::assemble;
+use crate::derive::reduction::reduce;
 use crate::diagnostics::Diagnostic;
 use crate::model::{self, Model};
 use crate::program::Program;
@@ -10,8 +11,10 @@ use proc_macro2::TokenStream;
 /// A description, read and derived.
 #[derive(Clone, Debug)]
 pub struct Generated {
-    /// The system that it describes.
+    /// The system that it describes, in the full frame.
     pub model: Model,
+    /// The same in the velocities that constraints leave: what states and functions are about.
+    pub active: Model,
     /// Its functions, validated.
     pub program: Program,
     /// Hash of the description's tokens: the same through every door.
@@ -36,12 +39,21 @@ pub fn from_text(text: &str) -> Result<Generated, Vec<Diagnostic>> {
 
 fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>> {
     let model = model::build(system)?;
-    let program = assemble(&model).map_err(|error| vec![error])?;
-    Ok(Generated {
-        model,
-        program,
-        hash,
-    })
+    Generated::of(model, hash).map_err(|error| vec![error])
+}
+
+impl Generated {
+    /// Derives a model.
+    pub fn of(model: Model, hash: u64) -> Result<Self, Diagnostic> {
+        let reduction = reduce(&model)?;
+        let program = assemble(&model, reduction.as_ref())?;
+        Ok(Generated {
+            active: reduction.map_or_else(|| model.clone(), |reduction| reduction.model),
+            model,
+            program,
+            hash,
+        })
+    }
 }
 
 /// FNV-1a, 64 bits.

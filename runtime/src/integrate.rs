@@ -53,7 +53,7 @@ impl Method {
         Sys: System + ?Sized,
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        *state = match self {
+        let next = match self {
             Self::Rkmk4 => rkmk4::step(system, state, h, inputs)?,
             Self::Rk4 { lambda } => rk4::step(system, state, h, lambda, inputs)?,
             Self::Rk4Projected => {
@@ -65,7 +65,31 @@ impl Method {
                 next
             }
         };
+        *state = projected(system, next)?;
         Ok(())
+    }
+}
+
+/// The state on the constraints that multipliers keep: loops closed by one Newton step, velocities
+/// by the projection that is orthogonal in kinetic energy. Nothing is done where there are none.
+#[inline]
+fn projected<Sys>(system: &Sys, mut state: State<Sys>) -> Result<State<Sys>, StepError>
+where
+    Sys: System + ?Sized,
+{
+    let time = state.t;
+    let singular = |cause| StepError::Singular { cause, time };
+    if let Some(step) = system.close(&state.x).map_err(singular)? {
+        let chart = system.chart_rate(&state.x, &step);
+        manifold::retract(system.blocks(), state.x.as_mut(), chart.as_ref());
+    }
+    if let Some(xi) = system.settle(&state.x, &state.xi).map_err(singular)? {
+        state.xi = xi;
+    }
+    if state.is_finite() {
+        Ok(state)
+    } else {
+        Err(StepError::NonFinite { time })
     }
 }
 

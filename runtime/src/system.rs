@@ -106,6 +106,32 @@ pub trait System {
     /// with Λ = λ I, along which φ decays like exp(−λ t).
     fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates;
 
+    /// The step along A, in velocities times time, that closes the loops which multipliers keep, to
+    /// first order; `None` where there are none.
+    ///
+    /// # Errors
+    /// [`Singular`] where the loops' rows depend on one another.
+    #[inline]
+    fn close(&self, x: &Self::Coordinates) -> Result<Option<Self::Velocities>, Singular> {
+        let _ = x;
+        Ok(None)
+    }
+
+    /// The velocities nearest to ξ in kinetic energy that satisfy B(x) ξ = 0 for the constraints that
+    /// multipliers keep; `None` where there are none.
+    ///
+    /// # Errors
+    /// [`Singular`] where the rows of B depend on one another.
+    #[inline]
+    fn settle(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+    ) -> Result<Option<Self::Velocities>, Singular> {
+        let _ = (x, xi);
+        Ok(None)
+    }
+
     /// max |φ(x)| over the constraints.
     fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar;
 

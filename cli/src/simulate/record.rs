@@ -154,7 +154,7 @@ impl<'a> Run<'a> {
             program: &generated.program,
             plan,
             coordinate_names: names::coordinates(&generated.model),
-            velocity_names: names::velocities(&generated.model),
+            velocity_names: names::velocities(&generated.active),
             output_names: outputs
                 .flat_map(|output| names::shaped(&output.name, output.shape))
                 .collect(),

@@ -5,7 +5,7 @@ use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
 use super::multipliers::multipliers;
 use super::reduction::Reduction;
-use super::{constrained, energy, inertia, kinematics, loads, reduction};
+use super::{constrained, energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
@@ -15,13 +15,8 @@ use crate::program::{Argument, Function, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
 /// Derives all functions of a model.
-pub fn assemble(full: &Model) -> Result<Program, Diagnostic> {
-    let reduction = if full.constraints.is_empty() {
-        None
-    } else {
-        Some(reduction::reduce(full)?)
-    };
-    let model = reduction.as_ref().map_or(full, |reduction| &reduction.model);
+pub fn assemble(full: &Model, reduction: Option<&Reduction>) -> Result<Program, Diagnostic> {
+    let model = reduction.map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
     let mut calculus = Calculus::new(&reference);
     let mass = inertia::mass_matrix(&mut reference, &mut calculus);
@@ -39,11 +34,12 @@ pub fn assemble(full: &Model) -> Result<Program, Diagnostic> {
     builder.dynamics(&reference.graph, potential);
     builder.variety(model)?;
     builder.outputs();
-    if let Some(reduction) = &reduction {
+    if let Some(reduction) = reduction {
         builder.constraint_force(full, reduction);
+        builder.projections();
     }
     let program = builder.finish();
-    match &reduction {
+    match reduction {
         Some(reduction) => constrained::validate(full, reduction, &program)?,
         None => super::validate::validate(model, &program)?,
     }
@@ -212,6 +208,17 @@ impl<'a> Builder<'a> {
         );
     }
 
+    /// φ of the loops that multipliers keep.
+    fn loops(&mut self) -> Vec<Edge> {
+        let zero = self.model.graph.zero();
+        let constraints = self.model.constraints.iter();
+        let residuals: Vec<Edge> = constraints
+            .map(|constraint| constraint.residual)
+            .filter(|&residual| residual != zero)
+            .collect();
+        rebuild(&self.model.graph, &mut self.graph, &residuals)
+    }
+
     /// λ of all constraints.
     fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
         let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut self.graph) else {
@@ -232,6 +239,44 @@ impl<'a> Builder<'a> {
         });
     }
 
+    /// What leads back to the constraints that are kept.
+    fn projections(&mut self) {
+        let Some(projections) = self.chosen.projections.clone() else {
+            return;
+        };
+        let guards = self.guards();
+        let n = self.model.n();
+        let table: [(&str, &str, &[Argument], Vec<Edge>); 2] = [
+            (
+                "close",
+                "The step along A that closes the loops φ(x) = 0 to first order, −M⁻¹ Bᵀ S⁻¹ φ with S = B M⁻¹ Bᵀ.",
+                &[Coordinates],
+                projections.close,
+            ),
+            (
+                "settle",
+                "The velocities with B ξ = 0 that are nearest in kinetic energy, ξ − M⁻¹ Bᵀ S⁻¹ B ξ.",
+                &[Coordinates, Velocities],
+                projections.settle,
+            ),
+        ];
+        let loops = !self.loops().is_empty();
+        for (name, docs, arguments, outputs) in table {
+            if name == "close" && !loops {
+                continue;
+            }
+            self.functions.push(Function {
+                name: name.into(),
+                docs: vec![docs.into()],
+                arguments: arguments.to_vec(),
+                shape: Shape::Vector(n),
+                outputs,
+                guards: guards.clone(),
+                fallible: true,
+            });
+        }
+    }
+
     /// Pivots that vary at run time.
     fn guards(&self) -> Vec<Edge> {
         let pivots = self.chosen.pivots.iter().copied();
@@ -246,7 +291,8 @@ impl<'a> Builder<'a> {
             Diagnostic::new(model.span, "the constraints are redundant: ΦΦᵀ is singular")
                 .help("remove the constraint that follows from the others")
         })?;
-        let phi = copy(&free, &mut self.graph, &rows);
+        let mut phi = copy(&free, &mut self.graph, &rows);
+        phi.extend(self.loops());
         let correction = copy(&free, &mut self.graph, &correction);
         self.push(
             "constraint",
@@ -303,6 +349,7 @@ impl<'a> Builder<'a> {
         } else {
             Vec::new()
         };
+        let loops = self.loops().len();
         Program {
             name: model.name.clone(),
             public: model.public,
@@ -317,7 +364,7 @@ impl<'a> Builder<'a> {
             nu: model.nu(),
             n: model.n(),
             m: model.u.len(),
-            phi: model.phi.len(),
+            phi: model.phi.len() + loops,
             start_x: model.start_x.clone(),
             start_xi: model.start_xi.clone(),
             names,

@@ -97,7 +97,8 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
 /// The identities of motion where there are constraints on ξ.
 fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
     match reduce(model) {
-        Ok(reduction) => constrained::identities(model, &reduction, program),
+        Ok(None) => Vec::new(),
+        Ok(Some(reduction)) => constrained::identities(model, &reduction, program),
         Err(error) => vec![Identity {
             label: "C",
             equation: "B C = 0",

@@ -23,12 +23,18 @@ const TRIES: u64 = 400;
 /// What is compared, with the label and equation that `check` prints.
 const IDENTITIES: [(&str, &str); 7] = [
     ("C", "B C = 0 for the rows that were solved"),
-    ("(30c)", "M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ for the emitted ξ̇ and λ"),
+    (
+        "(30c)",
+        "M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ for the emitted ξ̇ and λ",
+    ),
     ("B", "d/dt (B ξ) = −2 λ B ξ − λ² φ for the emitted ξ̇"),
     ("M", "the emitted mass matrix is Cᵀ M C"),
     ("(30a)", "the emitted bias is Cᵀ (Γ ξ ξ + M Ċ ξ)"),
     ("(28)", "the emitted forces are Cᵀ f and Cᵀ ∂V"),
-    ("power", "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ = 0"),
+    (
+        "power",
+        "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ = 0",
+    ),
 ];
 
 /// Everything of the full frame that is compared with.
@@ -65,7 +71,11 @@ impl Full {
         Some(Full {
             drift,
             complement: reduction.complement.concat(),
-            rows: model.constraints.iter().flat_map(|c| c.row.clone()).collect(),
+            rows: model
+                .constraints
+                .iter()
+                .flat_map(|c| c.row.clone())
+                .collect(),
             change,
             reduced,
             right,
@@ -75,11 +85,7 @@ impl Full {
 }
 
 /// Validates the functions of a program with constraints; an error is a fault of the generator.
-pub fn validate(
-    model: &Model,
-    reduction: &Reduction,
-    program: &Program,
-) -> Result<(), Diagnostic> {
+pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Result<(), Diagnostic> {
     for identity in identities(model, reduction, program) {
         if let Verdict::Failed(_) = identity.verdict {
             return Err(failure(model, identity.equation));
@@ -188,26 +194,32 @@ fn at_point(
     let inner_graph = &full.reduced.graph;
     let kept = evaluate_at(inner_graph, &kept, &mut inner.clone())?;
     let right = evaluate_at(inner_graph, &full.right, &mut inner.clone())?;
-    let held = match emitted("accel")? {
-        Some(xi_dot) => right
-            .iter()
-            .zip(kept.chunks(na))
-            .all(|(&right, row)| dot(row, &xi_dot) == right),
-        None => true,
-    };
     let reduced_mass: Vec<Fp> = (0..na)
         .flat_map(|i| {
-            let moved: Vec<Fp> = (0..n).map(|k| dot(&mass[k * n..][..n], &column(i))).collect();
+            let moved: Vec<Fp> = (0..n)
+                .map(|k| dot(&mass[k * n..][..n], &column(i)))
+                .collect();
             project(&moved)
         })
         .collect();
     let carried: Vec<Fp> = (0..n)
         .map(|k| bias[k] + dot(&mass[k * n..][..n], &values.drift))
         .collect();
+    let held = match emitted("accel")? {
+        None => true,
+        Some(xi_dot) if full.reduced.overconstrained => {
+            let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - carried[k]).collect();
+            saddle::solve_at(&reduced_mass, &project(&rest), &kept, &right)? == xi_dot
+        }
+        Some(xi_dot) => right
+            .iter()
+            .zip(kept.chunks(na))
+            .all(|(&right, row)| dot(row, &xi_dot) == right),
+    };
     let equal = |name: &str, expected: Vec<Fp>| -> Option<bool> {
         Some(emitted(name)?.is_none_or(|found| found == expected))
     };
-    let same_mass = equal("mass_matrix", reduced_mass)?;
+    let same_mass = equal("mass_matrix", reduced_mass.clone())?;
     let same_bias = equal("bias", project(&carried))?;
     let same_loads = equal("generalized_force", project(force))?
         && equal("potential_force", project(slope))?
@@ -323,7 +335,9 @@ impl At<'_> {
         let xi_dot = evaluate_at(&self.program.graph, &accel.outputs, &mut inner.clone())?;
         let xi_dot = values.lift(self.c, &xi_dot);
         let n = xi_dot.len();
-        let momentum: Vec<Fp> = (0..n).map(|i| dot(&values.mass[i * n..][..n], &values.xi)).collect();
+        let momentum: Vec<Fp> = (0..n)
+            .map(|i| dot(&values.mass[i * n..][..n], &values.xi))
+            .collect();
         Some(values.change + dot(&momentum, &xi_dot) == dot(&values.force, &values.xi))
     }
 }

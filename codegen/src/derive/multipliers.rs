@@ -3,8 +3,8 @@
 //! Rows that are kept have theirs from the solution for ξ̇. The others follow from the rows of the
 //! equations of motion that the solved velocities belong to, by the pivots of the reduction.
 
-use super::accel::parts::{Axes, Reference, Variant, parts};
 use super::accel::Acceleration;
+use super::accel::parts::{Axes, Reference, Variant, parts};
 use super::calculus::Calculus;
 use super::reduction::Reduction;
 use crate::algebra::graph::{Edge, Graph};
@@ -40,7 +40,11 @@ pub fn multipliers(
             inner.sub(inertial, sum)
         })
         .collect();
-    let rows: Vec<Edge> = model.constraints.iter().flat_map(|c| c.row.clone()).collect();
+    let rows: Vec<Edge> = model
+        .constraints
+        .iter()
+        .flat_map(|c| c.row.clone())
+        .collect();
     let images = rebuild(&reduction.model.graph, graph, &reduction.images);
     let residuals = substitute(&model.graph, graph, &residuals, &images);
     let residuals = with_accelerations(graph, &residuals, &chosen.xi_dot);
@@ -85,7 +89,9 @@ fn with_accelerations(graph: &mut Graph, edges: &[Edge], xi_dot: &[Edge]) -> Vec
         .symbols()
         .iter()
         .map(|symbol| {
-            let value = (symbol.class == class::ACCEL).then(|| values.next()).flatten();
+            let value = (symbol.class == class::ACCEL)
+                .then(|| values.next())
+                .flatten();
             value.copied().unwrap_or(Edge::of(symbol.node))
         })
         .collect();

@@ -57,7 +57,8 @@ impl Reference {
 
 /// Validates the functions of a program; an error here is a fault of the generator, never emitted.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    let reference = Reference::new(model.clone()).ok_or_else(|| failure(model, "the kinematics"))?;
+    let reference =
+        Reference::new(model.clone()).ok_or_else(|| failure(model, "the kinematics"))?;
     let mut seed = 0;
     for _ in 0..POINTS {
         loop {

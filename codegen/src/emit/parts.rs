@@ -70,9 +70,11 @@ impl Drawing<'_> {
                 self.plan.size
             ));
         }
-        text.push_str(&format!("let mut out = {};\n", zeros(*shape)));
-        text.push_str(&calls);
         let zero = self.emitter.program.graph.zero();
+        let written = self.body.outputs.iter().any(|&output| output != zero);
+        let mutable = if written { "mut " } else { "" };
+        text.push_str(&format!("let {mutable}out = {};\n", zeros(*shape)));
+        text.push_str(&calls);
         for index in rest
             .into_iter()
             .filter(|&index| self.body.outputs[index] != zero)

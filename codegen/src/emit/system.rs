@@ -33,6 +33,10 @@ pub fn implementation(emitter: &Emitter) -> String {
     else {
         return String::new();
     };
+    let mut methods = methods;
+    for name in ["close", "settle"] {
+        methods.push_str(&projection(emitter, name));
+    }
     let chart: usize = program.blocks.iter().map(|block| block.dimension()).sum();
     let sizes = [
         ("Coordinates", program.nu),
@@ -122,4 +126,24 @@ fn method(emitter: &Emitter, row: &(&str, &[Argument], &str)) -> Option<String> 
         ),
         _ => format!("fn {name}(&self, {signature}) -> {result} {{\n{call}\n}}\n\n"),
     })
+}
+
+/// One of the projections on constraints that are kept by multipliers; nothing where there are none.
+fn projection(emitter: &Emitter, name: &str) -> String {
+    let Some(index) = emitter
+        .program
+        .functions
+        .iter()
+        .position(|f| f.name == name)
+    else {
+        return String::new();
+    };
+    let generated = &emitter.names.functions[index];
+    let (signature, values) = match name {
+        "close" => ("x: &Self::Coordinates", "x"),
+        _ => ("x: &Self::Coordinates, xi: &Self::Velocities", "x, xi"),
+    };
+    format!(
+        "fn {name}(&self, {signature}) -> ::core::result::Result<::core::option::Option<Self::Velocities>, ::hamel::Singular> {{\nself.{generated}({values}).map(Some)\n}}\n\n"
+    )
 }

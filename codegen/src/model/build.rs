@@ -100,20 +100,13 @@ impl<'a> Reading<'a> {
         variety.check(system, graph, scope, report);
         let kinematics = kinematics::read(system, graph, scope, variety, declared, report);
         let dynamics = dynamics::read(system, graph, scope, &frames, declared, report);
-        let constraints = pfaffian::read(
-            system,
-            graph,
-            scope,
-            declared,
-            kinematics.as_ref(),
-            report,
-        );
+        let constraints =
+            pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
         let mut starts = start::read(system, graph, scope, declared, &defaults, report);
         if let Some(start) = &starts {
             start::check(system, variety, declared, &defaults, &start.x, report);
         }
-        if let (Some(start), Some(kinematics), true) =
-            (&mut starts, &kinematics, report.is_empty())
+        if let (Some(start), Some(kinematics), true) = (&mut starts, &kinematics, report.is_empty())
         {
             let mut closure =
                 closure::Closure::new(graph, declared, kinematics, &constraints, &defaults);
@@ -149,6 +142,7 @@ impl<'a> Reading<'a> {
             a: kinematics.a,
             constraints,
             spans: true,
+            overconstrained: false,
             constant_pivots: Vec::new(),
             kinetic_terms: None,
             frames,

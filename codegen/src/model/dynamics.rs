@@ -29,7 +29,7 @@ pub const FUNCTIONS: &[&str] = &[
 ];
 
 /// Further functions that a program has, whose names no output can take.
-const INTERNAL: &[&str] = &["chart_rate", "correction"];
+const INTERNAL: &[&str] = &["chart_rate", "correction", "close", "settle"];
 
 /// What the statements about inertia and loads say.
 pub struct Dynamics {

@@ -182,6 +182,8 @@ pub struct Model {
     pub constraints: Vec<Pfaffian>,
     /// Whether A spans the tangent space of X: not so where constraints have been solved.
     pub spans: bool,
+    /// Whether constraints that are kept depend on one another along the whole motion.
+    pub overconstrained: bool,
     /// Constants that are divided by and so have to be nonzero: their squares.
     pub constant_pivots: Vec<Edge>,
     /// The user's kinetic energy where A does not span the tangent space.

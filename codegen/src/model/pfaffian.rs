@@ -1,12 +1,12 @@
 //! Constraints B(x) ξ = 0 on the velocities of a frame: inactive velocities, nonholonomic
 //! constraints, and the rates of closed loops.
 
+use super::class;
 use super::declare::Declared;
 use super::expression::Evaluator;
 use super::kinematics::Kinematics;
 use super::scope::Scope;
 use super::value::Value;
-use super::class;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
@@ -114,9 +114,11 @@ impl Reader<'_> {
             let first = before.iter().chain(&rows).find(|other| other.row == row);
             if let Some(first) = first.map(|first: &Pfaffian| first.span) {
                 let error = Diagnostic::new(expr.span, "this velocity is inactive already");
-                return self
-                    .evaluator
-                    .error(error.help("remove one of the two").note(first, "first here"));
+                return self.evaluator.error(
+                    error
+                        .help("remove one of the two")
+                        .note(first, "first here"),
+                );
             }
             rows.push(Pfaffian {
                 kind: Kind::Inactive,
@@ -153,8 +155,8 @@ impl Reader<'_> {
                 .fold(0, |class, entry| class | graph.class(entry.node()));
             if whole != edge || class & !(class::PARAM | class::COORD) != 0 {
                 let rest = graph.sub(edge, whole);
-                let without = class & class::VELOCITY == 0
-                    && graph.class(rest.node()) & class::VELOCITY == 0;
+                let without =
+                    class & class::VELOCITY == 0 && graph.class(rest.node()) & class::VELOCITY == 0;
                 let message = if (class | graph.class(rest.node())) & class::INPUT != 0 {
                     "a nonholonomic constraint cannot depend on inputs"
                 } else if without {
@@ -199,8 +201,11 @@ impl Reader<'_> {
             .fold(0, |class, edge| class | graph.class(edge.node()));
         if class & !(class::PARAM | class::COORD) != 0 {
             return self.evaluator.error(
-                Diagnostic::new(span, "a loop is about coordinates, not velocities or inputs")
-                    .help("a constraint on velocities is written `nonholonomic … = …;`"),
+                Diagnostic::new(
+                    span,
+                    "a loop is about coordinates, not velocities or inputs",
+                )
+                .help("a constraint on velocities is written `nonholonomic … = …;`"),
             );
         }
         let kinematics = self.kinematics?;

@@ -71,13 +71,7 @@ const STATEMENTS: [(&str, &str); 24] = [
 ];
 
 /// Statements of later versions.
-pub(super) const LATER: [&str; 5] = [
-    "joint",
-    "spring",
-    "damper",
-    "dissipation",
-    "invariant",
-];
+pub(super) const LATER: [&str; 5] = ["joint", "spring", "damper", "dissipation", "invariant"];
 
 /// Words that end an expression, and can name nothing.
 pub(super) const CONNECTIVES: [&str; 5] = ["at", "on", "in", "about", "stabilized"];

@@ -68,7 +68,11 @@ impl<'a> Collector<'a> {
     }
 
     fn accel(&self) -> Result<Listing, String> {
-        let Generated { model, program, .. } = self.generated;
+        let Generated {
+            active: model,
+            program,
+            ..
+        } = self.generated;
         let Some(function) = program.function("accel") else {
             return Err(
                 "there is no table `accel`: the description does not generate the function".into(),

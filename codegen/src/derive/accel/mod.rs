@@ -15,6 +15,7 @@ use crate::algebra::resubstitute::resubstitute;
 use crate::model::Model;
 use crate::program::count::{Count, count, depth};
 use parts::{Axes, Parts, Reference, Variant, parts};
+use saddle::Projections;
 use setting::Setting;
 use solve::{Plan, solve};
 
@@ -35,6 +36,8 @@ pub struct Acceleration {
     pub pivots: Vec<Edge>,
     /// Multipliers of the constraints that the model keeps.
     pub multipliers: Vec<Edge>,
+    /// What leads back to these constraints, where there are some.
+    pub projections: Option<Projections>,
     /// Its operations.
     pub count: Count,
     /// Its longest chain of operations after one another: of two equal counts the flatter is faster.
@@ -86,12 +89,26 @@ fn constrained(setting: &Setting) -> Option<(Acceleration, Parts)> {
         ];
         for order in orders {
             let mut graph = traced.graph.clone();
-            let Some(solution) = saddle::solve(&mut graph, &parts, &rows, &right, &order) else {
+            let Some(factored) = saddle::factored(
+                &mut graph,
+                &parts,
+                &rows,
+                &order,
+                setting.model.overconstrained,
+            ) else {
                 continue;
             };
+            let force: Vec<Edge> = (0..n)
+                .map(|i| {
+                    let column: Vec<Edge> = parts.groups.iter().map(|group| group[i]).collect();
+                    graph.sum(&column)
+                })
+                .collect();
+            let solution = factored.solve(&mut graph, &force, &right);
+            let pivots = factored.pivots();
             let varying = |edge: &&Edge| !graph.is_free(edge.node());
             let mut roots = solution.xi_dot.clone();
-            roots.extend(solution.pivots.iter().filter(varying));
+            roots.extend(pivots.iter().filter(varying));
             let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
             let cost = (count.weight(), depth);
             if best
@@ -100,12 +117,17 @@ fn constrained(setting: &Setting) -> Option<(Acceleration, Parts)> {
             {
                 continue;
             }
-            let route = format!("{}, constraints by multipliers", route(&traced, &order, &variant));
+            let route = format!(
+                "{}, constraints by multipliers",
+                route(&traced, &order, &variant)
+            );
+            let projections = saddle::projections(&mut graph, &traced, &factored);
             let acceleration = Acceleration {
                 graph,
                 xi_dot: solution.xi_dot,
-                pivots: solution.pivots,
+                pivots,
                 multipliers: solution.multipliers,
+                projections: Some(projections),
                 count,
                 depth,
                 route,
@@ -140,6 +162,7 @@ fn polished(chosen: Acceleration, model: &Model) -> Acceleration {
         xi_dot: xi_dot.to_vec(),
         pivots: pivots.to_vec(),
         multipliers: Vec::new(),
+        projections: None,
         graph,
     };
     if polished.count.weight() < chosen.count.weight() {
@@ -242,6 +265,7 @@ fn attempt(
         xi_dot,
         pivots: solution.pivots,
         multipliers: Vec::new(),
+        projections: None,
         count,
         depth,
         route,

@@ -245,6 +245,7 @@ impl System {
         let modulo = if self.reduced { " modulo φ" } else { "" };
         Acceleration {
             multipliers: Vec::new(),
+            projections: None,
             route: format!("right-hand side expanded{modulo} and factored, {how}"),
             graph,
             xi_dot,

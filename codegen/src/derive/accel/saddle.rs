@@ -2,20 +2,18 @@
 //! S = B M⁻¹ Bᵀ, both unrolled.
 
 use super::parts::Parts;
+use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::derive::calculus::Calculus;
 use crate::model::Model;
 
-/// The solution, and the pivots that have to be positive: those of M, then those of S.
+/// The solution.
 #[derive(Clone, Debug)]
 pub struct Saddle {
     /// ξ̇.
     pub xi_dot: Vec<Edge>,
     /// λ, one for each row of B.
     pub multipliers: Vec<Edge>,
-    /// Pivots of M in order of elimination, then of S in order of rows; a pivot of S vanishes where
-    /// the rows of B become dependent, at a singular configuration.
-    pub pivots: Vec<Edge>,
 }
 
 /// b = −Ḃ ξ − 2 λ B ξ − λ² φ.
@@ -40,35 +38,44 @@ pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
         .collect()
 }
 
-/// Solves with an order of elimination of M; `None` where a pivot vanishes identically.
-pub fn solve(
+/// M and S = B M⁻¹ Bᵀ, factored.
+#[derive(Clone, Debug)]
+pub struct Factored {
+    order: Vec<usize>,
+    mass: Factors,
+    /// L⁻¹ Bᵀ by columns, and the same divided by D.
+    bonds: Vec<Vec<Edge>>,
+    scaled: Vec<Vec<Edge>>,
+    schur: Vec<Vec<Edge>>,
+    inner: Factors,
+    refined: usize,
+}
+
+/// Where rows of B depend on one another along the whole motion, S is singular: its diagonal is
+/// raised by this part of itself, and two steps of refinement take the error of that away.
+const RAISED: (i64, i64) = (1, 100_000_000);
+const REFINED: usize = 2;
+
+/// Factors with an order of elimination of M; `None` where a pivot vanishes identically.
+pub fn factored(
     graph: &mut Graph,
     parts: &Parts,
     rows: &[Vec<Edge>],
-    right: &[Edge],
     order: &[usize],
-) -> Option<Saddle> {
-    let (n, m) = (order.len(), rows.len());
+    overconstrained: bool,
+) -> Option<Factored> {
+    let m = rows.len();
     let ordered = |row: &[Edge]| order.iter().map(|&i| row[i]).collect::<Vec<_>>();
-    let mut mass: Vec<Vec<Edge>> = order.iter().map(|&i| ordered(&parts.mass[i])).collect();
-    let sums: Vec<Edge> = (0..n)
-        .map(|i| {
-            let column: Vec<Edge> = parts.groups.iter().map(|group| group[i]).collect();
-            graph.sum(&column)
-        })
-        .collect();
-    let mut columns = vec![ordered(&sums)];
-    columns.extend(rows.iter().map(|row| ordered(row)));
-    let factors = factor(graph, &mut mass)?;
-    for column in &mut columns {
-        forward(graph, &factors, column);
+    let mut matrix: Vec<Vec<Edge>> = order.iter().map(|&i| ordered(&parts.mass[i])).collect();
+    let mass = factor(graph, &mut matrix)?;
+    let mut bonds: Vec<Vec<Edge>> = rows.iter().map(|row| ordered(row)).collect();
+    for bond in &mut bonds {
+        forward(graph, &mass, bond);
     }
-    let (force, bonds) = columns.split_first()?;
-    // S = W D⁻¹ Wᵀ with the rows of W as L⁻¹ Bᵀ by columns.
     let scaled: Vec<Vec<Edge>> = bonds
         .iter()
         .map(|bond| {
-            let entries = bond.iter().zip(&factors.inverses);
+            let entries = bond.iter().zip(&mass.inverses);
             entries.map(|(&b, &d)| graph.mul(b, d)).collect()
         })
         .collect();
@@ -79,41 +86,120 @@ pub fn solve(
             (schur[i][j], schur[j][i]) = (entry, entry);
         }
     }
-    let mut multipliers: Vec<Edge> = (0..m)
-        .map(|i| {
-            let free = graph.dot(&scaled[i], force);
-            graph.sub(right[i], free)
-        })
-        .collect();
-    let inner = factor(graph, &mut schur)?;
-    forward(graph, &inner, &mut multipliers);
-    for (entry, &inverse) in multipliers.iter_mut().zip(&inner.inverses) {
-        *entry = graph.mul(*entry, inverse);
+    let mut raised = schur.clone();
+    if overconstrained {
+        let part = graph.ratio(RAISED.0, RAISED.1);
+        for (i, row) in raised.iter_mut().enumerate() {
+            let more = graph.mul(part, row[i]);
+            row[i] = graph.add(row[i], more);
+        }
     }
-    backward(graph, &inner, &mut multipliers);
-    let mut solution: Vec<Edge> = (0..n)
-        .map(|k| {
-            let column: Vec<Edge> = bonds.iter().map(|bond| bond[k]).collect();
-            let pull = graph.dot(&column, &multipliers);
-            let sum = graph.add(force[k], pull);
-            graph.mul(sum, factors.inverses[k])
-        })
-        .collect();
-    backward(graph, &factors, &mut solution);
-    let mut xi_dot = vec![graph.zero(); n];
-    for (place, &i) in order.iter().enumerate() {
-        xi_dot[i] = solution[place];
-    }
-    let mut pivots = factors.pivots;
-    pivots.extend(inner.pivots);
-    Some(Saddle {
-        xi_dot,
-        multipliers,
-        pivots,
+    Some(Factored {
+        order: order.to_vec(),
+        inner: factor(graph, &mut raised)?,
+        mass,
+        bonds,
+        scaled,
+        schur,
+        refined: if overconstrained { REFINED } else { 0 },
     })
 }
 
+impl Factored {
+    /// Pivots of M in order of elimination, then of S in order of rows; a pivot of S vanishes where
+    /// the rows of B become dependent, at a singular configuration.
+    pub fn pivots(&self) -> Vec<Edge> {
+        [self.mass.pivots.clone(), self.inner.pivots.clone()].concat()
+    }
+
+    /// ξ̇ and λ of M ξ̇ = f + Bᵀ λ, B ξ̇ = right.
+    pub fn solve(&self, graph: &mut Graph, force: &[Edge], right: &[Edge]) -> Saddle {
+        let mut force: Vec<Edge> = self.order.iter().map(|&i| force[i]).collect();
+        forward(graph, &self.mass, &mut force);
+        let wanted: Vec<Edge> = right
+            .iter()
+            .zip(&self.scaled)
+            .map(|(&right, scaled)| {
+                let free = graph.dot(scaled, &force);
+                graph.sub(right, free)
+            })
+            .collect();
+        let multipliers = self.multipliers(graph, wanted);
+        let mut solution: Vec<Edge> = (0..force.len())
+            .map(|k| {
+                let column: Vec<Edge> = self.bonds.iter().map(|bond| bond[k]).collect();
+                let pull = graph.dot(&column, &multipliers);
+                let sum = graph.add(force[k], pull);
+                graph.mul(sum, self.mass.inverses[k])
+            })
+            .collect();
+        backward(graph, &self.mass, &mut solution);
+        let mut xi_dot = vec![graph.zero(); solution.len()];
+        for (&i, value) in self.order.iter().zip(solution) {
+            xi_dot[i] = value;
+        }
+        Saddle {
+            xi_dot,
+            multipliers,
+        }
+    }
+
+    /// S⁻¹ r.
+    fn multipliers(&self, graph: &mut Graph, wanted: Vec<Edge>) -> Vec<Edge> {
+        let mut solution = vec![graph.zero(); wanted.len()];
+        for _ in 0..=self.refined {
+            let mut step: Vec<Edge> = wanted
+                .iter()
+                .zip(&self.schur)
+                .map(|(&wanted, row)| {
+                    let reached = graph.dot(row, &solution);
+                    graph.sub(wanted, reached)
+                })
+                .collect();
+            forward(graph, &self.inner, &mut step);
+            for (entry, &inverse) in step.iter_mut().zip(&self.inner.inverses) {
+                *entry = graph.mul(*entry, inverse);
+            }
+            backward(graph, &self.inner, &mut step);
+            for (entry, more) in solution.iter_mut().zip(step) {
+                *entry = graph.add(*entry, more);
+            }
+        }
+        solution
+    }
+}
+
+/// What leads back to the constraints.
+#[derive(Clone, Debug)]
+pub struct Projections {
+    /// −M⁻¹ Bᵀ S⁻¹ φ(x): the step along A that closes the loops, to first order.
+    pub close: Vec<Edge>,
+    /// ξ − M⁻¹ Bᵀ S⁻¹ B ξ: the velocities nearest in kinetic energy that satisfy B ξ = 0.
+    pub settle: Vec<Edge>,
+}
+
+/// The projections of a model; its constraints are those that are kept.
+pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Projections {
+    let rest = vec![graph.zero(); model.n()];
+    let residuals: Vec<Edge> = model.constraints.iter().map(|c| -c.residual).collect();
+    let close = factored.solve(graph, &rest, &residuals).xi_dot;
+    let speeds: Vec<Edge> = model
+        .constraints
+        .iter()
+        .map(|c| -graph.dot(&c.row, &model.xi))
+        .collect();
+    let change = factored.solve(graph, &rest, &speeds).xi_dot;
+    let settle = model
+        .xi
+        .iter()
+        .zip(change)
+        .map(|(&xi, change)| graph.add(xi, change))
+        .collect();
+    Projections { close, settle }
+}
+
 /// L D Lᵀ.
+#[derive(Clone, Debug)]
 struct Factors {
     lower: Vec<Vec<Edge>>,
     pivots: Vec<Edge>,
@@ -167,4 +253,73 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
             v[c] = graph.sub(v[c], product);
         }
     }
+}
+
+/// ξ̇ of an overconstrained system in numbers modulo p, by plain elimination: what the emitted code
+/// has to agree with. M and B are given by rows.
+pub fn solve_at(mass: &[Fp], force: &[Fp], rows: &[Fp], right: &[Fp]) -> Option<Vec<Fp>> {
+    let (n, m) = (force.len(), right.len());
+    let mut columns: Vec<Vec<Fp>> = vec![force.to_vec()];
+    columns.extend(rows.chunks(n).map(<[Fp]>::to_vec));
+    let solved = solve_columns(mass, n, &columns)?;
+    let (free, bonds) = solved.split_first()?;
+    let dot = |a: &[Fp], b: &[Fp]| a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y);
+    let row = |i: usize| &rows[i * n..(i + 1) * n];
+    let schur: Vec<Fp> = (0..m)
+        .flat_map(|i| bonds.iter().map(move |bond| dot(row(i), bond)))
+        .collect();
+    let part = Fp::from_i64(RAISED.0) * Fp::from_i64(RAISED.1).inv()?;
+    let mut raised = schur.clone();
+    for i in 0..m {
+        raised[i * m + i] = raised[i * m + i] * (Fp::ONE + part);
+    }
+    let mut multipliers = vec![Fp::ZERO; m];
+    for _ in 0..=REFINED {
+        let rest: Vec<Fp> = (0..m)
+            .map(|i| right[i] - dot(row(i), free) - dot(&schur[i * m..(i + 1) * m], &multipliers))
+            .collect();
+        let step = solve_columns(&raised, m, &[rest])?;
+        multipliers
+            .iter_mut()
+            .zip(&step[0])
+            .for_each(|(sum, &more)| *sum = *sum + more);
+    }
+    Some(
+        (0..n)
+            .map(|k| {
+                let column: Vec<Fp> = bonds.iter().map(|bond| bond[k]).collect();
+                free[k] + dot(&column, &multipliers)
+            })
+            .collect(),
+    )
+}
+
+/// A⁻¹ b for several b.
+fn solve_columns(a: &[Fp], n: usize, columns: &[Vec<Fp>]) -> Option<Vec<Vec<Fp>>> {
+    let mut rows: Vec<Vec<Fp>> = (0..n)
+        .map(|i| {
+            let right = columns.iter().map(|column| column[i]);
+            a[i * n..(i + 1) * n].iter().copied().chain(right).collect()
+        })
+        .collect();
+    for c in 0..n {
+        let pivot = (c..n).find(|&r| !rows[r][c].is_zero())?;
+        rows.swap(c, pivot);
+        let inverse = rows[c][c].inv()?;
+        let scaled: Vec<Fp> = rows[c].iter().map(|&entry| entry * inverse).collect();
+        for (r, row) in rows.iter_mut().enumerate() {
+            let factor = row[c];
+            if r != c {
+                row.iter_mut()
+                    .zip(&scaled)
+                    .for_each(|(entry, &by)| *entry = *entry - factor * by);
+            }
+        }
+        rows[c] = scaled;
+    }
+    Some(
+        (0..columns.len())
+            .map(|j| rows.iter().map(|row| row[n + j]).collect())
+            .collect(),
+    )
 }

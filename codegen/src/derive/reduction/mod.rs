@@ -1,0 +1,229 @@
+//! The velocities that constraints B(x) ξ = 0 leave: ξ = C(x) ξₐ, and the model in ξₐ.
+//!
+//! A row is solved for a velocity whose factor is constant at run time, so that nothing is divided
+//! by what may vanish on X; rows without such a factor are kept and get multipliers. With C the
+//! equations of motion are Cᵀ (M ξ̇ + Γ ξ ξ + ∂V − f) = 0: for an inactive velocity of an adapted
+//! frame these are the active rows of KR18 (30).
+
+mod carrier;
+mod kinetic;
+
+pub use kinetic::drift;
+
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::numeric::evaluate;
+use crate::diagnostics::Diagnostic;
+use crate::model::Model;
+use crate::model::pfaffian::{Kind, Pfaffian};
+use carrier::Carrier;
+
+/// Rows whose part across those before is smaller than this, relative to the largest, are redundant.
+const REDUNDANT: f64 = 1e-8;
+
+/// The active velocities, and the model in them.
+#[derive(Clone, Debug)]
+pub struct Reduction {
+    /// The model in ξₐ; its constraints are the rows that are kept.
+    pub model: Model,
+    /// Places of ξₐ in ξ.
+    pub active: Vec<usize>,
+    /// Rows that were solved, and the velocities that they give.
+    pub solved: Vec<(usize, usize)>,
+    /// Rows that are kept, by their places among the constraints.
+    pub kept: Vec<usize>,
+    /// C, n rows of as many entries as ξₐ has, in the graph below.
+    pub complement: Vec<Vec<Edge>>,
+    /// The graph of the full model, with C.
+    pub graph: Graph,
+    /// What every symbol of the full model becomes, in the graph of the reduced one.
+    pub images: Vec<Edge>,
+}
+
+/// Solves the constraints of a model as far as constant factors allow.
+/// `None` where there are none.
+pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
+    if model.constraints.is_empty() {
+        return Ok(None);
+    }
+    let mut full = model.clone();
+    let (rows, solved) = eliminate(&mut full)?;
+    let n = full.n();
+    let active: Vec<usize> = (0..n)
+        .filter(|i| solved.iter().all(|(_, velocity)| velocity != i))
+        .collect();
+    let (kept, rank) = keep(&full, &rows, &solved)?;
+    if active.len() <= rank {
+        let span = model.constraints.last().map_or(model.span, |c| c.span);
+        return Err(Diagnostic::new(
+            span,
+            format!(
+                "the constraints leave no motion: {} rows for {n} velocities",
+                solved.len() + rank
+            ),
+        )
+        .help("remove a constraint, or add velocities"));
+    }
+    let graph = &mut full.graph;
+    let mut complement = vec![vec![graph.zero(); active.len()]; n];
+    for (place, &i) in active.iter().enumerate() {
+        complement[i][place] = graph.one();
+    }
+    let mut pivots = Vec::new();
+    for &(row, velocity) in &solved {
+        let pivot = rows[row][velocity];
+        for (place, &i) in active.iter().enumerate() {
+            complement[velocity][place] = graph
+                .div(-rows[row][i], pivot)
+                .ok_or_else(|| Diagnostic::new(model.constraints[row].span, "division by zero"))?;
+        }
+        if graph.as_rational(pivot).is_none() {
+            pivots.push(graph.mul(pivot, pivot));
+        }
+    }
+    let rows: Vec<Vec<Edge>> = kept
+        .iter()
+        .map(|&row| active.iter().map(|&i| rows[row][i]).collect())
+        .collect();
+    let graph = full.graph.clone();
+    let carrier = Carrier::new(full, &active, &complement);
+    let images = carrier.images.clone();
+    let mut model = carrier.model(&rows, &kept, &pivots);
+    model.overconstrained = kept.len() > rank;
+    Ok(Some(Reduction {
+        model,
+        graph,
+        images,
+        active,
+        solved,
+        kept,
+        complement,
+    }))
+}
+
+/// B in echelon form by constant pivots, and the pivots: (row, velocity).
+type Echelon = (Vec<Vec<Edge>>, Vec<(usize, usize)>);
+
+fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
+    let numbers = start_numbers(model);
+    let constraints = model.constraints.clone();
+    let graph = &mut model.graph;
+    let zero = graph.zero();
+    let mut rows: Vec<Vec<Edge>> = constraints.iter().map(|c| c.row.clone()).collect();
+    let mut solved: Vec<(usize, usize)> = Vec::new();
+    loop {
+        let mut best = None;
+        for (i, constraint) in constraints.iter().enumerate() {
+            if constraint.stabilized.is_some() || solved.iter().any(|&(row, _)| row == i) {
+                continue;
+            }
+            for (j, &entry) in rows[i].iter().enumerate() {
+                if entry == zero || !graph.is_free(entry.node()) {
+                    continue;
+                }
+                let effort = match graph.as_rational(entry) {
+                    Some(_) if entry.abs() == graph.one() => 0,
+                    Some(_) => 1,
+                    None if evaluate(graph, &[entry], &numbers)[0].abs() > 1e-9 => 2,
+                    None => continue,
+                };
+                let others = rows.iter().filter(|row| row[j] != zero).count();
+                let key = (effort, others, i, j);
+                if best.is_none_or(|least| key < least) {
+                    best = Some(key);
+                }
+            }
+        }
+        let Some((_, _, row, velocity)) = best else {
+            break;
+        };
+        let pivot_row = rows[row].clone();
+        for (other, entries) in rows.iter_mut().enumerate() {
+            if other == row || entries[velocity] == zero {
+                continue;
+            }
+            let Some(factor) = graph.div(entries[velocity], pivot_row[velocity]) else {
+                continue;
+            };
+            for (entry, &pivot) in entries.iter_mut().zip(&pivot_row) {
+                let product = graph.mul(factor, pivot);
+                *entry = graph.sub(*entry, product);
+            }
+        }
+        solved.push((row, velocity));
+    }
+    for (i, row) in rows.iter().enumerate() {
+        if row.iter().all(|&entry| entry == zero) {
+            return Err(redundant(&constraints, i));
+        }
+    }
+    Ok((rows, solved))
+}
+
+fn redundant(constraints: &[Pfaffian], row: usize) -> Diagnostic {
+    let error = Diagnostic::new(
+        constraints[row].span,
+        "this constraint is redundant: it follows from the others",
+    )
+    .help("remove it; its multiplier would have no value");
+    match constraints.iter().enumerate().find(|(i, _)| *i != row) {
+        Some((_, other)) => error.note(other.span, "one of the others"),
+        None => error,
+    }
+}
+
+fn start_numbers(model: &Model) -> Vec<f64> {
+    let (m, n) = (model.u.len(), model.n());
+    let zeros = vec![0.0; n];
+    model.numbers(
+        &model.defaults,
+        &model.start_x,
+        &model.start_xi,
+        &vec![0.0; m],
+        &zeros,
+    )
+}
+
+/// The rows to keep, and how many of them are independent at the start, the largest first. A loop may
+/// have redundant rows (an overconstrained mechanism); a nonholonomic constraint may not.
+fn keep(
+    model: &Model,
+    rows: &[Vec<Edge>],
+    solved: &[(usize, usize)],
+) -> Result<(Vec<usize>, usize), Diagnostic> {
+    let open: Vec<usize> = (0..rows.len())
+        .filter(|i| solved.iter().all(|(row, _)| row != i))
+        .collect();
+    let edges: Vec<Edge> = open.iter().flat_map(|&i| rows[i].iter().copied()).collect();
+    let values = evaluate(&model.graph, &edges, &start_numbers(model));
+    let mut left: Vec<Vec<f64>> = values.chunks(model.n()).map(<[f64]>::to_vec).collect();
+    let norm = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let most = left.iter().map(|row| norm(row)).fold(0.0, f64::max);
+    let mut independent = Vec::new();
+    loop {
+        let sizes = left.iter().map(|row| norm(row)).enumerate();
+        let largest = sizes.fold(None, |best: Option<(usize, f64)>, (i, size)| match best {
+            Some((_, found)) if size <= found => best,
+            _ => Some((i, size)),
+        });
+        let Some((row, size)) = largest.filter(|(_, size)| *size > REDUNDANT * most) else {
+            break;
+        };
+        independent.push(open[row]);
+        let unit: Vec<f64> = left[row].iter().map(|v| v / size).collect();
+        for other in &mut left {
+            let along: f64 = other.iter().zip(&unit).map(|(a, b)| a * b).sum();
+            other
+                .iter_mut()
+                .zip(&unit)
+                .for_each(|(a, b)| *a -= along * b);
+        }
+        left[row].fill(0.0);
+    }
+    let redundant_row = open
+        .iter()
+        .find(|i| !independent.contains(i) && model.constraints[**i].kind != Kind::Loop);
+    match redundant_row {
+        Some(&row) => Err(redundant(&model.constraints, row)),
+        None => Ok((open, independent.len())),
+    }
+}
