@@ -219,8 +219,11 @@ impl<'a> Builder<'a> {
         rebuild(&self.model.graph, &mut self.graph, &residuals)
     }
 
-    /// λ of all constraints.
+    /// λ of all constraints; an overconstrained mechanism has no unique ones.
     fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
+        if self.model.overconstrained {
+            return;
+        }
         let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut self.graph) else {
             return;
         };

@@ -153,16 +153,16 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     }
     for (i, row) in rows.iter().enumerate() {
         if row.iter().all(|&entry| entry == zero) {
-            return Err(redundant(&constraints, i));
+            return Err(redundant(&constraints, i, ""));
         }
     }
     Ok((rows, solved))
 }
 
-fn redundant(constraints: &[Pfaffian], row: usize) -> Diagnostic {
+fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
     let error = Diagnostic::new(
         constraints[row].span,
-        "this constraint is redundant: it follows from the others",
+        format!("this constraint is redundant{when}: it follows from the others"),
     )
     .help("remove it; its multiplier would have no value");
     match constraints.iter().enumerate().find(|(i, _)| *i != row) {
@@ -223,7 +223,7 @@ fn keep(
         .iter()
         .find(|i| !independent.contains(i) && model.constraints[**i].kind != Kind::Loop);
     match redundant_row {
-        Some(&row) => Err(redundant(&model.constraints, row)),
+        Some(&row) => Err(redundant(&model.constraints, row, " at the start")),
         None => Ok((open, independent.len())),
     }
 }
