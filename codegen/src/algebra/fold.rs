@@ -15,6 +15,13 @@ impl Graph {
         (&root * &root == value).then(|| self.rational(&root))
     }
 
+    /// A node whose square on X is this one, of either sign.
+    pub fn known_root(&self, square: Edge) -> Option<Edge> {
+        let [a, b] = self.value(square).map(|value| value.sqrt());
+        let (a, b) = (a?, b?);
+        self.lookup([a, b]).or_else(|| self.lookup([a, -b]))
+    }
+
     /// p·y + q·y = (p + q)·y for run-time constants p, q: the sum of constants costs nothing.
     pub(super) fn factor(&mut self, a: Edge, b: Edge) -> Option<Edge> {
         let (p, y) = self.free_factor(a)?;

@@ -396,7 +396,7 @@ impl Graph {
         Edge::of(id)
     }
 
-    fn lookup(&self, value: [Fp; LANES]) -> Option<Edge> {
+    pub(super) fn lookup(&self, value: [Fp; LANES]) -> Option<Edge> {
         let (key, negative) = canonical(value);
         self.by_value.get(&key).map(|edge| edge.signed(negative))
     }

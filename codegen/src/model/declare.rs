@@ -30,6 +30,20 @@ pub struct Declared {
     pub faulty: bool,
 }
 
+impl Declared {
+    /// The numbers of all symbols at the start, inputs and accelerations 0; NaN where not known.
+    pub fn numbers(&self, defaults: &[f64], start: Option<&(Vec<f64>, Vec<f64>)>) -> Vec<f64> {
+        let mut numbers = vec![std::f64::consts::PI];
+        numbers.extend_from_slice(defaults);
+        match start {
+            Some((x, xi)) => numbers.extend(x.iter().chain(xi)),
+            None => numbers.resize(numbers.len() + self.x.len() + self.xi.len(), f64::NAN),
+        }
+        numbers.resize(numbers.len() + self.u.len() + self.xi_dot.len(), 0.0);
+        numbers
+    }
+}
+
 /// Declares everything, in the order pi, parameters, x, ξ, u, ξ̇, and defines the constants.
 pub fn declare(
     system: &System,

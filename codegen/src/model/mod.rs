@@ -9,12 +9,15 @@ mod build;
 mod declare;
 mod defaults;
 mod dynamics;
+pub mod elements;
 pub mod expression;
 mod frames;
 mod functions;
 mod kinematics;
 pub mod layout;
 mod loads;
+pub mod motion;
+mod names;
 pub mod points;
 mod rotations;
 pub mod scope;
@@ -26,7 +29,9 @@ mod variety;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
+use elements::Elements;
 use layout::Block;
+use motion::Observed;
 use points::Points;
 use value::Value;
 
@@ -182,6 +187,12 @@ pub struct Model {
     pub wrenches: Vec<Wrench>,
     /// Generalised forces, dual to ξ.
     pub generalized: Vec<Edge>,
+    /// Rayleigh's function D(x, ξ); its force −∂D/∂ξ is part of `generalized` (W).
+    pub dissipation: Edge,
+    /// Springs, dampers and forces along lines, which are part of the energies and forces above.
+    pub elements: Elements,
+    /// The motions of frames that expressions asked for.
+    pub observed: Vec<Observed>,
     /// Outputs.
     pub outputs: Vec<(String, Value)>,
     /// Named expressions of the user.
