@@ -91,7 +91,7 @@ impl<'a> Forces<'a> {
 pub fn applied(model: &Model, graph: &mut Graph, calculus: &mut Calculus) -> Vec<Edge> {
     let mut forces = Forces::none(graph, calculus);
     forces.add(&model.elements.generalized);
-    for wrench in &model.wrenches {
+    for wrench in &model.elements.wrenches {
         let frame = &model.frames[wrench.frame];
         forces.wrench(wrench, &frame.rotation, frame.position);
     }

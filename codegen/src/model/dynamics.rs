@@ -105,8 +105,9 @@ pub fn read(
             ItemKind::Potential(expr) => {
                 if let Some(term) = reader.potential(expr) {
                     dynamics.potential = graph.add(dynamics.potential, term);
-                    let given = &mut dynamics.elements.potential;
-                    *given = graph.add(*given, term);
+                    let elements = &mut dynamics.elements;
+                    elements.potential = graph.add(elements.potential, term);
+                    elements.scalar_potential = graph.add(elements.scalar_potential, term);
                 }
             }
             ItemKind::Gravity(expr) => {
@@ -128,8 +129,10 @@ pub fn read(
                 from,
                 axes,
             } => {
-                let wrenches = reader.load(load, frame, from.as_ref(), axes);
-                dynamics.wrenches.extend(wrenches.into_iter().flatten());
+                if let Some(wrenches) = reader.load(load, frame, from.as_ref(), axes) {
+                    dynamics.elements.wrenches.extend(wrenches.iter().cloned());
+                    dynamics.wrenches.extend(wrenches);
+                }
             }
             ItemKind::Spring { .. }
             | ItemKind::Damper { .. }
@@ -157,7 +160,7 @@ pub fn read(
     // Rayleigh: fᵢ = −∂D/∂ξⁱ.
     for (sum, xi) in dynamics.generalized.iter_mut().zip(&declared.xi) {
         let mut along = Derivation::new([(xi.node(), graph.one())]);
-        let resistance = along.of(graph, dynamics.dissipation);
+        let resistance = along.of(graph, dynamics.elements.scalar_dissipation);
         *sum = graph.sub(*sum, resistance);
     }
     if !has_inertia {

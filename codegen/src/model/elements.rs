@@ -1,26 +1,19 @@
 //! Springs, dampers, forces along a line, and dissipation.
 //!
 //! Between two points with difference d and distance ℓ = |d|: a spring has V = ½ k (ℓ − l)², which
-//! is ½ k d·d for l = 0; a damper has D = ½ c ℓ̇²; a force F drives the points apart, fᵢ = F ∂ᵢℓ. On a
-//! scalar e: V = ½ k (e − l)², D = ½ c e². Rayleigh's function D(x, ξ) acts by fᵢ = −∂D/∂ξⁱ (W; N, N m).
-//!
-//! Where d·d is a perfect square, such as that of points on one line, ℓ is its root with the sign
-//! that makes it positive at the start: smooth, and as in textbooks.
+//! is ½ k d·d for l = 0; a damper has D = ½ c ℓ̇²; a force F drives the points apart. All of these act
+//! as wrenches on the frames of the two points. On a scalar e: V = ½ k (e − l)², D = ½ c e². What is
+//! left of D acts by Rayleigh's fᵢ = −∂D/∂ξⁱ (W; N, N m).
 
 use super::bodies::is_quadratic;
-use super::class;
 use super::dynamics::{Dynamics, Reader};
-use super::functions::root;
+use super::line::{Line, is_root};
 use super::value::Value;
-use crate::algebra::derivation::Derivation;
-use crate::algebra::graph::{Edge, Function, Graph, Node};
-use crate::algebra::linear::{Vec3, add3, apply3, sub3, zero3};
-use crate::algebra::numeric::evaluate;
+use super::{Wrench, class};
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::{Vec3, scale3, sub3};
 use crate::diagnostics::Diagnostic;
-use crate::syntax::ast::{Acting, End, Expr, ItemKind, Span};
-
-/// Distances below this (m) are none.
-const COINCIDENT: f64 = 1e-12;
+use crate::syntax::ast::{Acting, Expr, ItemKind, Span};
 
 /// What a spring or damper acts along.
 #[derive(Clone, Debug)]
@@ -47,6 +40,8 @@ pub struct Spring {
     pub length: Edge,
     /// What ℓ is.
     pub along: Along,
+    /// The forces of a spring along a line.
+    pub wrenches: Vec<Wrench>,
 }
 
 /// D = ½ c ℓ̇².
@@ -67,8 +62,8 @@ pub struct Push {
     pub along: Along,
 }
 
-/// Springs, dampers and forces along lines as they were given, and what was given beside them:
-/// `potential`, `dissipation` and `generalized force` alone. For proofs on another route.
+/// Springs, dampers and forces along lines as they were given, and what was given beside them. The
+/// sums of all are in the fields of the model; these are for proofs on another route.
 #[derive(Clone, Debug)]
 pub struct Elements {
     /// Springs.
@@ -77,42 +72,41 @@ pub struct Elements {
     pub dampers: Vec<Damper>,
     /// Forces along lines.
     pub pushes: Vec<Push>,
-    /// The sum of all `potential` statements.
+    /// The `potential` statements alone.
     pub potential: Edge,
-    /// The sum of all `dissipation` statements.
+    /// The `dissipation` statements alone.
     pub dissipation: Edge,
-    /// The sums of all `generalized force` statements.
+    /// The `generalized force` statements alone.
     pub generalized: Vec<Edge>,
+    /// The `force`, `torque` and `wrench` statements on frames alone.
+    pub wrenches: Vec<Wrench>,
+    /// V without springs along lines, which act by their wrenches.
+    pub scalar_potential: Edge,
+    /// D without dampers along lines, which act by their wrenches.
+    pub scalar_dissipation: Edge,
 }
 
 impl Elements {
     /// None yet.
     pub fn none(graph: &Graph, n: usize) -> Self {
+        let zero = graph.zero();
         Elements {
             springs: Vec::new(),
             dampers: Vec::new(),
             pushes: Vec::new(),
-            potential: graph.zero(),
-            dissipation: graph.zero(),
-            generalized: vec![graph.zero(); n],
+            potential: zero,
+            dissipation: zero,
+            generalized: vec![zero; n],
+            wrenches: Vec::new(),
+            scalar_potential: zero,
+            scalar_dissipation: zero,
         }
     }
 }
 
-/// Two points and how they are called in messages.
-struct Line<'a> {
-    what: &'a str,
-    span: Span,
-    ends: (&'a End, &'a End),
-    from: Vec3,
-    to: Vec3,
-    /// d·d.
-    square: Edge,
-}
-
 impl Reader<'_, '_> {
-    /// Reads a statement of this kind into the energies and generalised forces; `start` are the
-    /// numbers of all symbols at the start.
+    /// Reads a statement of this kind into energies and forces; `start` are the numbers of all
+    /// symbols at the start.
     pub fn element(
         &mut self,
         kind: &ItemKind,
@@ -127,19 +121,31 @@ impl Reader<'_, '_> {
                 acting,
             } => {
                 let spring = self.spring(stiffness, length.as_ref(), acting, span, start)?;
-                let energy = self.half_square(spring.stiffness, &spring.along, spring.length);
+                let energy = self.stored(&spring);
                 let graph = &mut *self.evaluator.graph;
                 dynamics.potential = graph.add(dynamics.potential, energy);
+                if let Along::Scalar(_) = spring.along {
+                    let sum = &mut dynamics.elements.scalar_potential;
+                    *sum = graph.add(*sum, energy);
+                }
                 dynamics.elements.springs.push(spring);
             }
             ItemKind::Damper {
                 coefficient,
                 acting,
             } => {
-                let (damper, energy) = self.damper(coefficient, acting, span, start)?;
-                let graph = &mut *self.evaluator.graph;
-                dynamics.dissipation = graph.add(dynamics.dissipation, energy);
-                dynamics.elements.dampers.push(damper);
+                let factor = self.constant_scalar(coefficient, "the coefficient of a damper");
+                let along = match acting {
+                    Acting::On(expr) => Along::Scalar(self.damper_rate(expr, factor, dynamics)?),
+                    Acting::Between(from, to) => {
+                        let line = self.line("damper", span, from, to);
+                        let line = line?;
+                        self.damp(&line, factor?, start, dynamics)?;
+                        line.along(None)
+                    }
+                };
+                let coefficient = factor?;
+                dynamics.elements.dampers.push(Damper { coefficient, along });
             }
             ItemKind::Push { force, from, to } => {
                 let value = self.evaluator.scalar(force, "a force along a line");
@@ -147,13 +153,8 @@ impl Reader<'_, '_> {
                 let (value, line) = (value?, line?);
                 self.no_acceleration(&Value::Scalar(value), force.span, "a force")?;
                 let length = self.length(&line, start)?;
-                let rate = self.rate(length)?;
-                let graph = &mut *self.evaluator.graph;
-                for (sum, xi) in dynamics.generalized.iter_mut().zip(&self.declared.xi) {
-                    let slope = Derivation::new([(xi.node(), graph.one())]).of(graph, rate);
-                    let force = graph.mul(value, slope);
-                    *sum = graph.add(*sum, force);
-                }
+                let wrenches = self.along_line(&line, length, value)?;
+                dynamics.wrenches.extend(wrenches);
                 dynamics.elements.pushes.push(Push {
                     force: value,
                     along: line.along(Some(length)),
@@ -161,10 +162,9 @@ impl Reader<'_, '_> {
             }
             ItemKind::Dissipation(expr) => {
                 let term = self.dissipation(expr)?;
-                let graph = &mut *self.evaluator.graph;
-                dynamics.dissipation = graph.add(dynamics.dissipation, term);
+                self.resist(term, dynamics);
                 let given = &mut dynamics.elements.dissipation;
-                *given = graph.add(*given, term);
+                *given = self.evaluator.graph.add(*given, term);
             }
             _ => {}
         }
@@ -184,24 +184,48 @@ impl Reader<'_, '_> {
             Some(expr) => self.constant_scalar(expr, "the length of a spring without force"),
             None => Some(self.evaluator.graph.zero()),
         };
-        let along = match acting {
-            Acting::On(expr) => self.spring_scalar(expr).map(Along::Scalar),
-            Acting::Between(from, to) => {
-                let line = self.line("spring", span, from, to);
-                let (line, rest) = (line?, rest?);
-                let slack = rest == self.evaluator.graph.zero();
-                let length = if slack {
-                    None
-                } else {
-                    Some(self.length(&line, start)?)
-                };
-                Some(line.along(length))
+        let (from, to) = match acting {
+            Acting::On(expr) => {
+                let scalar = self.spring_scalar(expr);
+                return Some(Spring {
+                    stiffness: stiffness?,
+                    length: rest?,
+                    along: Along::Scalar(scalar?),
+                    wrenches: Vec::new(),
+                });
             }
+            Acting::Between(from, to) => (from, to),
+        };
+        let line = self.line("spring", span, from, to);
+        let (stiffness, rest, line) = (stiffness?, rest?, line?);
+        if rest == self.evaluator.graph.zero() {
+            let force = scale3(self.evaluator.graph, -stiffness, line.difference);
+            return Some(Spring {
+                stiffness,
+                length: rest,
+                along: line.along(None),
+                wrenches: self.pair(&line, force),
+            });
+        }
+        let length = self.length(&line, start)?;
+        let graph = &mut *self.evaluator.graph;
+        let wrenches = if is_root(graph, length) {
+            // −k (1 − l/ℓ) d
+            let slack = graph.div(rest, length)?;
+            let stretch = graph.sub(graph.one(), slack);
+            let factor = graph.mul(stiffness, stretch);
+            let force = scale3(graph, -factor, line.difference);
+            self.pair(&line, force)
+        } else {
+            let stretch = graph.sub(length, rest);
+            let tension = graph.mul(stiffness, stretch);
+            self.along_line(&line, length, -tension)?
         };
         Some(Spring {
-            stiffness: stiffness?,
-            length: rest?,
-            along: along?,
+            stiffness,
+            length: rest,
+            along: line.along(Some(length)),
+            wrenches,
         })
     }
 
@@ -220,35 +244,73 @@ impl Reader<'_, '_> {
         Some(scalar)
     }
 
-    fn damper(
-        &mut self,
-        coefficient: &Expr,
-        acting: &Acting,
-        span: Span,
-        start: &[f64],
-    ) -> Option<(Damper, Edge)> {
-        let coefficient = self.constant_scalar(coefficient, "the coefficient of a damper");
-        let (along, square) = match acting {
-            Acting::On(expr) => {
-                let rate = self.damper_rate(expr)?;
-                let square = self.evaluator.graph.mul(rate, rate);
-                (Along::Scalar(rate), square)
+    /// V = ½ k (ℓ − l)².
+    fn stored(&mut self, spring: &Spring) -> Edge {
+        let graph = &mut *self.evaluator.graph;
+        let square = match spring.along {
+            Along::Line {
+                from,
+                to,
+                length: None,
+            } => {
+                let d = sub3(graph, to, from);
+                graph.dot(&d, &d)
             }
-            Acting::Between(from, to) => {
-                let line = self.line("damper", span, from, to)?;
-                let square = self.length_rate_square(&line, start)?;
-                (line.along(None), square)
+            Along::Line {
+                length: Some(length),
+                ..
+            }
+            | Along::Scalar(length) => {
+                let stretch = graph.sub(length, spring.length);
+                graph.mul(stretch, stretch)
             }
         };
-        let coefficient = coefficient?;
-        let graph = &mut *self.evaluator.graph;
         let half = graph.ratio(1, 2);
-        let half = graph.mul(half, coefficient);
-        let energy = graph.mul(half, square);
-        Some((Damper { coefficient, along }, energy))
+        let half = graph.mul(half, spring.stiffness);
+        graph.mul(half, square)
     }
 
-    fn damper_rate(&mut self, expr: &Expr) -> Option<Edge> {
+    /// A damper along a line, D = ½ c (d·ḋ)²/(d·d), with the force −c (d·ḋ)/(d·d) d.
+    fn damp(
+        &mut self,
+        line: &Line,
+        coefficient: Edge,
+        start: &[f64],
+        dynamics: &mut Dynamics,
+    ) -> Option<()> {
+        let (twice, wrenches) = if let Some(length) = self.smooth_length(line) {
+            let rate = self.rate(length)?;
+            let graph = &mut *self.evaluator.graph;
+            let force = graph.mul(coefficient, rate);
+            let twice = graph.mul(force, rate);
+            (twice, self.along_line(line, length, -force)?)
+        } else {
+            self.apart_at_start(line, line.square, start)?;
+            let rate = self.rate(line.square)?;
+            let graph = &mut *self.evaluator.graph;
+            let half = graph.ratio(1, 2);
+            let product = graph.mul(half, rate);
+            let speed = graph.div(product, line.square)?;
+            let factor = graph.mul(coefficient, speed);
+            let twice = graph.mul(factor, product);
+            let force = scale3(graph, -factor, line.difference);
+            (twice, self.pair(line, force))
+        };
+        let graph = &mut *self.evaluator.graph;
+        let half = graph.ratio(1, 2);
+        let energy = graph.mul(half, twice);
+        dynamics.dissipation = graph.add(dynamics.dissipation, energy);
+        dynamics.wrenches.extend(wrenches);
+        Some(())
+    }
+
+    /// A damper on a rate e, D = ½ c e².
+    fn damper_rate(
+        &mut self,
+        expr: &Expr,
+        coefficient: Option<Edge>,
+        dynamics: &mut Dynamics,
+    ) -> Option<Edge> {
         let rate = self.evaluator.scalar(expr, "what a damper acts on")?;
         let graph = &mut *self.evaluator.graph;
         let known = class::PARAM | class::COORD | class::VELOCITY;
@@ -258,6 +320,10 @@ impl Reader<'_, '_> {
         let message = if rate == graph.zero() {
             "this damper does nothing: the rate that it acts on is 0"
         } else if linear {
+            let half = graph.ratio(1, 2);
+            let half = graph.mul(half, coefficient?);
+            let energy = graph.mul(half, square);
+            self.resist(energy, dynamics);
             return Some(rate);
         } else {
             "what a damper acts on has to be a rate, linear in the velocities"
@@ -266,6 +332,14 @@ impl Reader<'_, '_> {
             Diagnostic::new(expr.span, message)
                 .help("write a rate, as in `damper coefficient c on w2 - w1;`"),
         )
+    }
+
+    /// Adds to D what acts by −∂D/∂ξⁱ.
+    fn resist(&mut self, energy: Edge, dynamics: &mut Dynamics) {
+        let graph = &mut *self.evaluator.graph;
+        dynamics.dissipation = graph.add(dynamics.dissipation, energy);
+        let sum = &mut dynamics.elements.scalar_dissipation;
+        *sum = graph.add(*sum, energy);
     }
 
     fn dissipation(&mut self, expr: &Expr) -> Option<Edge> {
@@ -293,177 +367,13 @@ impl Reader<'_, '_> {
         }
         Some(energy)
     }
-
-    /// ½ k (ℓ − l)², of a line or a scalar.
-    fn half_square(&mut self, factor: Edge, along: &Along, rest: Edge) -> Edge {
-        let graph = &mut *self.evaluator.graph;
-        let square = match along {
-            Along::Line {
-                from,
-                to,
-                length: None,
-            } => {
-                let d = sub3(graph, *to, *from);
-                graph.dot(&d, &d)
-            }
-            Along::Line {
-                length: Some(length),
-                ..
-            }
-            | Along::Scalar(length) => {
-                let stretch = graph.sub(*length, rest);
-                graph.mul(stretch, stretch)
-            }
-        };
-        let half = graph.ratio(1, 2);
-        let half = graph.mul(half, factor);
-        graph.mul(half, square)
-    }
-
-    /// d/dt of an expression; `None` where the rates are in error.
-    fn rate(&mut self, edge: Edge) -> Option<Edge> {
-        let motion = self.evaluator.scope.motion.as_ref()?;
-        let [rate] = motion.rates(self.evaluator.graph, [edge]);
-        Some(rate)
-    }
-
-    fn line<'a>(
-        &mut self,
-        what: &'a str,
-        span: Span,
-        from: &'a End,
-        to: &'a End,
-    ) -> Option<Line<'a>> {
-        let (start, end) = (self.end(from), self.end(to));
-        let (start, end) = (start?, end?);
-        let graph = &mut *self.evaluator.graph;
-        let d = sub3(graph, end, start);
-        let square = graph.dot(&d, &d);
-        if self.rate(square)? == self.evaluator.graph.zero() {
-            let message = if from.frame.name == to.frame.name {
-                let frame = &from.frame.name;
-                format!("this {what} does nothing: both its points are fixed to `{frame}`")
-            } else {
-                format!("this {what} does nothing: its points keep their distance")
-            };
-            return self.evaluator.error(
-                Diagnostic::new(from.frame.span, message)
-                    .help("let it act between points of frames that move against one another")
-                    .note(to.frame.span, "the other point"),
-            );
-        }
-        Some(Line {
-            what,
-            span,
-            ends: (from, to),
-            from: start,
-            to: end,
-            square,
-        })
-    }
-
-    /// A point of a frame or of the world, world axes.
-    fn end(&mut self, end: &End) -> Option<Vec3> {
-        const WHAT: &str = "a point of a frame";
-        let point = match &end.at {
-            Some(expr) => self.evaluator.vec3(expr, WHAT).and_then(|point| {
-                let help = "it is given in the axes of its frame";
-                self.configuration(&Value::Vector(point.to_vec()), expr.span, WHAT, help)?;
-                Some(point)
-            }),
-            None => Some(zero3(self.evaluator.graph)),
-        };
-        if end.frame.name == "world" && self.evaluator.scope.get("world").is_none() {
-            return point;
-        }
-        let frame = self.frame(&end.frame);
-        let (frame, point) = (&self.frames[frame?], point?);
-        let arm = apply3(self.evaluator.graph, &frame.rotation, point);
-        Some(add3(self.evaluator.graph, frame.position, arm))
-    }
-
-    /// ℓ, positive at the start.
-    fn length(&mut self, line: &Line, start: &[f64]) -> Option<Edge> {
-        let length = match self.smooth_length(line) {
-            Some(length) => length,
-            None => self
-                .evaluator
-                .graph
-                .apply(Function::Sqrt, line.square),
-        };
-        let now = self.apart_at_start(line, length, start)?;
-        Some(length.signed(now < 0.0))
-    }
-
-    /// ℓ̇² = (d·ḋ)²/(d·d), without a root.
-    fn length_rate_square(&mut self, line: &Line, start: &[f64]) -> Option<Edge> {
-        if let Some(length) = self.smooth_length(line) {
-            let rate = self.rate(length)?;
-            return Some(self.evaluator.graph.mul(rate, rate));
-        }
-        self.apart_at_start(line, line.square, start)?;
-        let rate = self.rate(line.square)?;
-        let graph = &mut *self.evaluator.graph;
-        let half = graph.ratio(1, 2);
-        let product = graph.mul(half, rate);
-        let square = graph.mul(product, product);
-        graph.div(square, line.square)
-    }
-
-    /// ±ℓ without a root of what varies: where d·d is the square of something known, or d has a
-    /// fixed direction.
-    fn smooth_length(&mut self, line: &Line) -> Option<Edge> {
-        let graph = &mut *self.evaluator.graph;
-        let is_root = |graph: &Graph, edge: Edge| {
-            matches!(graph.node(edge.node()), Node::Apply(Function::Sqrt, _))
-        };
-        if let Some(known) = graph.known_root(line.square)
-            && !is_root(graph, known)
-        {
-            return Some(known);
-        }
-        let d = sub3(graph, line.to, line.from);
-        let first = *d.iter().find(|entry| **entry != graph.zero())?;
-        let ratios = d.map(|entry| graph.div(entry, first).unwrap_or(graph.zero()));
-        let motion = self.evaluator.scope.motion.as_ref()?;
-        let graph = &mut *self.evaluator.graph;
-        let fixed = motion.rates(graph, ratios) == zero3(graph);
-        if !fixed {
-            return None;
-        }
-        let square = graph.dot(&ratios, &ratios);
-        let factor = root(graph, square);
-        Some(graph.mul(first, factor))
-    }
-
-    /// A measure of the distance at the start, where it is not 0; NaN where it is not known.
-    fn apart_at_start(&mut self, line: &Line, measure: Edge, start: &[f64]) -> Option<f64> {
-        let now = evaluate(self.evaluator.graph, &[measure], start)[0];
-        if now.abs() > COINCIDENT || now.is_nan() {
-            return Some(now);
-        }
-        let what = line.what;
-        let message =
-            format!("the points of this {what} coincide at the start: it has no direction there");
-        let (from, to) = line.ends;
-        let help = match what {
-            "spring" => "start elsewhere, or leave out its `length`",
-            _ => "start elsewhere, or choose other points",
-        };
-        self.evaluator.error(
-            Diagnostic::new(line.span, message)
-                .help(help)
-                .note(from.frame.span, "from here")
-                .note(to.frame.span, "to here"),
-        )
-    }
 }
 
 impl Line<'_> {
     fn along(&self, length: Option<Edge>) -> Along {
         Along::Line {
-            from: self.from,
-            to: self.to,
+            from: self.from.world,
+            to: self.to.world,
             length,
         }
     }

@@ -15,6 +15,7 @@ mod frames;
 mod functions;
 mod kinematics;
 pub mod layout;
+mod line;
 mod loads;
 pub mod motion;
 mod names;
