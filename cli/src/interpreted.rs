@@ -49,9 +49,8 @@ impl Interpreted {
                 name: name.clone(),
                 shape: known.map_or(Shape::Scalar, |function| function.shape),
                 function: function(name)?,
-                accelerated: known.is_some_and(|function| {
-                    function.arguments.contains(&Argument::Accelerations)
-                }),
+                accelerated: known
+                    .is_some_and(|function| function.arguments.contains(&Argument::Accelerations)),
             })
         });
         Ok(Interpreted {

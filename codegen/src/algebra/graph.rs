@@ -297,6 +297,10 @@ impl Graph {
                 .collect();
             self.lanes[lane].function(function, arguments[lane], &form)
         });
+        let value = match function {
+            Function::Sqrt => self.apart_from_root(argument, value),
+            _ => value,
+        };
         let class = self.class(argument.node());
         let edge = match self.known(value, class) {
             Some(known) => known,

@@ -376,12 +376,22 @@ fn virtual_power(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
         side("Rayleigh", "2 D = −fᵢ ξⁱ of dampers", (twice, power));
     }
     let lengths = virtual_power::lengths(model, graph);
-    side("lines", "ℓ² = d·d of springs and forces along lines", lengths);
+    side(
+        "lines",
+        "ℓ² = d·d of springs and forces along lines",
+        lengths,
+    );
     let motions = virtual_power::motions(model, graph, calculus);
     let equation = "ṙ and r̈ of points from ∂ᵢr and ∂ᵢ∂ⱼr";
     side("motion", equation, motions);
     let zero = graph.zero();
-    let says = |sides: &Sides| sides.left.iter().chain(&sides.right).any(|&edge| edge != zero);
+    let says = |sides: &Sides| {
+        sides
+            .left
+            .iter()
+            .chain(&sides.right)
+            .any(|&edge| edge != zero)
+    };
     all.retain(says);
     geometry.model.graph = graph.clone();
     all

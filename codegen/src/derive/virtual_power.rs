@@ -231,12 +231,7 @@ pub fn motions(
     (left, right)
 }
 
-fn derived(
-    model: &Model,
-    graph: &mut Graph,
-    calculus: &mut Calculus,
-    observed: &Observed,
-) -> Vec3 {
+fn derived(model: &Model, graph: &mut Graph, calculus: &mut Calculus, observed: &Observed) -> Vec3 {
     let Observed {
         rotation, position, ..
     } = observed;

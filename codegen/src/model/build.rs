@@ -99,7 +99,12 @@ impl<'a> Reading<'a> {
         variety.check(system, graph, scope, report);
         let kinematics = kinematics::read(system, graph, scope, variety, declared, report);
         if let Some(kinematics) = &kinematics {
-            let motion = Motion::new(&declared.x, &kinematics.rate, &declared.xi, &declared.xi_dot);
+            let motion = Motion::new(
+                &declared.x,
+                &kinematics.rate,
+                &declared.xi,
+                &declared.xi_dot,
+            );
             self.scope.motion = Some(motion);
         }
         self.scope.unmoved = kinematics.is_none();

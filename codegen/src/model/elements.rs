@@ -145,7 +145,10 @@ impl Reader<'_, '_> {
                     }
                 };
                 let coefficient = factor?;
-                dynamics.elements.dampers.push(Damper { coefficient, along });
+                dynamics
+                    .elements
+                    .dampers
+                    .push(Damper { coefficient, along });
             }
             ItemKind::Push { force, from, to } => {
                 let value = self.evaluator.scalar(force, "a force along a line");

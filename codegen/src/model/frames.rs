@@ -1,10 +1,10 @@
 //! One named expression; the pose that one `frame` statement gives.
 
+use super::class;
 use super::declare::shape_fits;
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
-use super::class;
 use crate::algebra::graph::Graph;
 use crate::algebra::linear::{add3, apply3, identity3, multiply3, sub3, transpose3};
 use crate::diagnostics::{Diagnostic, Report};

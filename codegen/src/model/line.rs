@@ -134,9 +134,7 @@ impl Reader<'_, '_> {
     /// fixed direction.
     pub fn smooth_length(&mut self, line: &Line) -> Option<Edge> {
         let graph = &mut *self.evaluator.graph;
-        if let Some(known) = graph.known_root(line.square)
-            && !is_root(graph, known)
-        {
+        if let Some(known) = graph.known_root(line.square) {
             return Some(known);
         }
         let d = line.difference;

@@ -33,7 +33,10 @@ impl Reader<'_, '_> {
         };
         let other = other?;
         if let Some(from) = from.filter(|_| other == wrench.frame) {
-            let message = format!("this load does nothing: `{}` exerts it on itself", from.name);
+            let message = format!(
+                "this load does nothing: `{}` exerts it on itself",
+                from.name
+            );
             return self.evaluator.error(
                 Diagnostic::new(from.span, message).help("name the frame that takes the reaction"),
             );

@@ -189,8 +189,9 @@ impl Evaluator<'_> {
             if class & !(class::PARAM | class::COORD) != 0 {
                 let message = format!("an argument of `{name}` depends on velocities or inputs");
                 return self.error(
-                    Diagnostic::new(expr.span, message)
-                        .help("frames and their points are functions of coordinates and parameters"),
+                    Diagnostic::new(expr.span, message).help(
+                        "frames and their points are functions of coordinates and parameters",
+                    ),
                 );
             }
         }

@@ -216,13 +216,14 @@ impl<'a> Names<'a> {
             Some(on) if known => {
                 let pose = relative_pose(&relation, graph, scope, report);
                 let value = scope.get(&relation.name.name).and_then(|e| e.value.clone());
-                (on, pose.zip(value).map(|(p, f)| frames::behind(graph, &f, &p)))
+                (
+                    on,
+                    pose.zip(value).map(|(p, f)| frames::behind(graph, &f, &p)),
+                )
             }
             _ if known && self.closes(&relation, scope, report) => return,
             _ => {
-                let parent = relation
-                    .on
-                    .map(|on| parent_pose(on, graph, scope, report));
+                let parent = relation.on.map(|on| parent_pose(on, graph, scope, report));
                 let pose = relative_pose(&relation, graph, scope, report);
                 let value = match parent {
                     Some(parent) => parent.zip(pose).map(|(g, p)| frames::ahead(graph, &g, &p)),
@@ -246,7 +247,10 @@ impl<'a> Names<'a> {
     /// second definition of the same.
     fn closes(&self, relation: &Relation, scope: &Scope, report: &mut Report) -> bool {
         let entry = |name: &str| scope.get(name).is_some_and(|e| e.kind == NameKind::Frame);
-        if relation.on.is_some_and(|on| on.name != "world" && !entry(&on.name)) {
+        if relation
+            .on
+            .is_some_and(|on| on.name != "world" && !entry(&on.name))
+        {
             return false;
         }
         let path = self.path(relation.name.name.as_str(), relation.parent());
@@ -355,7 +359,10 @@ impl<'a> Names<'a> {
         let list: Vec<String> = island.iter().map(|name| format!("`{name}`")).collect();
         let message = match list.as_slice() {
             [one] => format!("frame {one} is not connected to the world"),
-            list => format!("the frames {} are not connected to the world", list.join(", ")),
+            list => format!(
+                "the frames {} are not connected to the world",
+                list.join(", ")
+            ),
         };
         report.push(Diagnostic::new(first.name.span, message).help(format!(
             "place one of them: `frame {} = pose(R, p);`, or relative to a frame that is connected",
@@ -368,9 +375,7 @@ impl<'a> Names<'a> {
                 }
             }
         }
-        let inside = |task: &Task| {
-            matches!(task, Task::Frame(relation) if island.contains(&relation.name.name.as_str()))
-        };
+        let inside = |task: &Task| matches!(task, Task::Frame(relation) if island.contains(&relation.name.name.as_str()));
         self.tasks.retain(|task| !inside(task));
     }
 }

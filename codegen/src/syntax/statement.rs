@@ -100,7 +100,15 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
     };
     let names = matches!(
         word,
-        "coord" | "velocity" | "input" | "force" | "torque" | "wrench" | "spring" | "damper" | "generate"
+        "coord"
+            | "velocity"
+            | "input"
+            | "force"
+            | "torque"
+            | "wrench"
+            | "spring"
+            | "damper"
+            | "generate"
     );
     cursor.end(!names)?;
     Ok(Item {

@@ -1,6 +1,7 @@
 //! The language as a whole: what is accepted, what is refused and how, and that nothing breaks the parser.
 
 mod accepted;
+mod elements;
 mod hostile;
 mod refused;
 
@@ -152,7 +153,9 @@ fn told(kind: &ItemKind) -> String {
                     )
                 }
             };
-            let from = from.as_ref().map_or(String::new(), |from| format!(" from {}", from.name));
+            let from = from
+                .as_ref()
+                .map_or(String::new(), |from| format!(" from {}", from.name));
             let axes = match axes {
                 super::ast::Components::Frame(frame) => frame.name.clone(),
                 axes => format!("{axes:?}"),

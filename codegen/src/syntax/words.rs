@@ -71,12 +71,7 @@ const STATEMENTS: [(&str, &str); 24] = [
 ];
 
 /// Statements of later versions.
-pub(super) const LATER: [&str; 4] = [
-    "joint",
-    "inactive",
-    "nonholonomic",
-    "invariant",
-];
+pub(super) const LATER: [&str; 4] = ["joint", "inactive", "nonholonomic", "invariant"];
 
 /// Words that end an expression, and can name nothing.
 pub(super) const CONNECTIVES: [&str; 4] = ["at", "on", "in", "about"];
