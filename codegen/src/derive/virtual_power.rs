@@ -72,10 +72,13 @@ impl<'a> Forces<'a> {
             Axes::World => a,
             Axes::Body => apply3(graph, rotation, a),
         };
-        let arm = apply3(self.graph, rotation, wrench.at);
-        let point = add3(self.graph, position, arm);
         let force = world(self.graph, wrench.force);
-        self.at(force, point);
+        self.at(force, position);
+        // The point of the frame: R turns, `at` stays.
+        for (axis, &at) in transpose3(rotation).into_iter().zip(&wrench.at) {
+            let part = scale3(self.graph, at, force);
+            self.at(part, axis);
+        }
         let half = self.graph.ratio(1, 2);
         let torque = world(self.graph, wrench.torque);
         let torque = scale3(self.graph, half, torque);

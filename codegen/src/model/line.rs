@@ -6,7 +6,6 @@
 use super::Wrench;
 use super::dynamics::Reader;
 use super::functions::root;
-use super::value::Value;
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::linear::{Vec3, add3, apply3, scale3, sub3, zero3};
 use crate::algebra::numeric::evaluate;
@@ -94,11 +93,7 @@ impl Reader<'_, '_> {
     fn end(&mut self, end: &End) -> Option<Point> {
         const WHAT: &str = "a point of a frame";
         let at = match &end.at {
-            Some(expr) => self.evaluator.vec3(expr, WHAT).and_then(|point| {
-                let help = "it is given in the axes of its frame";
-                self.configuration(&Value::Vector(point.to_vec()), expr.span, WHAT, help)?;
-                Some(point)
-            }),
+            Some(expr) => self.constant_vec3(expr, WHAT),
             None => Some(zero3(self.evaluator.graph)),
         };
         if end.frame.name == "world" {

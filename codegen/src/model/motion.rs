@@ -19,7 +19,7 @@ use super::expression::Evaluator;
 use super::value::Value;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{Mat3, Vec3, add3, apply3, multiply3, sub3, transpose3, zero3};
+use crate::algebra::linear::{Mat3, Vec3, add3, apply3, cross, multiply3, sub3, transpose3, zero3};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{Expr, Ident, Span};
 use std::cell::RefCell;
@@ -133,6 +133,35 @@ impl Motion {
         add3(graph, origin, moved)
     }
 
+    /// Makes the same in the axes of the frame, v = Rᵀṙ + ω × p and v̇ + ω × v, known to the graph:
+    /// `f.R.T * velocity(f, p)` is then that, and not computed in the world and turned back.
+    fn note_in_frame(
+        &self,
+        graph: &mut Graph,
+        rotation: &Mat3,
+        position: Vec3,
+        point: Vec3,
+        quantity: Quantity,
+    ) {
+        let back = transpose3(rotation);
+        let turned = self.turning(graph, rotation);
+        let skew = multiply3(graph, &back, &turned);
+        let omega = [skew[2][1], skew[0][2], skew[1][0]];
+        let moved = self.rates(graph, position);
+        let origin = apply3(graph, &back, moved);
+        let lever = cross(graph, omega, point);
+        let velocity = add3(graph, origin, lever);
+        if matches!(
+            quantity,
+            Quantity::Acceleration | Quantity::AngularAcceleration
+        ) {
+            self.rates(graph, omega);
+            let change = self.rates(graph, velocity);
+            let turn = cross(graph, omega, velocity);
+            add3(graph, change, turn);
+        }
+    }
+
     fn turning(&self, graph: &mut Graph, rotation: &Mat3) -> Mat3 {
         let mut along = Derivation::new(self.seeds.iter().copied());
         rotation.map(|row| row.map(|entry| along.of(graph, entry)))
@@ -206,6 +235,9 @@ impl Evaluator<'_> {
             Some(_) => return self.misused(name, span),
         };
         let graph = &mut *self.graph;
+        if let Some(motion) = &self.scope.motion {
+            motion.note_in_frame(graph, &rotation, position, point, quantity);
+        }
         let value = match (&self.scope.motion, quantity) {
             (_, Quantity::Position) => {
                 let arm = apply3(graph, &rotation, point);
