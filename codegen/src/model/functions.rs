@@ -1,6 +1,7 @@
 //! The functions of the language.
 
 use super::expression::Evaluator;
+use super::motion::FUNCTIONS;
 use super::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use super::scope::{NameKind, RESERVED};
 use super::value::Value;
@@ -56,6 +57,7 @@ impl Evaluator<'_> {
         let known = || {
             RESERVED
                 .iter()
+                .chain(&FUNCTIONS)
                 .copied()
                 .filter(|name| usage(name).is_some())
         };

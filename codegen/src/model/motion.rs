@@ -24,8 +24,9 @@ use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{Expr, Ident, Span};
 use std::cell::RefCell;
 
-/// The functions that are known once the rates are.
-pub const NEED_RATES: [&str; 4] = [
+/// The functions; a value may share the name of one, as a coordinate `position` does.
+pub const FUNCTIONS: [&str; 5] = [
+    "position",
     "velocity",
     "acceleration",
     "angular_velocity",
@@ -34,7 +35,7 @@ pub const NEED_RATES: [&str; 4] = [
 
 /// Whether a function is known only once the rates are.
 pub fn needs_rates(function: &str) -> bool {
-    NEED_RATES.contains(&function)
+    FUNCTIONS.contains(&function) && function != "position"
 }
 
 /// A motion that an expression asked for, to be derived once more on another route.

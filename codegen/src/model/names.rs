@@ -39,8 +39,11 @@ enum Task<'a> {
     Frame(Relation<'a>),
 }
 
+/// Stands among the names of an expression for the rates of the coordinates.
+const RATES: &str = "d/dt";
+
 impl<'a> Task<'a> {
-    /// Names in its expression, functions included.
+    /// Names in its expression, and [`RATES`] where it needs them.
     fn mentions(&self) -> BTreeSet<&'a str> {
         let mut names = BTreeSet::new();
         match self {
@@ -67,7 +70,9 @@ fn mentioned<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
             list.iter().for_each(|entry| mentioned(entry, names));
         }
         ExprKind::Call(function, list) => {
-            names.insert(&function.name);
+            if motion::needs_rates(&function.name) {
+                names.insert(RATES);
+            }
             list.iter().for_each(|entry| mentioned(entry, names));
         }
         ExprKind::Array(list) => list.iter().for_each(|entry| mentioned(entry, names)),
@@ -151,7 +156,8 @@ impl<'a> Names<'a> {
                 .any(|task| matches!(task, Task::Let(other) if other.name.name == name))
         };
         task.mentions().into_iter().any(|name| {
-            scope.motion.is_none() && !scope.unmoved && motion::needs_rates(name)
+            let rates = scope.motion.is_some() || scope.unmoved;
+            (name == RATES && !rates)
                 || scope.get(name).is_none() && (self.nodes.contains(name) || earlier(name))
         })
     }
@@ -160,13 +166,13 @@ impl<'a> Names<'a> {
         end.is_none_or(|end| end.name == "world" || scope.get(&end.name).is_some())
     }
 
-    /// The functions that wait for the rates, and the names of expressions and frames that do.
+    /// The rates while they are not known, and the names of expressions and frames that need them.
     fn later(&self, scope: &Scope) -> BTreeSet<&'a str> {
         let mut later = BTreeSet::new();
         if scope.motion.is_some() || scope.unmoved {
             return later;
         }
-        later.extend(motion::NEED_RATES);
+        later.insert(RATES);
         loop {
             let before = later.len();
             for task in &self.tasks {

@@ -83,11 +83,6 @@ pub const RESERVED: &[&str] = &[
     "qmul",
     "pose",
     "inverse",
-    "position",
-    "velocity",
-    "acceleration",
-    "angular_velocity",
-    "angular_acceleration",
     "pi",
     "world",
 ];
