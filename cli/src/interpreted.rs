@@ -7,7 +7,7 @@ use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::layout;
 use hamel_codegen::program::interpret::Interpreter;
-use hamel_codegen::program::{Program, Shape};
+use hamel_codegen::program::{Argument, Program, Shape};
 use std::cell::Cell;
 
 /// A program with its parameters set; x, ξ and u are `Vec`s.
@@ -37,6 +37,7 @@ pub struct Output {
     /// Its shape.
     pub shape: Shape,
     function: Interpreter,
+    accelerated: bool,
 }
 
 impl Interpreted {
@@ -45,13 +46,13 @@ impl Interpreted {
         let program = &generated.program;
         let function = |name: &str| function(program, name, &state.params);
         let outputs = generated.model.outputs.iter().map(|(name, _)| {
-            let shape = program
-                .function(name)
-                .map_or(Shape::Scalar, |function| function.shape);
+            let known = program.function(name);
             Ok(Output {
                 name: name.clone(),
-                shape,
+                shape: known.map_or(Shape::Scalar, |function| function.shape),
                 function: function(name)?,
+                accelerated: known
+                    .is_some_and(|function| function.arguments.contains(&Argument::Accelerations)),
             })
         });
         Ok(Interpreted {
@@ -99,9 +100,16 @@ impl Interpreted {
         &self.outputs
     }
 
-    /// The value of an output, matrices by rows.
+    /// The value of an output, matrices by rows; of accelerations, those of the forward dynamics,
+    /// NaN where they have no value.
     pub fn output(&self, output: &Output, x: &[f64], xi: &[f64]) -> Vec<f64> {
-        value(&output.function, x, xi, &self.inputs)
+        let mut xi_dot = Vec::new();
+        if output.accelerated {
+            let accel = self.accel.call(x, xi, &self.inputs, &[]);
+            xi_dot = accel.unwrap_or_else(|_| vec![f64::NAN; xi.len()]);
+        }
+        let value = output.function.call(x, xi, &self.inputs, &xi_dot);
+        value.unwrap_or_default()
     }
 }
 

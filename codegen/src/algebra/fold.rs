@@ -1,8 +1,9 @@
 //! What the constructor of nodes folds beyond equal values: constants of run time are kept together,
 //! and arguments of sin, cos and exp are read as linear forms.
 
-use super::graph::Graph;
-use super::node::{Edge, Node, NodeId};
+use super::fp::Fp;
+use super::graph::{Graph, LANES};
+use super::node::{Edge, Function, Node, NodeId};
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
@@ -13,6 +14,29 @@ impl Graph {
         let (n, d) = (value.numer().sqrt(), value.denom().sqrt());
         let root = BigRational::new(n, d);
         (&root * &root == value).then(|| self.rational(&root))
+    }
+
+    /// A node e with e² = `square` on X that is no square root itself; of either sign.
+    pub fn known_root(&self, square: Edge) -> Option<Edge> {
+        let [a, b] = self.value(square).map(|value| value.sqrt());
+        let (a, b) = (a?, b?);
+        let is_root =
+            |edge: &Edge| matches!(self.node(edge.node()), Node::Apply(Function::Sqrt, _));
+        [[a, b], [a, -b]]
+            .into_iter()
+            .filter_map(|value| self.lookup(value))
+            .find(|edge| !is_root(edge))
+    }
+
+    /// The values of √(e²) = |e|: roots of both signs are roots modulo p, and are chosen such that
+    /// |e| is neither e nor −e, unless e is itself a root or a number.
+    pub(super) fn apart_from_root(&self, square: Edge, root: [Fp; LANES]) -> [Fp; LANES] {
+        let [a, b] = root;
+        match self.lookup(root).map(|known| self.node(known.node())) {
+            None | Some(Node::Constant(_) | Node::Apply(Function::Sqrt, _)) => root,
+            Some(_) if self.value(square) == root.map(|value| value * value) => [a, -b],
+            Some(_) => root,
+        }
     }
 
     /// p·y + q·y = (p + q)·y for run-time constants p, q: the sum of constants costs nothing.

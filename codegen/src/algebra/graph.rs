@@ -304,6 +304,10 @@ impl Graph {
                 .collect();
             self.lanes[lane].function(function, arguments[lane], &form)
         });
+        let value = match function {
+            Function::Sqrt => self.apart_from_root(argument, value),
+            _ => value,
+        };
         let class = self.class(argument.node());
         let edge = match self.known(value, class) {
             Some(known) => known,
@@ -403,7 +407,7 @@ impl Graph {
         Edge::of(id)
     }
 
-    fn lookup(&self, value: [Fp; LANES]) -> Option<Edge> {
+    pub(super) fn lookup(&self, value: [Fp; LANES]) -> Option<Edge> {
         let (key, negative) = canonical(value);
         self.by_value.get(&key).map(|edge| edge.signed(negative))
     }

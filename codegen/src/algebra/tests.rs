@@ -32,6 +32,23 @@ fn graph() -> (Graph, [Edge; 6]) {
     (graph, [p, q, a, b, c, s])
 }
 
+/// √(e²) is |e|, whatever sign the roots of e² have at the points.
+#[test]
+fn the_root_of_a_square_is_no_more_than_a_root() {
+    let (mut g, [.., a, _, _, _]) = graph();
+    for shift in 0..8 {
+        let number = g.ratio(shift, 1);
+        let e = g.sub(a, number);
+        let square = g.mul(e, e);
+        let root = g.apply(Function::Sqrt, square);
+        assert!(root != e && root != -e, "{shift}");
+        assert_eq!(g.mul(root, root), square);
+        assert_eq!(g.apply(Function::Sqrt, square), root);
+        let known = g.known_root(square).expect("e");
+        assert_eq!(known.abs(), e.abs());
+    }
+}
+
 #[test]
 fn what_is_equal_on_the_variety_is_one_node() {
     let (mut g, [p, q, a, b, c, s]) = graph();

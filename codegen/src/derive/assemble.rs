@@ -9,8 +9,8 @@ use super::{constrained, energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
-use crate::model::Model;
 use crate::model::value::Value;
+use crate::model::{Model, class};
 use crate::program::{Argument, Function, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
@@ -32,6 +32,7 @@ pub fn assemble(full: &Model, reduction: Option<&Reduction>) -> Result<Program, 
     let mut builder = Builder::new(model, chosen, parts);
     builder.kinematics();
     builder.dynamics(&reference.graph, potential);
+    builder.dissipation();
     builder.variety(model)?;
     builder.outputs();
     if let Some(reduction) = reduction {
@@ -286,6 +287,24 @@ impl<'a> Builder<'a> {
         pivots.filter(|p| !self.graph.is_free(p.node())).collect()
     }
 
+    /// D, where there is one.
+    fn dissipation(&mut self) {
+        let model = self.model;
+        let asked = model.generate.iter().any(|name| name == "dissipation");
+        if model.dissipation == model.graph.zero() && !asked {
+            return;
+        }
+        let value = rebuild(&model.graph, &mut self.graph, &[model.dissipation]);
+        self.push(
+            "dissipation",
+            &["Rayleigh's dissipation function D(x, ξ) (W), half the power that dampers take: its force is",
+              "−∂D/∂ξⁱ, part of the generalised force, and d/dt (T + V) = −2 D + power of all else."],
+            &[Coordinates, Velocities],
+            Shape::Scalar,
+            value,
+        );
+    }
+
     /// φ and −Ψ φ, which are wanted off X: copied node by node from the graph with free points.
     fn variety(&mut self, model: &Model) -> Result<(), Diagnostic> {
         let mut free = model.points.free.clone();
@@ -324,13 +343,14 @@ impl<'a> Builder<'a> {
                 Value::Pose(..) => Shape::Vector(entries.len()),
             };
             let docs = format!("Output `{name}` of the description.");
-            self.push(
-                name,
-                &[&docs],
-                &[Coordinates, Velocities, Inputs],
-                shape,
-                entries,
-            );
+            let class = |class, edge: &Edge| class | self.graph.class(edge.node());
+            let accelerated = entries.iter().fold(0, class) & class::ACCEL != 0;
+            let arguments: &[Argument] = if accelerated {
+                &[Coordinates, Velocities, Accelerations, Inputs]
+            } else {
+                &[Coordinates, Velocities, Inputs]
+            };
+            self.push(name, &[&docs], arguments, shape, entries);
         }
     }
 

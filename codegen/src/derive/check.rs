@@ -10,6 +10,7 @@ use super::constrained;
 use super::normal::NormalForms;
 use super::reduction::reduce;
 use super::tables::Geometry;
+use super::virtual_power;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::evaluate_at;
@@ -333,7 +334,7 @@ fn motion(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
     let gain = graph.dot(&momentum, &xi_dot);
     let change = graph.add(drift, gain);
     let power = graph.dot(&applied, &xi);
-    vec![
+    let mut all = vec![
         Sides {
             label: "(30a) = (30c)",
             equation: "ṗᵢ + γᵢⱼᵏ ξʲ pₖ − ∂ᵢT = Γᵢⱼₖ ξʲ ξᵏ at ξ̇ = 0",
@@ -352,7 +353,70 @@ fn motion(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
             left: vec![change],
             right: vec![power],
         },
-    ]
+    ];
+    all.extend(virtual_power(geometry, program));
+    all
+}
+
+/// (28): the emitted forces, 2 D, and the motions of points, each on the route of single particles.
+fn virtual_power(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
+    let mut graph = geometry.model.graph.clone();
+    let graph = &mut graph;
+    let model = &geometry.model;
+    let mut calculus = Calculus::new(model);
+    let calculus = &mut calculus;
+    let mut all = Vec::new();
+    let mut side = |label, equation, (left, right): (Vec<Edge>, Vec<Edge>)| {
+        all.push(Sides {
+            label,
+            equation,
+            left,
+            right,
+        });
+    };
+    let emitted = |graph: &mut Graph, name: &str| {
+        let function = program.function(name)?;
+        Some(rebuild(&program.graph, graph, &function.outputs))
+    };
+    if let Some(force) = emitted(graph, "generalized_force") {
+        let virtual_force = virtual_power::applied(model, graph, calculus);
+        let equation = "fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted f";
+        side("(28)", equation, (force, virtual_force));
+    }
+    if let Some(slope) = emitted(graph, "potential_force") {
+        let force = virtual_power::conservative(model, graph, calculus);
+        let force = force.into_iter().map(|edge| -edge).collect();
+        let equation = "−∂ᵢV = Σ ⟨F_p, ∂ᵢr_p⟩ of weights and springs";
+        side("(28)", equation, (slope, force));
+    }
+    if let Some(dissipation) = emitted(graph, "dissipation") {
+        let twice = dissipation
+            .iter()
+            .map(|&edge| graph.add(edge, edge))
+            .collect();
+        let power = vec![virtual_power::dissipated(model, graph, calculus)];
+        side("Rayleigh", "2 D = −fᵢ ξⁱ of dampers", (twice, power));
+    }
+    let lengths = virtual_power::lengths(model, graph);
+    side(
+        "lines",
+        "ℓ² = d·d of springs and forces along lines",
+        lengths,
+    );
+    let motions = virtual_power::motions(model, graph, calculus);
+    let equation = "ṙ and r̈ of points from ∂ᵢr and ∂ᵢ∂ⱼr";
+    side("motion", equation, motions);
+    let zero = graph.zero();
+    let says = |sides: &Sides| {
+        sides
+            .left
+            .iter()
+            .chain(&sides.right)
+            .any(|&edge| edge != zero)
+    };
+    all.retain(says);
+    geometry.model.graph = graph.clone();
+    all
 }
 
 fn flat(table: &[Vec<Vec<Edge>>]) -> Vec<Edge> {

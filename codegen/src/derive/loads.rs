@@ -57,6 +57,20 @@ pub fn potential(model: &mut Model, calculus: &mut Calculus, potential: Edge) ->
         .collect()
 }
 
+/// −∂ᵢV of the same, where springs along lines act by their wrenches.
+pub fn elastic(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
+    let mut sum = potential(model, calculus, model.elements.scalar_potential);
+    for spring in model.elements.springs.clone() {
+        for load in &spring.wrenches {
+            let force = wrench(model, calculus, load);
+            for (sum, force) in sum.iter_mut().zip(force) {
+                *sum = model.graph.add(*sum, force);
+            }
+        }
+    }
+    sum
+}
+
 /// Applied forces fᵢᴱ, one vector for every load: wrenches, then generalised forces.
 pub fn applied(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
     let mut loads: Vec<Vec<Edge>> = Vec::new();

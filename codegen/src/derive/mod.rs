@@ -8,6 +8,7 @@
 //! | `inertia` | mass matrix M | (20) |
 //! | `connection` | connection coefficients Γ | (23) |
 //! | `loads` | potential, gravity, applied forces | (28) |
+//! | `virtual_power` | loads as forces on points, motion of points | (28) |
 //! | `energy` | T, V, momentum | |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
 //! | `assemble` | the program of all generated functions | |
@@ -29,3 +30,4 @@ pub mod normal;
 pub mod reduction;
 pub mod tables;
 pub mod validate;
+pub mod virtual_power;

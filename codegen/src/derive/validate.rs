@@ -1,10 +1,9 @@
 //! The proof that stands before every emission: at fresh points of X modulo p, the emitted ξ̇
-//! satisfies M ξ̇ + h + ∂V = f with M, h, V and f derived on an independent route, and T, V are the
-//! energies of that route.
+//! satisfies M ξ̇ + h + ∂V = f with M, h, V and f derived on an independent route, T, V, D are those of
+//! that route, and outputs have the values of their expressions.
 
-use super::assemble::applied_force;
 use super::calculus::Calculus;
-use super::{commutation, connection, energy, inertia, kinematics};
+use super::{commutation, connection, energy, inertia, kinematics, virtual_power};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
@@ -27,6 +26,7 @@ pub(super) struct Reference {
     pub force: Vec<Edge>,
     pub kinetic: Edge,
     pub potential: Edge,
+    pub dissipation: Edge,
 }
 
 impl Reference {
@@ -41,7 +41,12 @@ impl Reference {
         let slope = (0..model.n())
             .map(|i| calculus.along(&mut model.graph, i, potential))
             .collect();
-        let force = applied_force(&mut model, &mut calculus);
+        let mut graph = model.graph.clone();
+        let force = virtual_power::applied(&model, &mut graph, &mut calculus);
+        let power = virtual_power::dissipated(&model, &mut graph, &mut calculus);
+        let half = graph.ratio(1, 2);
+        let dissipation = graph.mul(half, power);
+        model.graph = graph;
         let kinetic = energy::kinetic(&mut model, &mass);
         Some(Reference {
             model,
@@ -51,6 +56,7 @@ impl Reference {
             force,
             kinetic,
             potential,
+            dissipation,
         })
     }
 }
@@ -107,7 +113,11 @@ fn at_point(
             .chain(&reference.slope)
             .chain(&reference.force),
     );
-    roots.extend([reference.kinetic, reference.potential]);
+    roots.extend([
+        reference.kinetic,
+        reference.potential,
+        reference.dissipation,
+    ]);
     let expected = evaluate_at(graph, &roots, &mut lane.clone())?;
     let (mass, rest) = expected.split_at(n * n);
     let (bias, rest) = rest.split_at(n);
@@ -127,17 +137,24 @@ fn at_point(
             }
         }
     }
-    let table: [(&str, &[Fp], &'static str); 6] = [
+    let table: [(&str, &[Fp], &'static str); 7] = [
         ("mass_matrix", mass, "M"),
         ("bias", bias, "Γ ξ ξ"),
         ("potential_force", slope, "∂V"),
         ("generalized_force", force, "f"),
         ("kinetic_energy", &energies[..1], "T"),
-        ("potential_energy", &energies[1..], "V"),
+        ("potential_energy", &energies[1..2], "V"),
+        ("dissipation", &energies[2..], "D"),
     ];
     for (name, expected, what) in table {
         if wanted(name) && value(name)? != expected {
             return Some(Err(what));
+        }
+    }
+    for (name, expected) in &reference.model.outputs {
+        let expected = evaluate_at(graph, &expected.entries(), &mut lane.clone())?;
+        if wanted(name) && value(name)? != expected {
+            return Some(Err("an output"));
         }
     }
     Some(Ok(()))

@@ -160,7 +160,7 @@ fn shifted(graph: &mut Graph, inertia: &Mat3, mass: Edge, com: Vec3, back: bool)
 
 /// Whether a function of ξ is homogeneous of degree two, ξ · ∂T/∂ξ = 2 T, and has no third
 /// derivative: none along a random direction. In a graph of its own, to leave no trace.
-fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
+pub fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
     let graph = &mut graph;
     let twice = Derivation::new(xi.iter().map(|xi| (xi.node(), *xi))).of(graph, energy);
     let double = graph.add(energy, energy);

@@ -1,15 +1,15 @@
 //! The order in which a description is read, with its checkpoints.
 
 use super::declare::{Declared, NextValue, declare};
-use super::frames::{define_frame, define_let};
+use super::motion::Motion;
+use super::names::Names;
 use super::scope::Scope;
-use super::value::Value;
 use super::variety::Variety;
-use super::{Frame, Model, class, closure, defaults, dynamics, kinematics, pfaffian, start};
+use super::{Model, class, closure, defaults, dynamics, kinematics, pfaffian, start};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
-use crate::syntax::ast::{ItemKind, System};
+use crate::syntax::ast::System;
 
 /// Points are chosen anew this often when a square root has no value there.
 const ATTEMPTS: u64 = 8;
@@ -94,15 +94,28 @@ impl<'a> Reading<'a> {
         let (system, variety) = (self.system, self.variety);
         let (graph, report) = (&mut self.graph, &mut self.report);
         let defaults = defaults::read(system, graph, &self.scope, &self.declared, report);
-        let (lets, frames) = self.names();
-        let (graph, report) = (&mut self.graph, &mut self.report);
+        let mut names = Names::read(system, graph, &mut self.scope, report);
         let (scope, declared) = (&self.scope, &self.declared);
         variety.check(system, graph, scope, report);
         let kinematics = kinematics::read(system, graph, scope, variety, declared, report);
-        let dynamics = dynamics::read(system, graph, scope, &frames, declared, report);
+        if let Some(kinematics) = &kinematics {
+            let motion = Motion::new(
+                &declared.x,
+                &kinematics.rate,
+                &declared.xi,
+                &declared.xi_dot,
+            );
+            self.scope.motion = Some(motion);
+        }
+        self.scope.unmoved = kinematics.is_none();
+        names.go_on(graph, &mut self.scope, report);
+        let scope = &self.scope;
+        let mut starts = start::read(system, graph, scope, declared, &defaults, report);
+        let numbers = declared.numbers(&defaults, starts.as_ref());
+        let frames = names.frames;
+        let dynamics = dynamics::read(system, graph, scope, &frames, declared, &numbers, report);
         let constraints =
             pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
-        let mut starts = start::read(system, graph, scope, declared, &defaults, report);
         if let Some(start) = &starts {
             start::check(system, variety, declared, &defaults, &start.x, report);
         }
@@ -120,6 +133,7 @@ impl<'a> Reading<'a> {
             return Err((vec![error], None));
         };
         let declared = self.declared;
+        let motion = self.scope.motion;
         Ok(Model {
             name: system.name.name.clone(),
             public: system.public,
@@ -153,8 +167,11 @@ impl<'a> Reading<'a> {
             gravity: dynamics.gravity,
             wrenches: dynamics.wrenches,
             generalized: dynamics.generalized,
+            dissipation: dynamics.dissipation,
+            elements: dynamics.elements,
+            observed: motion.map_or(Vec::new(), |motion| motion.seen.into_inner()),
             outputs: dynamics.outputs,
-            lets,
+            lets: names.lets,
             start_x: start.x,
             start_xi: start.xi,
             generate: dynamics.generate,
@@ -179,27 +196,5 @@ impl<'a> Reading<'a> {
                     .help("write `velocity u;` or `velocity w: vec3;`"),
             );
         }
-    }
-
-    /// Named expressions and frames, in the order of the text.
-    fn names(&mut self) -> (Vec<(String, Value)>, Vec<Frame>) {
-        let (mut lets, mut frames) = (Vec::new(), Vec::new());
-        let (graph, scope, report) = (&mut self.graph, &mut self.scope, &mut self.report);
-        for item in &self.system.items {
-            match &item.kind {
-                ItemKind::Let(list) => {
-                    for declaration in list {
-                        if let Some(value) = define_let(declaration, graph, scope, report) {
-                            lets.push((declaration.name.name.clone(), value));
-                        }
-                    }
-                }
-                ItemKind::Frame { name, on, pose } => {
-                    define_frame(name, on.as_ref(), pose, graph, scope, &mut frames, report);
-                }
-                _ => {}
-            }
-        }
-        (lets, frames)
     }
 }

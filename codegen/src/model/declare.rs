@@ -2,6 +2,7 @@
 
 use super::expression::Evaluator;
 use super::layout::{blocks, entry_names};
+use super::start::Start;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
 use super::{Coordinate, Group, class};
@@ -28,6 +29,20 @@ pub struct Declared {
     /// Whether a coordinate or velocity is missing here because its name was taken: there is no
     /// point in counting then.
     pub faulty: bool,
+}
+
+impl Declared {
+    /// The numbers of all symbols at the start, inputs and accelerations 0; NaN where not known.
+    pub fn numbers(&self, defaults: &[f64], start: Option<&Start>) -> Vec<f64> {
+        let mut numbers = vec![std::f64::consts::PI];
+        numbers.extend_from_slice(defaults);
+        match start {
+            Some(start) => numbers.extend(start.x.iter().chain(&start.xi)),
+            None => numbers.resize(numbers.len() + self.x.len() + self.xi.len(), f64::NAN),
+        }
+        numbers.resize(numbers.len() + self.u.len() + self.xi_dot.len(), 0.0);
+        numbers
+    }
 }
 
 /// Declares everything, in the order pi, parameters, x, ξ, u, ξ̇, and defines the constants.

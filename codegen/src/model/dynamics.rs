@@ -1,10 +1,12 @@
 //! Inertia, energies, loads, outputs: everything but the kinematics.
 
 use super::declare::Declared;
+use super::elements::Elements;
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
 use super::{Body, Frame, Particle, Wrench, class};
+use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, zero3};
 use crate::diagnostics::{Diagnostic, Report};
@@ -24,6 +26,7 @@ pub const FUNCTIONS: &[&str] = &[
     "kinetic_energy",
     "potential_energy",
     "energy",
+    "dissipation",
     "constraint",
     "constraint_force",
 ];
@@ -40,6 +43,8 @@ pub struct Dynamics {
     pub gravity: Vec3,
     pub wrenches: Vec<Wrench>,
     pub generalized: Vec<Edge>,
+    pub dissipation: Edge,
+    pub elements: Elements,
     pub outputs: Vec<(String, Value)>,
     pub generate: Vec<String>,
 }
@@ -51,6 +56,7 @@ pub fn read(
     scope: &Scope,
     frames: &[Frame],
     declared: &Declared,
+    start: &[f64],
     report: &mut Report,
 ) -> Dynamics {
     let zero = graph.zero();
@@ -62,6 +68,8 @@ pub fn read(
         gravity: zero3(graph),
         wrenches: Vec::new(),
         generalized: vec![zero; declared.xi.len()],
+        dissipation: zero,
+        elements: Elements::none(graph, declared.xi.len()),
         outputs: Vec::new(),
         generate: Vec::new(),
     };
@@ -98,6 +106,9 @@ pub fn read(
             ItemKind::Potential(expr) => {
                 if let Some(term) = reader.potential(expr) {
                     dynamics.potential = graph.add(dynamics.potential, term);
+                    let elements = &mut dynamics.elements;
+                    elements.potential = graph.add(elements.potential, term);
+                    elements.scalar_potential = graph.add(elements.scalar_potential, term);
                 }
             }
             ItemKind::Gravity(expr) => {
@@ -113,14 +124,30 @@ pub fn read(
                 }
                 gravity = gravity.or(Some(item.span));
             }
-            ItemKind::Load { load, frame, axes } => {
-                dynamics.wrenches.extend(reader.load(load, frame, *axes));
+            ItemKind::Load {
+                load,
+                frame,
+                from,
+                axes,
+            } => {
+                if let Some(wrenches) = reader.load(load, frame, from.as_ref(), axes) {
+                    dynamics.elements.wrenches.extend(wrenches.iter().cloned());
+                    dynamics.wrenches.extend(wrenches);
+                }
+            }
+            ItemKind::Spring { .. }
+            | ItemKind::Damper { .. }
+            | ItemKind::Push { .. }
+            | ItemKind::Dissipation(_) => {
+                reader.element(&item.kind, item.span, start, &mut dynamics);
             }
             ItemKind::Generalized { target, value } => {
                 if let Some((offset, entries)) = reader.generalized(target, value) {
                     for (place, edge) in entries.into_iter().enumerate() {
                         let sum = &mut dynamics.generalized[offset + place];
                         *sum = graph.add(*sum, edge);
+                        let given = &mut dynamics.elements.generalized[offset + place];
+                        *given = graph.add(*given, edge);
                     }
                 }
             }
@@ -130,6 +157,12 @@ pub fn read(
             }
             _ => {}
         }
+    }
+    // Rayleigh: fᵢ = −∂D/∂ξⁱ.
+    for (sum, xi) in dynamics.generalized.iter_mut().zip(&declared.xi) {
+        let mut along = Derivation::new([(xi.node(), graph.one())]);
+        let resistance = along.of(graph, dynamics.elements.scalar_dissipation);
+        *sum = graph.sub(*sum, resistance);
     }
     if !has_inertia {
         report.push(
@@ -238,6 +271,17 @@ impl Reader<'_, '_> {
         let value = self.evaluator.vec3(expr, what)?;
         self.constant(&Value::Vector(value.to_vec()), expr.span, what)?;
         Some(value)
+    }
+
+    /// Whether a load is free of accelerations; reports it where not.
+    pub fn no_acceleration(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
+        if self.class_of(value) & class::ACCEL == 0 {
+            return Some(());
+        }
+        self.evaluator.error(
+            Diagnostic::new(span, format!("{what} cannot depend on accelerations"))
+                .help("what resists acceleration is inertia: a `body`, a `particle` or a `kinetic` energy"),
+        )
     }
 
     /// Whether a value is a function of the configuration; reports it where not.

@@ -1,5 +1,6 @@
 //! Expressions become shaped values of the graph.
 
+use super::motion::FUNCTIONS;
 use super::scope::{NameKind, RESERVED, Scope};
 use super::value::Value;
 use crate::algebra::graph::{Edge, Graph};
@@ -125,7 +126,7 @@ impl Evaluator<'_> {
                     .map(|s| s.node);
                 known.map(|node| Value::Scalar(Edge::of(node)))
             }
-            None if RESERVED.contains(&name) => self.error(
+            None if RESERVED.contains(&name) || FUNCTIONS.contains(&name) => self.error(
                 Diagnostic::new(span, format!("`{name}` is a function"))
                     .help(format!("write its arguments in parentheses: `{name}(…)`")),
             ),

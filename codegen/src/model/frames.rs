@@ -1,14 +1,14 @@
-//! Named expressions and frames.
+//! One named expression; the pose that one `frame` statement gives.
 
+use super::class;
 use super::declare::shape_fits;
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
-use super::{Frame, class};
 use crate::algebra::graph::Graph;
-use crate::algebra::linear::{add3, apply3, identity3, multiply3, transpose3};
+use crate::algebra::linear::{add3, apply3, identity3, multiply3, sub3, transpose3};
 use crate::diagnostics::{Diagnostic, Report};
-use crate::syntax::ast::{Declaration, Expr, Ident};
+use crate::syntax::ast::{Declaration, Expr, Ident, Span};
 
 /// Defines a `let`; its value, where it has one.
 pub fn define_let(
@@ -40,41 +40,63 @@ pub fn define_let(
     value.filter(|_| free)
 }
 
-/// Defines a frame.
-pub fn define_frame(
-    name: &Ident,
-    on: Option<&Ident>,
-    pose: &Expr,
-    graph: &mut Graph,
-    scope: &mut Scope,
-    frames: &mut Vec<Frame>,
-    report: &mut Report,
-) {
-    let value = frame_value(name, on, pose, graph, scope, report);
-    let free = scope.define(name, NameKind::Frame, value.clone(), report);
-    if let (Some(Value::Pose(rotation, position)), true) = (value, free) {
-        frames.push(Frame {
-            name: name.name.clone(),
-            rotation,
-            position,
-        });
+/// `frame f on g = P`: the pose of f in g is P.
+#[derive(Clone, Copy)]
+pub struct Relation<'a> {
+    /// f.
+    pub name: &'a Ident,
+    /// g, the world where absent.
+    pub on: Option<&'a Ident>,
+    /// P.
+    pub pose: &'a Expr,
+    /// The statement.
+    pub span: Span,
+}
+
+impl<'a> Relation<'a> {
+    /// The name of g.
+    pub fn parent(&self) -> &'a str {
+        self.on.map_or("world", |on| on.name.as_str())
     }
 }
 
-fn frame_value(
-    name: &Ident,
-    on: Option<&Ident>,
-    pose: &Expr,
+/// The world pose of f from that of g: f = g P.
+pub fn ahead(graph: &mut Graph, parent: &Value, pose: &Value) -> Value {
+    match (parent, pose) {
+        (Value::Pose(r, p), Value::Pose(rotation, position)) => {
+            let moved = apply3(graph, r, *position);
+            let position = add3(graph, *p, moved);
+            Value::Pose(multiply3(graph, r, rotation), position)
+        }
+        _ => pose.clone(),
+    }
+}
+
+/// The world pose of g from that of f: g = f P⁻¹.
+pub fn behind(graph: &mut Graph, child: &Value, pose: &Value) -> Value {
+    match (child, pose) {
+        (Value::Pose(r, p), Value::Pose(rotation, position)) => {
+            let rotation = multiply3(graph, r, &transpose3(rotation));
+            let moved = apply3(graph, &rotation, *position);
+            Value::Pose(rotation, sub3(graph, *p, moved)).unsigned_zeros(graph)
+        }
+        _ => child.clone(),
+    }
+}
+
+/// P, checked: a rotation and a position that depend on the configuration alone.
+pub fn relative_pose(
+    relation: &Relation,
     graph: &mut Graph,
     scope: &Scope,
     report: &mut Report,
 ) -> Option<Value> {
+    let Relation { name, pose, .. } = relation;
     let mut evaluator = Evaluator {
         graph,
         scope,
         report,
     };
-    let parent = on.map(|parent| parent_pose(&mut evaluator, parent));
     let value = evaluator.value(pose)?;
     let Value::Pose(rotation, position) = value else {
         let message = format!("a frame has to be a pose, this is {}", value.shape());
@@ -110,19 +132,21 @@ fn frame_value(
                 .help("use an SO3 coordinate, `rot(q)`, `rotx(angle)` and their products"),
         );
     }
-    let Some(parent) = parent else {
-        return Some(Value::Pose(rotation, position));
-    };
-    let Value::Pose(r, p) = parent? else {
-        return None;
-    };
-    let graph = evaluator.graph;
-    let moved = apply3(graph, &r, position);
-    let position = add3(graph, p, moved);
-    Some(Value::Pose(multiply3(graph, &r, &rotation), position))
+    Some(Value::Pose(rotation, position))
 }
 
-fn parent_pose(evaluator: &mut Evaluator, parent: &Ident) -> Option<Value> {
+/// The pose of the frame after `on`.
+pub fn parent_pose(
+    parent: &Ident,
+    graph: &mut Graph,
+    scope: &Scope,
+    report: &mut Report,
+) -> Option<Value> {
+    let mut evaluator = Evaluator {
+        graph,
+        scope,
+        report,
+    };
     match evaluator.scope.get(&parent.name) {
         Some(entry) if entry.kind == NameKind::Frame => entry.value.clone(),
         None if parent.name == "world" => Some(evaluator.world()),

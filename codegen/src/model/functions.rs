@@ -1,6 +1,7 @@
 //! The functions of the language.
 
 use super::expression::Evaluator;
+use super::motion::FUNCTIONS;
 use super::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use super::scope::{NameKind, RESERVED};
 use super::value::Value;
@@ -27,6 +28,9 @@ impl Evaluator<'_> {
             return self.no_function(function);
         };
         let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
+        if let Some(value) = self.motion(function, arguments, &values, span) {
+            return value;
+        }
         match evaluate(self.graph, &function.name, &values, self.scope.free) {
             Ok(value) => Some(value),
             Err(Fault::Usage) => {
@@ -53,6 +57,7 @@ impl Evaluator<'_> {
         let known = || {
             RESERVED
                 .iter()
+                .chain(&FUNCTIONS)
                 .copied()
                 .filter(|name| usage(name).is_some())
         };
@@ -133,6 +138,11 @@ fn usage(name: &str) -> Option<&'static str> {
         "qmul" => "`qmul(p, q)` of vectors of 4, scalar first",
         "pose" => "`pose(R, p)` of a rotation matrix and a vector of 3",
         "inverse" => "`inverse(P)` of a pose",
+        "position" => "`position(f, p)` of a frame and a point of it",
+        "velocity" => "`velocity(f, p)` of a frame and a point of it",
+        "acceleration" => "`acceleration(f, p)` of a frame and a point of it",
+        "angular_velocity" => "`angular_velocity(f)` of a frame",
+        "angular_acceleration" => "`angular_acceleration(f)` of a frame",
         _ => return None,
     })
 }

@@ -5,33 +5,114 @@ use super::dynamics::Reader;
 use super::scope::NameKind;
 use super::value::Value;
 use crate::algebra::graph::Edge;
-use crate::algebra::linear::{Vec3, zero3};
+use crate::algebra::linear::{
+    Vec3, add3, apply_transposed, apply3, multiply3, sub3, transpose3, zero3,
+};
 use crate::diagnostics::Diagnostic;
-use crate::syntax::ast::{Axes, Expr, Ident, Load, Target};
+use crate::syntax::ast::{Axes, Components, Expr, Ident, Load, Target};
 
 impl Reader<'_, '_> {
-    pub fn load(&mut self, load: &Load, frame: &Ident, axes: Axes) -> Option<Wrench> {
+    /// The wrench on a frame, and with `from` its reaction on the frame that exerts it: the opposite
+    /// wrench at the same place of the world.
+    pub fn load(
+        &mut self,
+        load: &Load,
+        frame: &Ident,
+        from: Option<&Ident>,
+        axes: &Components,
+    ) -> Option<Vec<Wrench>> {
+        let wrench = self.wrench(load, frame, axes);
+        let other = match from {
+            Some(other) if other.name == "world" => None,
+            Some(other) => Some(self.frame(other)),
+            None => None,
+        };
+        let wrench = wrench?;
+        let Some(other) = other else {
+            return Some(vec![wrench]);
+        };
+        let other = other?;
+        if let Some(from) = from.filter(|_| other == wrench.frame) {
+            let message = format!(
+                "this load does nothing: `{}` exerts it on itself",
+                from.name
+            );
+            return self.evaluator.error(
+                Diagnostic::new(from.span, message).help("name the frame that takes the reaction"),
+            );
+        }
+        let reaction = self.reaction(&wrench, other);
+        Some(vec![wrench, reaction])
+    }
+
+    fn reaction(&mut self, wrench: &Wrench, other: usize) -> Wrench {
+        let (frame, other_frame) = (&self.frames[wrench.frame], &self.frames[other]);
+        let graph = &mut *self.evaluator.graph;
+        let turn = multiply3(graph, &transpose3(&other_frame.rotation), &frame.rotation);
+        let pure_torque = wrench.force == zero3(graph);
+        let at = if pure_torque {
+            zero3(graph)
+        } else {
+            let apart = sub3(graph, frame.position, other_frame.position);
+            let origin = apply_transposed(graph, &other_frame.rotation, apart);
+            let arm = apply3(graph, &turn, wrench.at);
+            add3(graph, origin, arm)
+        };
+        let mut opposite = |a: Vec3| match wrench.axes {
+            Axes::World => a.map(|entry| -entry),
+            Axes::Body => apply3(graph, &turn, a).map(|entry| -entry),
+        };
+        Wrench {
+            frame: other,
+            at,
+            force: opposite(wrench.force),
+            torque: opposite(wrench.torque),
+            axes: wrench.axes,
+        }
+    }
+
+    fn wrench(&mut self, load: &Load, frame: &Ident, axes: &Components) -> Option<Wrench> {
         let index = self.frame(frame);
         let zero = zero3(self.evaluator.graph);
         let (force, torque, at) = match load {
-            Load::Force { force, at } => (self.evaluator.vec3(force, "a force"), Some(zero), at),
-            Load::Torque { torque } => (Some(zero), self.evaluator.vec3(torque, "a torque"), &None),
+            Load::Force { force, at } => (self.applied(force, "a force"), Some(zero), at),
+            Load::Torque { torque } => (Some(zero), self.applied(torque, "a torque"), &None),
             Load::Wrench { force, torque, at } => {
-                let force = self.evaluator.vec3(force, "a force");
-                (force, self.evaluator.vec3(torque, "a torque"), at)
+                let force = self.applied(force, "a force");
+                (force, self.applied(torque, "a torque"), at)
             }
         };
         let at = match at {
             Some(point) => self.point(point),
             None => Some(zero),
         };
+        let (seen, axes) = match axes {
+            Components::Body => (None, Axes::Body),
+            Components::World => (None, Axes::World),
+            Components::Frame(name) => (Some(self.frame(name)?), Axes::Body),
+        };
+        let (frame, at) = (index?, at?);
+        let (mut force, mut torque) = (force?, torque?);
+        if let Some(seen) = seen.filter(|seen| *seen != frame) {
+            let graph = &mut *self.evaluator.graph;
+            let own = transpose3(&self.frames[frame].rotation);
+            let turn = multiply3(graph, &own, &self.frames[seen].rotation);
+            force = apply3(graph, &turn, force);
+            torque = apply3(graph, &turn, torque);
+        }
         Some(Wrench {
-            frame: index?,
-            at: at?,
-            force: force?,
-            torque: torque?,
+            frame,
+            at,
+            force,
+            torque,
             axes,
         })
+    }
+
+    fn applied(&mut self, expr: &Expr, what: &str) -> Option<Vec3> {
+        let value = self.evaluator.vec3(expr, what)?;
+        self.no_acceleration(&Value::Vector(value.to_vec()), expr.span, what)?;
+        Some(value)
     }
 
     fn point(&mut self, expr: &Expr) -> Option<Vec3> {
@@ -82,6 +163,7 @@ impl Reader<'_, '_> {
                 .evaluator
                 .wrong_shape(value.span, &what, &wanted, &force);
         }
+        self.no_acceleration(&force, value.span, "a generalized force")?;
         Some((group.offset, force.entries()))
     }
 }

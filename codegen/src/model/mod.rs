@@ -10,12 +10,16 @@ mod closure;
 mod declare;
 mod defaults;
 mod dynamics;
+pub mod elements;
 pub mod expression;
 mod frames;
 mod functions;
 mod kinematics;
 pub mod layout;
+mod line;
 mod loads;
+pub mod motion;
+mod names;
 pub mod pfaffian;
 pub mod points;
 mod rotations;
@@ -28,7 +32,9 @@ mod variety;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
+use elements::Elements;
 use layout::Block;
+use motion::Observed;
 use pfaffian::Pfaffian;
 use points::Points;
 use value::Value;
@@ -128,6 +134,18 @@ pub struct Wrench {
     pub axes: Axes,
 }
 
+impl Wrench {
+    /// The same with every expression mapped.
+    pub fn map(&self, f: &mut impl FnMut(Edge) -> Edge) -> Self {
+        Wrench {
+            at: self.at.map(&mut *f),
+            force: self.force.map(&mut *f),
+            torque: self.torque.map(&mut *f),
+            ..self.clone()
+        }
+    }
+}
+
 /// What a kinetic energy that the user wrote contributes where ξ does not span the tangent space.
 #[derive(Clone, Debug)]
 pub struct KineticTerms {
@@ -204,6 +222,12 @@ pub struct Model {
     pub wrenches: Vec<Wrench>,
     /// Generalised forces, dual to ξ.
     pub generalized: Vec<Edge>,
+    /// Rayleigh's function D(x, ξ); its force −∂D/∂ξ is part of `generalized` (W).
+    pub dissipation: Edge,
+    /// Springs, dampers and forces along lines, which are part of the energies and forces above.
+    pub elements: Elements,
+    /// The motions of frames that expressions asked for.
+    pub observed: Vec<Observed>,
     /// Outputs.
     pub outputs: Vec<(String, Value)>,
     /// Named expressions of the user.

@@ -1,5 +1,6 @@
 //! Names and what they stand for.
 
+use super::motion::Motion;
 use super::value::Value;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{CoordKind, Ident, ItemKind, Span, System};
@@ -97,6 +98,10 @@ pub struct Scope {
     written: BTreeMap<String, (NameKind, Span)>,
     /// Whether values are those at points off the variety: what holds on it alone is not checked.
     pub free: bool,
+    /// How x and ξ move, once the rates are known.
+    pub motion: Option<Motion>,
+    /// Whether the rates are in error: what needs them is no further error.
+    pub unmoved: bool,
 }
 
 impl Scope {
@@ -139,6 +144,8 @@ impl Scope {
             names: BTreeMap::new(),
             written,
             free,
+            motion: None,
+            unmoved: false,
         }
     }
 

@@ -3,8 +3,8 @@
 use super::class;
 use super::declare::{Declared, declare, size};
 use super::expression::Evaluator;
-use super::frames::{define_frame, define_let};
 use super::layout::{Block, blocks, constraint};
+use super::names::Names;
 use super::points::{HIGHEST_DEGREE, Points, lane_seed};
 use super::scope::Scope;
 use super::value::Value;
@@ -47,29 +47,7 @@ impl Variety {
         let mut scope = Scope::new(system, true);
         let mut silent = Report::new();
         let declared = declare(system, &mut graph, &mut next, &mut scope, &mut silent);
-        let mut frames = Vec::new();
-        for item in &system.items {
-            match &item.kind {
-                ItemKind::Let(list) => {
-                    for declaration in list {
-                        define_let(declaration, &mut graph, &mut scope, &mut silent);
-                    }
-                }
-                ItemKind::Frame { name, on, pose } => {
-                    let on = on.as_ref();
-                    define_frame(
-                        name,
-                        on,
-                        pose,
-                        &mut graph,
-                        &mut scope,
-                        &mut frames,
-                        &mut silent,
-                    );
-                }
-                _ => {}
-            }
-        }
+        Names::read(system, &mut graph, &mut scope, &mut silent);
         let (mut rows, mut read, mut complete) = (Vec::new(), Vec::new(), !declared.faulty);
         for (index, item) in system.items.iter().enumerate() {
             let ItemKind::Constraint { left, right } = &item.kind else {

@@ -172,7 +172,18 @@ pub enum About {
     Origin,
 }
 
-/// The axes in which the components of a load are given.
+/// The axes in which the components of a load are written, after `in`.
+#[derive(Clone, Debug)]
+pub enum Components {
+    /// `in body`: those of the frame that the load acts on.
+    Body,
+    /// `in world`
+    World,
+    /// `in g`: those of any frame.
+    Frame(Ident),
+}
+
+/// The axes in which the components of a load are computed with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// Those of the frame that the load acts on.
@@ -218,6 +229,24 @@ pub enum Load {
         /// The point they act at, the origin of the frame where absent.
         at: Option<Expr>,
     },
+}
+
+/// A point of a frame: `p on f`, or `f` for its origin.
+#[derive(Clone, Debug)]
+pub struct End {
+    /// The point in the frame's axes, the origin where absent.
+    pub at: Option<Expr>,
+    /// The frame; the world is one.
+    pub frame: Ident,
+}
+
+/// What a spring or damper acts on.
+#[derive(Clone, Debug)]
+pub enum Acting {
+    /// `from p on f to q on g`: along the line between two points.
+    Between(End, End),
+    /// `on q2 - q1`: a scalar; for a damper, a rate.
+    On(Expr),
 }
 
 /// One statement.
@@ -310,9 +339,38 @@ pub enum ItemKind {
         load: Load,
         /// The frame it acts on.
         frame: Ident,
+        /// `from g`: the frame that exerts it, and takes the reaction.
+        from: Option<Ident>,
         /// The axes of its components.
-        axes: Axes,
+        axes: Components,
     },
+    /// `force F from p on f to q on g;` along the line between two points, positive apart.
+    Push {
+        /// The force, a scalar.
+        force: Expr,
+        /// The first point.
+        from: End,
+        /// The second point.
+        to: End,
+    },
+    /// `spring stiffness k [length l] from p on f to q on g;` or `… on q2 - q1;`
+    Spring {
+        /// The stiffness.
+        stiffness: Expr,
+        /// The length without force, 0 where absent.
+        length: Option<Expr>,
+        /// What it acts on.
+        acting: Acting,
+    },
+    /// `damper coefficient c from p on f to q on g;` or `… on w2 - w1;`
+    Damper {
+        /// The coefficient.
+        coefficient: Expr,
+        /// What it acts on.
+        acting: Acting,
+    },
+    /// `dissipation d * w^2 / 2;` Rayleigh's function.
+    Dissipation(Expr),
     /// `generalized force w = -d * w;` dual to a velocity.
     Generalized {
         /// The velocity.

@@ -2,13 +2,18 @@
 
 use proc_macro2::Delimiter;
 
-use super::ast::{Axes, Expr, ItemKind, Load};
+use super::ast::{Components, Expr, ItemKind, Load};
 use super::cursor::{Cursor, Parsed};
+use super::element::ends;
 use super::expression::expression;
 
-/// `force F [at p] on f in body`
+/// `force F [at p] on f in body`, or `force F from p on f to q on g`
 pub(super) fn force(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     let force = expression(cursor)?;
+    if cursor.is_word("from") {
+        let (from, to) = ends(cursor)?;
+        return Ok(ItemKind::Push { force, from, to });
+    }
     let at = at(cursor)?;
     applied(cursor, Load::Force { force, at })
 }
@@ -40,15 +45,30 @@ fn at(cursor: &mut Cursor<'_>) -> Parsed<Option<Expr>> {
     }
 }
 
-/// `on f in body`
+/// `on f [from g] in body`
 fn applied(cursor: &mut Cursor<'_>, load: Load) -> Parsed<ItemKind> {
     cursor.expect_word("on")?;
     let frame = cursor.name("a frame")?;
+    let from = if cursor.eat_word("from") {
+        Some(cursor.name("a frame")?)
+    } else {
+        None
+    };
     cursor.expect_word("in")?;
-    for (word, axes) in [("body", Axes::Body), ("world", Axes::World)] {
-        if cursor.eat_word(word) {
-            return Ok(ItemKind::Load { load, frame, axes });
-        }
+    if !cursor.is_any_word() {
+        return Err(cursor.unexpected("`body`, `world` or the name of a frame"));
     }
-    Err(cursor.unexpected("`body` or `world`"))
+    let axes = if cursor.eat_word("body") {
+        Components::Body
+    } else if cursor.eat_word("world") {
+        Components::World
+    } else {
+        Components::Frame(cursor.name("a frame")?)
+    };
+    Ok(ItemKind::Load {
+        load,
+        frame,
+        from,
+        axes,
+    })
 }

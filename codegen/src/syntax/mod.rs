@@ -25,6 +25,7 @@ pub mod ast;
 mod body;
 mod cursor;
 mod declaration;
+mod element;
 mod expression;
 mod load;
 mod number;

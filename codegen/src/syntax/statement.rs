@@ -7,7 +7,7 @@ use super::parse::since;
 use super::suggest::closest;
 use super::tokens::Kind;
 use super::words::{LATER, statements};
-use super::{body, declaration, load};
+use super::{body, declaration, element, load};
 use crate::diagnostics::Diagnostic;
 
 /// Parses one statement with its `;`.
@@ -107,6 +107,9 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
         "force" => load::force(cursor)?,
         "torque" => load::torque(cursor)?,
         "wrench" => load::wrench(cursor)?,
+        "spring" => element::spring(cursor)?,
+        "damper" => element::damper(cursor)?,
+        "dissipation" => ItemKind::Dissipation(expression(cursor)?),
         "generate" => ItemKind::Generate(functions(cursor)?),
         _ => {
             return Err(unknown(
@@ -120,7 +123,15 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
     };
     let names = matches!(
         word,
-        "coord" | "velocity" | "input" | "force" | "torque" | "wrench" | "generate"
+        "coord"
+            | "velocity"
+            | "input"
+            | "force"
+            | "torque"
+            | "wrench"
+            | "spring"
+            | "damper"
+            | "generate"
     );
     cursor.end(!names)?;
     Ok(Item {

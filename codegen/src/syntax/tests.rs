@@ -1,10 +1,11 @@
 //! The language as a whole: what is accepted, what is refused and how, and that nothing breaks the parser.
 
 mod accepted;
+mod elements;
 mod hostile;
 mod refused;
 
-use super::ast::{BinaryOp, Expr, ExprKind, ItemKind, System, Target};
+use super::ast::{Acting, BinaryOp, End, Expr, ExprKind, ItemKind, System, Target};
 use super::parse_text;
 
 /// The system of a text that is known to be right.
@@ -54,6 +55,17 @@ fn aimed(target: &Target) -> String {
     match &target.field {
         Some(field) => format!("{}.{}", target.name.name, field.name),
         None => target.name.name.clone(),
+    }
+}
+
+fn end(end: &End) -> String {
+    format!("{} on {}", maybe(&end.at), end.frame.name)
+}
+
+fn acts(acting: &Acting) -> String {
+    match acting {
+        Acting::Between(from, to) => format!("from {} to {}", end(from), end(to)),
+        Acting::On(value) => format!("on {}", spelled(value)),
     }
 }
 
@@ -147,7 +159,12 @@ fn told(kind: &ItemKind) -> String {
         Kinetic(value) => format!("kinetic {}", spelled(value)),
         Potential(value) => format!("potential {}", spelled(value)),
         Gravity(value) => format!("gravity {}", spelled(value)),
-        Load { load, frame, axes } => {
+        Load {
+            load,
+            frame,
+            from,
+            axes,
+        } => {
             let load = match load {
                 Force { force, at } => format!("force {} at {}", spelled(force), maybe(at)),
                 Torque { torque } => format!("torque {}", spelled(torque)),
@@ -160,8 +177,31 @@ fn told(kind: &ItemKind) -> String {
                     )
                 }
             };
-            format!("{load} on {} in {axes:?}", frame.name)
+            let from = from
+                .as_ref()
+                .map_or(String::new(), |from| format!(" from {}", from.name));
+            let axes = match axes {
+                super::ast::Components::Frame(frame) => frame.name.clone(),
+                axes => format!("{axes:?}"),
+            };
+            format!("{load} on {}{from} in {axes}", frame.name)
         }
+        Push { force, from, to } => {
+            format!("force {} from {} to {}", spelled(force), end(from), end(to))
+        }
+        Spring {
+            stiffness,
+            length,
+            acting,
+        } => {
+            let (stiffness, length) = (spelled(stiffness), maybe(length));
+            format!("spring {stiffness} length {length} {}", acts(acting))
+        }
+        Damper {
+            coefficient,
+            acting,
+        } => format!("damper {} {}", spelled(coefficient), acts(acting)),
+        Dissipation(value) => format!("dissipation {}", spelled(value)),
         Generate(names) => {
             format!(
                 "generate {}",

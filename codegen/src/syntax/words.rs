@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 24] = [
+const STATEMENTS: [(&str, &str); 27] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -45,19 +45,31 @@ const STATEMENTS: [(&str, &str); 24] = [
     ("input", "inputs are written `input F: vec3, u;`"),
     (
         "force",
-        "a force is written `force F at p on f in body;`, or `in world;`",
+        "a force is written `force F at p on f in body;`, `in world;` or `in g;`, or along a line `force F from p on f to q on g;`",
     ),
     (
         "torque",
-        "a torque is written `torque t on f in body;`, or `in world;`",
+        "a torque is written `torque t on f in body;`, `in world;` or `in g;`; its reaction acts on h in `torque t on f from h in body;`",
     ),
     (
         "wrench",
-        "a wrench is written `wrench (F, t) at p on f in body;`, or `in world;`",
+        "a wrench is written `wrench (F, t) at p on f in body;`, `in world;` or `in g;`",
     ),
     (
         "generalized",
         "a generalized force is written `generalized force w = -d * w;`",
+    ),
+    (
+        "spring",
+        "a spring is written `spring stiffness k length l from p on f to q on g;` or `spring stiffness k on q2 - q1;`",
+    ),
+    (
+        "damper",
+        "a damper is written `damper coefficient c from p on f to q on g;` or `damper coefficient c on w2 - w1;`",
+    ),
+    (
+        "dissipation",
+        "a dissipation is written `dissipation d * w^2 / 2;`",
     ),
     (
         "start",
@@ -71,7 +83,7 @@ const STATEMENTS: [(&str, &str); 24] = [
 ];
 
 /// Statements of later versions.
-pub(super) const LATER: [&str; 5] = ["joint", "spring", "damper", "dissipation", "invariant"];
+pub(super) const LATER: [&str; 2] = ["joint", "invariant"];
 
 /// Words that end an expression, and can name nothing.
 pub(super) const CONNECTIVES: [&str; 5] = ["at", "on", "in", "about", "stabilized"];

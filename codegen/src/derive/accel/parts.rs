@@ -132,7 +132,7 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
             );
         }
     }
-    let potential = loads::potential(model, calculus, model.potential);
+    let potential = loads::elastic(model, calculus);
     let loads = loads::applied(model, calculus);
     let graph = &mut model.graph;
     let conservative = (0..n)

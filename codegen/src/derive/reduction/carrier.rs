@@ -118,11 +118,10 @@ impl Carrier {
             particle.mass = self.one(particle.mass);
             particle.position = self.three(particle.position);
         }
-        for wrench in &mut model.wrenches {
-            wrench.at = self.three(wrench.at);
-            wrench.force = self.three(wrench.force);
-            wrench.torque = self.three(wrench.torque);
-        }
+        model.wrenches = full.wrenches.iter().map(|w| w.map(&mut |e| self.one(e))).collect();
+        model.elements = full.elements.map(&mut |edge| self.one(edge));
+        model.dissipation = self.one(full.dissipation);
+        model.observed.clear();
         model.kinetic = self.one(full.kinetic);
         model.kinetic_terms = self.kinetic.take().map(|terms| KineticTerms {
             mass: self.rows(&terms.mass),

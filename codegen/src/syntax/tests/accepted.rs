@@ -163,6 +163,15 @@ fn every_statement() {
         torque t on f in world;
         wrench (F, t) at p on f in body;
         wrench ((F), t,) on f in world;
+        torque t on f from g in h;
+        force F at p on f from world in world;
+        force F from p on f to g;
+        spring stiffness 2 * k length l from [0, 0, 1] on f to world;
+        spring stiffness k from f to q + r on g;
+        spring stiffness k length l on q2 - q1;
+        damper coefficient c from f to g;
+        damper coefficient c on w2 - w1;
+        dissipation d * w^2 / 2;
         generalized force w = -d * w;
         start X.R = I;
         output speed = norm(v);
@@ -196,6 +205,15 @@ fn every_statement() {
     torque t on f in World
     wrench F, t at p on f in Body
     wrench F, t at none on f in World
+    torque t on f from g in h
+    force F at p on f from world in World
+    force F from p on f to none on g
+    spring (2 * k) length l from [0, 0, 1] on f to none on world
+    spring k length none from none on f to (q + r) on g
+    spring k length l on (q2 - q1)
+    damper c from none on f to none on g
+    damper c on (w2 - w1)
+    dissipation ((d * (w ^ 2)) / 2)
     generalized force w = ((-d) * w)
     start X.R = I
     output speed = norm(v)

@@ -30,7 +30,7 @@ fn errors(text: &str) -> String {
 }
 
 /// The errors of one line in a system.
-fn line(text: &str) -> String {
+pub(super) fn line(text: &str) -> String {
     errors(&format!("system S {{\n{text}\n}}"))
 }
 
@@ -350,7 +350,7 @@ fn bodies_and_loads() {
         r#"particle mass m;"#,
         r#"force F hull in body;"#,
         r#"force F on hull;"#,
-        r#"force F on hull in hull;"#,
+        r#"force F on hull in 3;"#,
         r#"wrench F, t on f in body;"#,
         r#"wrench (F) on f in body;"#,
         r#"torque (a, b) on f in body;"#,
@@ -379,15 +379,15 @@ fn bodies_and_loads() {
     2:16 expected `at`, found `;` <;>
       a particle is written `particle mass m at p;` or `particle mass m at p on f;`
     2:9 expected `on`, found `hull` <hull>
-      a force is written `force F at p on f in body;`, or `in world;`
+      a force is written `force F at p on f in body;`, `in world;` or `in g;`, or along a line `force F from p on f to q on g;`
     2:16 expected `in`, found `;` <;>
-      a force is written `force F at p on f in body;`, or `in world;`
-    2:20 expected `body` or `world`, found `hull` <hull>
-      a force is written `force F at p on f in body;`, or `in world;`
+      a force is written `force F at p on f in body;`, `in world;` or `in g;`, or along a line `force F from p on f to q on g;`
+    2:20 expected `body`, `world` or the name of a frame, found `3` <3>
+      a force is written `force F at p on f in body;`, `in world;` or `in g;`, or along a line `force F from p on f to q on g;`
     2:8 expected `(`, found `F` <F>
-      a wrench is written `wrench (F, t) at p on f in body;`, or `in world;`
+      a wrench is written `wrench (F, t) at p on f in body;`, `in world;` or `in g;`
     2:10 expected `,`, found `)` <)>
-      a wrench is written `wrench (F, t) at p on f in body;`, or `in world;`
+      a wrench is written `wrench (F, t) at p on f in body;`, `in world;` or `in g;`
     2:10 expected `)`, found `,` <,>
       a vector is written `[a, b, c]`
     "#);

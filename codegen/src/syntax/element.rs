@@ -1,0 +1,70 @@
+//! Springs and dampers, and the two points that they act between.
+
+use super::ast::{Acting, End, Expr, ExprKind, Ident, ItemKind};
+use super::cursor::{Cursor, Parsed};
+use super::expression::expression;
+
+/// `stiffness k [length l] from … to …`, or `… on q2 - q1`
+pub(super) fn spring(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    cursor.expect_word("stiffness")?;
+    let stiffness = expression(cursor)?;
+    let length = if cursor.eat_word("length") {
+        Some(expression(cursor)?)
+    } else {
+        None
+    };
+    Ok(ItemKind::Spring {
+        stiffness,
+        length,
+        acting: acting(cursor)?,
+    })
+}
+
+/// `coefficient c from … to …`, or `… on w2 - w1`
+pub(super) fn damper(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    cursor.expect_word("coefficient")?;
+    let coefficient = expression(cursor)?;
+    Ok(ItemKind::Damper {
+        coefficient,
+        acting: acting(cursor)?,
+    })
+}
+
+fn acting(cursor: &mut Cursor<'_>) -> Parsed<Acting> {
+    if cursor.eat_word("on") {
+        return Ok(Acting::On(expression(cursor)?));
+    }
+    if !cursor.is_word("from") {
+        return Err(cursor.unexpected("`from` and two points, or `on` and a scalar"));
+    }
+    let (from, to) = ends(cursor)?;
+    Ok(Acting::Between(from, to))
+}
+
+/// `from [p on] f to [q on] g`
+pub(super) fn ends(cursor: &mut Cursor<'_>) -> Parsed<(End, End)> {
+    cursor.expect_word("from")?;
+    let from = end(cursor)?;
+    cursor.expect_word("to")?;
+    Ok((from, end(cursor)?))
+}
+
+fn end(cursor: &mut Cursor<'_>) -> Parsed<End> {
+    let point = expression(cursor)?;
+    if cursor.eat_word("on") {
+        return Ok(End {
+            at: Some(point),
+            frame: cursor.name("a frame")?,
+        });
+    }
+    match point {
+        Expr {
+            kind: ExprKind::Name(name),
+            span,
+        } => Ok(End {
+            at: None,
+            frame: Ident { name, span },
+        }),
+        _ => Err(cursor.unexpected("`on` and the frame of this point")),
+    }
+}
