@@ -147,8 +147,8 @@ fn the_order_and_direction_of_frames_does_not_matter() {
     let start = scattered.find("    frame wheel").expect("the first frame");
     let end = scattered.find("    body on hull").expect("the first body");
     let ordered = format!(
-        "{}    frame hull = pose(R, r);
-    frame wheel on hull = pose(roty(e), [0, 0.3, -0.1]);
+        "{}    frame hull = pose(rotz(h), [r[1], r[2], 0]);
+    frame wheel on hull = pose(rotz(0.2), [0, 0.3, -0.1]);
     frame camera on hull = pose(rotz(0.3), [0.1, 0, 0.2]);
     frame hand on camera = inverse(pose(rotx(q), [-a, 0, 0]));
     frame elbow on hand = pose(rotz(-0.4), [0, b * hull.R[3, 3], 0]);
