@@ -2,6 +2,7 @@
 
 use super::declare::{Declared, NextValue, declare};
 use super::frames::{define_frame, define_let};
+use super::kinematics::At;
 use super::scope::Scope;
 use super::value::Value;
 use super::variety::Variety;
@@ -98,12 +99,20 @@ impl<'a> Reading<'a> {
         let (graph, report) = (&mut self.graph, &mut self.report);
         let (scope, declared) = (&self.scope, &self.declared);
         variety.check(system, graph, scope, report);
-        let kinematics = kinematics::read(system, graph, scope, variety, declared, report);
-        let dynamics = dynamics::read(system, graph, scope, &frames, declared, report);
-        let starts = start::read(system, graph, scope, declared, &defaults, report);
+        // The start is needed to choose pivots; what is wrong with it is said last.
+        let mut last = Report::new();
+        let starts = start::read(system, graph, scope, declared, &defaults, &mut last);
         if let Some((x, _)) = &starts {
-            start::check(system, variety, declared, &defaults, x, report);
+            start::check(system, variety, declared, &defaults, x, &mut last);
         }
+        let known = last.is_empty() && !defaults.iter().any(|number| number.is_nan());
+        let at = starts.as_ref().filter(|_| known).map(|(x, _)| At {
+            defaults: &defaults,
+            x,
+        });
+        let kinematics = kinematics::read(system, graph, scope, variety, declared, at, report);
+        let dynamics = dynamics::read(system, graph, scope, &frames, declared, report);
+        last.finish().err().unwrap_or_default().into_iter().for_each(|error| report.push(error));
         if let Err(errors) = self.report.finish() {
             return Err((errors, Some(Box::new(self.graph))));
         }
@@ -132,6 +141,7 @@ impl<'a> Reading<'a> {
             u: declared.u,
             rate: kinematics.rate,
             a: kinematics.a,
+            completion: kinematics.completion,
             frames,
             bodies: dynamics.bodies,
             particles: dynamics.particles,

@@ -3,19 +3,26 @@
 //! Names are resolved, shapes checked, and every semantic error is found here: stages after this
 //! one cannot fail on user input.
 
+mod agreement;
 mod arithmetic;
 mod bodies;
 mod build;
+pub mod charts;
+pub mod completion;
 mod declare;
 mod defaults;
+mod definitions;
 mod dynamics;
 pub mod expression;
 mod frames;
 mod functions;
+mod independent;
 mod kinematics;
 pub mod layout;
 mod loads;
 pub mod points;
+mod rates;
+mod relations;
 mod rotations;
 pub mod scope;
 mod start;
@@ -26,6 +33,7 @@ mod variety;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
+use completion::Completion;
 use layout::Block;
 use points::Points;
 use value::Value;
@@ -45,6 +53,8 @@ pub mod class {
     pub const INPUT: u8 = 8;
     /// Accelerations ξ̇, the argument of inverse dynamics.
     pub const ACCEL: u8 = 16;
+    /// Rates ẋ, while definitions of velocities are read; never in a model's graph.
+    pub const RATE: u8 = 128;
 }
 
 /// A named group of symbols: a parameter, a velocity, an input.
@@ -166,6 +176,8 @@ pub struct Model {
     pub rate: Vec<Edge>,
     /// A, ν rows of n.
     pub a: Vec<Vec<Edge>>,
+    /// Y as it was given, the rows of Φ, and what [Y; Φ]⁻¹ divides by.
+    pub completion: Completion,
     /// Frames.
     pub frames: Vec<Frame>,
     /// Bodies.

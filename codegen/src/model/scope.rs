@@ -1,5 +1,6 @@
 //! Names and what they stand for.
 
+use super::rates::Rates;
 use super::value::Value;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{CoordKind, Ident, ItemKind, Span, System};
@@ -82,6 +83,7 @@ pub const RESERVED: &[&str] = &[
     "qmul",
     "pose",
     "inverse",
+    "rate",
     "pi",
     "world",
 ];
@@ -97,6 +99,8 @@ pub struct Scope {
     written: BTreeMap<String, (NameKind, Span)>,
     /// Whether values are those at points off the variety: what holds on it alone is not checked.
     pub free: bool,
+    /// What `rate(…)` stands for, in definitions of velocities.
+    pub rates: Option<Rates>,
 }
 
 impl Scope {
@@ -139,6 +143,7 @@ impl Scope {
             names: BTreeMap::new(),
             written,
             free,
+            rates: None,
         }
     }
 
