@@ -25,6 +25,8 @@ pub struct Interpreted {
     kinetic: Interpreter,
     potential: Interpreter,
     outputs: Vec<Output>,
+    /// For every guard of `accel` its number among the pivots of [Y; Φ], if it is one.
+    kinematic: Vec<Option<usize>>,
     evaluations: Cell<u64>,
 }
 
@@ -66,6 +68,7 @@ impl Interpreted {
             kinetic: function("kinetic_energy")?,
             potential: function("potential_energy")?,
             outputs: outputs.collect::<Result<_, Failure>>()?,
+            kinematic: kinematic(program),
             evaluations: Cell::new(0),
         })
     }
@@ -99,6 +102,13 @@ impl Interpreted {
     pub fn output(&self, output: &Output, x: &[f64], xi: &[f64]) -> Vec<f64> {
         value(&output.function, x, xi, &self.inputs)
     }
+}
+
+/// Which guards of `accel` are pivots of [Y; Φ].
+fn kinematic(program: &Program) -> Vec<Option<usize>> {
+    let guards = program.function("accel").map_or(&[][..], |accel| &accel.guards);
+    let pivots = guards.iter().map(|&guard| program.kinematic_pivot(guard));
+    pivots.collect()
 }
 
 /// Compiles one function.
@@ -185,7 +195,10 @@ impl System for Interpreted {
         self.evaluations.set(self.evaluations.get() + 1);
         self.accel
             .call(x, xi, u, &[])
-            .map_err(|pivot| Singular { pivot })
+            .map_err(|pivot| match self.kinematic.get(pivot).copied().flatten() {
+                Some(pivot) => Singular::kinematics(pivot),
+                None => Singular { pivot },
+            })
     }
 
     fn correction(&self, x: &Vec<f64>) -> Vec<f64> {

@@ -21,7 +21,7 @@ fn all_identities_hold() {
         let text = std::fs::read_to_string(&path).expect("readable");
         let generated = from_text(&text).expect("correct");
         let identities = check(&generated.model, &generated.program);
-        assert!(identities.len() >= 9);
+        assert!(identities.len() >= 10);
         for identity in identities {
             let failed = matches!(identity.verdict, Verdict::Failed(_));
             assert!(
@@ -47,7 +47,7 @@ fn lie_group_identities_are_proved() {
         "planar_body",
     ] {
         let generated = from_text(&text(name)).expect("correct");
-        for identity in check(&generated.model, &generated.program).iter().take(6) {
+        for identity in check(&generated.model, &generated.program).iter().take(9) {
             assert_eq!(
                 identity.verdict,
                 Verdict::Proved,

@@ -3,7 +3,7 @@
 use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
-use super::{energy, inertia, kinematics, loads};
+use super::{correction, energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
@@ -33,6 +33,7 @@ pub fn assemble(model: &Model) -> Result<Program, Diagnostic> {
     builder.outputs();
     let program = builder.finish();
     super::validate::validate(model, &program)?;
+    correction::validate(model, &program)?;
     Ok(program)
 }
 
@@ -42,16 +43,21 @@ struct Builder<'a> {
     chosen: Acceleration,
     parts: Parts,
     functions: Vec<Function>,
+    /// Pivots of [Y; Φ].
+    kinematic_guards: Vec<Edge>,
 }
 
 impl<'a> Builder<'a> {
     fn new(model: &'a Model, chosen: Acceleration, parts: Parts) -> Self {
+        let mut graph = chosen.graph.clone();
+        let kinematic_guards = rebuild(&model.graph, &mut graph, &model.completion.pivots);
         Builder {
             model,
-            graph: chosen.graph.clone(),
+            graph,
             chosen,
             parts,
             functions: Vec::new(),
+            kinematic_guards,
         }
     }
 
@@ -107,6 +113,7 @@ impl<'a> Builder<'a> {
             .iter()
             .copied()
             .filter(|p| !self.graph.is_free(p.node()))
+            .chain(self.kinematic_guards.iter().copied())
             .collect();
         self.functions.push(Function {
             name: "accel".into(),
@@ -208,9 +215,9 @@ impl<'a> Builder<'a> {
     fn variety(&mut self, model: &Model) -> Result<(), Diagnostic> {
         let mut free = model.points.free.clone();
         let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
-        let correction = kinematics::correction(model, &mut free).ok_or_else(|| {
-            Diagnostic::new(model.span, "the constraints are redundant: ΦΦᵀ is singular")
-                .help("remove the constraint that follows from the others")
+        let correction = correction::correction(model, &mut free).ok_or_else(|| {
+            Diagnostic::new(model.span, "no Ψ was found: [Y; Φ] has no inverse on X")
+                .help("write the constraints such that their derivatives are independent")
         })?;
         let phi = copy(&free, &mut self.graph, &rows);
         let correction = copy(&free, &mut self.graph, &correction);
@@ -257,12 +264,17 @@ impl<'a> Builder<'a> {
         self.functions.retain(|function| {
             model.wants(&function.name) || (function.name == "energy" && model.wants("energy"))
         });
+        let constants = &model.completion.constants;
+        self.kinematic_guards.extend(rebuild(&model.graph, &mut self.graph, constants));
+        let of_parameters = |edge: &Edge| self.graph.is_free(edge.node());
+        let kinematic = self.kinematic_guards.iter().copied().filter(of_parameters);
         let constant_guards = if self.functions.iter().any(|f| f.name == "accel") {
             self.chosen
                 .pivots
                 .iter()
                 .copied()
-                .filter(|p| self.graph.is_free(p.node()))
+                .filter(of_parameters)
+                .chain(kinematic)
                 .collect()
         } else {
             Vec::new()
@@ -286,6 +298,7 @@ impl<'a> Builder<'a> {
             start_xi: model.start_xi.clone(),
             names,
             constant_guards,
+            kinematic_guards: self.kinematic_guards,
             functions: self.functions,
         }
     }
