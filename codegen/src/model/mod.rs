@@ -20,6 +20,7 @@ mod independent;
 mod kinematics;
 pub mod layout;
 mod loads;
+mod nearest;
 pub mod points;
 mod rates;
 mod relations;

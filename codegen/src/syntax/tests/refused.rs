@@ -230,7 +230,7 @@ fn declarations() {
         r#"param r#type = 1;"#,
         r#"param at = 1;"#,
         r#"param _ = 1;"#,
-        r#"velocity v: vec3 = 1;"#,
+        r#"velocity v: vec3 =;"#,
         r#"input u = 1;"#,
         r#"coord q = 1;"#,
         r#"velocity v: R3;"#,
