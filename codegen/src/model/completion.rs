@@ -169,12 +169,12 @@ fn no_new_velocity(
     m: &[Vec<Edge>],
 ) -> Diagnostic {
     let values = |row: &Vec<Edge>| row.iter().map(|&e| graph.value(e)[0]).collect();
-    let found = rank(m.iter().map(values).collect());
+    let (found, nu) = (rank(m.iter().map(values).collect()), declared.x.len());
     let node = declared.xi[i].node();
     let name = graph.symbols().iter().find(|s| s.node == node).map_or("", |s| s.name.as_str());
     let message = format!(
-        "velocity `{name}` follows from the constraints and the velocities before it: [Y; Φ] lacks {} of its ranks",
-        unknowns - found
+        "velocity `{name}` follows from the constraints and the velocities before it: [Y; Φ] has rank {}, not {nu}",
+        nu + found - unknowns
     );
     Diagnostic::new(span, message)
         .help("define it by a motion that the constraints allow and the other velocities do not have")
@@ -200,6 +200,7 @@ fn undetermined(
             "coordinate `{name}` has no rate, and the definitions of velocities and the constraints do not give one"
         );
         let help = rate_help(coordinate, &velocity_for(coordinate, None, declared));
+        let help = format!("{help}, or define a velocity by `rate({name})`");
         report.push(Diagnostic::new(coordinate.span, message).help(help));
     }
 }

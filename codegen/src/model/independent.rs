@@ -13,8 +13,8 @@ const SMALL: f64 = 1e-7;
 pub struct Independent {
     /// Indices of the rows of φ.
     pub rows: Vec<usize>,
-    /// Whether they are independent at the start, too; known where the start is.
-    pub at_start: Option<bool>,
+    /// The first of them that depends on the others at the start, where one does.
+    pub singular: Option<usize>,
 }
 
 /// Chooses rows in their order; `numbers` are those of the entries at the start.
@@ -50,15 +50,15 @@ pub fn choose(graph: &Graph, jacobian: &[Vec<Edge>], numbers: Option<&[Vec<f64>]
         }
     }
     // Where the start is singular, rows that are independent in general complete the choice.
-    let before = rows.len();
+    let regular = rows.len();
     for row in 0..jacobian.len() {
         if !rows.contains(&row) && adds(&rows, row) {
             rows.push(row);
         }
     }
-    let at_start = numbers.map(|_| rows.len() == before);
+    let singular = rows.get(regular).copied();
     rows.sort_unstable();
-    Independent { rows, at_start }
+    Independent { rows, singular }
 }
 
 fn norm(row: &[f64]) -> f64 {

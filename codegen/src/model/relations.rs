@@ -6,8 +6,8 @@ use super::completion::{Completion, Given, complete};
 use super::declare::Declared;
 use super::definitions::Row;
 use super::kinematics::{At, Kinematics, Rate};
-use super::tangency::Checker;
-use super::variety::Variety;
+use super::tangency::{Checker, constraint_span};
+use super::variety::{Origin, Variety};
 use super::{agreement, independent};
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
@@ -60,10 +60,14 @@ pub fn relate(
         }
         // A start that is in error has been reported.
         let at = at?;
-        if independent.at_start == Some(false) {
+        if let Some(row) = independent.singular {
+            let span = match variety.origins[row] {
+                Origin::Statement(item) => constraint_span(system, item),
+                Origin::Coordinate(index) => declared.coordinates[index].span,
+            };
             report.push(
                 Diagnostic::new(
-                    system.name.span,
+                    span,
                     "the start is a singular configuration: there ∂φ/∂x has a smaller rank than elsewhere",
                 )
                 .help("start elsewhere, or write the constraints such that their derivatives are independent there"),

@@ -8,8 +8,12 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, LANES};
 use crate::algebra::numeric::rank;
+use crate::algebra::text::short;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System};
+
+/// Longest residual that is shown.
+const LONGEST: usize = 60;
 
 /// A = ∂ẋ/∂ξ, with ẋ − A ξ = 0 and A free of ξ and u; rows without a rate are empty.
 pub fn linear_part(
@@ -70,7 +74,8 @@ fn value_of(system: &System, item: usize) -> Option<&Expr> {
     }
 }
 
-fn constraint_span(system: &System, item: usize) -> Span {
+/// Where a constraint stands.
+pub fn constraint_span(system: &System, item: usize) -> Span {
     match &system.items[item].kind {
         ItemKind::Constraint { left, right } => left.span.to(right.span),
         _ => system.items[item].span,
@@ -134,7 +139,7 @@ impl Checker<'_> {
                 let item = self.culprit(rates, a, row, i);
                 if let Some(item) = item.filter(|item| !reported.contains(item)) {
                     reported.push(item);
-                    self.report_tangent(row, i, item);
+                    self.report_tangent(a, row, i, item);
                 }
             }
         }
@@ -167,6 +172,14 @@ impl Checker<'_> {
         given.next().map(|rate| rate.item)
     }
 
+    /// (∂φ/∂x) A of a row and a velocity, where it is short.
+    fn residual(&self, a: &[Vec<Edge>], row: usize, i: usize) -> Option<String> {
+        let mut graph = self.graph.clone();
+        let column: Vec<Edge> = a.iter().map(|row| row[i]).collect();
+        let change = graph.dot(&self.jacobian[row], &column);
+        short(&graph, change, LONGEST)
+    }
+
     fn velocity(&self, i: usize) -> &str {
         let node = self.declared.xi[i].node();
         self.graph
@@ -176,7 +189,7 @@ impl Checker<'_> {
             .map_or("", |s| s.name.as_str())
     }
 
-    fn report_tangent(&mut self, row: usize, i: usize, item: usize) {
+    fn report_tangent(&mut self, a: &[Vec<Edge>], row: usize, i: usize, item: usize) {
         let Some(value) = value_of(self.system, item) else {
             return;
         };
@@ -205,7 +218,14 @@ impl Checker<'_> {
             }
             Origin::Statement(statement) => Diagnostic::new(
                 value.span,
-                format!("this rate leaves a constraint: a motion along `{velocity}` changes it"),
+                match self.residual(a, row, i) {
+                    Some(residual) => format!(
+                        "this rate leaves a constraint: a motion along `{velocity}` changes it by {residual}, should be 0"
+                    ),
+                    None => format!(
+                        "this rate leaves a constraint: a motion along `{velocity}` changes it"
+                    ),
+                },
             )
             .help("choose rates whose motion keeps the constraint: (∂φ/∂x) A = 0")
             .note(constraint_span(self.system, statement), "this constraint"),
