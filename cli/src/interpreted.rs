@@ -106,7 +106,9 @@ impl Interpreted {
 
 /// Which guards of `accel` are pivots of [Y; Φ].
 fn kinematic(program: &Program) -> Vec<Option<usize>> {
-    let guards = program.function("accel").map_or(&[][..], |accel| &accel.guards);
+    let guards = program
+        .function("accel")
+        .map_or(&[][..], |accel| &accel.guards);
     let pivots = guards.iter().map(|&guard| program.kinematic_pivot(guard));
     pivots.collect()
 }
@@ -193,12 +195,12 @@ impl System for Interpreted {
 
     fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         self.evaluations.set(self.evaluations.get() + 1);
-        self.accel
-            .call(x, xi, u, &[])
-            .map_err(|pivot| match self.kinematic.get(pivot).copied().flatten() {
+        self.accel.call(x, xi, u, &[]).map_err(|pivot| {
+            match self.kinematic.get(pivot).copied().flatten() {
                 Some(pivot) => Singular::kinematics(pivot),
                 None => Singular { pivot },
-            })
+            }
+        })
     }
 
     fn correction(&self, x: &Vec<f64>) -> Vec<f64> {

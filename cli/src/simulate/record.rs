@@ -137,7 +137,8 @@ impl<'a> Run<'a> {
                 "the run ends at t = {}: {}",
                 short(time),
                 match cause.kinematic_pivot() {
-                    Some(_) => "the mechanism is at a singular configuration, where its velocities do not determine its motion",
+                    Some(_) =>
+                        "the mechanism is at a singular configuration, where its velocities do not determine its motion",
                     None => "the mass matrix is not positive definite",
                 }
             )),

@@ -6,6 +6,9 @@
 //! then whole systems with one. A determinant that varies is divided by only where it does not
 //! vanish at the start. What no block solves is solved by MᵀM, which is singular only where M is.
 
+#[cfg(test)]
+mod tests;
+
 use super::graph::{Edge, Graph};
 use super::linear::{multiply, solve_symmetric, transpose};
 use super::numeric::rank;
@@ -88,7 +91,9 @@ fn undetermined(graph: &Graph, m: &[Vec<Edge>], unknowns: usize) -> Vec<usize> {
     if whole == unknowns {
         return Vec::new();
     }
-    (0..unknowns).filter(|&j| without(Some(j)) == whole).collect()
+    (0..unknowns)
+        .filter(|&j| without(Some(j)) == whole)
+        .collect()
 }
 
 /// The state of elimination.
@@ -294,7 +299,9 @@ impl System<'_> {
             if self.graph.is_free(d.node()) {
                 self.constants.push(d);
             } else {
-                let negative = self.start.is_some_and(|start| start(self.graph, &[d])[0] < 0.0);
+                let negative = self
+                    .start
+                    .is_some_and(|start| start(self.graph, &[d])[0] < 0.0);
                 self.pivots.push(d.signed(negative));
             }
         }
@@ -364,7 +371,9 @@ fn choices(rows: &[usize], size: usize) -> Vec<Vec<usize>> {
             .into_iter()
             .flat_map(|head| {
                 let last = head.last().copied();
-                let later = rows.iter().filter(move |&&row| last.is_none_or(|l| row > l));
+                let later = rows
+                    .iter()
+                    .filter(move |&&row| last.is_none_or(|l| row > l));
                 later
                     .map(|&row| [head.as_slice(), &[row]].concat())
                     .collect::<Vec<_>>()

@@ -31,16 +31,20 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
     }
     let (text, binding) = match graph.node(edge.node()) {
         Node::Constant(_) => return None,
-        Node::Symbol(index) => (graph.symbols().get(index as usize)?.name.clone(), Binding::Whole),
+        Node::Symbol(index) => (
+            graph.symbols().get(index as usize)?.name.clone(),
+            Binding::Whole,
+        ),
         Node::Add(a, b) => {
             let left = within(graph, a, Binding::Sum, most, depth)?;
             let sign = if b.is_negative() { '-' } else { '+' };
             let right = within(graph, b.abs(), Binding::Product, most, depth)?;
             (format!("{left} {sign} {right}"), Binding::Sum)
         }
-        Node::Mul(a, b) if a == b => {
-            (format!("{}^2", within(graph, a, Binding::Whole, most, depth)?), Binding::Product)
-        }
+        Node::Mul(a, b) if a == b => (
+            format!("{}^2", within(graph, a, Binding::Whole, most, depth)?),
+            Binding::Product,
+        ),
         Node::Mul(a, b) => {
             let left = within(graph, a, Binding::Product, most, depth)?;
             let right = within(graph, b, Binding::Product, most, depth)?;
@@ -75,7 +79,11 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
 /// An operand, in parentheses where its operation binds less tightly than asked for.
 fn within(graph: &Graph, edge: Edge, least: Binding, most: usize, depth: usize) -> Option<String> {
     let (text, binding) = write(graph, edge, most, depth)?;
-    Some(if binding < least { format!("({text})") } else { text })
+    Some(if binding < least {
+        format!("({text})")
+    } else {
+        text
+    })
 }
 
 #[cfg(test)]
@@ -91,9 +99,15 @@ mod tests {
         let b = graph.symbol("b", 2, value(23));
         let sum = graph.sub(a, b);
         let product = graph.mul(sum, b);
-        let quotient = graph.div(product, sum).and_then(|_| graph.div(a, product)).expect("not 0");
+        let quotient = graph
+            .div(product, sum)
+            .and_then(|_| graph.div(a, product))
+            .expect("not 0");
         assert_eq!(short(&graph, -product, 40).as_deref(), Some("-b * (a - b)"));
-        assert_eq!(short(&graph, quotient, 40).as_deref(), Some("a / (b * (a - b))"));
+        assert_eq!(
+            short(&graph, quotient, 40).as_deref(),
+            Some("a / (b * (a - b))")
+        );
         assert_eq!(short(&graph, quotient, 10), None);
     }
 }

@@ -265,7 +265,8 @@ impl<'a> Builder<'a> {
             model.wants(&function.name) || (function.name == "energy" && model.wants("energy"))
         });
         let constants = &model.completion.constants;
-        self.kinematic_guards.extend(rebuild(&model.graph, &mut self.graph, constants));
+        self.kinematic_guards
+            .extend(rebuild(&model.graph, &mut self.graph, constants));
         let of_parameters = |edge: &Edge| self.graph.is_free(edge.node());
         let kinematic = self.kinematic_guards.iter().copied().filter(of_parameters);
         let constant_guards = if self.functions.iter().any(|f| f.name == "accel") {

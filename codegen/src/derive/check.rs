@@ -178,7 +178,13 @@ fn inverses(geometry: &mut Geometry) -> Vec<Sides> {
     let graph = &mut geometry.model.graph;
     let (one, zero) = (graph.one(), graph.zero());
     let unit = |rows: usize, columns: usize| -> Vec<Edge> {
-        let entry = |place: usize| if place / columns == place % columns { one } else { zero };
+        let entry = |place: usize| {
+            if place / columns == place % columns {
+                one
+            } else {
+                zero
+            }
+        };
         (0..rows * columns).map(entry).collect()
     };
     let (rank, nu) = (phi.len(), geometry.model.x.len());
@@ -189,7 +195,12 @@ fn inverses(geometry: &mut Geometry) -> Vec<Sides> {
         row.iter().copied().chain(std::iter::repeat_n(zero, rest))
     });
     let across: Vec<Edge> = across.collect();
-    let both = along.concat().into_iter().zip(across).map(|(a, b)| graph.add(a, b)).collect();
+    let both = along
+        .concat()
+        .into_iter()
+        .zip(across)
+        .map(|(a, b)| graph.add(a, b))
+        .collect();
     let completed = Sides {
         label: "(6)",
         equation: "A Y + Ψ Φ = I",

@@ -54,7 +54,12 @@ pub fn complement(model: &mut Model, y: &[Vec<Edge>]) -> Option<Complement> {
         let k = transpose(&tangents);
         let (mut m, mut right) = (Vec::new(), Vec::new());
         for (place, row) in y.iter().chain(&user).enumerate() {
-            m.push(tangents.iter().map(|column| graph.dot(row, column)).collect());
+            m.push(
+                tangents
+                    .iter()
+                    .map(|column| graph.dot(row, column))
+                    .collect(),
+            );
             let unit = |j| if n + j == place { graph.one() } else { zero };
             right.push((0..user.len()).map(unit).collect());
         }
@@ -64,7 +69,10 @@ pub fn complement(model: &mut Model, y: &[Vec<Edge>]) -> Option<Complement> {
     let forms = transpose(&closed);
     let seen = multiply(graph, y, &forms);
     let felt = multiply(graph, &user, &forms);
-    let (along, across) = (multiply(graph, &model.a, &seen), multiply(graph, &own, &felt));
+    let (along, across) = (
+        multiply(graph, &model.a, &seen),
+        multiply(graph, &own, &felt),
+    );
     let (mut psi, mut beyond) = (Vec::new(), Vec::new());
     for alpha in 0..nu {
         let mut rest = vec![zero; kinds];
@@ -98,7 +106,10 @@ fn closed_forms(graph: &mut Graph, blocks: &[Block], x: &[Edge]) -> Vec<Vec<Edge
     for &block in blocks {
         let range = place..place + block.len();
         place += block.len();
-        let halves: Vec<Edge> = x[range.clone()].iter().map(|&e| graph.mul(half, e)).collect();
+        let halves: Vec<Edge> = x[range.clone()]
+            .iter()
+            .map(|&e| graph.mul(half, e))
+            .collect();
         let mut push = |part: Vec<Edge>| {
             let mut column = vec![graph.zero(); x.len()];
             column[range.clone()].copy_from_slice(&part);

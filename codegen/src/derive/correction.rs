@@ -31,9 +31,19 @@ pub fn correction(model: &Model, free: &mut Graph) -> Option<Vec<Edge>> {
         .map(|index| Edge::of(free.symbols()[index].node))
         .collect();
     let mut correction = closed_forms(free, &model.blocks, &x);
-    let Complement { rows, psi, beyond, kinds, .. } = complement;
+    let Complement {
+        rows,
+        psi,
+        beyond,
+        kinds,
+        ..
+    } = complement;
     for (alpha, entry) in correction.iter_mut().enumerate() {
-        let row: Vec<Edge> = beyond[alpha].iter().chain(&psi[alpha][kinds..]).copied().collect();
+        let row: Vec<Edge> = beyond[alpha]
+            .iter()
+            .chain(&psi[alpha][kinds..])
+            .copied()
+            .collect();
         let row = rebuild(&on_x.graph, free, &row);
         for (&number, factor) in rows.iter().zip(row) {
             let product = free.mul(factor, model.phi[number].0);
@@ -91,14 +101,21 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     let failure = || {
         Diagnostic::new(
             model.span,
-            format!("internal check failed: −Ψ φ of `{}` does not lead back to φ = 0", model.name),
+            format!(
+                "internal check failed: −Ψ φ of `{}` does not lead back to φ = 0",
+                model.name
+            ),
         )
-        .help("this is a fault of the generator, nothing was emitted; please report the description")
+        .help(
+            "this is a fault of the generator, nothing was emitted; please report the description",
+        )
     };
     let mut on_x = model.clone();
     let y = left_inverse(&mut on_x).ok_or_else(failure)?;
     let (mut free, first) = (model.points.free.clone(), model.points.first);
-    let direction: Vec<i64> = (0..model.nu() as i64).map(|alpha| (7 * alpha * alpha + 3) % 11 - 5).collect();
+    let direction: Vec<i64> = (0..model.nu() as i64)
+        .map(|alpha| (7 * alpha * alpha + 3) % 11 - 5)
+        .collect();
     // Node by node again, in the graph where nothing was simplified modulo φ.
     let emitted = rebuild(&program.graph, &mut free, &function.outputs);
     let seeds: Vec<_> = direction
@@ -121,10 +138,14 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         .collect();
     let mut compared = 0;
     for seed in 0..TRIES {
-        let Some(lane) = model.points.lane(0xc0_44ec + seed) else { continue };
+        let Some(lane) = model.points.lane(0xc0_44ec + seed) else {
+            continue;
+        };
         let left = evaluate_at(&free, &found, &mut lane.clone());
         let right = evaluate_at(graph, &expected, &mut lane.clone());
-        let (Some(left), Some(right)) = (left, right) else { continue };
+        let (Some(left), Some(right)) = (left, right) else {
+            continue;
+        };
         if left != right {
             return Err(failure());
         }

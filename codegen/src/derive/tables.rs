@@ -96,7 +96,8 @@ impl Geometry {
         let mut complement = complement(&mut merged, &y)?;
         let mut carry = |rows: &[Vec<Edge>]| -> Vec<Vec<Edge>> {
             let rows = rows.iter();
-            rows.map(|row| rebuild(&merged.graph, &mut free.graph, row)).collect()
+            rows.map(|row| rebuild(&merged.graph, &mut free.graph, row))
+                .collect()
         };
         let y = carry(&y);
         complement.phi = carry(&complement.phi);

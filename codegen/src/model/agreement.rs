@@ -34,13 +34,20 @@ pub fn check(
             agrees = false;
             let shown = match short(graph, entry, MOST) {
                 Some(text) => format!("is {text}, should be {}", u8::from(i == j)),
-                None => format!("is an expression of the coordinates, should be {}", u8::from(i == j)),
+                None => format!(
+                    "is an expression of the coordinates, should be {}",
+                    u8::from(i == j)
+                ),
             };
             let (defined, along) = (name(graph, declared, i), name(graph, declared, j));
             let message = format!("Y A differs from I: entry ({}, {}) {shown}", i + 1, j + 1);
             let help = match i == j {
-                true => format!("the rates move the coordinates such that `{defined}`, as it is defined here, is not `{along}`: make the rates or the definition agree"),
-                false => format!("the rates let `{along}` change what defines `{defined}`: make the rates or the definition agree"),
+                true => format!(
+                    "the rates move the coordinates such that `{defined}`, as it is defined here, is not `{along}`: make the rates or the definition agree"
+                ),
+                false => format!(
+                    "the rates let `{along}` change what defines `{defined}`: make the rates or the definition agree"
+                ),
             };
             let error = Diagnostic::new(row.span, message).help(help);
             let zero = graph.zero();

@@ -112,7 +112,11 @@ impl<'a> Reading<'a> {
         });
         let kinematics = kinematics::read(system, graph, scope, variety, declared, at, report);
         let dynamics = dynamics::read(system, graph, scope, &frames, declared, report);
-        last.finish().err().unwrap_or_default().into_iter().for_each(|error| report.push(error));
+        last.finish()
+            .err()
+            .unwrap_or_default()
+            .into_iter()
+            .for_each(|error| report.push(error));
         if let Err(errors) = self.report.finish() {
             return Err((errors, Some(Box::new(self.graph))));
         }

@@ -14,7 +14,11 @@ pub fn tangents(graph: &mut Graph, block: Block, x: &[Edge]) -> Vec<Vec<Edge>> {
     let zero = graph.zero();
     match block {
         Block::Flat(n) => (0..n)
-            .map(|k| (0..n).map(|i| if i == k { graph.one() } else { zero }).collect())
+            .map(|k| {
+                (0..n)
+                    .map(|i| if i == k { graph.one() } else { zero })
+                    .collect()
+            })
             .collect(),
         Block::Circle => vec![vec![-x[1], x[0]]],
         Block::Quaternion => {
@@ -27,7 +31,10 @@ pub fn tangents(graph: &mut Graph, block: Block, x: &[Edge]) -> Vec<Vec<Edge>> {
                     column[1 + k] = x[0];
                     column[1 + i] = x[1 + j];
                     column[1 + j] = -x[1 + i];
-                    column.into_iter().map(|entry| graph.mul(half, entry)).collect()
+                    column
+                        .into_iter()
+                        .map(|entry| graph.mul(half, entry))
+                        .collect()
                 })
                 .collect()
         }
@@ -71,7 +78,12 @@ pub fn all_tangents(
 }
 
 /// ∂φ/∂x, a row for every row of φ: taken with free coordinates, then carried to a graph on X.
-pub fn jacobian(points: &Points, phi: &[(Edge, String)], nu: usize, graph: &mut Graph) -> Vec<Vec<Edge>> {
+pub fn jacobian(
+    points: &Points,
+    phi: &[(Edge, String)],
+    nu: usize,
+    graph: &mut Graph,
+) -> Vec<Vec<Edge>> {
     let mut free = points.free.clone();
     let mut columns: Vec<Derivation> = (points.first..points.first + nu)
         .map(|index| Derivation::new([(free.symbols()[index].node, free.one())]))
@@ -93,7 +105,12 @@ mod tests {
     /// C K = I on X for every kind.
     #[test]
     fn canonical_velocities_of_the_tangents_are_units() {
-        for block in [Block::Flat(2), Block::Circle, Block::Quaternion, Block::Rotation] {
+        for block in [
+            Block::Flat(2),
+            Block::Circle,
+            Block::Quaternion,
+            Block::Rotation,
+        ] {
             let mut random = Random::new(7);
             let mut graph = Graph::new(7, 1);
             let points: Vec<_> = (0..LANES).map(|_| sample(block, &mut random)).collect();

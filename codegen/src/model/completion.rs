@@ -62,7 +62,11 @@ pub fn complete(
 ) -> Option<(Vec<Vec<Edge>>, Completion)> {
     let (n, nu) = (declared.xi.len(), declared.x.len());
     let unknown = |place: usize| given.a[place].is_empty();
-    let all: Vec<Block> = declared.coordinates.iter().flat_map(|c| blocks(c.kind)).collect();
+    let all: Vec<Block> = declared
+        .coordinates
+        .iter()
+        .flat_map(|c| blocks(c.kind))
+        .collect();
     let columns = all_tangents(graph, &all, &declared.x, unknown);
     let definitions = given.rows.iter().enumerate().filter_map(|(i, row)| {
         Some(Equation {
@@ -79,7 +83,12 @@ pub fn complete(
     let equations: Vec<Equation> = definitions.chain(constraints).collect();
     let (mut m, mut b) = (Vec::new(), Vec::new());
     for equation in &equations {
-        m.push(columns.iter().map(|k| graph.dot(equation.coefficients, k)).collect::<Vec<_>>());
+        m.push(
+            columns
+                .iter()
+                .map(|k| graph.dot(equation.coefficients, k))
+                .collect::<Vec<_>>(),
+        );
         let mut right = vec![graph.zero(); n];
         if let Some(i) = equation.velocity {
             right[i] = graph.one();
@@ -95,7 +104,13 @@ pub fn complete(
     let solution = match solve(graph, &m, &b, Some(given.start)) {
         Ok(solution) => solution,
         Err(Failure::Undetermined(_)) | Err(Failure::SingularStart) if m.is_empty() => {
-            undetermined(declared, given, &columns, &(0..columns.len()).collect::<Vec<_>>(), report);
+            undetermined(
+                declared,
+                given,
+                &columns,
+                &(0..columns.len()).collect::<Vec<_>>(),
+                report,
+            );
             return None;
         }
         Err(Failure::Undetermined(which)) => {
@@ -113,7 +128,10 @@ pub fn complete(
         }
     };
     let numbers = (given.start)(graph, &solution.pivots);
-    if !numbers.iter().all(|&pivot| pivot.is_finite() && pivot > 1e-12) {
+    if !numbers
+        .iter()
+        .all(|&pivot| pivot.is_finite() && pivot > 1e-12)
+    {
         report.push(singular_start(system, given));
         return None;
     }
@@ -127,7 +145,11 @@ pub fn complete(
             })
             .collect();
     }
-    let constants = solution.constants.iter().map(|&d| graph.mul(d, d)).collect();
+    let constants = solution
+        .constants
+        .iter()
+        .map(|&d| graph.mul(d, d))
+        .collect();
     let completion = Completion {
         pivots: solution.pivots,
         constants,
@@ -171,13 +193,18 @@ fn no_new_velocity(
     let values = |row: &Vec<Edge>| row.iter().map(|&e| graph.value(e)[0]).collect();
     let (found, nu) = (rank(m.iter().map(values).collect()), declared.x.len());
     let node = declared.xi[i].node();
-    let name = graph.symbols().iter().find(|s| s.node == node).map_or("", |s| s.name.as_str());
+    let name = graph
+        .symbols()
+        .iter()
+        .find(|s| s.node == node)
+        .map_or("", |s| s.name.as_str());
     let message = format!(
         "velocity `{name}` follows from the constraints and the velocities before it: [Y; Φ] has rank {}, not {nu}",
         nu + found - unknowns
     );
-    Diagnostic::new(span, message)
-        .help("define it by a motion that the constraints allow and the other velocities do not have")
+    Diagnostic::new(span, message).help(
+        "define it by a motion that the constraints allow and the other velocities do not have",
+    )
 }
 
 /// Coordinates that neither rates nor definitions nor constraints move.

@@ -36,7 +36,10 @@ pub fn choose(graph: &Graph, jacobian: &[Vec<Edge>], numbers: Option<&[Vec<f64>]
         is_new
     };
     let value = |row: &usize| -> Vec<Fp> {
-        jacobian[*row].iter().map(|&edge| graph.value(edge)[0]).collect()
+        jacobian[*row]
+            .iter()
+            .map(|&edge| graph.value(edge)[0])
+            .collect()
     };
     let adds = |rows: &[usize], row: usize| {
         let mut matrix: Vec<Vec<Fp>> = rows.iter().map(value).collect();

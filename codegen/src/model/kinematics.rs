@@ -3,8 +3,8 @@
 use super::Coordinate;
 use super::declare::{Declared, coordinate_value, size};
 use super::expression::Evaluator;
-use super::scope::{NameKind, Scope};
 use super::relations::relate;
+use super::scope::{NameKind, Scope};
 use super::tangency::linear_part;
 use super::value::Value;
 use super::variety::Variety;
@@ -94,7 +94,15 @@ pub fn read(
         }
     }
     let a = linear_part(system, graph, &rates, declared, report).filter(|_| complete);
-    relate(system, graph, variety, declared, (&rates, a, &definitions.rows), at, report)
+    relate(
+        system,
+        graph,
+        variety,
+        declared,
+        (&rates, a, &definitions.rows),
+        at,
+        report,
+    )
 }
 
 fn read_rate(

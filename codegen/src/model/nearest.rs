@@ -107,7 +107,9 @@ impl Equations {
             };
             let mut next = x.clone();
             for (row, factor) in rows.iter().zip(&multipliers) {
-                next.iter_mut().zip(*row).for_each(|(x, slope)| *x -= factor * slope);
+                next.iter_mut()
+                    .zip(*row)
+                    .for_each(|(x, slope)| *x -= factor * slope);
             }
             let after = self.at(&self.phi, &next);
             if dot(&after, &after) < dot(&phi, &phi) {
@@ -121,7 +123,14 @@ impl Equations {
             }
         }
         let residual = largest(&phi);
-        (x, if residual.is_nan() { f64::INFINITY } else { residual })
+        (
+            x,
+            if residual.is_nan() {
+                f64::INFINITY
+            } else {
+                residual
+            },
+        )
     }
 }
 
@@ -156,5 +165,11 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// max |a|, NaN where one entry is.
 fn largest(list: &[f64]) -> f64 {
-    list.iter().fold(0.0, |most: f64, a| if a.is_nan() { f64::NAN } else { most.max(a.abs()) })
+    list.iter().fold(0.0, |most: f64, a| {
+        if a.is_nan() {
+            f64::NAN
+        } else {
+            most.max(a.abs())
+        }
+    })
 }

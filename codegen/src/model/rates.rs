@@ -24,7 +24,8 @@ pub struct Rates {
 impl Evaluator<'_> {
     /// `rate(…)` of coordinates.
     pub fn rate(&mut self, arguments: &[Expr], span: Span) -> Option<Value> {
-        const USAGE: &str = "write `rate(q)` of a coordinate, of a part `rate(X.p)` or of an entry `rate(r[1])`";
+        const USAGE: &str =
+            "write `rate(q)` of a coordinate, of a part `rate(X.p)` or of an entry `rate(r[1])`";
         let [argument] = arguments else {
             let message = format!("`rate` takes one coordinate, not {}", arguments.len());
             return self.error(Diagnostic::new(span, message).help(USAGE));

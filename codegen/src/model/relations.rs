@@ -14,7 +14,11 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::System;
 
 /// What the statements give: ẋ with the statement of each entry, the rows of A, the rows of Y.
-pub type Statements<'a> = (&'a [Option<Rate>], Option<Vec<Vec<Edge>>>, &'a [Option<Row>]);
+pub type Statements<'a> = (
+    &'a [Option<Rate>],
+    Option<Vec<Vec<Edge>>>,
+    &'a [Option<Row>],
+);
 
 /// All that relates A, Y and φ, as far as they are known.
 pub fn relate(
@@ -85,7 +89,10 @@ pub fn relate(
         (a, completion) = complete(system, graph, variety, declared, &given, report)?;
     }
     completion.independent = independent.rows;
-    completion.y = rows.iter().map(|row| Some(row.as_ref()?.entries.clone())).collect();
+    completion.y = rows
+        .iter()
+        .map(|row| Some(row.as_ref()?.entries.clone()))
+        .collect();
     let mut checks = Checker {
         system,
         graph,

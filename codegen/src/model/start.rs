@@ -294,7 +294,9 @@ fn advise(
     let x = match found {
         Nearest::Found(x) => x,
         Nearest::Nowhere(least) => {
-            error.message.push_str(", and no real configuration was found near it");
+            error
+                .message
+                .push_str(", and no real configuration was found near it");
             error.help = Some(format!(
                 "check the lengths: the constraints are violated by {least:.3e} at least; or start nearer to a configuration"
             ));
@@ -329,7 +331,11 @@ fn advise(
 fn short(number: f64) -> String {
     let text = format!("{number:.12}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".into() } else { text.into() }
+    if text == "-0" {
+        "0".into()
+    } else {
+        text.into()
+    }
 }
 
 /// The coordinates that a row of φ is about.

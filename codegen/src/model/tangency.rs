@@ -168,7 +168,9 @@ impl Checker<'_> {
         let zero = self.graph.zero();
         let takes_part =
             |&alpha: &usize| self.jacobian[row][alpha].abs() != zero && a[alpha][i] != zero;
-        let mut given = (0..a.len()).filter(takes_part).filter_map(|alpha| rates[alpha]);
+        let mut given = (0..a.len())
+            .filter(takes_part)
+            .filter_map(|alpha| rates[alpha]);
         given.next().map(|rate| rate.item)
     }
 

@@ -142,7 +142,10 @@ impl Variety {
 
     /// The rows of φ that the user wrote; those of the coordinate kinds stand before them.
     pub fn user_rows(&self) -> std::ops::Range<usize> {
-        let kinds = self.origins.iter().filter(|o| matches!(o, Origin::Coordinate(_)));
+        let kinds = self
+            .origins
+            .iter()
+            .filter(|o| matches!(o, Origin::Coordinate(_)));
         kinds.count()..self.origins.len()
     }
 

@@ -92,7 +92,8 @@ impl Interpreter {
             index: places.get(&edge.node()).copied().unwrap_or(0),
             negative: edge.is_negative(),
         };
-        let mut guards: Vec<(usize, Place)> = function.guards.iter().map(place).enumerate().collect();
+        let mut guards: Vec<(usize, Place)> =
+            function.guards.iter().map(place).enumerate().collect();
         guards.sort_by_key(|(_, place)| place.index);
         let first = 1 + params.len();
         let inputs = [

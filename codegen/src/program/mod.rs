@@ -99,7 +99,9 @@ pub struct Program {
 impl Program {
     /// The number of a guard among the pivots of [Y; Φ], if it is one.
     pub fn kinematic_pivot(&self, guard: Edge) -> Option<usize> {
-        self.kinematic_guards.iter().position(|&pivot| pivot == guard)
+        self.kinematic_guards
+            .iter()
+            .position(|&pivot| pivot == guard)
     }
 
     /// A function by its name.

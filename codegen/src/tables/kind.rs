@@ -226,7 +226,9 @@ impl Table {
                 | Table::Y
                 | Table::Gradient
                 | Table::Psi
-                | Table::Gamma | Table::Mass | Table::Connection
+                | Table::Gamma
+                | Table::Mass
+                | Table::Connection
         )
     }
 }
