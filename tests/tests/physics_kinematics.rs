@@ -266,7 +266,8 @@ fn a_slider_crank_moves_as_its_trigonometry_says() {
     assert_close("x", &state.x[4..], &[x], 1e-8);
 }
 
-/// (8): φ decays like exp(−λ t) with the Ψ of the description, every row of a redundant φ.
+/// (8): φ decays like exp(−λ t) with the Ψ of the description, every row of a redundant φ. At rest:
+/// Φ A = 0 on X alone, so that off it a motion adds terms of ξ φ.
 #[test]
 fn disturbed_linkages_decay_exponentially() {
     const LAMBDA: f64 = 10.0;
@@ -278,6 +279,7 @@ fn disturbed_linkages_decay_exponentially() {
         Sys: System<Scalar = f64>,
     {
         let mut state = State::start(system);
+        state.xi.as_mut().fill(0.0);
         for (k, x) in state.x.as_mut().iter_mut().enumerate() {
             *x += 1e-7 * [1.0, -2.0, 1.5, 0.7, -1.2, 2.3, 0.9, -0.4, 1.7][k];
         }
@@ -293,11 +295,14 @@ fn disturbed_linkages_decay_exponentially() {
             );
         }
     }
-    let four_bar = FourBar::<f64>::default();
+    let mut four_bar = FourBar::<f64>::default();
+    four_bar.set_g(0.0).expect("no weight");
     decay(&four_bar, |x| four_bar.constraint(x).to_vec());
-    let slider = SliderCrank::<f64>::default();
+    let mut slider = SliderCrank::<f64>::default();
+    slider.set_g(0.0).expect("no weight");
     decay(&slider, |x| slider.constraint(x).to_vec());
-    let columns = ColumnTop::<f64>::default();
+    let mut columns = ColumnTop::<f64>::default();
+    columns.set_g(0.0).expect("no weight");
     decay(&columns, |x| columns.constraint(x).to_vec());
 }
 

@@ -1,7 +1,8 @@
 //! −Ψ φ(x), the stabilising direction of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t).
 //!
 //! Ψ is that of the description, with Y Ψ = 0. It is wanted off X, where φ is not 0: Ψ may be any
-//! expression with the right values on X, φ has to be itself.
+//! expression with the right values on X, φ has to be itself. Φ A = 0 on X alone, too: off it a motion
+//! adds terms of ξ φ to φ̇ = −λ φ, which λ has to exceed.
 
 use super::complement::{Complement, complement};
 use super::kinematics::left_inverse;
