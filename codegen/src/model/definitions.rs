@@ -170,5 +170,9 @@ fn not_linear(name: &str, expr: &Expr, found: u8) -> Diagnostic {
     } else {
         format!("the definition of velocity `{name}` is not linear in the rates")
     };
-    Diagnostic::new(expr.span, message).help(HELP)
+    let help = match found & class::RATE {
+        0 => format!("{HELP}; an initial value is written `start {name} = …;`"),
+        _ => HELP.into(),
+    };
+    Diagnostic::new(expr.span, message).help(help)
 }

@@ -39,12 +39,14 @@ fn a_block_with_a_constant_determinant_needs_no_division() {
 #[test]
 fn equations_in_excess_are_solved_by_their_gram_matrix() {
     let (mut graph, [c, s, l, _]) = graph();
-    // l (c, s) u = (c, s): u = 1/l, without a division by c or s.
+    // l (c, s) u = (c, s): u = 1/l, without a division by c or s; l² is known as the constant it is.
+    let square = graph.mul(l, l);
     let m = [vec![graph.mul(l, c)], vec![graph.mul(l, s)]];
     let b = [vec![c], vec![s]];
     let solution = solve(&mut graph, &m, &b, None).expect("regular");
     assert!(holds(&mut graph, &m, &solution.x, &b));
-    assert_eq!(solution.constants, [graph.mul(l, l)]);
+    assert_eq!(solution.constants, [square]);
+    assert!(solution.pivots.is_empty());
 }
 
 #[test]
