@@ -170,7 +170,7 @@ fn not_linear(name: &str, expr: &Expr, found: u8) -> Diagnostic {
     } else {
         format!("the definition of velocity `{name}` is not linear in the rates")
     };
-    let help = match found & class::RATE {
+    let help = match found & !(class::PARAM | class::COORD) {
         0 => format!("{HELP}; an initial value is written `start {name} = …;`"),
         _ => HELP.into(),
     };
