@@ -27,6 +27,8 @@ pub struct Interpreted {
     kinetic: Interpreter,
     potential: Interpreter,
     outputs: Vec<Output>,
+    /// For every guard of `accel` its number among the pivots of [Y; Φ], if it is one.
+    kinematic: Vec<Option<usize>>,
     evaluations: Cell<u64>,
 }
 
@@ -71,6 +73,7 @@ impl Interpreted {
             kinetic: function("kinetic_energy")?,
             potential: function("potential_energy")?,
             outputs: outputs.collect::<Result<_, Failure>>()?,
+            kinematic: kinematic(program),
             evaluations: Cell::new(0),
         })
     }
@@ -111,6 +114,15 @@ impl Interpreted {
         let value = output.function.call(x, xi, &self.inputs, &xi_dot);
         value.unwrap_or_default()
     }
+}
+
+/// Which guards of `accel` are pivots of [Y; Φ].
+fn kinematic(program: &Program) -> Vec<Option<usize>> {
+    let guards = program
+        .function("accel")
+        .map_or(&[][..], |accel| &accel.guards);
+    let pivots = guards.iter().map(|&guard| program.kinematic_pivot(guard));
+    pivots.collect()
 }
 
 /// Compiles one function.
@@ -195,9 +207,12 @@ impl System for Interpreted {
 
     fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         self.evaluations.set(self.evaluations.get() + 1);
-        self.accel
-            .call(x, xi, u, &[])
-            .map_err(|pivot| Singular { pivot })
+        self.accel.call(x, xi, u, &[]).map_err(|pivot| {
+            match self.kinematic.get(pivot).copied().flatten() {
+                Some(pivot) => Singular::kinematics(pivot),
+                None => Singular { pivot },
+            }
+        })
     }
 
     fn correction(&self, x: &Vec<f64>) -> Vec<f64> {

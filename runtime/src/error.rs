@@ -3,21 +3,44 @@
 use core::error::Error;
 use core::fmt;
 
-/// The mass matrix cannot be factored: a pivot is zero, negative or not finite.
+/// ξ̇ has no value: a pivot is zero, negative or not finite. The mass matrix cannot be factored, or
+/// the kinematics are singular (a linkage is locked, a lever has no length).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Singular {
-    /// Index of the failing pivot, from 0: the velocity coordinate whose inertia, with those before
-    /// it eliminated, is not positive.
+    /// Index of the failing pivot, from 0: of the mass matrix, the velocity coordinate whose inertia,
+    /// with those before it eliminated, is not positive; from [`KINEMATICS`](Self::KINEMATICS) on, of
+    /// [Y; Φ], KR18 (5).
     pub pivot: usize,
+}
+
+impl Singular {
+    /// Pivots of the kinematics are numbered from here.
+    pub const KINEMATICS: usize = usize::MAX / 2 + 1;
+
+    /// A pivot of [Y; Φ], from 0, lost the sign that it has at the start: there the definitions of
+    /// the velocities and the constraints do not determine ẋ.
+    pub const fn kinematics(pivot: usize) -> Self {
+        Self {
+            pivot: Self::KINEMATICS + pivot,
+        }
+    }
+
+    /// The number of the pivot of [Y; Φ], where that is what failed.
+    pub const fn kinematic_pivot(self) -> Option<usize> {
+        self.pivot.checked_sub(Self::KINEMATICS)
+    }
 }
 
 impl fmt::Display for Singular {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "mass matrix not positive definite at pivot {}",
-            self.pivot
-        )
+        match self.kinematic_pivot() {
+            Some(pivot) => write!(f, "kinematics singular at pivot {pivot} of [Y; Φ]"),
+            None => write!(
+                f,
+                "mass matrix not positive definite at pivot {}",
+                self.pivot
+            ),
+        }
     }
 }
 
@@ -28,9 +51,9 @@ impl Error for Singular {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {
-    /// The mass matrix cannot be factored at one of the points that the step visits.
+    /// ξ̇ has no value at one of the points that the step visits.
     Singular {
-        /// Where the factorisation failed.
+        /// What failed.
         cause: Singular,
         /// Time at the start of the step.
         time: f64,

@@ -94,7 +94,7 @@ pub trait System {
     /// ξ̇ = M⁻¹ (f − c), KR18 (30).
     ///
     /// # Errors
-    /// [`Singular`] when M is not positive definite, or cannot be inverted, at x.
+    /// [`Singular`] when M is not positive definite, or the kinematics are singular, at x.
     fn accel(
         &self,
         x: &Self::Coordinates,

@@ -1,6 +1,8 @@
 //! Every identity of the formalism holds for every model, and a broken symbol is noticed.
 
+use hamel_codegen::algebra::graph::Node;
 use hamel_codegen::derive::check::{Verdict, check};
+use hamel_codegen::derive::correction::validate;
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::from_text;
 use std::path::Path;
@@ -21,7 +23,7 @@ fn all_identities_hold() {
         let text = std::fs::read_to_string(&path).expect("readable");
         let generated = from_text(&text).expect("correct");
         let identities = check(&generated.model, &generated.program);
-        assert!(identities.len() >= 9);
+        assert!(identities.len() >= 10);
         for identity in identities {
             let failed = matches!(identity.verdict, Verdict::Failed(_));
             assert!(
@@ -47,7 +49,7 @@ fn lie_group_identities_are_proved() {
         "planar_body",
     ] {
         let generated = from_text(&text(name)).expect("correct");
-        for identity in check(&generated.model, &generated.program).iter().take(6) {
+        for identity in check(&generated.model, &generated.program).iter().take(9) {
             assert_eq!(
                 identity.verdict,
                 Verdict::Proved,
@@ -100,6 +102,60 @@ fn a_wrong_sign_is_noticed() {
         .map(|identity| identity.label)
         .collect();
     assert_eq!(failed, ["(30c)", "power"]);
+}
+
+/// A stabilising term of the wrong sign, or of another Ψ, is never emitted.
+#[test]
+fn a_wrong_correction_is_refused() {
+    for name in ["heavy_top_columns", "four_bar", "free_body"] {
+        let generated = from_text(&text(name)).expect("correct");
+        assert!(
+            validate(&generated.model, &generated.program).is_ok(),
+            "{name}"
+        );
+        let mut program = generated.program.clone();
+        let correction = program
+            .functions
+            .iter_mut()
+            .find(|f| f.name == "correction")
+            .expect("correction");
+        let last = correction.outputs.len() - 1;
+        correction.outputs[last] = -correction.outputs[last];
+        assert!(validate(&generated.model, &program).is_err(), "{name}");
+    }
+}
+
+/// A and Y of the body frame follow from Y and φ, KR18 (36) to (39): A = R ω̂ without a division, M
+/// constant, 18 nonzero γ.
+#[test]
+fn rows_of_a_free_body_give_the_tables_of_the_paper() {
+    let generated = from_text(&text("free_body_rows")).expect("correct");
+    let geometry = Geometry::new(&generated.model).expect("Y");
+    let graph = &geometry.model.graph;
+    let rates = from_text(&text("free_body")).expect("correct");
+    for (row, other) in geometry.model.a.iter().zip(&rates.model.a) {
+        for (&a, &b) in row.iter().zip(other) {
+            assert_eq!(graph.value(a), rates.model.graph.value(b));
+            assert!(matches!(
+                graph.node(a.node()),
+                Node::Symbol(_) | Node::Constant(_)
+            ));
+        }
+    }
+    let gamma: Vec<_> = geometry.gamma.iter().flatten().flatten().collect();
+    assert_eq!(
+        gamma.iter().filter(|&&&edge| edge != graph.zero()).count(),
+        18
+    );
+    assert!(gamma.iter().all(|edge| graph.as_rational(**edge).is_some()));
+    assert!(
+        geometry
+            .mass
+            .iter()
+            .flatten()
+            .all(|edge| graph.is_free(edge.node()))
+    );
+    assert!(generated.model.completion.pivots.is_empty());
 }
 
 /// γ of the body and world frames of SE(3) differ in sign: structure constants of left- and

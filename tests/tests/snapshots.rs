@@ -103,6 +103,8 @@ fn table_formats() {
 fn accel_costs_no_more_than_its_bar() {
     let bars = [
         ("free_body", 99),
+        ("free_body_rows", 99),
+        ("heavy_top_columns", 48),
         ("free_body_no_wrench", 80),
         ("heavy_top", 48),
         ("heavy_top_axis", 10),
@@ -133,7 +135,14 @@ fn accel_costs_no_more_than_its_bar() {
 /// where M is constant.
 #[test]
 fn constant_mass_costs_nothing() {
-    for name in ["free_body", "heavy_top", "principal_axes", "six_particles"] {
+    for name in [
+        "free_body",
+        "free_body_rows",
+        "heavy_top",
+        "heavy_top_columns",
+        "principal_axes",
+        "six_particles",
+    ] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.eom"));
         let (_, _, generated) = read(&path);
         let mass = generated

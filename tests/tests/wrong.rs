@@ -137,6 +137,40 @@ fn right_descriptions_are_accepted() {
             body on rod { mass 1; inertia diag(0, 0, 1); }
             start x = -l;
         }",
+        // Constraints that follow from others, also from the kind of a coordinate.
+        "system R {
+            param l = 1;
+            coord x, y, q: S1;
+            velocity v, w;
+            constraint x^2 + y^2 = l^2;
+            constraint 2 * x^2 + 2 * y^2 = 2 * l^2;
+            constraint q.c^2 = 1 - q.s^2;
+            rate x = -y * v;
+            rate y = x * v;
+            rate q = w;
+            kinetic v^2 + w^2;
+            start x = 1;
+        }",
+        // A velocity that is defined although all rates are given; another that is not.
+        "system T {
+            coord R: SO3, x;
+            velocity w: vec3 = vee(R.T * rate(R)), v;
+            rate R = R * hat(w);
+            rate x = v;
+            frame f = pose(R, [x, 0, 0]);
+            body on f { mass 1; inertia diag(1, 2, 3); }
+        }",
+        // A pose and a quaternion by the definitions of their velocities.
+        "system U {
+            coord X: SE3, q: S3;
+            velocity v: vec3 = X.R.T * rate(X.p), w: vec3 = vee(rate(X.R) * X.R.T);
+            velocity u: vec3 = [2 * qmul([q[1], -q[2], -q[3], -q[4]], rate(q))[2],
+                                2 * qmul([q[1], -q[2], -q[3], -q[4]], rate(q))[3],
+                                2 * qmul([q[1], -q[2], -q[3], -q[4]], rate(q))[4]];
+            body on f { mass 1; inertia diag(1, 2, 3); }
+            kinetic dot(u, u);
+            frame f = X;
+        }",
         // Zeros with a sign; an axis that is a unit vector on the variety alone.
         "system E {
             param angle = 1, nought = -0;

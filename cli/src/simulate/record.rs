@@ -133,9 +133,14 @@ impl<'a> Run<'a> {
             Err(error @ (StepError::InvalidStep { .. } | StepError::Shape { .. })) => {
                 return Err(Failure::usage(error.to_string()));
             }
-            Err(StepError::Singular { time, .. }) => Some(format!(
-                "the run ends at t = {}: the mass matrix is not positive definite",
-                short(time)
+            Err(StepError::Singular { time, cause }) => Some(format!(
+                "the run ends at t = {}: {}",
+                short(time),
+                match cause.kinematic_pivot() {
+                    Some(_) =>
+                        "the mechanism is at a singular configuration, where its velocities do not determine its motion",
+                    None => "the mass matrix is not positive definite",
+                }
             )),
             Err(StepError::NonFinite { time }) => Some(format!(
                 "the run ends at t = {}: the next state is not finite; try a shorter step than {}",

@@ -2,6 +2,7 @@
 //! p = 2^61 − 1 at points of the constraint variety, derivations tangent to that variety, and
 //! polynomials with normal forms for the small pieces that people read.
 
+pub mod blocks;
 pub mod derivation;
 mod fold;
 pub mod fp;
@@ -14,5 +15,6 @@ pub mod poly;
 pub mod resubstitute;
 #[cfg(test)]
 mod tests;
+pub mod text;
 pub mod topoly;
 pub mod transplant;

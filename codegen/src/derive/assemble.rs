@@ -5,7 +5,7 @@ use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
 use super::multipliers::multipliers;
 use super::reduction::Reduction;
-use super::{constrained, energy, inertia, kinematics, loads};
+use super::{constrained, correction, energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
@@ -33,7 +33,7 @@ pub fn assemble(full: &Model, reduction: Option<&Reduction>) -> Result<Program, 
     builder.kinematics();
     builder.dynamics(&reference.graph, potential);
     builder.dissipation();
-    builder.variety(model)?;
+    builder.variety(full)?;
     builder.outputs();
     if let Some(reduction) = reduction {
         builder.constraint_force(full, reduction);
@@ -44,6 +44,7 @@ pub fn assemble(full: &Model, reduction: Option<&Reduction>) -> Result<Program, 
         Some(reduction) => constrained::validate(full, reduction, &program)?,
         None => super::validate::validate(model, &program)?,
     }
+    correction::validate(full, &program)?;
     Ok(program)
 }
 
@@ -53,16 +54,21 @@ struct Builder<'a> {
     chosen: Acceleration,
     parts: Parts,
     functions: Vec<Function>,
+    /// Pivots of [Y; Φ].
+    kinematic_guards: Vec<Edge>,
 }
 
 impl<'a> Builder<'a> {
     fn new(model: &'a Model, chosen: Acceleration, parts: Parts) -> Self {
+        let mut graph = chosen.graph.clone();
+        let kinematic_guards = rebuild(&model.graph, &mut graph, &model.completion.pivots);
         Builder {
             model,
-            graph: chosen.graph.clone(),
+            graph,
             chosen,
             parts,
             functions: Vec::new(),
+            kinematic_guards,
         }
     }
 
@@ -284,7 +290,10 @@ impl<'a> Builder<'a> {
     /// Pivots that vary at run time.
     fn guards(&self) -> Vec<Edge> {
         let pivots = self.chosen.pivots.iter().copied();
-        pivots.filter(|p| !self.graph.is_free(p.node())).collect()
+        pivots
+            .filter(|p| !self.graph.is_free(p.node()))
+            .chain(self.kinematic_guards.iter().copied())
+            .collect()
     }
 
     /// D, where there is one.
@@ -309,9 +318,9 @@ impl<'a> Builder<'a> {
     fn variety(&mut self, model: &Model) -> Result<(), Diagnostic> {
         let mut free = model.points.free.clone();
         let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
-        let correction = kinematics::correction(model, &mut free).ok_or_else(|| {
-            Diagnostic::new(model.span, "the constraints are redundant: ΦΦᵀ is singular")
-                .help("remove the constraint that follows from the others")
+        let correction = correction::correction(model, &mut free).ok_or_else(|| {
+            Diagnostic::new(model.span, "no Ψ was found: [Y; Φ] has no inverse on X")
+                .help("write the constraints such that their derivatives are independent")
         })?;
         let mut phi = copy(&free, &mut self.graph, &rows);
         phi.extend(self.loops());
@@ -360,14 +369,18 @@ impl<'a> Builder<'a> {
         self.functions.retain(|function| {
             model.wants(&function.name) || (function.name == "energy" && model.wants("energy"))
         });
+        let constants = &model.completion.constants;
+        self.kinematic_guards
+            .extend(rebuild(&model.graph, &mut self.graph, constants));
+        let of_parameters = |edge: &Edge| self.graph.is_free(edge.node());
+        let kinematic = self.kinematic_guards.iter().copied().filter(of_parameters);
         let constant_guards = if self.functions.iter().any(|f| f.name == "accel") {
-            let constants = rebuild(&model.graph, &mut self.graph, &model.constant_pivots);
             self.chosen
                 .pivots
                 .iter()
                 .copied()
-                .chain(constants)
-                .filter(|p| self.graph.is_free(p.node()))
+                .filter(of_parameters)
+                .chain(kinematic)
                 .collect()
         } else {
             Vec::new()
@@ -392,6 +405,7 @@ impl<'a> Builder<'a> {
             start_xi: model.start_xi.clone(),
             names,
             constant_guards,
+            kinematic_guards: self.kinematic_guards,
             functions: self.functions,
         }
     }

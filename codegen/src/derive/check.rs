@@ -13,6 +13,7 @@ use super::tables::Geometry;
 use super::virtual_power;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::multiply;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::transplant::rebuild;
 use crate::model::Model;
@@ -187,7 +188,65 @@ fn kinematic(geometry: &mut Geometry) -> Vec<Sides> {
         left: flat(&geometry.gamma),
         right: flat(&from_rows),
     };
-    vec![inverse, tangent(geometry), same]
+    let mut all = vec![inverse, tangent(geometry), same];
+    all.extend(inverses(geometry));
+    all
+}
+
+/// Φ Ψ = I, Y Ψ = 0, A Y + Ψ Φ = I.
+fn inverses(geometry: &mut Geometry) -> Vec<Sides> {
+    let complement = &geometry.complement;
+    // Without constraints there is no Φ, and Y is A⁻¹.
+    let (phi, psi) = (&complement.phi, &complement.psi);
+    let graph = &mut geometry.model.graph;
+    let (one, zero) = (graph.one(), graph.zero());
+    let unit = |rows: usize, columns: usize| -> Vec<Edge> {
+        let entry = |place: usize| {
+            if place / columns == place % columns {
+                one
+            } else {
+                zero
+            }
+        };
+        (0..rows * columns).map(entry).collect()
+    };
+    let (rank, nu) = (phi.len(), geometry.model.x.len());
+    let along = multiply(graph, &geometry.model.a, &geometry.y);
+    let across = multiply(graph, psi, phi);
+    let across = across.iter().flat_map(|row| {
+        let rest = if rank == 0 { nu } else { 0 };
+        row.iter().copied().chain(std::iter::repeat_n(zero, rest))
+    });
+    let across: Vec<Edge> = across.collect();
+    let both = along
+        .concat()
+        .into_iter()
+        .zip(across)
+        .map(|(a, b)| graph.add(a, b))
+        .collect();
+    let completed = Sides {
+        label: "(6)",
+        equation: "A Y + Ψ Φ = I",
+        left: both,
+        right: unit(nu, nu),
+    };
+    if rank == 0 {
+        return vec![completed];
+    }
+    let left = multiply(graph, &geometry.y, psi).concat();
+    let apart = Sides {
+        label: "(6)",
+        equation: "Y Ψ = 0",
+        right: vec![zero; left.len()],
+        left,
+    };
+    let inverse = Sides {
+        label: "(6)",
+        equation: "Φ Ψ = I",
+        left: multiply(graph, phi, psi).concat(),
+        right: unit(rank, rank),
+    };
+    vec![inverse, apart, completed]
 }
 
 /// (∂φ/∂x) A = 0: the derivatives are taken with free coordinates and compared on X.

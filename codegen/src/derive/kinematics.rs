@@ -1,6 +1,6 @@
-//! Y with Y A = I, the canonical quasi-velocities of the coordinate kinds, and −Ψ φ.
+//! Y with Y A = I, and the canonical quasi-velocities of the coordinate kinds.
 
-use crate::algebra::derivation::Derivation;
+use crate::algebra::blocks::solve;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{multiply, solve_symmetric, transpose};
 use crate::model::Model;
@@ -18,10 +18,27 @@ pub fn chart_rates(graph: &mut Graph, blocks: &[Block], x: &[Edge], rate: &[Edge
     rates
 }
 
-/// Y, n rows of ν. With B = C A square: Y = B⁻¹ C, where C are the closed forms of the coordinate
-/// kinds, KR18 (36); B⁻¹ is Bᵀ where B is orthogonal, and is found by substitution where B is
-/// triangular up to order. Otherwise Y = (AᵀA)⁻¹ Aᵀ.
+/// Y, n rows of ν: those of the description, the others from A.
 pub fn left_inverse(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
+    let given = model.completion.y.clone();
+    if given.len() == model.n()
+        && let Some(rows) = given.iter().cloned().collect()
+    {
+        return Some(rows);
+    }
+    let derived = from_kinematic_map(model)?;
+    let rows = derived.into_iter().enumerate();
+    Some(
+        rows.map(|(i, row)| given.get(i).cloned().flatten().unwrap_or(row))
+            .collect(),
+    )
+}
+
+/// Y from A. With B = C A, where C are the closed forms of the coordinate kinds, KR18 (36): B⁻¹ C
+/// where B is square, B⁻¹ being Bᵀ where B is orthogonal, and found by substitution where B is
+/// triangular up to order. Otherwise B Y = C is solved for blocks of velocities whose determinants
+/// are constant on X, and what remains by (BᵀB)⁻¹ Bᵀ C.
+fn from_kinematic_map(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
     let (n, nu) = (model.n(), model.nu());
     let graph = &mut model.graph;
     let columns = transpose(&model.a);
@@ -29,37 +46,29 @@ pub fn left_inverse(model: &mut Model) -> Option<Vec<Vec<Edge>>> {
         .iter()
         .map(|column| chart_rates(graph, &model.blocks, &model.x, column))
         .collect();
-    if b_columns[0].len() == n {
-        let b = transpose(&b_columns);
-        let c_columns: Vec<Vec<Edge>> = (0..nu)
-            .map(|alpha| {
-                let unit: Vec<Edge> = (0..nu)
-                    .map(|beta| {
-                        if alpha == beta {
-                            graph.one()
-                        } else {
-                            graph.zero()
-                        }
-                    })
-                    .collect();
-                chart_rates(graph, &model.blocks, &model.x, &unit)
-            })
-            .collect();
-        let c = transpose(&c_columns);
-        let gram = multiply(graph, &b_columns, &b);
-        let orthogonal = (0..n)
-            .all(|i| (0..n).all(|j| gram[i][j] == if i == j { graph.one() } else { graph.zero() }));
-        if orthogonal {
-            return Some(multiply(graph, &b_columns, &c));
-        }
-        if let Some(y) = substitute(graph, &b, &c) {
-            return Some(y);
-        }
-        let right = multiply(graph, &b_columns, &c);
-        return solve_symmetric(graph, &gram, &right);
+    let b = transpose(&b_columns);
+    let c_columns: Vec<Vec<Edge>> = (0..nu)
+        .map(|alpha| {
+            let mut unit = vec![graph.zero(); nu];
+            unit[alpha] = graph.one();
+            chart_rates(graph, &model.blocks, &model.x, &unit)
+        })
+        .collect();
+    let c = transpose(&c_columns);
+    if b.len() != n {
+        return Some(solve(graph, &b, &c, None).ok()?.x);
     }
-    let gram = multiply(graph, &columns, &model.a);
-    solve_symmetric(graph, &gram, &columns)
+    let gram = multiply(graph, &b_columns, &b);
+    let orthogonal = (0..n)
+        .all(|i| (0..n).all(|j| gram[i][j] == if i == j { graph.one() } else { graph.zero() }));
+    if orthogonal {
+        return Some(multiply(graph, &b_columns, &c));
+    }
+    if let Some(y) = substitute(graph, &b, &c) {
+        return Some(y);
+    }
+    let right = multiply(graph, &b_columns, &c);
+    solve_symmetric(graph, &gram, &right)
 }
 
 /// B⁻¹ C where some order of rows and columns makes B triangular: rows with one unknown left give it.
@@ -94,70 +103,4 @@ fn substitute(graph: &mut Graph, b: &[Vec<Edge>], c: &[Vec<Edge>]) -> Option<Vec
         solution[unknown] = Some(right);
     }
     solution.into_iter().collect()
-}
-
-/// −Ψ φ(x), the direction of the stabilising term of KR18 (8), in the graph with unconstrained
-/// points: −½ (|x|² − 1) x for circle and quaternion, −½ R (RᵀR − I), and −Φᵀ(ΦΦᵀ)⁻¹ φ with
-/// Φ = ∂φ/∂x for constraints that the user wrote. `None` where those are redundant.
-pub fn correction(model: &Model, free: &mut Graph) -> Option<Vec<Edge>> {
-    let first = model.points.first;
-    let x: Vec<Edge> = (first..first + model.nu())
-        .map(|index| Edge::of(free.symbols()[index].node))
-        .collect();
-    let half = free.ratio(1, 2);
-    let mut correction = vec![free.zero(); x.len()];
-    let mut place = 0;
-    for &block in &model.blocks {
-        let entries = &x[place..place + block.len()];
-        match block {
-            Block::Flat(_) => {}
-            Block::Circle | Block::Quaternion => {
-                let square = free.dot(entries, entries);
-                let defect = free.sub(free.one(), square);
-                let factor = free.mul(half, defect);
-                for (k, &entry) in entries.iter().enumerate() {
-                    correction[place + k] = free.mul(factor, entry);
-                }
-            }
-            Block::Rotation => {
-                let rows: Vec<Vec<Edge>> = entries.chunks(3).map(<[Edge]>::to_vec).collect();
-                let columns = transpose(&rows);
-                let mut gram = multiply(free, &columns, &rows);
-                for (i, row) in gram.iter_mut().enumerate() {
-                    for (j, entry) in row.iter_mut().enumerate() {
-                        let target = if i == j { free.one() } else { free.zero() };
-                        let defect = free.sub(target, *entry);
-                        *entry = free.mul(half, defect);
-                    }
-                }
-                let product = multiply(free, &rows, &gram);
-                for (k, entry) in product.concat().into_iter().enumerate() {
-                    correction[place + k] = entry;
-                }
-            }
-        }
-        place += block.len();
-    }
-    let rows = model.points.constraints.clone();
-    if rows.is_empty() {
-        return Some(correction);
-    }
-    let jacobian: Vec<Vec<Edge>> = rows
-        .iter()
-        .map(|&row| {
-            x.iter()
-                .map(|x| Derivation::new([(x.node(), free.one())]).of(free, row))
-                .collect()
-        })
-        .collect();
-    let gram = multiply(free, &jacobian, &transpose(&jacobian));
-    let right: Vec<Vec<Edge>> = rows.iter().map(|&row| vec![row]).collect();
-    let multipliers = solve_symmetric(free, &gram, &right)?;
-    for (alpha, entry) in correction.iter_mut().enumerate() {
-        for (row, multiplier) in jacobian.iter().zip(&multipliers) {
-            let product = free.mul(row[alpha], multiplier[0]);
-            *entry = free.sub(*entry, product);
-        }
-    }
-    Some(correction)
 }

@@ -3,7 +3,9 @@
 //! | file | object | KR18 |
 //! |---|---|---|
 //! | `calculus` | ∂ᵢ, d/dt along ẋ = A ξ, frame Jacobians | (9) |
-//! | `kinematics` | Y, chart rates, the stabilising term −Ψ φ | (5), (8) |
+//! | `kinematics` | Y, chart rates | (5) |
+//! | `complement` | Φ and Ψ | (5), (6) |
+//! | `correction` | the stabilising term −Ψ φ | (8) |
 //! | `commutation` | Hamel coefficients γ | (12), (13) |
 //! | `inertia` | mass matrix M | (20) |
 //! | `connection` | connection coefficients Γ | (23) |
@@ -19,8 +21,10 @@ pub mod assemble;
 pub mod calculus;
 pub mod check;
 pub mod commutation;
+pub mod complement;
 pub mod connection;
 pub mod constrained;
+pub mod correction;
 pub mod energy;
 pub mod inertia;
 pub mod kinematics;

@@ -1,6 +1,7 @@
 //! The tables that people read: φ, A, Y, γ, M, Γ, as expressions, on demand.
 
 use super::calculus::Calculus;
+use super::complement::{Complement, complement};
 use super::normal::without_coordinates;
 use super::{commutation, connection, energy, inertia, kinematics};
 use crate::algebra::graph::Edge;
@@ -17,6 +18,8 @@ pub struct Geometry {
     pub calculus: Calculus,
     /// Y, n rows of ν.
     pub y: Vec<Vec<Edge>>,
+    /// Φ and Ψ.
+    pub complement: Complement,
     /// `γ[i][j][k]` = γᵢⱼᵏ.
     pub gamma: Vec<Vec<Vec<Edge>>>,
     /// M.
@@ -28,11 +31,12 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Derives all symbols; `None` where AᵀA is singular, which the model's checks exclude.
+    /// Derives all symbols; `None` where AᵀA or [Y; Φ] is singular, which the model's checks exclude.
     pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let mut calculus = Calculus::new(&model);
         let y = kinematics::left_inverse(&mut model)?;
+        let complement = complement(&mut model, &y)?;
         let gamma = commutation::gamma(&mut model, &mut calculus, &y);
         let mut mass = inertia::mass_matrix(&mut model, &mut calculus);
         let mut forms = None;
@@ -51,6 +55,7 @@ impl Geometry {
             model,
             calculus,
             y,
+            complement,
             gamma,
             mass,
             connection,
@@ -88,10 +93,16 @@ impl Geometry {
         let mut calculus = Calculus::new(&free);
         let mut merged = model.clone();
         let y = kinematics::left_inverse(&mut merged)?;
-        let y: Vec<Vec<Edge>> = y
-            .iter()
-            .map(|row| rebuild(&merged.graph, &mut free.graph, row))
-            .collect();
+        let mut complement = complement(&mut merged, &y)?;
+        let mut carry = |rows: &[Vec<Edge>]| -> Vec<Vec<Edge>> {
+            let rows = rows.iter();
+            rows.map(|row| rebuild(&merged.graph, &mut free.graph, row))
+                .collect()
+        };
+        let y = carry(&y);
+        complement.phi = carry(&complement.phi);
+        complement.psi = carry(&complement.psi);
+        complement.beyond = carry(&complement.beyond);
         let gamma = commutation::gamma(&mut free, &mut calculus, &y);
         let mass = inertia::mass_matrix(&mut free, &mut calculus);
         let connection = connection::connection(&mut free, &mut calculus, &mass, &gamma);
@@ -100,6 +111,7 @@ impl Geometry {
             model: free,
             calculus,
             y,
+            complement,
             gamma,
             mass,
             connection,

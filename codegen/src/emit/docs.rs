@@ -2,7 +2,7 @@
 
 use super::function::length;
 use super::names;
-use crate::algebra::graph::NodeId;
+use crate::algebra::graph::{Edge, NodeId};
 use crate::model::layout::Block;
 use crate::model::{Coordinate, Group};
 use crate::program::count::{Count, count_nodes};
@@ -88,6 +88,13 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
         lines.extend([String::new(), "# Errors".into()]);
         lines
             .push("`Singular` where a pivot of the mass matrix is not positive and finite.".into());
+        let kinematic = |guard: &Edge| program.kinematic_pivot(*guard).is_some();
+        if function.guards.iter().any(kinematic) {
+            lines.push(
+                "`Singular::kinematics` where a pivot of [Y; Φ] has lost its sign: a locked configuration."
+                    .into(),
+            );
+        }
     }
     lines
 }

@@ -115,6 +115,7 @@ impl Drawing<'_> {
     /// A printer that has printed nothing.
     pub fn printer(&self) -> Printer<'_> {
         Printer {
+            program: self.emitter.program,
             places: &self.emitter.places,
             time: self.spec.time,
             locals: self.locals,

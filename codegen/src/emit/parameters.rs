@@ -146,7 +146,7 @@ fn update(emitter: &Emitter) -> String {
         } else {
             value
         };
-        body.push_str(&check(&value, pivot));
+        body.push_str(&check(emitter.program, *guard, &value, pivot));
     }
     format!(
         "/// Brings the kept constants in step with the parameters.\nfn {}(&mut self) -> {RESULT} {{\n{body}Ok(())\n}}\n\n",

@@ -6,7 +6,7 @@ use super::names;
 use super::number;
 use super::places::{Place, Places, Time};
 use crate::algebra::graph::{Edge, Function, NodeId};
-use crate::program::Argument;
+use crate::program::{Argument, Program};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
 
@@ -29,6 +29,8 @@ pub struct Used {
 
 /// Prints the statements of one function or part.
 pub struct Printer<'a> {
+    /// The program.
+    pub program: &'a Program,
     /// Where values are found.
     pub places: &'a Places<'a>,
     /// When the function runs.
@@ -109,7 +111,7 @@ impl Printer<'_> {
     pub fn statement(&mut self, statement: &Statement) -> String {
         if let Operation::Check(pivot, edge) = statement.operation {
             self.used.checks = true;
-            return check(&self.receiver(edge), pivot);
+            return check(self.program, edge, &self.receiver(edge), pivot);
         }
         let expression = self.expression(statement.operation);
         let name = |node: Option<NodeId>| node.map_or("_", |node| self.locals.name(node));
@@ -162,7 +164,11 @@ impl Printer<'_> {
     }
 }
 
-/// Leaves a function unless a pivot is positive.
-pub fn check(pivot: &str, index: usize) -> String {
-    format!("if !{pivot}.is_positive() {{ return Err(::hamel::Singular {{ pivot: {index} }}); }}\n")
+/// Leaves a function unless a pivot is positive: a pivot of [Y; Φ] or of the mass matrix.
+pub fn check(program: &Program, guard: Edge, pivot: &str, index: usize) -> String {
+    let error = match program.kinematic_pivot(guard) {
+        Some(index) => format!("::hamel::Singular::kinematics({index})"),
+        None => format!("::hamel::Singular {{ pivot: {index} }}"),
+    };
+    format!("if !{pivot}.is_positive() {{ return Err({error}); }}\n")
 }

@@ -1,6 +1,7 @@
 //! The order in which a description is read, with its checkpoints.
 
 use super::declare::{Declared, NextValue, declare};
+use super::kinematics::At;
 use super::motion::Motion;
 use super::names::Names;
 use super::scope::Scope;
@@ -97,7 +98,18 @@ impl<'a> Reading<'a> {
         let mut names = Names::read(system, graph, &mut self.scope, report);
         let (scope, declared) = (&self.scope, &self.declared);
         variety.check(system, graph, scope, report);
-        let kinematics = kinematics::read(system, graph, scope, variety, declared, report);
+        // The start is needed to choose pivots; what is wrong with it is said last.
+        let mut last = Report::new();
+        let mut starts = start::read(system, graph, scope, declared, &defaults, &mut last);
+        if let Some(start) = &starts {
+            start::check(system, variety, declared, &defaults, &start.x, &mut last);
+        }
+        let known = last.is_empty() && !defaults.iter().any(|number| number.is_nan());
+        let at = starts.as_ref().filter(|_| known).map(|start| At {
+            defaults: &defaults,
+            x: &start.x,
+        });
+        let kinematics = kinematics::read(system, graph, scope, variety, declared, at, report);
         if let Some(kinematics) = &kinematics {
             let motion = Motion::new(
                 &declared.x,
@@ -110,21 +122,25 @@ impl<'a> Reading<'a> {
         self.scope.unmoved = kinematics.is_none();
         names.go_on(graph, &mut self.scope, report);
         let scope = &self.scope;
-        let mut starts = start::read(system, graph, scope, declared, &defaults, report);
         let numbers = declared.numbers(&defaults, starts.as_ref());
         let frames = names.frames;
         let dynamics = dynamics::read(system, graph, scope, &frames, declared, &numbers, report);
         let constraints =
             pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
-        if let Some(start) = &starts {
-            start::check(system, variety, declared, &defaults, &start.x, report);
-        }
-        if let (Some(start), Some(kinematics), true) = (&mut starts, &kinematics, report.is_empty())
-        {
+        if let (Some(start), Some(kinematics), true) = (
+            &mut starts,
+            &kinematics,
+            report.is_empty() && last.is_empty(),
+        ) {
             let mut closure =
                 closure::Closure::new(graph, declared, kinematics, &constraints, &defaults);
             report.keep(closure.close(start));
         }
+        last.finish()
+            .err()
+            .unwrap_or_default()
+            .into_iter()
+            .for_each(|error| report.push(error));
         if let Err(errors) = self.report.finish() {
             return Err((errors, Some(Box::new(self.graph))));
         }
@@ -157,8 +173,8 @@ impl<'a> Reading<'a> {
             constraints,
             spans: true,
             overconstrained: false,
-            constant_pivots: Vec::new(),
             kinetic_terms: None,
+            completion: kinematics.completion,
             frames,
             bodies: dynamics.bodies,
             particles: dynamics.particles,

@@ -2,8 +2,8 @@
 
 use super::expression::Evaluator;
 use super::layout::{blocks, entry_names};
-use super::start::Start;
 use super::scope::{NameKind, Scope};
+use super::start::Start;
 use super::value::Value;
 use super::{Coordinate, Group, class};
 use crate::algebra::fp::Fp;

@@ -109,7 +109,11 @@ impl Elements {
             stiffness: f(spring.stiffness),
             length: f(spring.length),
             along: spring.along.map(f),
-            wrenches: spring.wrenches.iter().map(|w| w.map(&mut |e| f(e))).collect(),
+            wrenches: spring
+                .wrenches
+                .iter()
+                .map(|w| w.map(&mut |e| f(e)))
+                .collect(),
         };
         let damper = |damper: &Damper, f: &mut dyn FnMut(Edge) -> Edge| Damper {
             coefficient: f(damper.coefficient),

@@ -20,6 +20,9 @@ const MOST_ROWS: usize = 64;
 impl Evaluator<'_> {
     /// A call; wrong names, counts and shapes are reported.
     pub fn call(&mut self, function: &Ident, arguments: &[Expr], span: Span) -> Option<Value> {
+        if function.name == "rate" {
+            return self.rate(arguments, span);
+        }
         let values: Vec<Option<Value>> = arguments
             .iter()
             .map(|argument| self.value(argument))

@@ -3,11 +3,14 @@
 use super::Coordinate;
 use super::declare::{Declared, coordinate_value, size};
 use super::expression::Evaluator;
+use super::relations::relate;
 use super::scope::{NameKind, Scope};
-use super::tangency::{check_constraints, linear_part};
+use super::tangency::linear_part;
 use super::value::Value;
 use super::variety::Variety;
+use super::{completion::Completion, definitions};
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::numeric::evaluate;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{
     BinaryOp, CoordKind, Expr, ExprKind, Ident, ItemKind, ShapeKind, System, Target,
@@ -17,6 +20,7 @@ use crate::syntax::ast::{
 pub struct Kinematics {
     pub rate: Vec<Edge>,
     pub a: Vec<Vec<Edge>>,
+    pub completion: Completion,
 }
 
 /// The rate of one entry of x, and the statement that gives it.
@@ -26,13 +30,31 @@ pub struct Rate {
     pub item: usize,
 }
 
-/// Reads all `rate` statements.
+/// Numbers of parameters and of x at the start, which satisfy φ = 0.
+#[derive(Clone, Copy)]
+pub struct At<'a> {
+    pub defaults: &'a [f64],
+    pub x: &'a [f64],
+}
+
+impl At<'_> {
+    /// Numbers of expressions of parameters and coordinates.
+    pub fn evaluate(&self, graph: &Graph, edges: &[Edge]) -> Vec<f64> {
+        let mut numbers = vec![std::f64::consts::PI];
+        numbers.extend(self.defaults.iter().chain(self.x));
+        numbers.resize(graph.symbols().len(), f64::NAN);
+        evaluate(graph, edges, &numbers)
+    }
+}
+
+/// Reads all `rate` statements and definitions of velocities, and relates A, Y and φ.
 pub fn read(
     system: &System,
     graph: &mut Graph,
     scope: &Scope,
     variety: &Variety,
     declared: &Declared,
+    at: Option<At>,
     report: &mut Report,
 ) -> Option<Kinematics> {
     let mut rates: Vec<Option<Rate>> = vec![None; declared.x.len()];
@@ -50,11 +72,17 @@ pub fn read(
         };
         read_rate(target, value, item, evaluator, declared, &mut rates, system);
     }
+    let definitions = definitions::read(system, graph, scope, declared, report);
+    let derivable = definitions.any || !variety.user_rows().is_empty();
+    let mut complete = definitions.complete;
     for coordinate in &declared.coordinates {
         let range = coordinate.offset..coordinate.offset + size(coordinate.kind);
         let missing = rates[range.clone()].iter().any(Option::is_none);
         let parts = !rates[range].iter().all(Option::is_none);
-        if missing && (parts || !tried.contains(&coordinate.name.as_str())) {
+        let wrong = tried.contains(&coordinate.name.as_str());
+        complete &= !missing || !wrong;
+        if missing && (parts || !wrong && !derivable) {
+            complete = false;
             let name = &coordinate.name;
             let message = if parts {
                 format!("a part of coordinate `{name}` has no rate")
@@ -65,24 +93,16 @@ pub fn read(
             report.push(Diagnostic::new(coordinate.span, message).help(help));
         }
     }
-    let rates: Option<Vec<Rate>> = rates.into_iter().collect();
-    let a = rates
-        .as_ref()
-        .and_then(|rates| linear_part(system, graph, rates, declared, report));
-    let kinematics = rates.zip(a);
-    check_constraints(
+    let a = linear_part(system, graph, &rates, declared, report).filter(|_| complete);
+    relate(
         system,
         graph,
         variety,
-        kinematics.as_ref(),
         declared,
+        (&rates, a, &definitions.rows),
+        at,
         report,
-    );
-    let (rates, a) = kinematics?;
-    Some(Kinematics {
-        rate: rates.iter().map(|rate| rate.edge).collect(),
-        a,
-    })
+    )
 }
 
 fn read_rate(

@@ -3,25 +3,33 @@
 //! Names are resolved, shapes checked, and every semantic error is found here: stages after this
 //! one cannot fail on user input.
 
+mod agreement;
 mod arithmetic;
 mod bodies;
 mod build;
+pub mod charts;
 mod closure;
+pub mod completion;
 mod declare;
 mod defaults;
+mod definitions;
 mod dynamics;
 pub mod elements;
 pub mod expression;
 mod frames;
 mod functions;
+mod independent;
 mod kinematics;
 pub mod layout;
 mod line;
 mod loads;
 pub mod motion;
 mod names;
+mod nearest;
 pub mod pfaffian;
 pub mod points;
+mod rates;
+mod relations;
 mod rotations;
 pub mod scope;
 mod start;
@@ -32,6 +40,7 @@ mod variety;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
+use completion::Completion;
 use elements::Elements;
 use layout::Block;
 use motion::Observed;
@@ -54,6 +63,8 @@ pub mod class {
     pub const INPUT: u8 = 8;
     /// Accelerations ξ̇, the argument of inverse dynamics.
     pub const ACCEL: u8 = 16;
+    /// Rates ẋ, while definitions of velocities are read; never in a model's graph.
+    pub const RATE: u8 = 128;
 }
 
 /// A named group of symbols: a parameter, a velocity, an input.
@@ -202,10 +213,10 @@ pub struct Model {
     pub spans: bool,
     /// Whether constraints that are kept depend on one another along the whole motion.
     pub overconstrained: bool,
-    /// Constants that are divided by and so have to be nonzero: their squares.
-    pub constant_pivots: Vec<Edge>,
     /// The user's kinetic energy where A does not span the tangent space.
     pub kinetic_terms: Option<KineticTerms>,
+    /// Y as it was given, the rows of Φ, and what [Y; Φ]⁻¹ divides by.
+    pub completion: Completion,
     /// Frames.
     pub frames: Vec<Frame>,
     /// Bodies.

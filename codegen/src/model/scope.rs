@@ -1,6 +1,7 @@
 //! Names and what they stand for.
 
 use super::motion::Motion;
+use super::rates::Rates;
 use super::value::Value;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{CoordKind, Ident, ItemKind, Span, System};
@@ -83,6 +84,7 @@ pub const RESERVED: &[&str] = &[
     "qmul",
     "pose",
     "inverse",
+    "rate",
     "pi",
     "world",
 ];
@@ -102,6 +104,8 @@ pub struct Scope {
     pub motion: Option<Motion>,
     /// Whether the rates are in error: what needs them is no further error.
     pub unmoved: bool,
+    /// What `rate(…)` stands for, in definitions of velocities.
+    pub rates: Option<Rates>,
 }
 
 impl Scope {
@@ -146,6 +150,7 @@ impl Scope {
             free,
             motion: None,
             unmoved: false,
+            rates: None,
         }
     }
 

@@ -5,6 +5,7 @@ use super::declare::Declared;
 use super::expression::Evaluator;
 use super::kinematics::{part, written};
 use super::layout::{blocks, identity};
+use super::nearest::Nearest;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
 use super::variety::{Origin, Variety};
@@ -213,13 +214,21 @@ pub fn check(
     let rows: Vec<_> = variety.phi.iter().map(|(edge, _)| *edge).collect();
     let residuals = evaluate(&variety.points.free, &rows, &numbers);
     let mut reported: Vec<Origin> = Vec::new();
+    let mut nearest = None;
     for (row, &residual) in residuals.iter().enumerate() {
         let origin = variety.origins[row];
         if residual.abs() <= ROUNDING || reported.contains(&origin) {
             continue;
         }
         reported.push(origin);
-        report.push(violation(system, variety, declared, row, residual));
+        let mut error = violation(system, variety, declared, row, residual);
+        if let Origin::Statement(_) = origin {
+            let found = nearest.get_or_insert_with(|| {
+                super::nearest::nearest(&variety.points, &variety.phi, &numbers, x)
+            });
+            advise(&mut error, found, variety, declared, row);
+        }
+        report.push(error);
     }
 }
 
@@ -271,6 +280,61 @@ fn violation(
                 ))
                 .note(place, "this constraint")
         }
+    }
+}
+
+/// Says where the nearest configuration is, or that there seems to be none.
+fn advise(
+    error: &mut Diagnostic,
+    found: &Nearest,
+    variety: &Variety,
+    declared: &Declared,
+    row: usize,
+) {
+    let x = match found {
+        Nearest::Found(x) => x,
+        Nearest::Nowhere(least) => {
+            error
+                .message
+                .push_str(", and no real configuration was found near it");
+            error.help = Some(format!(
+                "check the lengths: the constraints are violated by {least:.3e} at least; or start nearer to a configuration"
+            ));
+            return;
+        }
+    };
+    let names = coordinates_of(variety, declared, row);
+    let starts: Option<Vec<String>> = declared
+        .coordinates
+        .iter()
+        .filter(|coordinate| names.contains(&coordinate.name.as_str()))
+        .map(|coordinate| {
+            let x = &x[coordinate.offset..];
+            let value = match coordinate.kind {
+                CoordKind::Real => short(x[0]),
+                CoordKind::S1 => short(x[1].atan2(x[0])),
+                CoordKind::Euclidean(n) => {
+                    let entries: Vec<String> = x[..n].iter().map(|&x| short(x)).collect();
+                    format!("[{}]", entries.join(", "))
+                }
+                CoordKind::S3 | CoordKind::SO3 | CoordKind::SE3 => return None,
+            };
+            Some(format!("`start {} = {value};`", coordinate.name))
+        })
+        .collect();
+    if let (Some(starts), Some(help)) = (starts, &mut error.help) {
+        help.push_str(&format!("; the nearest is {}", starts.join(" ")));
+    }
+}
+
+/// A number with as many digits as a start needs.
+fn short(number: f64) -> String {
+    let text = format!("{number:.12}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        "0".into()
+    } else {
+        text.into()
     }
 }
 

@@ -3,21 +3,23 @@
 use super::class;
 use super::declare::Declared;
 use super::kinematics::{Rate, rate_help, velocity_for};
-use super::points::lane_seed;
 use super::variety::{Origin, Variety};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, LANES};
-use crate::algebra::lane::Lane;
-use crate::algebra::numeric::{evaluate_at, rank};
+use crate::algebra::numeric::rank;
+use crate::algebra::text::short;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System};
 
-/// A = ∂ẋ/∂ξ, with ẋ − A ξ = 0 and A free of ξ and u.
+/// Longest residual that is shown.
+const LONGEST: usize = 60;
+
+/// A = ∂ẋ/∂ξ, with ẋ − A ξ = 0 and A free of ξ and u; rows without a rate are empty.
 pub fn linear_part(
     system: &System,
     graph: &mut Graph,
-    rates: &[Rate],
+    rates: &[Option<Rate>],
     declared: &Declared,
     report: &mut Report,
 ) -> Option<Vec<Vec<Edge>>> {
@@ -25,12 +27,13 @@ pub fn linear_part(
     for &xi in &declared.xi {
         let mut derivation = Derivation::new([(xi.node(), graph.one())]);
         for (row, rate) in a.iter_mut().zip(rates) {
-            row.push(derivation.of(graph, rate.edge));
+            row.extend(rate.map(|rate| derivation.of(graph, rate.edge)));
         }
     }
     // One error a statement.
     let mut bad: Vec<usize> = Vec::new();
     for (row, rate) in a.iter().zip(rates) {
+        let Some(rate) = rate else { continue };
         let whole = graph.dot(row, &declared.xi);
         let class = row
             .iter()
@@ -71,130 +74,60 @@ fn value_of(system: &System, item: usize) -> Option<&Expr> {
     }
 }
 
-/// All that relates A, ξ and φ, as far as they are known.
-pub fn check_constraints(
-    system: &System,
-    graph: &Graph,
-    variety: &Variety,
-    kinematics: Option<&(Vec<Rate>, Vec<Vec<Edge>>)>,
-    declared: &Declared,
-    report: &mut Report,
-) {
-    if !variety.complete || declared.faulty || declared.x.is_empty() || declared.xi.is_empty() {
-        return;
-    }
-    let Some(jacobian) = jacobian(variety, graph, declared) else {
-        return;
-    };
-    if !check_redundancy(system, variety, &jacobian, report) {
-        return;
-    }
-    let mut checker = Checker {
-        system,
-        graph,
-        variety,
-        declared,
-        jacobian,
-        report,
-    };
-    let tangent = kinematics.is_none_or(|(rates, a)| checker.tangent(rates, a));
-    let counted = checker.count();
-    if let (Some((_, a)), true, true) = (kinematics, tangent, counted) {
-        checker.independent(a);
-    }
-}
-
-/// ∂φ/∂x at the lanes' points of X; one matrix a lane.
-fn jacobian(variety: &Variety, graph: &Graph, declared: &Declared) -> Option<Vec<Vec<Vec<Fp>>>> {
-    let points = &variety.points;
-    let mut free = points.free.clone();
-    let nu = declared.x.len();
-    let symbols = points.first..points.first + nu;
-    let x: Vec<Edge> = symbols.map(|i| Edge::of(free.symbols()[i].node)).collect();
-    let mut columns: Vec<Derivation> = x
-        .iter()
-        .map(|x| Derivation::new([(x.node(), free.one())]))
-        .collect();
-    let mut entries = Vec::new();
-    for &(row, _) in &variety.phi {
-        for column in &mut columns {
-            entries.push(column.of(&mut free, row));
-        }
-    }
-    (0..LANES)
-        .map(|lane| {
-            let mut point = Lane::new(lane_seed(variety.seed, lane));
-            for symbol in graph.symbols() {
-                point.push_symbol(graph.value(Edge::of(symbol.node))[lane]);
-            }
-            let values = evaluate_at(&free, &entries, &mut point)?;
-            Some(values.chunks(nu).map(<[Fp]>::to_vec).collect())
-        })
-        .collect()
-}
-
-/// Every row of the user adds to the rank of ∂φ/∂x; whether none is singular on all of X.
-fn check_redundancy(
-    system: &System,
-    variety: &Variety,
-    jacobian: &[Vec<Vec<Fp>>],
-    report: &mut Report,
-) -> bool {
-    let rows = &jacobian[0];
-    let mut reported = Vec::new();
-    let mut regular = true;
-    for (row, origin) in variety.origins.iter().enumerate() {
-        let Origin::Statement(item) = *origin else {
-            continue;
-        };
-        if reported.contains(&item) || rank(rows[..=row].to_vec()) > rank(rows[..row].to_vec()) {
-            continue;
-        }
-        reported.push(item);
-        let span = constraint_span(system, item);
-        let parts = variety.origins.iter().filter(|&o| o == origin).count() > 1;
-        let this = if parts {
-            "an entry of this one"
-        } else {
-            "this one"
-        };
-        report.push(if rows[row].iter().all(|entry| entry.is_zero()) {
-            regular = false;
-            Diagnostic::new(
-                span,
-                "the derivative of this constraint vanishes where it holds",
-            )
-            .help("write the equation without its square: `a = b` for `(a - b)^2 = 0`")
-        } else {
-            Diagnostic::new(
-                span,
-                format!("the constraints are redundant: {this} follows from those before it"),
-            )
-            .help("remove it; the kind of a coordinate, such as S1 or SO3, is a constraint already")
-        });
-    }
-    regular
-}
-
-fn constraint_span(system: &System, item: usize) -> Span {
+/// Where a constraint stands.
+pub fn constraint_span(system: &System, item: usize) -> Span {
     match &system.items[item].kind {
         ItemKind::Constraint { left, right } => left.span.to(right.span),
         _ => system.items[item].span,
     }
 }
 
-struct Checker<'a> {
-    system: &'a System,
-    graph: &'a Graph,
-    variety: &'a Variety,
-    declared: &'a Declared,
-    jacobian: Vec<Vec<Vec<Fp>>>,
-    report: &'a mut Report,
+/// What relates A, ξ and φ, checked piece by piece.
+pub struct Checker<'a> {
+    pub system: &'a System,
+    pub graph: &'a Graph,
+    pub variety: &'a Variety,
+    pub declared: &'a Declared,
+    /// ∂φ/∂x.
+    pub jacobian: &'a [Vec<Edge>],
+    pub report: &'a mut Report,
 }
 
 impl Checker<'_> {
+    /// ∂φ/∂x at the first point.
+    fn slopes(&self) -> Vec<Vec<Fp>> {
+        let value = |&edge: &Edge| self.graph.value(edge)[0];
+        let rows = self.jacobian.iter();
+        rows.map(|row| row.iter().map(value).collect()).collect()
+    }
+
+    /// No constraint of the user is singular on all of X.
+    pub fn regular(&mut self) -> bool {
+        let zero = self.graph.zero();
+        let mut regular = true;
+        let mut reported = Vec::new();
+        for (row, origin) in self.jacobian.iter().zip(&self.variety.origins) {
+            let Origin::Statement(item) = *origin else {
+                continue;
+            };
+            if reported.contains(&item) || row.iter().any(|edge| edge.abs() != zero) {
+                continue;
+            }
+            regular = false;
+            reported.push(item);
+            self.report.push(
+                Diagnostic::new(
+                    constraint_span(self.system, item),
+                    "the derivative of this constraint vanishes where it holds",
+                )
+                .help("write the equation without its square: `a = b` for `(a - b)^2 = 0`"),
+            );
+        }
+        regular
+    }
+
     /// (∂φ/∂x) A = 0 on X.
-    fn tangent(&mut self, rates: &[Rate], a: &[Vec<Edge>]) -> bool {
+    pub fn tangent(&mut self, rates: &[Option<Rate>], a: &[Vec<Edge>]) -> bool {
         let mut tangent = true;
         let mut reported: Vec<usize> = Vec::new();
         for row in 0..self.variety.phi.len() {
@@ -206,7 +139,7 @@ impl Checker<'_> {
                 let item = self.culprit(rates, a, row, i);
                 if let Some(item) = item.filter(|item| !reported.contains(item)) {
                     reported.push(item);
-                    self.report_tangent(row, i, item);
+                    self.report_tangent(a, row, i, item);
                 }
             }
         }
@@ -216,21 +149,37 @@ impl Checker<'_> {
     /// Whether a motion along ξⁱ changes a row of φ.
     fn leaves(&self, a: &[Vec<Edge>], row: usize, i: usize) -> bool {
         (0..LANES).any(|lane| {
-            let gradient = &self.jacobian[lane][row];
-            let terms = a.iter().zip(gradient);
+            let terms = a.iter().zip(&self.jacobian[row]);
             let change = terms.fold(Fp::ZERO, |sum, (entries, &slope)| {
-                sum + slope * self.graph.value(entries[i])[lane]
+                sum + self.graph.value(slope)[lane] * self.graph.value(entries[i])[lane]
             });
             !change.is_zero()
         })
     }
 
     /// The statement to blame: the first rate that takes part in the change.
-    fn culprit(&self, rates: &[Rate], a: &[Vec<Edge>], row: usize, i: usize) -> Option<usize> {
-        let alpha = (0..a.len()).find(|&alpha| {
-            !self.jacobian[0][row][alpha].is_zero() && a[alpha][i] != self.graph.zero()
-        })?;
-        Some(rates[alpha].item)
+    fn culprit(
+        &self,
+        rates: &[Option<Rate>],
+        a: &[Vec<Edge>],
+        row: usize,
+        i: usize,
+    ) -> Option<usize> {
+        let zero = self.graph.zero();
+        let takes_part =
+            |&alpha: &usize| self.jacobian[row][alpha].abs() != zero && a[alpha][i] != zero;
+        let mut given = (0..a.len())
+            .filter(takes_part)
+            .filter_map(|alpha| rates[alpha]);
+        given.next().map(|rate| rate.item)
+    }
+
+    /// (∂φ/∂x) A of a row and a velocity, where it is short.
+    fn residual(&self, a: &[Vec<Edge>], row: usize, i: usize) -> Option<String> {
+        let mut graph = self.graph.clone();
+        let column: Vec<Edge> = a.iter().map(|row| row[i]).collect();
+        let change = graph.dot(&self.jacobian[row], &column);
+        short(&graph, change, LONGEST)
     }
 
     fn velocity(&self, i: usize) -> &str {
@@ -242,7 +191,7 @@ impl Checker<'_> {
             .map_or("", |s| s.name.as_str())
     }
 
-    fn report_tangent(&mut self, row: usize, i: usize, item: usize) {
+    fn report_tangent(&mut self, a: &[Vec<Edge>], row: usize, i: usize, item: usize) {
         let Some(value) = value_of(self.system, item) else {
             return;
         };
@@ -271,7 +220,14 @@ impl Checker<'_> {
             }
             Origin::Statement(statement) => Diagnostic::new(
                 value.span,
-                format!("this rate leaves a constraint: a motion along `{velocity}` changes it"),
+                match self.residual(a, row, i) {
+                    Some(residual) => format!(
+                        "this rate leaves a constraint: a motion along `{velocity}` changes it by {residual}, should be 0"
+                    ),
+                    None => format!(
+                        "this rate leaves a constraint: a motion along `{velocity}` changes it"
+                    ),
+                },
             )
             .help("choose rates whose motion keeps the constraint: (∂φ/∂x) A = 0")
             .note(constraint_span(self.system, statement), "this constraint"),
@@ -280,10 +236,10 @@ impl Checker<'_> {
     }
 
     /// n = dim X = ν − rank ∂φ/∂x.
-    fn count(&mut self) -> bool {
+    pub fn count(&mut self) -> bool {
         let n = self.declared.xi.len();
         let nu = self.declared.x.len();
-        let rank_phi = rank(self.jacobian[0].clone());
+        let rank_phi = rank(self.slopes());
         let dimension = nu - rank_phi;
         if n == dimension {
             return true;
@@ -309,7 +265,7 @@ impl Checker<'_> {
     }
 
     /// A has rank n.
-    fn independent(&mut self, a: &[Vec<Edge>]) {
+    pub fn independent(&mut self, a: &[Vec<Edge>]) -> bool {
         let n = self.declared.xi.len();
         let value = |edge: &Edge| self.graph.value(*edge)[0];
         let values: Vec<Vec<Fp>> = a
@@ -318,7 +274,7 @@ impl Checker<'_> {
             .collect();
         let rank_a = rank(values.clone());
         if rank_a == n {
-            return;
+            return true;
         }
         // The first column that depends on those before it.
         let first = |i: usize| values.iter().map(|row| row[..=i].to_vec()).collect();
@@ -328,6 +284,7 @@ impl Checker<'_> {
         let message = format!("the velocities are not independent: A has rank {rank_a}, not {n}");
         self.report
             .push(Diagnostic::new(self.velocities_span(), message).help(help));
+        false
     }
 
     /// From the first velocity of the first statement to the last of it.

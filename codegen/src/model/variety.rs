@@ -118,6 +118,15 @@ impl Variety {
         }
     }
 
+    /// The rows of φ that the user wrote; those of the coordinate kinds stand before them.
+    pub fn user_rows(&self) -> std::ops::Range<usize> {
+        let kinds = self
+            .origins
+            .iter()
+            .filter(|o| matches!(o, Origin::Coordinate(_)));
+        kinds.count()..self.origins.len()
+    }
+
     /// One point of X a lane. Where there is none, the statement that is to blame is reported and
     /// the user's constraints are left out, so that the rest can still be read.
     pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<Vec<Fp>> {

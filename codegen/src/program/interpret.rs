@@ -27,7 +27,8 @@ pub struct Interpreter {
     initial: Vec<f64>,
     steps: Vec<(usize, Step)>,
     outputs: Vec<Place>,
-    guards: Vec<Place>,
+    /// Guards with their numbers, in the order in which they are computed.
+    guards: Vec<(usize, Place)>,
     inputs: [usize; 4],
     arguments: [bool; 4],
 }
@@ -91,6 +92,9 @@ impl Interpreter {
             index: places.get(&edge.node()).copied().unwrap_or(0),
             negative: edge.is_negative(),
         };
+        let mut guards: Vec<(usize, Place)> =
+            function.guards.iter().map(place).enumerate().collect();
+        guards.sort_by_key(|(_, place)| place.index);
         let first = 1 + params.len();
         let inputs = [
             first,
@@ -100,7 +104,7 @@ impl Interpreter {
         ];
         Interpreter {
             outputs: function.outputs.iter().map(place).collect(),
-            guards: function.guards.iter().map(place).collect(),
+            guards,
             initial,
             steps,
             inputs,
@@ -125,7 +129,7 @@ impl Interpreter {
         for &(index, step) in &self.steps {
             values[index] = run(step, &values);
         }
-        for (pivot, &guard) in self.guards.iter().enumerate() {
+        for &(pivot, guard) in &self.guards {
             let value = read(guard, &values);
             if value.is_nan() || value <= 0.0 {
                 return Err(pivot);

@@ -90,11 +90,20 @@ pub struct Program {
     pub names: Vec<(String, Edge)>,
     /// Pivots of a mass matrix that is constant at run time: checked when parameters are set.
     pub constant_guards: Vec<Edge>,
+    /// Those guards that are pivots of [Y; Φ], not of the mass matrix, KR18 (5).
+    pub kinematic_guards: Vec<Edge>,
     /// The functions.
     pub functions: Vec<Function>,
 }
 
 impl Program {
+    /// The number of a guard among the pivots of [Y; Φ], if it is one.
+    pub fn kinematic_pivot(&self, guard: Edge) -> Option<usize> {
+        self.kinematic_guards
+            .iter()
+            .position(|&pivot| pivot == guard)
+    }
+
     /// A function by its name.
     pub fn function(&self, name: &str) -> Option<&Function> {
         self.functions.iter().find(|function| function.name == name)

@@ -269,7 +269,7 @@ pub enum ItemKind {
     Let(Vec<Declaration>),
     /// `coord r: R3, R: SO3, q;`
     Coord(Vec<(Ident, CoordKind)>),
-    /// `velocity v: vec3, w: vec3, u;`
+    /// `velocity v: vec3, w: vec3, u;`, or with rows of Y: `velocity v: vec3 = R.T * rate(r);`
     Velocity(Vec<Declaration>),
     /// `constraint a = b;`
     Constraint {

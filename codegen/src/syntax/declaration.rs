@@ -21,10 +21,16 @@ pub(super) fn values(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Vec<Declaratio
     })
 }
 
-/// `v: vec3, u`
+/// `v: vec3, u`, each with a row of Y where it is defined by rates: `w = q.c * rate(q.s)`
 pub(super) fn velocities(cursor: &mut Cursor<'_>) -> Parsed<Vec<Declaration>> {
-    const HELP: &str = "the coordinates move by `rate r = R * v;`, and an initial value is written `start v = [1, 0, 0];`";
-    separated(cursor, |cursor| without_value(cursor, "a velocity", HELP))
+    separated(cursor, |cursor| {
+        let (name, shape) = head(cursor, "a velocity")?;
+        let value = match cursor.eat_punct('=') {
+            true => Some(expression(cursor)?),
+            false => None,
+        };
+        Ok(Declaration { name, shape, value })
+    })
 }
 
 /// `F: vec3, u`

@@ -9,7 +9,10 @@ const STATEMENTS: [(&str, &str); 27] = [
     ("const", "a constant is written `const k = 3/2;`"),
     ("let", "a named expression is written `let e = m * s;`"),
     ("coord", "coordinates are written `coord r: R3, R: SO3, q;`"),
-    ("velocity", "velocities are written `velocity v: vec3, u;`"),
+    (
+        "velocity",
+        "velocities are written `velocity v: vec3, u;`, or by rates: `velocity v: vec3 = R.T * rate(r);`",
+    ),
     ("constraint", "a constraint is written `constraint a = b;`"),
     ("rate", "a rate is written `rate r = R * v;`"),
     (

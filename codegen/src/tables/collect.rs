@@ -129,6 +129,14 @@ fn cells(geometry: &mut Geometry, table: Table) -> (Vec<usize>, Vec<Cell>) {
     let (n, nu) = (geometry.model.n(), geometry.model.nu());
     match table {
         Table::Y => (vec![n, nu], matrix(&geometry.y)),
+        Table::Gradient => {
+            let phi = &geometry.complement.phi;
+            (vec![phi.len(), nu], matrix(phi))
+        }
+        Table::Psi => {
+            let rank = geometry.complement.phi.len();
+            (vec![nu, rank], matrix(&geometry.complement.psi))
+        }
         Table::Mass => (vec![n, n], matrix(&geometry.mass)),
         Table::Gamma => (vec![n; 3], cube(&geometry.gamma)),
         Table::Connection => (vec![n; 3], cube(&geometry.connection)),

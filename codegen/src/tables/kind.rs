@@ -9,6 +9,10 @@ pub enum Table {
     A,
     /// Y(x), n×ν.
     Y,
+    /// Φ(x), ν−n×ν.
+    Gradient,
+    /// Ψ(x), ν×ν−n.
+    Psi,
     /// γᵢⱼᵏ.
     Gamma,
     /// M(x), n×n.
@@ -54,7 +58,7 @@ const fn row(
     }
 }
 
-const ROWS: [Row; 11] = [
+const ROWS: [Row; 13] = [
     row(
         Table::Phi,
         "phi",
@@ -65,6 +69,22 @@ const ROWS: [Row; 11] = [
     ),
     row(Table::A, "A", "A", "A", "αi", "kinematic map, ẋ = A ξ"),
     row(Table::Y, "Y", "Y", "Y", "iα", "left inverse, ξ = Y ẋ"),
+    row(
+        Table::Gradient,
+        "Phi",
+        "Φ",
+        r"\Phi",
+        "κα",
+        "independent rows of ∂φ/∂x, Φ A = 0",
+    ),
+    row(
+        Table::Psi,
+        "Psi",
+        "Ψ",
+        r"\Psi",
+        "ακ",
+        "completes the inverse, [A Ψ] = [Y; Φ]⁻¹",
+    ),
     row(
         Table::Gamma,
         "gamma",
@@ -202,7 +222,13 @@ impl Table {
     pub fn is_grouped(self) -> bool {
         matches!(
             self,
-            Table::A | Table::Y | Table::Gamma | Table::Mass | Table::Connection
+            Table::A
+                | Table::Y
+                | Table::Gradient
+                | Table::Psi
+                | Table::Gamma
+                | Table::Mass
+                | Table::Connection
         )
     }
 }

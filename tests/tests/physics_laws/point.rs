@@ -72,7 +72,11 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
         let mut random = Random(seed);
         let state = loop {
             let mut state = Self::random_state(&system, &mut random);
-            if largest(&columns(&system, &state.x).concat()) <= 2.0 {
+            let moderate = largest(&columns(&system, &state.x).concat()) <= 2.0;
+            // A linkage may have been turned into its other assembly, which is none of the start's.
+            let assembled = system.accel(&state.x, &state.xi, &system.zero_inputs());
+            let assembled = !assembled.is_err_and(|e| e.kinematic_pivot().is_some());
+            if moderate && assembled {
                 random.fill(state.xi.as_mut(), 2.0);
                 break state;
             } // else the frame A is near a pole of its own (1/ρ), where differences are rough
@@ -244,23 +248,30 @@ models! {
     cart_pole::CartPole,
     double_pendulum_angles::DoublePendulum,
     double_pendulum_circles::CircleDoublePendulum,
+    four_bar::FourBar,
     free_body::FreeBody,
+    free_body_both::FreeBodyBoth,
     free_body_no_wrench::FallingBody,
+    free_body_rows::FreeBodyRows,
     free_body_world::WorldBody,
     free_body_world_velocity::WorldVelocityBody,
     heavy_top::HeavyTop,
     heavy_top_axis::AxisTop,
+    heavy_top_columns::ColumnTop,
     heavy_top_quaternion::QuaternionTop,
     heavy_top_world::WorldTop,
     hoop_bead::HoopBead,
     pendulum::Pendulum,
     pendulum_circle::CirclePendulum,
+    pendulum_rows::PendulumRows,
     planar_body::PlanarBody,
     polar_particle::PolarParticle,
     principal_axes::PrincipalAxes,
     rod_particles::RodParticles,
+    rod_particles_rows::RodParticlesRows,
     satellite::Satellite,
     six_particles::SixParticles,
+    slider_crank::SliderCrank,
     two_bodies::TwoBodies,
 }
 

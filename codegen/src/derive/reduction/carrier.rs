@@ -4,6 +4,7 @@ use super::kinetic::{drift, kinetic_terms};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::substitute;
+use crate::model::completion::Completion;
 use crate::model::pfaffian::Pfaffian;
 use crate::model::value::Value;
 use crate::model::{Group, KineticTerms, Model, class};
@@ -118,7 +119,11 @@ impl Carrier {
             particle.mass = self.one(particle.mass);
             particle.position = self.three(particle.position);
         }
-        model.wrenches = full.wrenches.iter().map(|w| w.map(&mut |e| self.one(e))).collect();
+        model.wrenches = full
+            .wrenches
+            .iter()
+            .map(|w| w.map(&mut |e| self.one(e)))
+            .collect();
         model.elements = full.elements.map(&mut |edge| self.one(edge));
         model.dissipation = self.one(full.dissipation);
         model.observed.clear();
@@ -142,7 +147,13 @@ impl Carrier {
                 ..full.constraints[i].clone()
             })
             .collect();
-        model.constant_pivots.extend(self.carry(pivots));
+        let completion = &full.completion;
+        model.completion = Completion {
+            y: Vec::new(),
+            independent: completion.independent.clone(),
+            pivots: self.carry(&completion.pivots),
+            constants: self.carry(&[completion.constants.as_slice(), pivots].concat()),
+        };
         self.groups(&mut model, &full);
         model.start_xi = self.active.iter().map(|&i| full.start_xi[i]).collect();
         model.velocity_spans = self

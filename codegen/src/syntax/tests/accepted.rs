@@ -144,7 +144,7 @@ fn every_statement() {
         const k = 3/2, u: vec2 = [1, 0];
         let e = m * s;
         coord r: R3, R: SO3, q, c: S1, o: S3, X: SE3, big: R64;
-        velocity v: vec3, w: vec3, u;
+        velocity v: vec3, w: vec3 = vee(X.R.T * rate(X.R)), u;
         constraint a^2 + b^2 = 1;
         rate X.p = X.R * v;
         frame f = pose(R, p);
@@ -186,7 +186,7 @@ fn every_statement() {
     const k: Scalar = (3 / 2); u: Vector(2) = [1, 0]
     let e: Scalar = (m * s)
     coord r: Euclidean(3); R: SO3; q: Real; c: S1; o: S3; X: SE3; big: Euclidean(64)
-    velocity v: Vector(3) = none; w: Vector(3) = none; u: Scalar = none
+    velocity v: Vector(3) = none; w: Vector(3) = vee((X.R.T * rate(X.R))); u: Scalar = none
     constraint ((a ^ 2) + (b ^ 2)) = 1
     rate X.p = (X.R * v)
     frame f on None = pose(R, p)

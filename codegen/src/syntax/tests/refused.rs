@@ -230,7 +230,7 @@ fn declarations() {
         r#"param r#type = 1;"#,
         r#"param at = 1;"#,
         r#"param _ = 1;"#,
-        r#"velocity v: vec3 = 1;"#,
+        r#"velocity v: vec3 =;"#,
         r#"input u = 1;"#,
         r#"coord q = 1;"#,
         r#"velocity v: R3;"#,
@@ -261,8 +261,8 @@ fn declarations() {
       `at` is a word of the language and can name nothing
     2:7 `_` is a word of Rust and cannot be a name <_>
       choose a name with letters
-    2:18 a velocity is declared without a value <=>
-      the coordinates move by `rate r = R * v;`, and an initial value is written `start v = [1, 0, 0];`
+    2:19 expected an expression, found `;` <;>
+      velocities are written `velocity v: vec3, u;`, or by rates: `velocity v: vec3 = R.T * rate(r);`
     2:9 an input is declared without a value <=>
       inputs are given at run time; a fixed value is a `param`
     2:9 a coordinate is declared without a value <=>

@@ -1,0 +1,416 @@
+//! Small linear systems M X = B over the graph, M of full column rank on X, solved block by block.
+//!
+//! A block is a set of at most four unknowns with as many equations in them alone; it is solved by
+//! its adjugate, so that what divides is its determinant and nothing else. Blocks whose determinant
+//! is constant on X come first, then blocks whose equations in excess have a constant Gram matrix,
+//! then whole systems with one. A determinant that varies is divided by only where it does not
+//! vanish at the start. What no block solves is solved by MᵀM, which is singular only where M is.
+
+#[cfg(test)]
+mod tests;
+
+use super::graph::{Edge, Graph};
+use super::linear::{multiply, solve_symmetric, transpose};
+use super::numeric::rank;
+
+/// Largest block that is solved by its adjugate.
+const LARGEST: usize = 4;
+/// Sets of unknowns that are looked at for a block, at most.
+const MOST_SETS: usize = 6000;
+/// Choices of equations for a set of unknowns, at most.
+const MOST_CHOICES: usize = 40;
+/// A determinant below this, relative to the lengths of its rows, counts as zero at the start.
+const SMALL: f64 = 1e-7;
+
+/// The numbers of expressions at the start.
+pub type AtStart<'a> = dyn Fn(&Graph, &[Edge]) -> Vec<f64> + 'a;
+
+/// X, and what was divided by.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// X, a row an unknown.
+    pub x: Vec<Vec<Edge>>,
+    /// The divisors that vary with the coordinates, positive at the start.
+    pub pivots: Vec<Edge>,
+    /// The divisors that are made of parameters.
+    pub constants: Vec<Edge>,
+}
+
+/// Why there is no solution.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// These unknowns are not determined at generic points.
+    Undetermined(Vec<usize>),
+    /// The system is singular at the start, though not in general.
+    SingularStart,
+}
+
+/// Solves M X = B. Where `start` is absent, divisors may vanish somewhere: for what is only
+/// evaluated at generic points.
+pub fn solve(
+    graph: &mut Graph,
+    m: &[Vec<Edge>],
+    b: &[Vec<Edge>],
+    start: Option<&AtStart>,
+) -> Result<Solution, Failure> {
+    let unknowns = m.first().map_or(0, Vec::len);
+    let undetermined = undetermined(graph, m, unknowns);
+    if !undetermined.is_empty() {
+        return Err(Failure::Undetermined(undetermined));
+    }
+    let mut system = System {
+        graph,
+        m,
+        b,
+        start,
+        solved: vec![None; unknowns],
+        used: vec![false; m.len()],
+        pivots: Vec::new(),
+        constants: Vec::new(),
+    };
+    while system.solved.iter().any(Option::is_none) {
+        system.step()?;
+    }
+    Ok(Solution {
+        x: system.solved.into_iter().flatten().collect(),
+        pivots: system.pivots,
+        constants: system.constants,
+    })
+}
+
+/// The unknowns that have no value of their own: those without whose column M has the same rank.
+fn undetermined(graph: &Graph, m: &[Vec<Edge>], unknowns: usize) -> Vec<usize> {
+    let without = |left_out: Option<usize>| {
+        let row = |row: &Vec<Edge>| {
+            let kept = row.iter().enumerate().filter(|(j, _)| Some(*j) != left_out);
+            kept.map(|(_, &edge)| graph.value(edge)[0]).collect()
+        };
+        rank(m.iter().map(row).collect())
+    };
+    let whole = without(None);
+    if whole == unknowns {
+        return Vec::new();
+    }
+    (0..unknowns)
+        .filter(|&j| without(Some(j)) == whole)
+        .collect()
+}
+
+/// The state of elimination.
+struct System<'a> {
+    graph: &'a mut Graph,
+    m: &'a [Vec<Edge>],
+    b: &'a [Vec<Edge>],
+    start: Option<&'a AtStart<'a>>,
+    solved: Vec<Option<Vec<Edge>>>,
+    used: Vec<bool>,
+    pivots: Vec<Edge>,
+    constants: Vec<Edge>,
+}
+
+/// Equations and unknowns that are solved together.
+#[derive(Clone, Debug)]
+struct Block {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    determinant: Edge,
+}
+
+impl System<'_> {
+    fn step(&mut self) -> Result<(), Failure> {
+        let sets = self.sets();
+        if let Some(block) = self.constant_block(&sets) {
+            return self.adjugate(&block).ok_or(Failure::SingularStart);
+        }
+        for columns in &sets {
+            let rows = self.rows_within(columns);
+            if rows.len() > columns.len() && self.gram(&rows, columns, true).is_some() {
+                return Ok(());
+            }
+        }
+        let open: Vec<usize> = self.open().collect();
+        let rows = self.rows_within(&open);
+        if self.gram(&rows, &open, true).is_some() {
+            return Ok(());
+        }
+        if self.start.is_some()
+            && let Some(block) = self.varying_block(&sets)
+        {
+            return self.adjugate(&block).ok_or(Failure::SingularStart);
+        }
+        self.gram(&rows, &open, false).ok_or(Failure::SingularStart)
+    }
+
+    fn open(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.solved.len()).filter(|&j| self.solved[j].is_none())
+    }
+
+    /// The unsolved unknowns of an equation.
+    fn support(&self, row: usize) -> Vec<usize> {
+        let zero = self.graph.zero();
+        self.open().filter(|&j| self.m[row][j] != zero).collect()
+    }
+
+    /// Sets of unknowns that may be blocks, small ones first: unions of supports.
+    fn sets(&self) -> Vec<Vec<usize>> {
+        let mut supports: Vec<Vec<usize>> = (0..self.m.len())
+            .filter(|&row| !self.used[row])
+            .map(|row| self.support(row))
+            .filter(|support| (1..=LARGEST).contains(&support.len()))
+            .collect();
+        supports.sort_by_key(|support| (support.len(), support.clone()));
+        supports.dedup();
+        let mut sets = supports.clone();
+        let mut next = 0;
+        while next < sets.len() && sets.len() < MOST_SETS {
+            for support in &supports {
+                let mut union = sets[next].clone();
+                union.extend(support);
+                union.sort_unstable();
+                union.dedup();
+                if union.len() <= LARGEST && !sets.contains(&union) {
+                    sets.push(union);
+                }
+            }
+            next += 1;
+        }
+        sets.sort_by_key(|set| (set.len(), set.clone()));
+        sets
+    }
+
+    /// The unused equations in these unknowns alone.
+    fn rows_within(&self, columns: &[usize]) -> Vec<usize> {
+        (0..self.m.len())
+            .filter(|&row| !self.used[row])
+            .filter(|&row| {
+                let support = self.support(row);
+                !support.is_empty() && support.iter().all(|j| columns.contains(j))
+            })
+            .collect()
+    }
+
+    /// The square blocks of a set of unknowns, without those that vanish on X.
+    fn blocks(&mut self, columns: &[usize]) -> Vec<Block> {
+        let rows = self.rows_within(columns);
+        let mut found = Vec::new();
+        for rows in choices(&rows, columns.len()) {
+            let part: Vec<Vec<Edge>> = rows.iter().map(|&i| pick(&self.m[i], columns)).collect();
+            let determinant = determinant(self.graph, &part);
+            if determinant.abs() != self.graph.zero() {
+                found.push(Block {
+                    rows,
+                    columns: columns.to_vec(),
+                    determinant,
+                });
+            }
+        }
+        found
+    }
+
+    /// The block with the simplest constant determinant: a number before parameters, few unknowns
+    /// before many.
+    fn constant_block(&mut self, sets: &[Vec<usize>]) -> Option<Block> {
+        let mut of_parameters = None;
+        for columns in sets {
+            for block in self.blocks(columns) {
+                if self.graph.as_rational(block.determinant).is_some() {
+                    return Some(block);
+                }
+                if self.graph.is_free(block.determinant.node()) && of_parameters.is_none() {
+                    of_parameters = Some(block);
+                }
+            }
+        }
+        of_parameters
+    }
+
+    /// The smallest block that is regular at the start; of several the one that is farthest from
+    /// being singular there.
+    fn varying_block(&mut self, sets: &[Vec<usize>]) -> Option<Block> {
+        let start = self.start?;
+        let mut best: Option<(f64, Block)> = None;
+        for columns in sets {
+            if let Some((_, best)) = &best
+                && best.columns.len() < columns.len()
+            {
+                break;
+            }
+            for block in self.blocks(columns) {
+                let value = start(self.graph, &[block.determinant])[0].abs();
+                let lengths = block.rows.iter().map(|&row| {
+                    let numbers = start(self.graph, &pick(&self.m[row], columns));
+                    numbers.iter().map(|x| x * x).sum::<f64>().sqrt()
+                });
+                let relative = value / lengths.product::<f64>();
+                if relative > SMALL && best.as_ref().is_none_or(|(most, _)| relative > *most) {
+                    best = Some((relative, block));
+                }
+            }
+        }
+        best.map(|(_, block)| block)
+    }
+
+    /// The right-hand side of an equation, the solved unknowns taken to it.
+    fn right(&mut self, row: usize) -> Vec<Edge> {
+        let mut right = self.b[row].clone();
+        for (j, known) in self.solved.iter().enumerate() {
+            let factor = self.m[row][j];
+            if let Some(known) = known
+                && factor != self.graph.zero()
+            {
+                for (entry, &value) in right.iter_mut().zip(known) {
+                    let product = self.graph.mul(factor, value);
+                    *entry = self.graph.sub(*entry, product);
+                }
+            }
+        }
+        right
+    }
+
+    /// Solves a square block: X = adj(M) B / det M.
+    fn adjugate(&mut self, block: &Block) -> Option<()> {
+        let part: Vec<Vec<Edge>> = block
+            .rows
+            .iter()
+            .map(|&row| pick(&self.m[row], &block.columns))
+            .collect();
+        let right: Vec<Vec<Edge>> = block.rows.iter().map(|&row| self.right(row)).collect();
+        let inverse = self.divisor(block.determinant)?;
+        for (j, &column) in block.columns.iter().enumerate() {
+            let cofactors: Vec<Edge> = (0..part.len())
+                .map(|i| cofactor(self.graph, &part, i, j))
+                .collect();
+            let numerators: Vec<Edge> = (0..right[0].len())
+                .map(|k| {
+                    let entries: Vec<Edge> = right.iter().map(|row| row[k]).collect();
+                    self.graph.dot(&cofactors, &entries)
+                })
+                .collect();
+            let values = numerators.into_iter().map(|n| self.graph.mul(inverse, n));
+            self.solved[column] = Some(values.collect());
+        }
+        block.rows.iter().for_each(|&row| self.used[row] = true);
+        Some(())
+    }
+
+    /// 1/d, with d kept as what was divided by.
+    fn divisor(&mut self, d: Edge) -> Option<Edge> {
+        if self.graph.as_rational(d).is_none() {
+            if self.graph.is_free(d.node()) {
+                self.constants.push(d);
+            } else {
+                let negative = self
+                    .start
+                    .is_some_and(|start| start(self.graph, &[d])[0] < 0.0);
+                self.pivots.push(d.signed(negative));
+            }
+        }
+        self.graph.div(self.graph.one(), d)
+    }
+
+    /// Solves by the Gram matrix: MᵀM X = MᵀB, or X = Mᵀ(M Mᵀ)⁻¹ B where M is square. Where it has
+    /// to be constant and is not, nothing happens.
+    fn gram(&mut self, rows: &[usize], columns: &[usize], constant: bool) -> Option<()> {
+        let part: Vec<Vec<Edge>> = rows.iter().map(|&i| pick(&self.m[i], columns)).collect();
+        let turned = transpose(&part);
+        let square = rows.len() == columns.len();
+        let gram = match square {
+            true => multiply(self.graph, &part, &turned),
+            false => multiply(self.graph, &turned, &part),
+        };
+        let free = |edge: &Edge| self.graph.is_free(edge.node());
+        if constant && !gram.iter().flatten().all(free) {
+            return None;
+        }
+        let right: Vec<Vec<Edge>> = rows.iter().map(|&row| self.right(row)).collect();
+        let solution = if square {
+            let multipliers = solve_symmetric(self.graph, &gram, &right)?;
+            multiply(self.graph, &turned, &multipliers)
+        } else {
+            let projected = multiply(self.graph, &turned, &right);
+            solve_symmetric(self.graph, &gram, &projected)?
+        };
+        let determinant = symmetric_pivots(self.graph, &gram)?;
+        for pivot in determinant {
+            self.divisor(pivot)?;
+        }
+        for (&column, values) in columns.iter().zip(solution) {
+            self.solved[column] = Some(values);
+        }
+        rows.iter().for_each(|&row| self.used[row] = true);
+        Some(())
+    }
+}
+
+/// The pivots of Gauss without exchange of rows; `None` where one vanishes on X.
+fn symmetric_pivots(graph: &mut Graph, a: &[Vec<Edge>]) -> Option<Vec<Edge>> {
+    let mut a = a.to_vec();
+    let mut pivots = Vec::new();
+    for k in 0..a.len() {
+        pivots.push(a[k][k]);
+        for i in k + 1..a.len() {
+            let factor = graph.div(a[i][k], a[k][k])?;
+            for j in k + 1..a.len() {
+                let product = graph.mul(factor, a[k][j]);
+                a[i][j] = graph.sub(a[i][j], product);
+            }
+        }
+    }
+    Some(pivots)
+}
+
+fn pick(row: &[Edge], columns: &[usize]) -> Vec<Edge> {
+    columns.iter().map(|&j| row[j]).collect()
+}
+
+/// Subsets of a size, in order, up to a number of them.
+fn choices(rows: &[usize], size: usize) -> Vec<Vec<usize>> {
+    let mut all: Vec<Vec<usize>> = vec![Vec::new()];
+    for _ in 0..size {
+        all = all
+            .into_iter()
+            .flat_map(|head| {
+                let last = head.last().copied();
+                let later = rows
+                    .iter()
+                    .filter(move |&&row| last.is_none_or(|l| row > l));
+                later
+                    .map(|&row| [head.as_slice(), &[row]].concat())
+                    .collect::<Vec<_>>()
+            })
+            .take(MOST_CHOICES * size)
+            .collect();
+    }
+    all.truncate(MOST_CHOICES);
+    all
+}
+
+/// det M by expansion along the first row.
+fn determinant(graph: &mut Graph, m: &[Vec<Edge>]) -> Edge {
+    let Some(first) = m.first() else {
+        return graph.one();
+    };
+    let mut sum = graph.zero();
+    for (j, &entry) in first.iter().enumerate() {
+        if entry != graph.zero() {
+            let minor = cofactor(graph, m, 0, j);
+            let product = graph.mul(entry, minor);
+            sum = graph.add(sum, product);
+        }
+    }
+    sum
+}
+
+/// (−1)^(i+j) times the minor without row i and column j.
+fn cofactor(graph: &mut Graph, m: &[Vec<Edge>], i: usize, j: usize) -> Edge {
+    let rest: Vec<Vec<Edge>> = m
+        .iter()
+        .enumerate()
+        .filter(|(row, _)| *row != i)
+        .map(|(_, row)| {
+            let kept = row.iter().enumerate().filter(|(column, _)| *column != j);
+            kept.map(|(_, &entry)| entry).collect()
+        })
+        .collect();
+    determinant(graph, &rest).signed((i + j) % 2 == 1)
+}

@@ -1,0 +1,129 @@
+//! The tangent space of each coordinate kind, ẋ = K(x) η, and ∂φ/∂x.
+//!
+//! K has closed forms with C K = I for the canonical quasi-velocities η = C ẋ of `layout`, so that
+//! φ of the coordinate kinds is eliminated without a division.
+
+use super::layout::Block;
+use super::points::Points;
+use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::transplant::rebuild;
+
+/// The columns of K of one block: unit vectors, (−s, c), ½ q ⊗ (0, eₖ), R êₖ.
+pub fn tangents(graph: &mut Graph, block: Block, x: &[Edge]) -> Vec<Vec<Edge>> {
+    let zero = graph.zero();
+    match block {
+        Block::Flat(n) => (0..n)
+            .map(|k| {
+                (0..n)
+                    .map(|i| if i == k { graph.one() } else { zero })
+                    .collect()
+            })
+            .collect(),
+        Block::Circle => vec![vec![-x[1], x[0]]],
+        Block::Quaternion => {
+            let half = graph.ratio(1, 2);
+            // q ⊗ (0, eₖ) = (−vₖ, w eₖ + v × eₖ).
+            (0..3)
+                .map(|k| {
+                    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                    let mut column = vec![-x[1 + k]; 4];
+                    column[1 + k] = x[0];
+                    column[1 + i] = x[1 + j];
+                    column[1 + j] = -x[1 + i];
+                    column
+                        .into_iter()
+                        .map(|entry| graph.mul(half, entry))
+                        .collect()
+                })
+                .collect()
+        }
+        // Column i of R êₖ is R (eₖ × eᵢ).
+        Block::Rotation => (0..3)
+            .map(|k| {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let mut column = vec![zero; 9];
+                for row in 0..3 {
+                    column[3 * row + i] = x[3 * row + j];
+                    column[3 * row + j] = -x[3 * row + i];
+                }
+                column
+            })
+            .collect(),
+    }
+}
+
+/// The columns of K of all blocks, each with ν entries; `keep` chooses blocks by their place in x.
+pub fn all_tangents(
+    graph: &mut Graph,
+    blocks: &[Block],
+    x: &[Edge],
+    keep: impl Fn(usize) -> bool,
+) -> Vec<Vec<Edge>> {
+    let mut columns = Vec::new();
+    let mut place = 0;
+    for &block in blocks {
+        let range = place..place + block.len();
+        place += block.len();
+        if !keep(range.start) {
+            continue;
+        }
+        for part in tangents(graph, block, &x[range.clone()]) {
+            let mut column = vec![graph.zero(); x.len()];
+            column[range.clone()].copy_from_slice(&part);
+            columns.push(column);
+        }
+    }
+    columns
+}
+
+/// ∂φ/∂x, a row for every row of φ: taken with free coordinates, then carried to a graph on X.
+pub fn jacobian(
+    points: &Points,
+    phi: &[(Edge, String)],
+    nu: usize,
+    graph: &mut Graph,
+) -> Vec<Vec<Edge>> {
+    let mut free = points.free.clone();
+    let mut columns: Vec<Derivation> = (points.first..points.first + nu)
+        .map(|index| Derivation::new([(free.symbols()[index].node, free.one())]))
+        .collect();
+    let rows: Vec<Vec<Edge>> = phi
+        .iter()
+        .map(|(row, _)| columns.iter_mut().map(|c| c.of(&mut free, *row)).collect())
+        .collect();
+    rows.iter().map(|row| rebuild(&free, graph, row)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::fp::Random;
+    use crate::algebra::graph::LANES;
+    use crate::model::layout::{chart_rate, sample};
+
+    /// C K = I on X for every kind.
+    #[test]
+    fn canonical_velocities_of_the_tangents_are_units() {
+        for block in [
+            Block::Flat(2),
+            Block::Circle,
+            Block::Quaternion,
+            Block::Rotation,
+        ] {
+            let mut random = Random::new(7);
+            let mut graph = Graph::new(7, 1);
+            let points: Vec<_> = (0..LANES).map(|_| sample(block, &mut random)).collect();
+            let x: Vec<Edge> = (0..block.len())
+                .map(|i| graph.symbol("x", 2, std::array::from_fn(|lane| points[lane][i])))
+                .collect();
+            for (k, column) in tangents(&mut graph, block, &x).iter().enumerate() {
+                let rates = chart_rate(&mut graph, block, &x, column);
+                for (i, rate) in rates.into_iter().enumerate() {
+                    let unit = if i == k { graph.one() } else { graph.zero() };
+                    assert_eq!(rate, unit, "{block:?}: entry {i} of column {k}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! The nearest configuration to a start that violates φ, for messages: Newton's method with the
+//! least change of x, damped as Levenberg and Marquardt do.
+
+use super::points::Points;
+use crate::algebra::derivation::Derivation;
+use crate::algebra::fp::Random;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::numeric::evaluate;
+
+/// Steps from one first guess.
+const STEPS: usize = 200;
+/// Largest |φ| of a configuration.
+const CLOSE: f64 = 1e-12;
+/// First guesses at random, beyond the start and its neighbours along each coordinate.
+const GUESSES: usize = 12;
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Nearest {
+    /// A configuration.
+    Found(Vec<f64>),
+    /// None; the smallest |φ| that was reached.
+    Nowhere(f64),
+}
+
+/// φ, ∂φ/∂x and the numbers of the parameters.
+struct Equations {
+    graph: Graph,
+    phi: Vec<Edge>,
+    slopes: Vec<Edge>,
+    numbers: Vec<f64>,
+    first: usize,
+}
+
+/// Looks for x with φ(x) = 0 near a start; `numbers` are those of all symbols there.
+pub fn nearest(points: &Points, phi: &[(Edge, String)], numbers: &[f64], x: &[f64]) -> Nearest {
+    let mut graph = points.free.clone();
+    let mut columns: Vec<Derivation> = (0..x.len())
+        .map(|alpha| Derivation::new([(graph.symbols()[points.first + alpha].node, graph.one())]))
+        .collect();
+    let rows: Vec<Edge> = phi.iter().map(|(row, _)| *row).collect();
+    let mut slopes = Vec::new();
+    for &row in &rows {
+        for column in &mut columns {
+            slopes.push(column.of(&mut graph, row));
+        }
+    }
+    let equations = Equations {
+        graph,
+        phi: rows,
+        slopes,
+        numbers: numbers.to_vec(),
+        first: points.first,
+    };
+    let mut least = f64::INFINITY;
+    for guess in guesses(x) {
+        let (found, residual) = equations.descend(guess);
+        if residual <= CLOSE {
+            return Nearest::Found(found);
+        }
+        least = least.min(residual);
+    }
+    Nearest::Nowhere(least)
+}
+
+/// The start, its neighbours along each coordinate, and some at random.
+fn guesses(x: &[f64]) -> Vec<Vec<f64>> {
+    let mut all = vec![x.to_vec()];
+    for alpha in 0..x.len() {
+        let mut guess = x.to_vec();
+        guess[alpha] += 1.0;
+        all.push(guess);
+    }
+    let mut random = Random::new(0x6e65_6172);
+    let mut unit = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+    all.extend((0..GUESSES).map(|_| x.iter().map(|x| x + unit()).collect()));
+    all
+}
+
+impl Equations {
+    fn at(&self, edges: &[Edge], x: &[f64]) -> Vec<f64> {
+        let mut numbers = self.numbers.clone();
+        numbers[self.first..self.first + x.len()].copy_from_slice(x);
+        evaluate(&self.graph, edges, &numbers)
+    }
+
+    /// Newton's method from a guess: where it ends, and max |φ| there.
+    fn descend(&self, mut x: Vec<f64>) -> (Vec<f64>, f64) {
+        let mut phi = self.at(&self.phi, &x);
+        let mut damping = 1e-6;
+        for _ in 0..STEPS {
+            if largest(&phi) <= CLOSE {
+                break;
+            }
+            let slopes = self.at(&self.slopes, &x);
+            let rows: Vec<&[f64]> = slopes.chunks(x.len()).collect();
+            let mut gram: Vec<Vec<f64>> = rows
+                .iter()
+                .map(|a| rows.iter().map(|b| dot(a, b)).collect())
+                .collect();
+            let scale = (0..rows.len()).map(|i| gram[i][i]).fold(0.0, f64::max);
+            for (i, row) in gram.iter_mut().enumerate() {
+                row[i] += damping * scale;
+            }
+            let Some(multipliers) = solve(gram, phi.clone()) else {
+                break;
+            };
+            let mut next = x.clone();
+            for (row, factor) in rows.iter().zip(&multipliers) {
+                next.iter_mut()
+                    .zip(*row)
+                    .for_each(|(x, slope)| *x -= factor * slope);
+            }
+            let after = self.at(&self.phi, &next);
+            if dot(&after, &after) < dot(&phi, &phi) {
+                (x, phi) = (next, after);
+                damping = (damping * 0.1).max(1e-15);
+            } else {
+                damping *= 10.0;
+                if damping > 1e8 {
+                    break;
+                }
+            }
+        }
+        let residual = largest(&phi);
+        (
+            x,
+            if residual.is_nan() {
+                f64::INFINITY
+            } else {
+                residual
+            },
+        )
+    }
+}
+
+/// Gauss with exchange of rows.
+fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
+    let n = b.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))?;
+        if a[pivot][k] == 0.0 || !a[pivot][k].is_finite() {
+            return None;
+        }
+        a.swap(k, pivot);
+        b.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = a[i][k] / a[k][k];
+            for j in k..n {
+                a[i][j] -= factor * a[k][j];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| a[k][j] * b[j]).sum();
+        b[k] = (b[k] - known) / a[k][k];
+    }
+    Some(b)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// max |a|, NaN where one entry is.
+fn largest(list: &[f64]) -> f64 {
+    list.iter().fold(0.0, |most: f64, a| {
+        if a.is_nan() {
+            f64::NAN
+        } else {
+            most.max(a.abs())
+        }
+    })
+}
