@@ -1,6 +1,7 @@
 //! From a description to its program: what all doors call.
 
 use crate::derive::assemble::assemble;
+use crate::derive::invariants;
 use crate::diagnostics::Diagnostic;
 use crate::model::{self, Model};
 use crate::program::Program;
@@ -37,6 +38,7 @@ pub fn from_text(text: &str) -> Result<Generated, Vec<Diagnostic>> {
 fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>> {
     let model = model::build(system)?;
     let program = assemble(&model).map_err(|error| vec![error])?;
+    invariants::refute(&model)?;
     Ok(Generated {
         model,
         program,

@@ -14,5 +14,6 @@ pub mod poly;
 pub mod resubstitute;
 #[cfg(test)]
 mod tests;
+pub mod tangent;
 pub mod topoly;
 pub mod transplant;

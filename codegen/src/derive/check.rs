@@ -32,7 +32,7 @@ pub struct Identity {
     /// KR18's number, or a name.
     pub label: &'static str,
     /// The equation.
-    pub equation: &'static str,
+    pub equation: String,
     /// How it fared.
     pub verdict: Verdict,
 }
@@ -60,7 +60,7 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
         let verdict = Verdict::Failed("Y could not be derived".into());
         return vec![Identity {
             label: "(6)",
-            equation: "Y A = I",
+            equation: "Y A = I".into(),
             verdict,
         }];
     };
@@ -78,10 +78,11 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
             };
             Identity {
                 label: sides.label,
-                equation: sides.equation,
+                equation: sides.equation.into(),
                 verdict,
             }
         })
+        .chain(super::invariants::identities(model))
         .collect()
 }
 

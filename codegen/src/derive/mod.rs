@@ -9,6 +9,9 @@
 //! | `connection` | connection coefficients Γ | (23) |
 //! | `loads` | potential, gravity, applied forces | (28) |
 //! | `energy` | T, V, momentum | |
+//! | `momentum` | ṗ, and ξ from p | (30a) |
+//! | `linearize` | the motion nearby, in displacement coordinates | (12) |
+//! | `invariants` | claims of constancy along the motion, proved or refuted | |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
 //! | `assemble` | the program of all generated functions | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
@@ -21,8 +24,12 @@ pub mod commutation;
 pub mod connection;
 pub mod energy;
 pub mod inertia;
+pub mod invariants;
 pub mod kinematics;
+pub mod linearize;
 pub mod loads;
+pub mod momentum;
 pub mod normal;
+mod slopes;
 pub mod tables;
 pub mod validate;

@@ -4,6 +4,7 @@
 
 use super::assemble::applied_force;
 use super::calculus::Calculus;
+use super::slopes::Slopes;
 use super::{commutation, connection, energy, inertia, kinematics};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
@@ -19,19 +20,26 @@ pub const POINTS: u64 = 8;
 const TRIES: u64 = 400;
 
 /// The independent derivation: M, h = Γ ξ ξ, ∂V, f, T, V.
-struct Reference {
-    model: Model,
-    mass: Vec<Vec<Edge>>,
-    bias: Vec<Edge>,
-    slope: Vec<Edge>,
-    force: Vec<Edge>,
-    kinetic: Edge,
-    potential: Edge,
+pub(super) struct Reference {
+    /// The model, its graph holding the rest.
+    pub(super) model: Model,
+    /// M.
+    pub(super) mass: Vec<Vec<Edge>>,
+    /// h.
+    pub(super) bias: Vec<Edge>,
+    /// ∂V.
+    pub(super) slope: Vec<Edge>,
+    /// f.
+    pub(super) force: Vec<Edge>,
+    /// T.
+    pub(super) kinetic: Edge,
+    /// V.
+    pub(super) potential: Edge,
 }
 
 impl Reference {
     /// Hamel's form (30a), from T and γ, not from traced bodies.
-    fn new(model: &Model) -> Option<Self> {
+    pub(super) fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let mut calculus = Calculus::new(&model);
         let mass = inertia::mass_matrix(&mut model, &mut calculus);
@@ -70,7 +78,8 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             "this is a fault of the generator, nothing was emitted; please report the description",
         )
     };
-    let reference = Reference::new(model).ok_or_else(|| failure("the kinematics"))?;
+    let mut reference = Reference::new(model).ok_or_else(|| failure("the kinematics"))?;
+    let slopes = Slopes::new(&mut reference, program);
     let mut seed = 0;
     for _ in 0..POINTS {
         loop {
@@ -81,7 +90,12 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             let Some(lane) = model.points.lane(0x7a11 + seed) else {
                 continue;
             };
-            match at_point(&reference, program, lane) {
+            let found = at_point(&reference, program, lane.clone());
+            let found = match found {
+                Some(Ok(())) => slopes.at_point(&reference, program, &lane),
+                found => found,
+            };
+            match found {
                 None => continue,
                 Some(Ok(())) => break,
                 Some(Err(what)) => return Err(failure(what)),

@@ -5,7 +5,7 @@ use super::frames::{define_frame, define_let};
 use super::scope::Scope;
 use super::value::Value;
 use super::variety::Variety;
-use super::{Frame, Model, class, defaults, dynamics, kinematics, start};
+use super::{Frame, Model, class, defaults, dynamics, invariants, kinematics, start};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -100,6 +100,7 @@ impl<'a> Reading<'a> {
         variety.check(system, graph, scope, report);
         let kinematics = kinematics::read(system, graph, scope, variety, declared, report);
         let dynamics = dynamics::read(system, graph, scope, &frames, declared, report);
+        let invariants = invariants::read(system, graph, scope, &frames, declared, report);
         let starts = start::read(system, graph, scope, declared, &defaults, report);
         if let Some((x, _)) = &starts {
             start::check(system, variety, declared, &defaults, x, report);
@@ -128,6 +129,7 @@ impl<'a> Reading<'a> {
             xi: declared.xi,
             velocity_spans: declared.velocity_spans,
             xi_dot: declared.xi_dot,
+            momenta: declared.momenta,
             inputs: declared.inputs,
             u: declared.u,
             rate: kinematics.rate,
@@ -141,6 +143,7 @@ impl<'a> Reading<'a> {
             wrenches: dynamics.wrenches,
             generalized: dynamics.generalized,
             outputs: dynamics.outputs,
+            invariants,
             lets,
             start_x,
             start_xi,

@@ -12,6 +12,7 @@ mod dynamics;
 pub mod expression;
 mod frames;
 mod functions;
+pub mod invariants;
 mod kinematics;
 pub mod layout;
 mod loads;
@@ -45,6 +46,8 @@ pub mod class {
     pub const INPUT: u8 = 8;
     /// Accelerations ξ̇, the argument of inverse dynamics.
     pub const ACCEL: u8 = 16;
+    /// Momenta p, the argument of what is a function of them.
+    pub const MOMENTUM: u8 = 32;
 }
 
 /// A named group of symbols: a parameter, a velocity, an input.
@@ -158,6 +161,8 @@ pub struct Model {
     pub velocity_spans: Vec<Span>,
     /// ξ̇ as symbols.
     pub xi_dot: Vec<Edge>,
+    /// p as symbols.
+    pub momenta: Vec<Edge>,
     /// Inputs.
     pub inputs: Vec<Group>,
     /// u.
@@ -184,6 +189,8 @@ pub struct Model {
     pub generalized: Vec<Edge>,
     /// Outputs.
     pub outputs: Vec<(String, Value)>,
+    /// What is claimed to be constant along the motion.
+    pub invariants: Vec<invariants::Invariant>,
     /// Named expressions of the user.
     pub lets: Vec<(String, Value)>,
     /// x at the start.
@@ -225,6 +232,11 @@ impl Model {
 
     /// Whether a function was asked for.
     pub fn wants(&self, function: &str) -> bool {
-        self.generate.is_empty() || self.generate.iter().any(|name| name == function)
+        self.generate.is_empty() || self.asks(function)
+    }
+
+    /// Whether a function was asked for by its name.
+    pub fn asks(&self, function: &str) -> bool {
+        self.generate.iter().any(|name| name == function)
     }
 }

@@ -26,6 +26,7 @@ mod body;
 mod cursor;
 mod declaration;
 mod expression;
+mod invariant;
 mod load;
 mod number;
 mod parse;
@@ -34,6 +35,7 @@ mod statement;
 pub mod suggest;
 mod tokens;
 mod words;
+pub mod written;
 
 #[cfg(all(test, feature = "files"))]
 mod tests;

@@ -7,7 +7,7 @@ use super::parse::since;
 use super::suggest::closest;
 use super::tokens::Kind;
 use super::words::{LATER, statements};
-use super::{body, declaration, load};
+use super::{body, declaration, invariant, load};
 use crate::diagnostics::Diagnostic;
 
 /// Parses one statement with its `;`.
@@ -84,6 +84,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
         "force" => load::force(cursor)?,
         "torque" => load::torque(cursor)?,
         "wrench" => load::wrench(cursor)?,
+        "invariant" => invariant::invariant(cursor)?,
         "generate" => ItemKind::Generate(functions(cursor)?),
         _ => {
             return Err(unknown(

@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 21] = [
+const STATEMENTS: [(&str, &str); 22] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -53,20 +53,23 @@ const STATEMENTS: [(&str, &str); 21] = [
     ),
     ("output", "an output is written `output speed = norm(v);`"),
     (
+        "invariant",
+        "an invariant is written `invariant energy;`, `invariant angular_momentum about p along a;` or `invariant name = expr when F = 0;`",
+    ),
+    (
         "generate",
         "a selection of functions is written `generate accel, energy;`",
     ),
 ];
 
 /// Statements of later versions.
-pub(super) const LATER: [&str; 7] = [
+pub(super) const LATER: [&str; 6] = [
     "joint",
     "spring",
     "damper",
     "dissipation",
     "inactive",
     "nonholonomic",
-    "invariant",
 ];
 
 /// Words that end an expression, and can name nothing.
