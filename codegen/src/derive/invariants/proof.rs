@@ -8,13 +8,13 @@
 use super::Motion;
 use super::remainder::readable;
 use crate::algebra::derivation::Derivation;
-use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::solve_symmetric;
+use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::linear::{cross, identity3, solve_symmetric};
 use crate::algebra::transplant::{rebuild, substitute};
 use crate::derive::assemble::applied_force;
-use crate::derive::calculus::Calculus;
+use crate::derive::calculus::{Calculus, into_frame};
 use crate::derive::connection::quadratic;
-use crate::derive::normal::NormalForms;
+use crate::derive::normal::{NormalForms, build};
 use crate::derive::tables::Geometry;
 use crate::model::Model;
 use crate::model::invariants::Invariant;
@@ -48,11 +48,19 @@ impl Prover {
         let Geometry {
             model: mut free,
             mut calculus,
-            gamma,
-            mass,
-            potential,
+            mut gamma,
+            mut mass,
+            mut potential,
             ..
         } = Geometry::unreduced(model)?;
+        // Normal forms at every stage keep the polynomials small. They may be differentiated, as
+        // the columns of A are tangent to X.
+        let mut forms = NormalForms::new(&model.points);
+        let entries = gamma.iter_mut().flatten().flatten();
+        for entry in entries.chain(mass.iter_mut().flatten()) {
+            *entry = normal(&mut forms, &mut free.graph, *entry);
+        }
+        potential = normal(&mut forms, &mut free.graph, potential);
         let bias = quadratic(&mut free, &mut calculus, &mass, &gamma);
         let applied = applied_force(&mut free, &mut calculus);
         let graph = &mut free.graph;
@@ -60,11 +68,12 @@ impl Prover {
             .map(|i| {
                 let slope = calculus.along(graph, i, potential);
                 let sum = graph.sub(applied[i], bias[i]);
-                graph.sub(sum, slope)
+                let sum = graph.sub(sum, slope);
+                normal(&mut forms, graph, sum)
             })
             .collect();
         Some(Prover {
-            forms: NormalForms::new(&model.points),
+            forms,
             model: free,
             calculus,
             mass,
@@ -77,6 +86,7 @@ impl Prover {
         let covector = self.covector(motion, claim, entry);
         let graph = &motion.reference.model.graph;
         let entry = rebuild(graph, &mut self.model.graph, &[entry])[0];
+        let entry = normal(&mut self.forms, &mut self.model.graph, entry);
         let slopes = self.slopes(entry);
         if let Some(w) = covector {
             let proof = self.with(claim, entry, &slopes, &w, None);
@@ -110,6 +120,7 @@ impl Prover {
         all.push(entry);
         let xi = motion.reference.model.xi.clone();
         let n = xi.len();
+        seed_rotations(&mut motion.reference.model);
         let graph = motion.graph();
         let all = substitute(graph, &all, &claim.set);
         let mass: Vec<Vec<Edge>> = all[..n * n].chunks(n).map(<[Edge]>::to_vec).collect();
@@ -118,6 +129,11 @@ impl Prover {
             .map(|xi| vec![Derivation::new([(xi.node(), graph.one())]).of(graph, all[n * n])])
             .collect();
         let w: Vec<Edge> = solve_symmetric(graph, &mass, &slopes)?.concat();
+        // Quotients are no polynomials, and what is built later would merge with them.
+        let quotient = |id: &u32| matches!(graph.node(*id), Node::Div(..));
+        if graph.reachable(&w).iter().any(quotient) {
+            return None;
+        }
         Some(rebuild(graph, &mut self.model.graph, &w))
     }
 
@@ -174,6 +190,31 @@ impl Prover {
             None => Proof::Open,
         }
     }
+}
+
+/// Puts Rᵀ (eₖ × r) of every frame into the graph: the covectors of angular momenta, for M⁻¹ ∂I/∂ξ
+/// to merge with.
+fn seed_rotations(model: &mut Model) {
+    let graph = &mut model.graph;
+    let axes = identity3(graph);
+    for frame in &model.frames {
+        for axis in axes {
+            let moved = cross(graph, axis, frame.position);
+            into_frame(graph, &frame.rotation, moved);
+        }
+    }
+}
+
+/// The normal form of an expression, or itself where it is too large.
+fn normal(forms: &mut NormalForms, graph: &mut Graph, edge: Edge) -> Edge {
+    if graph.reachable(&[edge]).len() > MOST_NODES {
+        return edge;
+    }
+    let Some(polynomial) = forms.expand(graph, edge) else {
+        return edge;
+    };
+    let reduced = forms.reduce(graph, &polynomial);
+    build(graph, &reduced)
 }
 
 /// adj M and det M of a symmetric matrix of at most three rows.
