@@ -47,7 +47,12 @@ struct Row {
 
 /// Counts and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let generated = Source::read(&arguments.file)?.derive()?;
+    let source = Source::read(&arguments.file)?;
+    let mut generated = source.derive()?;
+    // What is generated on demand alone is counted as well, unless functions were chosen.
+    if generated.model.generate.is_empty() {
+        generated = source.derive_linearized()?;
+    }
     let program = &generated.program;
     let schedule = Schedule::of(program);
     let rows = rows(program, &schedule);

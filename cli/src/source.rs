@@ -1,7 +1,7 @@
 //! A description's file: reading and deriving it, with errors shown in its text.
 
 use crate::failure::Failure;
-use hamel_codegen::derive::assemble::assemble;
+use hamel_codegen::derive::assemble::{assemble, assemble_all};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
@@ -60,6 +60,14 @@ impl Source {
             generated.program =
                 assemble(&generated.model).map_err(|error| self.refused(&[error]))?;
         }
+        Ok(generated)
+    }
+
+    /// Derives all functions and the linearisation, whatever the description's `generate` says.
+    pub fn derive_linearized(&self) -> Result<Generated, Failure> {
+        let mut generated = self.derive()?;
+        generated.program =
+            assemble_all(&generated.model).map_err(|error| self.refused(&[error]))?;
         Ok(generated)
     }
 
