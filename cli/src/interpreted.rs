@@ -25,10 +25,11 @@ pub struct Interpreted {
     kinetic: Interpreter,
     potential: Interpreter,
     outputs: Vec<Output>,
+    invariants: Vec<Output>,
     evaluations: Cell<u64>,
 }
 
-/// An output of the description.
+/// An output of the description, or an invariant.
 pub struct Output {
     /// Its name.
     pub name: String,
@@ -42,7 +43,7 @@ impl Interpreted {
     pub fn new(generated: &Generated, state: &State) -> Result<Self, Failure> {
         let program = &generated.program;
         let function = |name: &str| function(program, name, &state.params);
-        let outputs = generated.model.outputs.iter().map(|(name, _)| {
+        let output = |name: &String| {
             let shape = program
                 .function(name)
                 .map_or(Shape::Scalar, |function| function.shape);
@@ -51,7 +52,12 @@ impl Interpreted {
                 shape,
                 function: function(name)?,
             })
-        });
+        };
+        let model = &generated.model;
+        let outputs = model.outputs.iter().map(|(name, _)| output(name));
+        // The energy is watched anyway.
+        let invariants = model.invariants.iter().map(|claim| &claim.name);
+        let invariants = invariants.filter(|name| *name != "energy").map(output);
         Ok(Interpreted {
             blocks: program.blocks.iter().copied().map(block).collect(),
             start: (state.x.clone(), state.xi.clone()),
@@ -66,6 +72,7 @@ impl Interpreted {
             kinetic: function("kinetic_energy")?,
             potential: function("potential_energy")?,
             outputs: outputs.collect::<Result<_, Failure>>()?,
+            invariants: invariants.collect::<Result<_, Failure>>()?,
             evaluations: Cell::new(0),
         })
     }
@@ -93,6 +100,11 @@ impl Interpreted {
     /// The outputs of the description.
     pub fn outputs(&self) -> &[Output] {
         &self.outputs
+    }
+
+    /// What the description claims to be constant, but the energy.
+    pub fn invariants(&self) -> &[Output] {
+        &self.invariants
     }
 
     /// The value of an output, matrices by rows.
