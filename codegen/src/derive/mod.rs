@@ -13,10 +13,12 @@
 //! | `linearize` | the motion nearby, in displacement coordinates | (12) |
 //! | `invariants` | claims of constancy along the motion, proved or refuted | |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
+//! | `adviser` | other velocity coordinates for the same motion, and their cost | |
 //! | `assemble` | the program of all generated functions | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
 
 pub mod accel;
+pub mod adviser;
 pub mod assemble;
 pub mod calculus;
 pub mod check;

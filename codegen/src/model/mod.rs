@@ -17,7 +17,7 @@ mod kinematics;
 pub mod layout;
 mod loads;
 pub mod points;
-mod rotations;
+pub mod rotations;
 pub mod scope;
 mod start;
 mod tangency;
