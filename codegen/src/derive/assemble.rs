@@ -3,17 +3,14 @@
 use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
-use super::invariants::quantity;
-use super::linearize::{Motion, linearize};
-use super::{energy, inertia, kinematics, loads, momentum};
+use super::{energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
-use crate::model::invariants::Quantity;
 use crate::model::value::Value;
 use crate::program::{Argument, Function, Program, Shape};
-use Argument::{Accelerations, Coordinates, Inputs, Momenta, Velocities};
+use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
 /// Derives the functions of a model that are wanted.
 pub fn assemble(model: &Model) -> Result<Program, Diagnostic> {
@@ -55,12 +52,18 @@ fn assembled(model: &Model, linearized: bool) -> Result<Program, Diagnostic> {
     Ok(program)
 }
 
-struct Builder<'a> {
-    model: &'a Model,
-    graph: Graph,
-    chosen: Acceleration,
-    parts: Parts,
-    functions: Vec<Function>,
+/// The functions so far, and what they are made from.
+pub(super) struct Builder<'a> {
+    /// The model.
+    pub(super) model: &'a Model,
+    /// The graph of all functions.
+    pub(super) graph: Graph,
+    /// ξ̇.
+    pub(super) chosen: Acceleration,
+    /// M and forces.
+    pub(super) parts: Parts,
+    /// The functions.
+    pub(super) functions: Vec<Function>,
 }
 
 impl<'a> Builder<'a> {
@@ -74,7 +77,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn push(
+    pub(super) fn push(
         &mut self,
         name: &str,
         docs: &[&str],
@@ -265,95 +268,6 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// ṗ of (x, ξ, u), and ξ of (x, p).
-    fn momentum(&mut self) {
-        let n = self.model.n();
-        let rate = momentum::rate(self.model, &mut self.graph, &self.parts);
-        self.push(
-            "momentum_rate",
-            &["Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a))."],
-            &[Coordinates, Velocities, Inputs],
-            Shape::Vector(n),
-            rate,
-        );
-        let p = &self.model.momenta;
-        if let Some(solution) = momentum::velocity(&mut self.graph, &self.parts, p) {
-            let varying = |edge: &Edge| !self.graph.is_free(edge.node());
-            let guards = solution.pivots.into_iter().filter(varying).collect();
-            self.functions.push(Function {
-                name: "velocity_of_momentum".into(),
-                docs: vec!["Velocity coordinates of a generalised momentum, ξ = M⁻¹ p.".into()],
-                arguments: vec![Coordinates, Momenta],
-                shape: Shape::Vector(n),
-                outputs: solution.xi_dot,
-                guards,
-                fallible: true,
-            });
-        }
-    }
-
-    /// [A B] of the motion nearby.
-    fn linearize(&mut self) {
-        let model = self.model;
-        let all: Vec<usize> = (0..model.n()).collect();
-        let right = self.parts.right(&mut self.graph);
-        let motion = Motion {
-            graph: &self.graph,
-            xi_dot: &self.chosen.xi_dot,
-            active: &all,
-            implicit: Some((&self.parts.mass, &right)),
-        };
-        let Some(linear) = linearize(model, &motion) else {
-            return;
-        };
-        let rows = linear.rows.len();
-        let columns = linear.rows.first().map_or(0, Vec::len);
-        let outputs = rebuild(&linear.graph, &mut self.graph, &linear.rows.concat());
-        let varying = |edge: &Edge| !self.graph.is_free(edge.node());
-        self.functions.push(Function {
-            name: "linearize".into(),
-            docs: vec![
-                "The motion nearby in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,".into(),
-                "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).".into(),
-            ],
-            arguments: vec![Coordinates, Velocities, Inputs],
-            shape: Shape::Matrix(rows, columns),
-            outputs,
-            guards: self.chosen.pivots.iter().copied().filter(varying).collect(),
-            fallible: true,
-        });
-    }
-
-    /// What is claimed to be constant, as functions that watch it.
-    fn invariants(&mut self) {
-        let mut model = self.model.clone();
-        let mut calculus = Calculus::new(&model);
-        for claim in &self.model.invariants {
-            // The energy has its function already.
-            if matches!(claim.quantity, Quantity::Energy) && claim.name == "energy" {
-                continue;
-            }
-            let energy = self.functions.iter().find(|f| f.name == "energy");
-            let energy = energy.and_then(|f| f.outputs.first()).copied();
-            let (shape, outputs) = match (&claim.quantity, energy) {
-                (Quantity::Energy, Some(energy)) => (Shape::Scalar, vec![energy]),
-                (quantity, _) => {
-                    let zero = model.graph.zero();
-                    let value = quantity::value(&mut model, &mut calculus, (zero, zero), quantity);
-                    let entries = rebuild(&model.graph, &mut self.graph, &value.entries());
-                    (shape_of(&value), entries)
-                }
-            };
-            let when = match claim.when.as_str() {
-                "" => String::new(),
-                when => format!(" when {when}"),
-            };
-            let docs = format!("Invariant `{}`: constant along the motion{when}.", claim.name);
-            let arguments = [Coordinates, Velocities];
-            self.push(&claim.name, &[&docs], &arguments, shape, outputs);
-        }
-    }
-
     fn finish(mut self) -> Program {
         let model = self.model;
         let names = names(model, &mut self.graph);
@@ -395,7 +309,7 @@ impl<'a> Builder<'a> {
 }
 
 /// The shape of a function with this value.
-fn shape_of(value: &Value) -> Shape {
+pub(super) fn shape_of(value: &Value) -> Shape {
     match value {
         Value::Scalar(_) => Shape::Scalar,
         Value::Vector(v) => Shape::Vector(v.len()),

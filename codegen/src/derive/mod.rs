@@ -15,6 +15,7 @@
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
 //! | `adviser` | other velocity coordinates for the same motion, and their cost | |
 //! | `assemble` | the program of all generated functions | |
+//! | `further` | momenta, the motion nearby and invariants as functions | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
 
 pub mod accel;
@@ -25,6 +26,7 @@ pub mod check;
 pub mod commutation;
 pub mod connection;
 pub mod energy;
+mod further;
 pub mod inertia;
 pub mod invariants;
 pub mod kinematics;

@@ -244,7 +244,9 @@ models! {
     cart_pole::CartPole,
     double_pendulum_angles::DoublePendulum,
     double_pendulum_circles::CircleDoublePendulum,
+    euler_top_quaternion::EulerTop,
     free_body::FreeBody,
+    free_body_momenta::FreeBodyMomenta,
     free_body_no_wrench::FallingBody,
     free_body_world::WorldBody,
     free_body_world_velocity::WorldVelocityBody,
@@ -253,6 +255,8 @@ models! {
     heavy_top_quaternion::QuaternionTop,
     heavy_top_world::WorldTop,
     hoop_bead::HoopBead,
+    kovalevskaya_top::KovalevskayaTop,
+    lagrange_top::LagrangeTop,
     pendulum::Pendulum,
     pendulum_circle::CirclePendulum,
     planar_body::PlanarBody,
@@ -261,6 +265,7 @@ models! {
     rod_particles::RodParticles,
     satellite::Satellite,
     six_particles::SixParticles,
+    spherical_pendulum::SphericalPendulum,
     two_bodies::TwoBodies,
 }
 
