@@ -84,7 +84,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let flat = function(program, "linearize", params)?
         .call(x, xi, u, &[])
         .map_err(|_| singular())?;
-    let inputs: Vec<String> = generated.model.inputs.iter().flat_map(names::group).collect();
+    let inputs: Vec<String> = generated
+        .model
+        .inputs
+        .iter()
+        .flat_map(names::group)
+        .collect();
     let velocities = names::velocities(&generated.model);
     let displacements = velocities.iter().map(|name| format!("h({name})"));
     let changes = velocities.iter().map(|name| format!("d({name})"));
@@ -96,8 +101,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     let rows: Vec<&[f64]> = flat.chunks((states.len() + inputs.len()).max(1)).collect();
-    let a: Vec<Vec<f64>> = rows.iter().map(|row| row[..states.len()].to_vec()).collect();
-    let b = rows.iter().map(|row| row[states.len()..].to_vec()).collect();
+    let a: Vec<Vec<f64>> = rows
+        .iter()
+        .map(|row| row[..states.len()].to_vec())
+        .collect();
+    let b = rows
+        .iter()
+        .map(|row| row[states.len()..].to_vec())
+        .collect();
     let linear = Linear {
         system: generated.model.name.clone(),
         eigenvalues: eigenvalues(&a)?,
@@ -120,7 +131,9 @@ fn eigenvalues(rows: &[Vec<f64>]) -> Result<Vec<(f64, f64)>, Failure> {
     balance_parlett_reinsch(&mut matrix);
     let rounds = ROUNDS * n.max(1);
     let Some(schur) = Schur::try_new(matrix, f64::EPSILON, rounds) else {
-        return Err(Failure::failed("the eigenvalues were not found: the QR algorithm did not converge"));
+        return Err(Failure::failed(
+            "the eigenvalues were not found: the QR algorithm did not converge",
+        ));
     };
     let mut values: Vec<(f64, f64)> = schur
         .complex_eigenvalues()
@@ -143,8 +156,18 @@ fn text(linear: &Linear) -> String {
         text.push_str(&table(&linear.states, &linear.inputs, &linear.b));
     }
     text.push_str("\n\x1b[1meigenvalues of A\x1b[0m\n");
-    let size = linear.a.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let clean = |value: f64| if value.abs() < ROUNDING * size { 0.0 } else { value };
+    let size = linear
+        .a
+        .iter()
+        .flatten()
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    let clean = |value: f64| {
+        if value.abs() < ROUNDING * size {
+            0.0
+        } else {
+            value
+        }
+    };
     for &(re, im) in &linear.eigenvalues {
         let re = clean(re);
         // A pair of conjugates on one line.
@@ -170,7 +193,11 @@ fn table(rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
         .iter()
         .map(|row| row.iter().map(|&value| short(value)).collect())
         .collect();
-    let first = rows.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    let first = rows
+        .iter()
+        .map(|name| name.chars().count())
+        .max()
+        .unwrap_or(0);
     let widths: Vec<usize> = columns
         .iter()
         .enumerate()

@@ -127,10 +127,18 @@ fn advice_is_ordered_and_says_what_to_write() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let report = text(&output.stdout);
     let body = report.find("R turned in body axes").expect("body axes");
-    let world = report.find("R turned in world axes, as written").expect("as written");
+    let world = report
+        .find("R turned in world axes, as written")
+        .expect("as written");
     assert!(body < world, "{report}");
     assert!(report.contains("rate R = R * hat(w);"), "{report}");
-    let arguments = ["ops", &model("heavy_top_world"), "--advise", "--format", "json"];
+    let arguments = [
+        "ops",
+        &model("heavy_top_world"),
+        "--advise",
+        "--format",
+        "json",
+    ];
     let advice: Value = serde_json::from_slice(&hamel(&arguments, "").stdout).expect("JSON");
     assert_eq!(advice["choices"][1]["as_written"], "yes");
     let output = hamel(&["ops", &model("rod_particles"), "--advise"], "");
@@ -140,9 +148,14 @@ fn advice_is_ordered_and_says_what_to_write() {
 
 #[test]
 fn runs_end_with_the_drift_of_the_invariants() {
-    let output = hamel(&["simulate", &model("kovalevskaya_top"), "--until", "1"], "");
+    let output = hamel(
+        &["simulate", &model("kovalevskaya_top"), "--until", "1"],
+        "",
+    );
     let report = text(&output.stdout);
-    let line = report.lines().find(|line| line.contains("invariant kovalevskaya"));
+    let line = report
+        .lines()
+        .find(|line| line.contains("invariant kovalevskaya"));
     let line = line.unwrap_or_else(|| panic!("{report}"));
     let change = line.split_whitespace().last().expect("a change");
     assert!(change.parse::<f64>().expect("a number") < 1e-9, "{line}");

@@ -77,8 +77,12 @@ fn every_choice_has_the_same_motion() {
             let given = symbols(&model.graph, &model.xi);
             let xi: Vec<Fp> = given.iter().map(|&place| lane.symbol(place)).collect();
             let (rate, acceleration) = motion(&model, &lane, &xi);
-            let a = evaluate_at(&choice.model.graph, &choice.model.a.concat(), &mut lane.clone())
-                .expect("a value");
+            let a = evaluate_at(
+                &choice.model.graph,
+                &choice.model.a.concat(),
+                &mut lane.clone(),
+            )
+            .expect("a value");
             let n = model.n();
             let rows: Vec<&[Fp]> = a.chunks(n).collect();
             let sum = |terms: Vec<Fp>| terms.into_iter().fold(Fp::ZERO, |sum, term| sum + term);
@@ -105,7 +109,10 @@ fn every_choice_has_the_same_motion() {
 fn statements_give_what_was_counted() {
     let (text, model) = model("heavy_top_quaternion");
     let choices = advise(&model).expect("choices");
-    let other = choices.iter().find(|choice| !choice.as_written).expect("another choice");
+    let other = choices
+        .iter()
+        .find(|choice| !choice.as_written)
+        .expect("another choice");
     let kept: String = text
         .lines()
         .map(|line| match line.trim() {

@@ -82,7 +82,10 @@ fn conditions_set_inputs_and_parameters() {
             "invariant p = linear_momentum along [1, 0, 0] when F = 0, d = 0;",
             "d/dt leaves -k x",
         ),
-        ("invariant e = v^2 + x^2 when F = 0, d = 0, k = 3;", "is not constant"),
+        (
+            "invariant e = v^2 + x^2 when F = 0, d = 0, k = 3;",
+            "is not constant",
+        ),
     ] {
         let errors = from_text(&bead(claim)).expect_err("a false claim");
         assert_eq!(errors.len(), 1);
@@ -128,10 +131,18 @@ where
 #[test]
 fn generated_functions_watch_the_invariants() {
     drift(&LagrangeTop::<f64>::default(), |s, x, xi| {
-        vec![s.energy(x, xi), s.vertical_momentum(x, xi), s.spin_momentum(x, xi)]
+        vec![
+            s.energy(x, xi),
+            s.vertical_momentum(x, xi),
+            s.spin_momentum(x, xi),
+        ]
     });
     drift(&KovalevskayaTop::<f64>::default(), |s, x, xi| {
-        vec![s.energy(x, xi), s.vertical_momentum(x, xi), s.kovalevskaya(x, xi)]
+        vec![
+            s.energy(x, xi),
+            s.vertical_momentum(x, xi),
+            s.kovalevskaya(x, xi),
+        ]
     });
     drift(&FreeBodyMomenta::<f64>::default(), |s, x, xi| {
         let vectors = [
@@ -139,7 +150,11 @@ fn generated_functions_watch_the_invariants() {
             s.angular_momentum(x, xi),
             s.spin(x, xi),
         ];
-        vectors.into_iter().flatten().chain([s.kinetic(x, xi)]).collect()
+        vectors
+            .into_iter()
+            .flatten()
+            .chain([s.kinetic(x, xi)])
+            .collect()
     });
     drift(&SphericalPendulum::<f64>::default(), |s, x, xi| {
         vec![s.energy(x, xi), s.angular_momentum(x, xi)]

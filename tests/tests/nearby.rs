@@ -117,7 +117,8 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
         let name = &program.name;
         let mut random = Random::new(7);
         let mut numbers = |count: usize| -> Vec<f64> {
-            let one = |random: &mut Random| (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+            let one =
+                |random: &mut Random| (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
             (0..count).map(|_| one(&mut random)).collect()
         };
         let (n, m) = (program.n, program.m);
@@ -134,7 +135,9 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
         let found = linearize.call(&x, &xi, &at.u, &[]).expect("M is regular");
         let columns = 2 * n + m;
         assert_eq!(found.len(), 2 * n * columns);
-        let size = found.iter().fold(1.0, |size: f64, entry| size.max(entry.abs()));
+        let size = found
+            .iter()
+            .fold(1.0, |size: f64, entry| size.max(entry.abs()));
         let check = |what: &str, j: usize, found: &[f64], expected: &[f64]| {
             for (a, b) in found.iter().zip(expected) {
                 assert!(
@@ -160,7 +163,9 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
                 let slope = difference(|h| at.accel(&x, &along(&xi, &unit, h), &at.u));
                 (slope, at.rate(&x, &unit))
             } else {
-                let unit: Vec<f64> = (0..m).map(|k| f64::from(u8::from(k == j - 2 * n))).collect();
+                let unit: Vec<f64> = (0..m)
+                    .map(|k| f64::from(u8::from(k == j - 2 * n)))
+                    .collect();
                 let slope = difference(|h| at.accel(&x, &xi, &along(&at.u, &unit, h)));
                 (slope, vec![0.0; x.len()])
             };
@@ -175,7 +180,12 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
 fn the_free_body_is_linearised_in_at_most_300_operations() {
     let program = model("free_body").program;
     let linearize = program.function("linearize").expect("generated");
-    let roots: Vec<_> = linearize.outputs.iter().chain(&linearize.guards).copied().collect();
+    let roots: Vec<_> = linearize
+        .outputs
+        .iter()
+        .chain(&linearize.guards)
+        .copied()
+        .collect();
     let count = count(&program.graph, &roots);
     assert!(count.flops() <= 300, "{} operations", count.flops());
     assert_eq!(count.div, 0);

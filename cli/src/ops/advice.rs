@@ -9,8 +9,12 @@ use hamel_codegen::program::count::Count;
 
 /// Compares and prints.
 pub fn run(source: &Source, model: &Model, as_json: bool) -> Result<(), Failure> {
-    let choices = advise(model)
-        .map_err(|why| Failure::failed(format!("{}: there is nothing to compare: {why}", source.path)))?;
+    let choices = advise(model).map_err(|why| {
+        Failure::failed(format!(
+            "{}: there is nothing to compare: {why}",
+            source.path
+        ))
+    })?;
     print(&if as_json {
         json(model, &choices).pretty()
     } else {
@@ -62,7 +66,10 @@ fn json(model: &Model, choices: &[Choice]) -> Json {
     let choices = choices.iter().map(|choice| {
         Json::object([
             ("velocities", Json::Text(choice.label.clone())),
-            ("as_written", Json::Text(if choice.as_written { "yes" } else { "no" }.into())),
+            (
+                "as_written",
+                Json::Text(if choice.as_written { "yes" } else { "no" }.into()),
+            ),
             ("accel", counts(&choice.accel)),
             ("rate", counts(&choice.rate)),
             ("statements", Json::texts(&choice.statements)),

@@ -56,7 +56,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::read(&arguments.file)?;
     let mut generated = source.derive()?;
     if arguments.advise {
-        return advice::run(&source, &generated.model, matches!(arguments.format, Format::Json));
+        return advice::run(
+            &source,
+            &generated.model,
+            matches!(arguments.format, Format::Json),
+        );
     }
     // What is generated on demand alone is counted as well, unless functions were chosen.
     if generated.model.generate.is_empty() {

@@ -12,8 +12,8 @@ pub mod node;
 pub mod numeric;
 pub mod poly;
 pub mod resubstitute;
+pub mod tangent;
 #[cfg(test)]
 mod tests;
-pub mod tangent;
 pub mod topoly;
 pub mod transplant;

@@ -24,7 +24,9 @@ pub fn substitute(graph: &mut Graph, edges: &[Edge], set: &[(usize, Edge)]) -> V
     let mut image: FxHashMap<NodeId, Edge> = FxHashMap::default();
     let read = |image: &FxHashMap<NodeId, Edge>, edge: Edge| {
         let known = image.get(&edge.node()).copied();
-        known.unwrap_or(Edge::of(edge.node())).signed(edge.is_negative())
+        known
+            .unwrap_or(Edge::of(edge.node()))
+            .signed(edge.is_negative())
     };
     for id in graph.reachable(edges) {
         let made = match graph.node(id) {

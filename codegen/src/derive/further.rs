@@ -100,7 +100,10 @@ impl Builder<'_> {
                 "" => String::new(),
                 when => format!(" when {when}"),
             };
-            let docs = format!("Invariant `{}`: constant along the motion{when}.", claim.name);
+            let docs = format!(
+                "Invariant `{}`: constant along the motion{when}.",
+                claim.name
+            );
             let arguments = [Coordinates, Velocities];
             self.push(&claim.name, &[&docs], &arguments, shape, outputs);
         }

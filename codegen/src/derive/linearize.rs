@@ -103,7 +103,8 @@ fn columns(model: &Model, graph: &mut Graph, active: &[usize]) -> Vec<Derivation
         .map(|row| rebuild(&model.graph, graph, row))
         .collect();
     let one = graph.one();
-    let along = |j: usize| Derivation::new(model.x.iter().zip(&a).map(|(x, row)| (x.node(), row[j])));
+    let along =
+        |j: usize| Derivation::new(model.x.iter().zip(&a).map(|(x, row)| (x.node(), row[j])));
     let by = |symbol: &Edge| Derivation::new([(symbol.node(), one)]);
     (0..model.n())
         .map(along)

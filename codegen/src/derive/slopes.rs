@@ -93,17 +93,19 @@ impl Slopes {
                 return Some(Err("an invariant"));
             }
         }
-        if !["momentum", "momentum_rate", "velocity_of_momentum", "linearize"]
-            .iter()
-            .any(|name| wanted(name))
+        if ![
+            "momentum",
+            "momentum_rate",
+            "velocity_of_momentum",
+            "linearize",
+        ]
+        .iter()
+        .any(|name| wanted(name))
         {
             return Some(Ok(()));
         }
         let roots = Numbers::roots(reference);
-        let here = Numbers::new(
-            reference,
-            &evaluate_at(graph, &roots, &mut lane.clone())?,
-        );
+        let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut lane.clone())?);
         let symbol = |edges: &[Edge]| -> Vec<usize> {
             edges
                 .iter()
@@ -172,7 +174,10 @@ impl Slopes {
             } else if j < 2 * n {
                 (slope(&[(xi[j - n], Fp::ONE)])?, own)
             } else {
-                (slope(&[(u[j - 2 * n], Fp::ONE)])?, vec![Fp::ZERO; own.len()])
+                (
+                    slope(&[(u[j - 2 * n], Fp::ONE)])?,
+                    vec![Fp::ZERO; own.len()],
+                )
             };
             if product(&here.a, &column(j, 0..n)) != moved {
                 return Some(Err("ḣ of the motion nearby"));

@@ -54,16 +54,17 @@ pub struct Invariant {
 
 /// The names of all invariants but of the energy, which has a function anyway.
 pub fn names(system: &System) -> Vec<&Ident> {
-    let name = |kind| match kind {
-        &ItemKind::Invariant {
-            ref name,
-            ref conserved,
-            ..
-        } => (!is_energy(name, conserved)).then_some(name),
-        _ => None,
-    };
-    let items = system.items.iter();
-    items.filter_map(|item| name(&item.kind)).collect()
+    let mut names = Vec::new();
+    for item in &system.items {
+        if let ItemKind::Invariant {
+            name, conserved, ..
+        } = &item.kind
+            && !is_energy(name, conserved)
+        {
+            names.push(name);
+        }
+    }
+    names
 }
 
 fn is_energy(name: &Ident, conserved: &Conserved) -> bool {
@@ -171,8 +172,11 @@ impl Reader<'_, '_> {
                 let value = self.evaluator.value(expr)?;
                 let class = self.class_of(&value);
                 if class & (class::INPUT | class::ACCEL) != 0 {
-                    let message = "an invariant may depend on coordinates, velocities and parameters alone";
-                    return self.evaluator.error(Diagnostic::new(expr.span, message).help(
+                    let message =
+                        "an invariant may depend on coordinates, velocities and parameters alone";
+                    return self
+                        .evaluator
+                        .error(Diagnostic::new(expr.span, message).help(
                         "inputs are free functions of time; set them after `when`: `when F = 0`",
                     ));
                 }

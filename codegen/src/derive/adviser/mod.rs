@@ -186,12 +186,7 @@ fn combinations(parts: &[Part]) -> Vec<Vec<(Move, Way)>> {
 }
 
 fn written(model: &Model) -> Result<Choice, String> {
-    Choice::counted(
-        "as written".into(),
-        Vec::new(),
-        true,
-        model.clone(),
-    )
+    Choice::counted("as written".into(), Vec::new(), true, model.clone())
 }
 
 impl Choice {

@@ -229,7 +229,10 @@ impl<'a> Rates<'a> {
 
     fn plain(&mut self, index: usize) {
         let coordinate = &self.model.coordinates[index];
-        let count = blocks(coordinate.kind).iter().map(|block| block.len()).sum();
+        let count = blocks(coordinate.kind)
+            .iter()
+            .map(|block| block.len())
+            .sum();
         let v = self.velocities(count);
         let shape = match coordinate.kind {
             CoordKind::Euclidean(n) => format!(": vec{n}"),

@@ -62,10 +62,12 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
                 let prover = prover.get_or_insert_with(|| Prover::new(model));
                 let leaves = prover
                     .as_mut()
-                    .and_then(|prover| match prover.prove(&mut motion, claim, entries[entry]) {
-                        Proof::Leaves(text) => Some(format!("d/dt leaves {text}")),
-                        _ => None,
-                    })
+                    .and_then(
+                        |prover| match prover.prove(&mut motion, claim, entries[entry]) {
+                            Proof::Leaves(text) => Some(format!("d/dt leaves {text}")),
+                            _ => None,
+                        },
+                    )
                     .or_else(|| motion.at_start(claim, entries[entry]))
                     .unwrap_or_else(|| "d/dt is not zero on the configuration manifold".into());
                 let subject = if entries.len() > 1 {
@@ -236,7 +238,10 @@ impl Motion {
         let entry = all[n * n + n];
         let xi_dot = crate::algebra::linear::solve_symmetric(self.graph(), &mass, &right)?;
         let xi = self.reference.model.xi.clone();
-        let seeds = xi.iter().zip(&xi_dot).map(|(xi, rate)| (xi.node(), rate[0]));
+        let seeds = xi
+            .iter()
+            .zip(&xi_dot)
+            .map(|(xi, rate)| (xi.node(), rate[0]));
         let gain = crate::algebra::derivation::Derivation::new(seeds).of(self.graph(), entry);
         let graph = &mut self.reference.model.graph;
         let drift = self.calculus.rate(graph, entry);
