@@ -1,5 +1,6 @@
 //! `hamel linearize`: the motion near a state, with its eigenvalues.
 
+use crate::eigenvalues::eigenvalues;
 use crate::failure::{Failure, print};
 use crate::interpreted::{Interpreted, constant_singular, function};
 use crate::json::Json;
@@ -9,12 +10,8 @@ use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
 use hamel::System;
-use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{DMatrix, Schur};
 use std::path::PathBuf;
 
-/// Rounds of the QR algorithm before it is given up, for each row.
-const ROUNDS: usize = 1000;
 /// A larger acceleration is no rounding of zero.
 const AT_REST: f64 = 1e-9;
 
@@ -111,7 +108,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .collect();
     let linear = Linear {
         system: generated.model.name.clone(),
-        eigenvalues: eigenvalues(&a)?,
+        eigenvalues: eigenvalues(&a).ok_or_else(|| {
+            Failure::failed("the eigenvalues were not found: the QR algorithm does not converge")
+        })?,
         states,
         inputs,
         a,
@@ -122,26 +121,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Text => text(&linear),
         Format::Json => json(&linear).pretty(),
     })
-}
-
-/// The eigenvalues of a finite matrix, by the QR algorithm after balancing.
-fn eigenvalues(rows: &[Vec<f64>]) -> Result<Vec<(f64, f64)>, Failure> {
-    let n = rows.len();
-    let mut matrix = DMatrix::from_fn(n, n, |i, j| rows[i][j]);
-    balance_parlett_reinsch(&mut matrix);
-    let rounds = ROUNDS * n.max(1);
-    let Some(schur) = Schur::try_new(matrix, f64::EPSILON, rounds) else {
-        return Err(Failure::failed(
-            "the eigenvalues were not found: the QR algorithm did not converge",
-        ));
-    };
-    let mut values: Vec<(f64, f64)> = schur
-        .complex_eigenvalues()
-        .iter()
-        .map(|value| (value.re, value.im))
-        .collect();
-    values.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
-    Ok(values)
 }
 
 fn text(linear: &Linear) -> String {

@@ -3,6 +3,7 @@
 //! | file | owns |
 //! |---|---|
 //! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate` | one subcommand each |
+//! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
 //! | `state` | reading the numbers of a state |
 //! | `interpreted` | a described system that the integrators can run |
@@ -11,6 +12,7 @@
 //! | `failure` | errors and exit statuses |
 
 mod check;
+mod eigenvalues;
 mod emit;
 mod eval;
 mod failure;
