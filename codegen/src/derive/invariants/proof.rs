@@ -19,6 +19,8 @@ use crate::derive::tables::Geometry;
 use crate::model::Model;
 use crate::model::invariants::Invariant;
 
+/// Models with more velocities are only checked modulo p.
+const MOST_PROVED: usize = 8;
 /// Expressions of more nodes are not expanded.
 const MOST_NODES: usize = 20_000;
 
@@ -43,8 +45,11 @@ pub struct Prover {
 }
 
 impl Prover {
-    /// `None` where the kinematics have no left inverse.
+    /// `None` where the model is too large, or its kinematics have no left inverse.
     pub fn new(model: &Model) -> Option<Self> {
+        if model.n() > MOST_PROVED {
+            return None;
+        }
         let Geometry {
             model: mut free,
             mut calculus,
