@@ -77,7 +77,7 @@ fn table(identities: &[Identity]) -> String {
     };
     let (label, equation) = (
         width(|identity| identity.label),
-        width(|identity| identity.equation),
+        width(|identity| &identity.equation),
     );
     identities
         .iter()

@@ -29,10 +29,11 @@ pub struct Interpreted {
     outputs: Vec<Output>,
     /// For every guard of `accel` its number among the pivots of [Y; Φ], if it is one.
     kinematic: Vec<Option<usize>>,
+    invariants: Vec<Output>,
     evaluations: Cell<u64>,
 }
 
-/// An output of the description.
+/// An output of the description, or an invariant.
 pub struct Output {
     /// Its name.
     pub name: String,
@@ -47,7 +48,7 @@ impl Interpreted {
     pub fn new(generated: &Generated, state: &State) -> Result<Self, Failure> {
         let program = &generated.program;
         let function = |name: &str| function(program, name, &state.params);
-        let outputs = generated.model.outputs.iter().map(|(name, _)| {
+        let output = |name: &String| {
             let known = program.function(name);
             Ok(Output {
                 name: name.clone(),
@@ -56,7 +57,12 @@ impl Interpreted {
                 accelerated: known
                     .is_some_and(|function| function.arguments.contains(&Argument::Accelerations)),
             })
-        });
+        };
+        let model = &generated.model;
+        let outputs = model.outputs.iter().map(|(name, _)| output(name));
+        // The energy is watched anyway.
+        let invariants = model.invariants.iter().map(|claim| &claim.name);
+        let invariants = invariants.filter(|name| *name != "energy").map(output);
         Ok(Interpreted {
             blocks: program.blocks.iter().copied().map(block).collect(),
             start: (state.x.clone(), state.xi.clone()),
@@ -74,6 +80,7 @@ impl Interpreted {
             potential: function("potential_energy")?,
             outputs: outputs.collect::<Result<_, Failure>>()?,
             kinematic: kinematic(program),
+            invariants: invariants.collect::<Result<_, Failure>>()?,
             evaluations: Cell::new(0),
         })
     }
@@ -101,6 +108,11 @@ impl Interpreted {
     /// The outputs of the description.
     pub fn outputs(&self) -> &[Output] {
         &self.outputs
+    }
+
+    /// What the description claims to be constant, but the energy.
+    pub fn invariants(&self) -> &[Output] {
+        &self.invariants
     }
 
     /// The value of an output, matrices by rows; of accelerations, those of the forward dynamics,

@@ -2,7 +2,8 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `check`, `ops`, `emit`, `eval`, `simulate` | one subcommand each |
+//! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate` | one subcommand each |
+//! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
 //! | `state` | reading the numbers of a state |
 //! | `interpreted` | a described system that the integrators can run |
@@ -11,11 +12,13 @@
 //! | `failure` | errors and exit statuses |
 
 mod check;
+mod eigenvalues;
 mod emit;
 mod eval;
 mod failure;
 mod interpreted;
 mod json;
+mod linearize;
 mod names;
 mod number;
 mod ops;
@@ -33,6 +36,7 @@ const EXAMPLES: &str = "\
 Examples:
   hamel check heavy_top.eom                     prove the identities behind the equations
   hamel tables heavy_top.eom --of gamma,M       what stands in the paper
+  hamel linearize heavy_top.eom                 the motion nearby, with eigenvalues
   hamel simulate heavy_top.eom --until 10       a first run
   hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
 
@@ -54,6 +58,7 @@ enum Command {
     Ops(ops::Arguments),
     Emit(emit::Arguments),
     Eval(eval::Arguments),
+    Linearize(linearize::Arguments),
     Simulate(simulate::Arguments),
 }
 
@@ -64,6 +69,7 @@ fn main() -> ExitCode {
         Command::Ops(arguments) => ops::run(&arguments),
         Command::Emit(arguments) => emit::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
+        Command::Linearize(arguments) => linearize::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
     };
     result.map_or_else(Failure::report, |()| ExitCode::SUCCESS)

@@ -57,9 +57,15 @@ impl Source {
         if !generated.model.generate.is_empty() {
             generated.model.generate.clear();
             generated = Generated::of(generated.model, generated.hash)
-                .map_err(|error| self.refused(&[error]))?;
+                .map_err(|errors| self.refused(&errors))?;
         }
         Ok(generated)
+    }
+
+    /// Derives all functions and the linearisation, whatever the description's `generate` says.
+    pub fn derive_linearized(&self) -> Result<Generated, Failure> {
+        let generated = self.derive()?;
+        Generated::all(generated.model, generated.hash).map_err(|errors| self.refused(&errors))
     }
 
     /// The errors with their source underlined.

@@ -1,6 +1,7 @@
 //! From a description to its program: what all doors call.
 
 use crate::derive::assemble::assemble;
+use crate::derive::invariants;
 use crate::derive::reduction::reduce;
 use crate::diagnostics::Diagnostic;
 use crate::model::{self, Model};
@@ -39,14 +40,30 @@ pub fn from_text(text: &str) -> Result<Generated, Vec<Diagnostic>> {
 
 fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>> {
     let model = model::build(system)?;
-    Generated::of(model, hash).map_err(|error| vec![error])
+    Generated::of(model, hash)
 }
 
 impl Generated {
-    /// Derives a model.
-    pub fn of(model: Model, hash: u64) -> Result<Self, Diagnostic> {
-        let reduction = reduce(&model)?;
-        let program = assemble(&model, reduction.as_ref())?;
+    /// Derives a model, and refuses what it claims falsely.
+    pub fn of(model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
+        let linearized = model.asks("linearize");
+        Generated::with(model, hash, linearized)
+    }
+
+    /// Derives all functions of a model, the linearisation among them, whatever `generate` says.
+    pub fn all(mut model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
+        model.generate.clear();
+        Generated::with(model, hash, true)
+    }
+
+    fn with(model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {
+        let reduction = reduce(&model).map_err(|error| vec![error])?;
+        let program = assemble(&model, reduction.as_ref(), linearized);
+        let program = program.map_err(|error| vec![error])?;
+        match &reduction {
+            Some(reduction) => invariants::constrained::refute(&reduction.model, &program)?,
+            None => invariants::refute(&model)?,
+        }
         Ok(Generated {
             active: reduction.map_or_else(|| model.clone(), |reduction| reduction.model),
             model,

@@ -1,7 +1,7 @@
 //! The run itself, and what is kept of it.
 
 use crate::failure::Failure;
-use crate::interpreted::Interpreted;
+use crate::interpreted::{Interpreted, Output};
 use crate::names;
 use crate::number::short;
 use hamel::{Method, Monitor, State, StepError, System, integrate};
@@ -53,6 +53,8 @@ pub struct Sample {
     pub xi: Vec<f64>,
     /// Entries of all outputs, one after the other.
     pub outputs: Vec<f64>,
+    /// Entries of all invariants but the energy.
+    pub invariants: Vec<f64>,
     pub momentum: Vec<f64>,
     pub energy: f64,
 }
@@ -60,13 +62,15 @@ pub struct Sample {
 impl Sample {
     fn of(system: &Interpreted, state: &State<Interpreted>) -> Self {
         let (x, xi) = (state.x.clone(), state.xi.clone());
+        let values = |list: &[Output]| -> Vec<f64> {
+            list.iter()
+                .flat_map(|output| system.output(output, &x, &xi))
+                .collect()
+        };
         Sample {
             t: state.t,
-            outputs: system
-                .outputs()
-                .iter()
-                .flat_map(|output| system.output(output, &x, &xi))
-                .collect(),
+            outputs: values(system.outputs()),
+            invariants: values(system.invariants()),
             momentum: system.momentum(&x, &xi),
             energy: system.kinetic_energy(&x, &xi) + system.potential_energy(&x),
             x,
@@ -82,6 +86,7 @@ pub struct Run<'a> {
     pub coordinate_names: Vec<String>,
     pub velocity_names: Vec<String>,
     pub output_names: Vec<String>,
+    pub invariant_names: Vec<String>,
     /// In order of time; the first and the last state among them.
     pub samples: Vec<Sample>,
     /// A finer list for plots.
@@ -154,15 +159,18 @@ impl<'a> Run<'a> {
                 list.push(Sample::of(system, &state));
             }
         }
-        let outputs = system.outputs().iter();
+        let entries = |list: &[Output]| -> Vec<String> {
+            list.iter()
+                .flat_map(|output| names::shaped(&output.name, output.shape))
+                .collect()
+        };
         Ok(Run {
             program: &generated.program,
             plan,
             coordinate_names: names::coordinates(&generated.model),
             velocity_names: names::velocities(&generated.active),
-            output_names: outputs
-                .flat_map(|output| names::shaped(&output.name, output.shape))
-                .collect(),
+            output_names: entries(system.outputs()),
+            invariant_names: entries(system.invariants()),
             samples,
             track,
             monitor,

@@ -138,6 +138,15 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
             ));
         }
     }
+    for (index, name) in run.invariant_names.iter().enumerate() {
+        let (_, change) = spread(run, |sample| sample.invariants[index]);
+        rows.push(row(
+            &format!("invariant {name}"),
+            first.invariants[index],
+            last.invariants[index],
+            error(change),
+        ));
+    }
     for (index, name) in run.output_names.iter().enumerate() {
         let (_, change) = spread(run, |sample| sample.outputs[index]);
         rows.push(row(

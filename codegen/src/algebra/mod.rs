@@ -13,6 +13,7 @@ pub mod node;
 pub mod numeric;
 pub mod poly;
 pub mod resubstitute;
+pub mod tangent;
 #[cfg(test)]
 mod tests;
 pub mod text;

@@ -76,6 +76,28 @@ pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec
     (!lane.stuck).then(|| roots.iter().map(|&root| read(&values, root)).collect())
 }
 
+/// The solution of a square system over F_p; `None` where it is singular.
+pub fn solve(mut rows: Vec<Vec<Fp>>, mut right: Vec<Fp>) -> Option<Vec<Fp>> {
+    let n = right.len();
+    for k in 0..n {
+        let pivot = (k..n).find(|&row| !rows[row][k].is_zero())?;
+        rows.swap(k, pivot);
+        right.swap(k, pivot);
+        let inverse = rows[k][k].inv()?;
+        for row in (0..n).filter(|&row| row != k) {
+            let factor = rows[row][k] * inverse;
+            if !factor.is_zero() {
+                for column in k..n {
+                    let product = factor * rows[k][column];
+                    rows[row][column] = rows[row][column] - product;
+                }
+                right[row] = right[row] - factor * right[k];
+            }
+        }
+    }
+    (0..n).map(|k| Some(right[k] * rows[k][k].inv()?)).collect()
+}
+
 /// Rank of a matrix over F_p.
 pub fn rank(mut rows: Vec<Vec<Fp>>) -> usize {
     let columns = rows.first().map_or(0, Vec::len);

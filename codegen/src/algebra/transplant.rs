@@ -10,7 +10,7 @@ pub fn rebuild(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
 
 /// Builds the expressions again with every symbol replaced by an expression of the other graph, by
 /// the symbols' order.
-pub fn substitute(from: &Graph, into: &mut Graph, edges: &[Edge], images: &[Edge]) -> Vec<Edge> {
+pub fn map_symbols(from: &Graph, into: &mut Graph, edges: &[Edge], images: &[Edge]) -> Vec<Edge> {
     carry(from, into, edges, |_, index| images[index as usize], merged)
 }
 
@@ -27,6 +27,45 @@ fn merged(into: &mut Graph, node: Node, a: Edge, b: Edge) -> Edge {
         Node::Atan2(..) => into.atan2(a, b),
         Node::Constant(_) | Node::Symbol(_) => a,
     }
+}
+
+/// The expressions with expressions in the place of symbols, by the symbols' numbers; all of one
+/// graph.
+pub fn substitute(graph: &mut Graph, edges: &[Edge], set: &[(usize, Edge)]) -> Vec<Edge> {
+    if set.is_empty() {
+        return edges.to_vec();
+    }
+    let mut image: FxHashMap<NodeId, Edge> = FxHashMap::default();
+    let read = |image: &FxHashMap<NodeId, Edge>, edge: Edge| {
+        let known = image.get(&edge.node()).copied();
+        known
+            .unwrap_or(Edge::of(edge.node()))
+            .signed(edge.is_negative())
+    };
+    for id in graph.reachable(edges) {
+        let made = match graph.node(id) {
+            Node::Constant(_) => Edge::of(id),
+            Node::Symbol(index) => {
+                let found = set.iter().find(|(symbol, _)| *symbol == index as usize);
+                found.map_or(Edge::of(id), |(_, value)| *value)
+            }
+            node => {
+                let mut children = node.children().map(|child| read(&image, child));
+                let a = children.next().unwrap_or(graph.zero());
+                let b = children.next().unwrap_or(a);
+                match node {
+                    Node::Add(..) => graph.add(a, b),
+                    Node::Mul(..) => graph.mul(a, b),
+                    Node::Div(..) => graph.div(a, b).unwrap_or(graph.zero()),
+                    Node::Apply(function, _) => graph.apply(function, a),
+                    Node::Atan2(..) => graph.atan2(a, b),
+                    Node::Constant(_) | Node::Symbol(_) => Edge::of(id),
+                }
+            }
+        };
+        image.insert(id, made);
+    }
+    edges.iter().map(|&edge| read(&image, edge)).collect()
 }
 
 /// Copies the expressions node by node without merging: for functions that are wanted off the

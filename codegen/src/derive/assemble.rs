@@ -14,8 +14,12 @@ use crate::model::{Model, class};
 use crate::program::{Argument, Function, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
-/// Derives all functions of a model.
-pub fn assemble(full: &Model, reduction: Option<&Reduction>) -> Result<Program, Diagnostic> {
+/// Derives the functions of a model that are wanted; `reduction` solves its constraints.
+pub fn assemble(
+    full: &Model,
+    reduction: Option<&Reduction>,
+    linearized: bool,
+) -> Result<Program, Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
     let mut calculus = Calculus::new(&reference);
@@ -32,9 +36,14 @@ pub fn assemble(full: &Model, reduction: Option<&Reduction>) -> Result<Program, 
     let mut builder = Builder::new(model, chosen, parts);
     builder.kinematics();
     builder.dynamics(&reference.graph, potential);
+    builder.momentum();
+    if linearized {
+        builder.linearize(full, reduction);
+    }
     builder.dissipation();
     builder.variety(full)?;
     builder.outputs();
+    builder.invariants();
     if let Some(reduction) = reduction {
         builder.constraint_force(full, reduction);
         builder.projections();
@@ -48,14 +57,20 @@ pub fn assemble(full: &Model, reduction: Option<&Reduction>) -> Result<Program, 
     Ok(program)
 }
 
-struct Builder<'a> {
-    model: &'a Model,
-    graph: Graph,
-    chosen: Acceleration,
-    parts: Parts,
-    functions: Vec<Function>,
+/// The functions so far, and what they are made from.
+pub(super) struct Builder<'a> {
+    /// The model.
+    pub(super) model: &'a Model,
+    /// The graph of all functions.
+    pub(super) graph: Graph,
+    /// ξ̇.
+    pub(super) chosen: Acceleration,
+    /// M and forces.
+    pub(super) parts: Parts,
+    /// The functions.
+    pub(super) functions: Vec<Function>,
     /// Pivots of [Y; Φ].
-    kinematic_guards: Vec<Edge>,
+    pub(super) kinematic_guards: Vec<Edge>,
 }
 
 impl<'a> Builder<'a> {
@@ -72,7 +87,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn push(
+    pub(super) fn push(
         &mut self,
         name: &str,
         docs: &[&str],
@@ -345,12 +360,7 @@ impl<'a> Builder<'a> {
     fn outputs(&mut self) {
         for (name, value) in &self.model.outputs {
             let entries = rebuild(&self.model.graph, &mut self.graph, &value.entries());
-            let shape = match value {
-                Value::Scalar(_) => Shape::Scalar,
-                Value::Vector(v) => Shape::Vector(v.len()),
-                Value::Matrix(m) => Shape::Matrix(m.len(), m.first().map_or(0, Vec::len)),
-                Value::Pose(..) => Shape::Vector(entries.len()),
-            };
+            let shape = shape_of(value);
             let docs = format!("Output `{name}` of the description.");
             let class = |class, edge: &Edge| class | self.graph.class(edge.node());
             let accelerated = entries.iter().fold(0, class) & class::ACCEL != 0;
@@ -374,7 +384,7 @@ impl<'a> Builder<'a> {
             .extend(rebuild(&model.graph, &mut self.graph, constants));
         let of_parameters = |edge: &Edge| self.graph.is_free(edge.node());
         let kinematic = self.kinematic_guards.iter().copied().filter(of_parameters);
-        let constant_guards = if self.functions.iter().any(|f| f.name == "accel") {
+        let constant_guards = if self.functions.iter().any(|f| f.fallible) {
             self.chosen
                 .pivots
                 .iter()
@@ -408,6 +418,16 @@ impl<'a> Builder<'a> {
             kinematic_guards: self.kinematic_guards,
             functions: self.functions,
         }
+    }
+}
+
+/// The shape of a function with this value.
+pub(super) fn shape_of(value: &Value) -> Shape {
+    match value {
+        Value::Scalar(_) => Shape::Scalar,
+        Value::Vector(v) => Shape::Vector(v.len()),
+        Value::Matrix(m) => Shape::Matrix(m.len(), m.first().map_or(0, Vec::len)),
+        Value::Pose(..) => Shape::Vector(value.entries().len()),
     }
 }
 

@@ -6,11 +6,11 @@
 
 use super::calculus::Calculus;
 use super::commutation::gamma_from_rows;
-use super::constrained;
 use super::normal::NormalForms;
 use super::reduction::reduce;
 use super::tables::Geometry;
 use super::virtual_power;
+use super::{constrained, invariants};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::multiply;
@@ -36,7 +36,7 @@ pub struct Identity {
     /// KR18's number, or a name.
     pub label: &'static str,
     /// The equation.
-    pub equation: &'static str,
+    pub equation: String,
     /// How it fared.
     pub verdict: Verdict,
 }
@@ -64,7 +64,7 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
         let verdict = Verdict::Failed("Y could not be derived".into());
         return vec![Identity {
             label: "(6)",
-            equation: "Y A = I",
+            equation: "Y A = I".into(),
             verdict,
         }];
     };
@@ -85,12 +85,14 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
             };
             Identity {
                 label: sides.label,
-                equation: sides.equation,
+                equation: sides.equation.into(),
                 verdict,
             }
         })
         .collect();
-    if !model.constraints.is_empty() {
+    if model.constraints.is_empty() {
+        identities.extend(invariants::identities(model));
+    } else {
         identities.extend(with_constraints(model, program));
     }
     identities
@@ -100,10 +102,17 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
 fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
     match reduce(model) {
         Ok(None) => Vec::new(),
-        Ok(Some(reduction)) => constrained::identities(model, &reduction, program),
+        Ok(Some(reduction)) => {
+            let mut all = constrained::identities(model, &reduction, program);
+            all.extend(invariants::constrained::identities(
+                &reduction.model,
+                program,
+            ));
+            all
+        }
         Err(error) => vec![Identity {
             label: "C",
-            equation: "B C = 0",
+            equation: "B C = 0".into(),
             verdict: Verdict::Failed(error.message),
         }],
     }

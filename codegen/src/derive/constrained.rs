@@ -58,7 +58,7 @@ impl Full {
             graph: reduction.graph.clone(),
             ..model.clone()
         };
-        let mut reference = Reference::new(full)?;
+        let mut reference = Reference::new(&full)?;
         let full = &mut reference.model;
         let xi: Vec<Edge> = reduction.active.iter().map(|&i| full.xi[i]).collect();
         let drift = drift(full, &xi, &reduction.complement);
@@ -88,7 +88,7 @@ impl Full {
 pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Result<(), Diagnostic> {
     for identity in identities(model, reduction, program) {
         if let Verdict::Failed(_) = identity.verdict {
-            return Err(failure(model, identity.equation));
+            return Err(failure(model, &identity.equation));
         }
     }
     Ok(())
@@ -125,7 +125,7 @@ pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Ve
         .zip(failed)
         .map(|(&(label, equation), failed)| Identity {
             label,
-            equation,
+            equation: equation.into(),
             verdict: verdict(failed),
         })
         .collect()
@@ -273,14 +273,14 @@ impl At<'_> {
     fn lanes(&self, xi_active: &[Fp]) -> (Lane, Lane) {
         let graph = &self.full.reference.model.graph;
         let velocities = places(graph, class::VELOCITY);
-        let accelerations = places(graph, class::ACCEL);
+        let others = [class::ACCEL, class::MOMENTUM].map(|class| places(graph, class));
         let mut point = self.lane.clone();
         for (&symbol, row) in velocities.iter().zip(self.c.chunks(xi_active.len())) {
             point.set_symbol(symbol, dot(row, xi_active));
         }
         let mut inner = point.fresh();
         for index in 0..graph.symbols().len() {
-            let solved = [&velocities, &accelerations].iter().any(|list| {
+            let solved = others.iter().chain([&velocities]).any(|list| {
                 let found = list.iter().position(|&symbol| symbol == index);
                 found.is_some_and(|i| !self.reduction.active.contains(&i))
             });
@@ -343,7 +343,7 @@ impl At<'_> {
 }
 
 /// A vector near `random` on which all rows vanish: by elimination, dependent entries replaced.
-fn in_kernel(rows: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>> {
+pub(super) fn in_kernel(rows: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>> {
     let n = random.len();
     let mut rows: Vec<Vec<Fp>> = rows.chunks(n).map(<[Fp]>::to_vec).collect();
     let mut stream = Random::new(seed);
@@ -373,7 +373,7 @@ fn in_kernel(rows: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>> {
 }
 
 /// The places of the symbols of a class.
-fn places(graph: &Graph, class: u8) -> Vec<usize> {
+pub(super) fn places(graph: &Graph, class: u8) -> Vec<usize> {
     let symbols = graph.symbols().iter().enumerate();
     symbols
         .filter(|(_, symbol)| symbol.class == class)

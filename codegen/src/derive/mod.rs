@@ -12,11 +12,17 @@
 //! | `loads` | potential, gravity, applied forces | (28) |
 //! | `virtual_power` | loads as forces on points, motion of points | (28) |
 //! | `energy` | T, V, momentum | |
+//! | `momentum` | ṗ, and ξ from p | (30a) |
+//! | `linearize` | the motion nearby, in displacement coordinates | (12) |
+//! | `invariants` | claims of constancy along the motion, proved or refuted | |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
+//! | `adviser` | other velocity coordinates for the same motion, and their cost | |
 //! | `assemble` | the program of all generated functions | |
+//! | `further` | momenta, the motion nearby and invariants as functions | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
 
 pub mod accel;
+pub mod adviser;
 pub mod assemble;
 pub mod calculus;
 pub mod check;
@@ -26,12 +32,17 @@ pub mod connection;
 pub mod constrained;
 pub mod correction;
 pub mod energy;
+mod further;
 pub mod inertia;
+pub mod invariants;
 pub mod kinematics;
+pub mod linearize;
 pub mod loads;
+pub mod momentum;
 pub mod multipliers;
 pub mod normal;
 pub mod reduction;
+mod slopes;
 pub mod tables;
 pub mod validate;
 pub mod virtual_power;

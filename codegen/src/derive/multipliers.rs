@@ -9,7 +9,7 @@ use super::calculus::Calculus;
 use super::reduction::Reduction;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::solve_symmetric;
-use crate::algebra::transplant::{rebuild, substitute};
+use crate::algebra::transplant::{map_symbols, rebuild};
 use crate::model::{Model, class};
 
 /// λ in the graph of the program, in order of the constraints; that of a redundant row is 0.
@@ -46,9 +46,9 @@ pub fn multipliers(
         .flat_map(|c| c.row.clone())
         .collect();
     let images = rebuild(&reduction.model.graph, graph, &reduction.images);
-    let residuals = substitute(&model.graph, graph, &residuals, &images);
+    let residuals = map_symbols(&model.graph, graph, &residuals, &images);
     let residuals = with_accelerations(graph, &residuals, &chosen.xi_dot);
-    let rows = substitute(&model.graph, graph, &rows, &images);
+    let rows = map_symbols(&model.graph, graph, &rows, &images);
     let n = full.n();
     let mut multipliers = vec![graph.zero(); full.constraints.len()];
     for (&row, &multiplier) in reduction.kept.iter().zip(&chosen.multipliers) {
@@ -95,5 +95,5 @@ fn with_accelerations(graph: &mut Graph, edges: &[Edge], xi_dot: &[Edge]) -> Vec
             value.copied().unwrap_or(Edge::of(symbol.node))
         })
         .collect();
-    substitute(&from, graph, edges, &images)
+    map_symbols(&from, graph, edges, &images)
 }

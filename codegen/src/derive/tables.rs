@@ -90,6 +90,12 @@ impl Geometry {
             particle.position = vec3(carry(&particle.position));
         }
         free.gravity = vec3(carry(&model.gravity));
+        for wrench in &mut free.wrenches {
+            for part in [&mut wrench.at, &mut wrench.force, &mut wrench.torque] {
+                *part = vec3(carry(&*part));
+            }
+        }
+        free.generalized = carry(&model.generalized);
         let mut calculus = Calculus::new(&free);
         let mut merged = model.clone();
         let y = kinematics::left_inverse(&mut merged)?;

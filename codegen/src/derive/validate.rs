@@ -3,6 +3,7 @@
 //! that route, and outputs have the values of their expressions.
 
 use super::calculus::Calculus;
+use super::slopes::Slopes;
 use super::{commutation, connection, energy, inertia, kinematics, virtual_power};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
@@ -19,19 +20,28 @@ const TRIES: u64 = 400;
 
 /// The independent derivation: M, h = Γ ξ ξ, ∂V, f, T, V.
 pub(super) struct Reference {
-    pub model: Model,
-    pub mass: Vec<Vec<Edge>>,
-    pub bias: Vec<Edge>,
-    pub slope: Vec<Edge>,
-    pub force: Vec<Edge>,
-    pub kinetic: Edge,
-    pub potential: Edge,
-    pub dissipation: Edge,
+    /// The model, its graph holding the rest.
+    pub(super) model: Model,
+    /// M.
+    pub(super) mass: Vec<Vec<Edge>>,
+    /// h.
+    pub(super) bias: Vec<Edge>,
+    /// ∂V.
+    pub(super) slope: Vec<Edge>,
+    /// f.
+    pub(super) force: Vec<Edge>,
+    /// T.
+    pub(super) kinetic: Edge,
+    /// V.
+    pub(super) potential: Edge,
+    /// D.
+    pub(super) dissipation: Edge,
 }
 
 impl Reference {
     /// Hamel's form (30a), from T and γ, not from traced bodies.
-    pub fn new(mut model: Model) -> Option<Self> {
+    pub(super) fn new(model: &Model) -> Option<Self> {
+        let mut model = model.clone();
         let mut calculus = Calculus::new(&model);
         let mass = inertia::mass_matrix(&mut model, &mut calculus);
         let rows = kinematics::left_inverse(&mut model)?;
@@ -63,8 +73,8 @@ impl Reference {
 
 /// Validates the functions of a program; an error here is a fault of the generator, never emitted.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    let reference =
-        Reference::new(model.clone()).ok_or_else(|| failure(model, "the kinematics"))?;
+    let mut reference = Reference::new(model).ok_or_else(|| failure(model, "the kinematics"))?;
+    let slopes = Slopes::new(&mut reference, program);
     let mut seed = 0;
     for _ in 0..POINTS {
         loop {
@@ -75,7 +85,12 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             let Some(lane) = model.points.lane(0x7a11 + seed) else {
                 continue;
             };
-            match at_point(&reference, program, lane) {
+            let found = at_point(&reference, program, lane.clone());
+            let found = match found {
+                Some(Ok(())) => slopes.at_point(&reference, program, &lane),
+                found => found,
+            };
+            match found {
                 None => continue,
                 Some(Ok(())) => break,
                 Some(Err(what)) => return Err(failure(model, what)),

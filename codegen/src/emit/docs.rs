@@ -65,10 +65,10 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
         lines.push(String::new());
     }
     for &argument in &function.arguments {
-        let prefix = if argument == Argument::Accelerations {
-            "derivatives of "
-        } else {
-            ""
+        let prefix = match argument {
+            Argument::Accelerations => "derivatives of ",
+            Argument::Momenta => "momenta dual to ",
+            _ => "",
         };
         let size = numbers(length(program, argument));
         lines.push(format!(
@@ -111,7 +111,7 @@ fn numbers(n: usize) -> String {
 pub fn groups(program: &Program, argument: Argument) -> Vec<String> {
     match argument {
         Argument::Coordinates => program.coordinates.iter().flat_map(coordinate).collect(),
-        Argument::Velocities | Argument::Accelerations => {
+        Argument::Velocities | Argument::Accelerations | Argument::Momenta => {
             program.velocities.iter().map(group).collect()
         }
         Argument::Inputs => program.inputs.iter().map(group).collect(),

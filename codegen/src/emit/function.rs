@@ -90,7 +90,7 @@ pub fn shape_type(shape: Shape) -> String {
 pub fn length(program: &Program, argument: Argument) -> usize {
     match argument {
         Argument::Coordinates => program.nu,
-        Argument::Velocities | Argument::Accelerations => program.n,
+        Argument::Velocities | Argument::Accelerations | Argument::Momenta => program.n,
         Argument::Inputs => program.m,
     }
 }

@@ -69,7 +69,7 @@ const METHODS: &[&str] = &[
 ];
 
 /// Local names that a function may use besides those of its values.
-const LOCALS: &[&str] = &["x", "xi", "u", "xi_dot", "k", "slots", "out"];
+const LOCALS: &[&str] = &["x", "xi", "u", "xi_dot", "momentum", "k", "slots", "out"];
 
 /// The generic parameter, and primitive types that the text mentions.
 const TYPES: &[&str] = &["S", "f64", "usize"];
@@ -80,6 +80,7 @@ pub fn argument(argument: Argument) -> &'static str {
         Argument::Coordinates => "x",
         Argument::Velocities => "xi",
         Argument::Accelerations => "xi_dot",
+        Argument::Momenta => "momentum",
         Argument::Inputs => "u",
     }
 }

@@ -32,17 +32,18 @@ pub enum Place {
 /// The places of all nodes of a program.
 pub struct Places<'a> {
     graph: &'a Graph,
-    /// Numbers of parameters, x, ξ, u, ξ̇: the order of the symbols after π.
-    sizes: [usize; 5],
+    /// Numbers of parameters, x, ξ, u, ξ̇, p: the order of the symbols after π.
+    sizes: [usize; 6],
     kept: Vec<NodeId>,
     index: FxHashMap<NodeId, usize>,
 }
 
-const ORDER: [Argument; 4] = [
+const ORDER: [Argument; 5] = [
     Argument::Coordinates,
     Argument::Velocities,
     Argument::Inputs,
     Argument::Accelerations,
+    Argument::Momenta,
 ];
 
 impl<'a> Places<'a> {
@@ -63,7 +64,8 @@ impl<'a> Places<'a> {
             }
         }
         let params: usize = program.params.iter().map(|group| group.len).sum();
-        let sizes = [params, program.nu, program.n, program.m, program.n];
+        let n = program.n;
+        let sizes = [params, program.nu, n, program.m, n, n];
         Places {
             graph,
             sizes,

@@ -6,7 +6,7 @@ use super::motion::Motion;
 use super::names::Names;
 use super::scope::Scope;
 use super::variety::Variety;
-use super::{Model, class, closure, defaults, dynamics, kinematics, pfaffian, start};
+use super::{Model, class, closure, defaults, dynamics, invariants, kinematics, pfaffian, start};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -125,6 +125,7 @@ impl<'a> Reading<'a> {
         let numbers = declared.numbers(&defaults, starts.as_ref());
         let frames = names.frames;
         let dynamics = dynamics::read(system, graph, scope, &frames, declared, &numbers, report);
+        let invariants = invariants::read(system, graph, scope, &frames, declared, report);
         let constraints =
             pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
         if let (Some(start), Some(kinematics), true) = (
@@ -166,6 +167,7 @@ impl<'a> Reading<'a> {
             xi: declared.xi,
             velocity_spans: declared.velocity_spans,
             xi_dot: declared.xi_dot,
+            momenta: declared.momenta,
             inputs: declared.inputs,
             u: declared.u,
             rate: kinematics.rate,
@@ -187,6 +189,7 @@ impl<'a> Reading<'a> {
             elements: dynamics.elements,
             observed: motion.map_or(Vec::new(), |motion| motion.seen.into_inner()),
             outputs: dynamics.outputs,
+            invariants,
             lets: names.lets,
             start_x: start.x,
             start_xi: start.xi,

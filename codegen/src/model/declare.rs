@@ -26,6 +26,7 @@ pub struct Declared {
     pub inputs: Vec<Group>,
     pub u: Vec<Edge>,
     pub xi_dot: Vec<Edge>,
+    pub momenta: Vec<Edge>,
     /// Whether a coordinate or velocity is missing here because its name was taken: there is no
     /// point in counting then.
     pub faulty: bool,
@@ -45,7 +46,7 @@ impl Declared {
     }
 }
 
-/// Declares everything, in the order pi, parameters, x, ξ, u, ξ̇, and defines the constants.
+/// Declares everything, in the order pi, parameters, x, ξ, u, ξ̇, p, and defines the constants.
 pub fn declare(
     system: &System,
     graph: &mut Graph,
@@ -113,11 +114,17 @@ pub fn declare(
         .iter()
         .filter(|s| s.class == class::VELOCITY);
     let names: Vec<String> = velocities.map(|s| s.name.clone()).collect();
-    for name in names {
+    for name in &names {
         let value = next(graph);
         declared
             .xi_dot
             .push(graph.symbol(&format!("d_{name}"), class::ACCEL, value));
+    }
+    for name in &names {
+        let value = next(graph);
+        declared
+            .momenta
+            .push(graph.symbol(&format!("p_{name}"), class::MOMENTUM, value));
     }
     declared
 }

@@ -23,16 +23,19 @@ pub const FUNCTIONS: &[&str] = &[
     "potential_force",
     "generalized_force",
     "momentum",
+    "momentum_rate",
+    "velocity_of_momentum",
     "kinetic_energy",
     "potential_energy",
     "energy",
     "dissipation",
     "constraint",
     "constraint_force",
+    "linearize",
 ];
 
 /// Further functions that a program has, whose names no output can take.
-const INTERNAL: &[&str] = &["chart_rate", "correction", "close", "settle"];
+pub const INTERNAL: &[&str] = &["chart_rate", "correction", "close", "settle"];
 
 /// What the statements about inertia and loads say.
 pub struct Dynamics {
@@ -170,7 +173,8 @@ pub fn read(
                 .help("write `body on f { mass m; … }`, `particle mass m at p;` or `kinetic …;`"),
         );
     }
-    let outputs = output_names(system, report);
+    let mut outputs = output_names(system, report);
+    outputs.extend(super::invariants::names(system));
     for item in &system.items {
         if let ItemKind::Generate(names) = &item.kind {
             dynamics.generate.extend(generate(names, &outputs, report));
@@ -227,7 +231,7 @@ fn generate(names: &[Ident], outputs: &[&Ident], report: &mut Report) -> Vec<Str
         report.push(match closest(&name.name, known) {
             Some(near) => error.help(format!("did you mean `{near}`?")),
             None => error.help(format!(
-                "the functions are {}, and the outputs by their names",
+                "the functions are {}, and the outputs and invariants by their names",
                 FUNCTIONS.join(", ")
             )),
         });

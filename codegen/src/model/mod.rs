@@ -19,6 +19,7 @@ pub mod expression;
 mod frames;
 mod functions;
 mod independent;
+pub mod invariants;
 mod kinematics;
 pub mod layout;
 mod line;
@@ -30,7 +31,7 @@ pub mod pfaffian;
 pub mod points;
 mod rates;
 mod relations;
-mod rotations;
+pub mod rotations;
 pub mod scope;
 mod start;
 mod tangency;
@@ -63,6 +64,8 @@ pub mod class {
     pub const INPUT: u8 = 8;
     /// Accelerations ξ̇, the argument of inverse dynamics.
     pub const ACCEL: u8 = 16;
+    /// Momenta p, the argument of what is a function of them.
+    pub const MOMENTUM: u8 = 32;
     /// Rates ẋ, while definitions of velocities are read; never in a model's graph.
     pub const RATE: u8 = 128;
 }
@@ -199,6 +202,8 @@ pub struct Model {
     pub velocity_spans: Vec<Span>,
     /// ξ̇ as symbols.
     pub xi_dot: Vec<Edge>,
+    /// p as symbols.
+    pub momenta: Vec<Edge>,
     /// Inputs.
     pub inputs: Vec<Group>,
     /// u.
@@ -241,6 +246,8 @@ pub struct Model {
     pub observed: Vec<Observed>,
     /// Outputs.
     pub outputs: Vec<(String, Value)>,
+    /// What is claimed to be constant along the motion.
+    pub invariants: Vec<invariants::Invariant>,
     /// Named expressions of the user.
     pub lets: Vec<(String, Value)>,
     /// x at the start.
@@ -282,6 +289,11 @@ impl Model {
 
     /// Whether a function was asked for.
     pub fn wants(&self, function: &str) -> bool {
-        self.generate.is_empty() || self.generate.iter().any(|name| name == function)
+        self.generate.is_empty() || self.asks(function)
+    }
+
+    /// Whether a function was asked for by its name.
+    pub fn asks(&self, function: &str) -> bool {
+        self.generate.iter().any(|name| name == function)
     }
 }

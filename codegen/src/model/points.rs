@@ -55,9 +55,23 @@ impl Points {
     /// Values of all symbols at a random point of X, where functions have the values of the lane
     /// with this seed; `None` where no point was found.
     pub fn choose(&self, random: &mut Random, seed: u64) -> Option<Vec<Fp>> {
+        self.choose_where(random, seed, &|_| Some(()))
+    }
+
+    /// The same where `set` has changed values of parameters and inputs before the coordinates were
+    /// solved for; it may find a point unfit.
+    fn choose_where(
+        &self,
+        random: &mut Random,
+        seed: u64,
+        set: &dyn Fn(&mut Vec<Fp>) -> Option<()>,
+    ) -> Option<Vec<Fp>> {
         let mut failures = 0;
         for _ in 0..TRIES {
             let mut values = self.unconstrained(random);
+            if set(&mut values).is_none() {
+                continue;
+            }
             if !self.constraints.is_empty() {
                 // Functions of parameters in the constraints may lack a value here.
                 let Some(system) = self.system(&values, seed) else {
@@ -187,6 +201,21 @@ impl Points {
         } else {
             polynomial.clone()
         })
+    }
+
+    /// A lane at a fresh point where symbols have the values of expressions of `graph`; `None` where
+    /// no point was found.
+    pub fn lane_where(&self, seed: u64, graph: &Graph, set: &[(usize, Edge)]) -> Option<Lane> {
+        let edges: Vec<Edge> = set.iter().map(|(_, edge)| *edge).collect();
+        let impose = |values: &mut Vec<Fp>| {
+            let imposed = evaluate_at(graph, &edges, &mut lane_of(values, seed))?;
+            for ((symbol, _), value) in set.iter().zip(imposed) {
+                *values.get_mut(*symbol)? = value;
+            }
+            Some(())
+        };
+        let values = self.choose_where(&mut Random::new(seed ^ 0x0b5e), seed, &impose)?;
+        Some(lane_of(&values, seed))
     }
 
     /// A lane at a fresh point.

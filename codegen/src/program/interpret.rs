@@ -29,15 +29,16 @@ pub struct Interpreter {
     outputs: Vec<Place>,
     /// Guards with their numbers, in the order in which they are computed.
     guards: Vec<(usize, Place)>,
-    inputs: [usize; 4],
-    arguments: [bool; 4],
+    inputs: [usize; 5],
+    arguments: [bool; 5],
 }
 
-const ORDER: [Argument; 4] = [
+const ORDER: [Argument; 5] = [
     Argument::Coordinates,
     Argument::Velocities,
     Argument::Inputs,
     Argument::Accelerations,
+    Argument::Momenta,
 ];
 
 impl Interpreter {
@@ -101,6 +102,7 @@ impl Interpreter {
             first + program.nu,
             first + program.nu + program.n,
             first + program.nu + program.n + program.m,
+            first + program.nu + 2 * program.n + program.m,
         ];
         Interpreter {
             outputs: function.outputs.iter().map(place).collect(),
@@ -120,8 +122,13 @@ impl Interpreter {
         u: &[f64],
         xi_dot: &[f64],
     ) -> Result<Vec<f64>, usize> {
+        self.call_with([x, xi, u, xi_dot, &[]])
+    }
+
+    /// The same for all arguments in the order x, ξ, u, ξ̇, p.
+    pub fn call_with(&self, arguments: [&[f64]; 5]) -> Result<Vec<f64>, usize> {
         let mut values = self.initial.clone();
-        for (index, part) in [x, xi, u, xi_dot].into_iter().enumerate() {
+        for (index, part) in arguments.into_iter().enumerate() {
             if self.arguments[index] {
                 values[self.inputs[index]..self.inputs[index] + part.len()].copy_from_slice(part);
             }

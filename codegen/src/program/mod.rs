@@ -17,6 +17,8 @@ pub enum Argument {
     Velocities,
     /// ξ̇, n numbers.
     Accelerations,
+    /// p, n numbers.
+    Momenta,
     /// u.
     Inputs,
 }

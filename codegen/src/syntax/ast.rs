@@ -249,6 +249,40 @@ pub enum Acting {
     On(Expr),
 }
 
+/// What an `invariant` statement claims to be constant along the motion.
+#[derive(Clone, Debug)]
+pub enum Conserved {
+    /// `energy`: T + V.
+    Energy,
+    /// `linear_momentum [of f] [along a]`, world axes.
+    LinearMomentum {
+        /// The frame whose bodies are meant, everything where absent.
+        of: Option<Ident>,
+        /// The direction, all three components where absent.
+        along: Option<Expr>,
+    },
+    /// `angular_momentum [of f] [about p] [along a]`, world axes.
+    AngularMomentum {
+        /// The frame whose bodies are meant, everything where absent.
+        of: Option<Ident>,
+        /// The point of reference in the world, its origin where absent.
+        about: Option<Expr>,
+        /// The direction, all three components where absent.
+        along: Option<Expr>,
+    },
+    /// An expression.
+    Value(Expr),
+}
+
+/// `F = 0` of `invariant … when F = 0;`: an input or a parameter, or an entry of one, with its value.
+#[derive(Clone, Debug)]
+pub struct Condition {
+    /// What is set.
+    pub target: Expr,
+    /// Its value, of parameters and constants.
+    pub value: Expr,
+}
+
 /// One statement.
 #[derive(Clone, Debug)]
 pub struct Item {
@@ -391,6 +425,15 @@ pub enum ItemKind {
         name: Ident,
         /// What it returns.
         value: Expr,
+    },
+    /// `invariant name = expr when F = 0;`, `invariant energy;`
+    Invariant {
+        /// The name of the function that watches it.
+        name: Ident,
+        /// What is constant.
+        conserved: Conserved,
+        /// Where it is.
+        when: Vec<Condition>,
     },
     /// `generate accel, energy;`
     Generate(Vec<Ident>),

@@ -99,6 +99,16 @@ impl<'a> Cursor<'a> {
         matches!(self.ahead(1).kind, Kind::Open(Delimiter::Parenthesis, _))
     }
 
+    /// Whether the token after the next is one of these characters or words.
+    pub fn is_followed_by(&self, characters: &[char], words: &[&str]) -> bool {
+        let token = self.ahead(1);
+        match token.kind {
+            Kind::Punct(c) => characters.contains(&c),
+            Kind::Word => words.contains(&token.text.as_str()),
+            _ => false,
+        }
+    }
+
     /// Whether the next token closes a bracket or is the end.
     pub fn is_end(&self) -> bool {
         matches!(self.peek().kind, Kind::Close(_) | Kind::End)

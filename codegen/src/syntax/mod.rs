@@ -27,6 +27,7 @@ mod cursor;
 mod declaration;
 mod element;
 mod expression;
+mod invariant;
 mod load;
 mod number;
 mod parse;
@@ -35,6 +36,7 @@ mod statement;
 pub mod suggest;
 mod tokens;
 mod words;
+pub mod written;
 
 #[cfg(all(test, feature = "files"))]
 mod tests;

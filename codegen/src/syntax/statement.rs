@@ -7,7 +7,7 @@ use super::parse::since;
 use super::suggest::closest;
 use super::tokens::Kind;
 use super::words::{LATER, statements};
-use super::{body, declaration, element, load};
+use super::{body, declaration, element, invariant, load};
 use crate::diagnostics::Diagnostic;
 
 /// Parses one statement with its `;`.
@@ -110,6 +110,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
         "spring" => element::spring(cursor)?,
         "damper" => element::damper(cursor)?,
         "dissipation" => ItemKind::Dissipation(expression(cursor)?),
+        "invariant" => invariant::invariant(cursor)?,
         "generate" => ItemKind::Generate(functions(cursor)?),
         _ => {
             return Err(unknown(

@@ -69,6 +69,21 @@ fn acts(acting: &Acting) -> String {
     }
 }
 
+/// What an invariant claims.
+fn kept(conserved: &super::ast::Conserved) -> String {
+    use super::ast::Conserved::*;
+    let frame = |of: &Option<super::ast::Ident>| of.as_ref().map(|of| of.name.clone());
+    match conserved {
+        Energy => "energy".into(),
+        LinearMomentum { of, along } => format!("P of {:?} along {}", frame(of), maybe(along)),
+        AngularMomentum { of, about, along } => {
+            let of = frame(of);
+            format!("L of {of:?} about {} along {}", maybe(about), maybe(along))
+        }
+        Value(value) => spelled(value),
+    }
+}
+
 /// A statement in one line.
 fn told(kind: &ItemKind) -> String {
     use super::ast::{Declaration, Load::*};
@@ -202,6 +217,14 @@ fn told(kind: &ItemKind) -> String {
             acting,
         } => format!("damper {} {}", spelled(coefficient), acts(acting)),
         Dissipation(value) => format!("dissipation {}", spelled(value)),
+        Invariant {
+            name,
+            conserved,
+            when,
+        } => {
+            let when = super::written::conditions(when);
+            format!("invariant {} {} when {when}", name.name, kept(conserved))
+        }
         Generate(names) => {
             format!(
                 "generate {}",

@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 27] = [
+const STATEMENTS: [(&str, &str); 28] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -80,13 +80,17 @@ const STATEMENTS: [(&str, &str); 27] = [
     ),
     ("output", "an output is written `output speed = norm(v);`"),
     (
+        "invariant",
+        "an invariant is written `invariant energy;`, `invariant angular_momentum about p along a;` or `invariant name = expr when F = 0;`",
+    ),
+    (
         "generate",
         "a selection of functions is written `generate accel, energy;`",
     ),
 ];
 
 /// Statements of later versions.
-pub(super) const LATER: [&str; 2] = ["joint", "invariant"];
+pub(super) const LATER: [&str; 1] = ["joint"];
 
 /// Words that end an expression, and can name nothing.
 pub(super) const CONNECTIVES: [&str; 5] = ["at", "on", "in", "about", "stabilized"];

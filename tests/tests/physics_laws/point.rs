@@ -248,9 +248,11 @@ models! {
     cart_pole::CartPole,
     double_pendulum_angles::DoublePendulum,
     double_pendulum_circles::CircleDoublePendulum,
+    euler_top_quaternion::EulerTop,
     four_bar::FourBar,
     free_body::FreeBody,
     free_body_both::FreeBodyBoth,
+    free_body_momenta::FreeBodyMomenta,
     free_body_no_wrench::FallingBody,
     free_body_rows::FreeBodyRows,
     free_body_world::WorldBody,
@@ -261,6 +263,8 @@ models! {
     heavy_top_quaternion::QuaternionTop,
     heavy_top_world::WorldTop,
     hoop_bead::HoopBead,
+    kovalevskaya_top::KovalevskayaTop,
+    lagrange_top::LagrangeTop,
     pendulum::Pendulum,
     pendulum_circle::CirclePendulum,
     pendulum_rows::PendulumRows,
@@ -272,6 +276,7 @@ models! {
     satellite::Satellite,
     six_particles::SixParticles,
     slider_crank::SliderCrank,
+    spherical_pendulum::SphericalPendulum,
     two_bodies::TwoBodies,
 }
 

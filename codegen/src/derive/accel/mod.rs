@@ -329,7 +329,7 @@ fn first_plans(graph: &Graph, parts: &Parts, small: bool) -> Vec<Plan> {
 }
 
 /// All plans worth counting for a small system.
-fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
+pub(in crate::derive) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
     let n = parts.mass.len();
     if graph.len() > LARGE {
         return [(0..n).collect(), (0..n).rev().collect()]

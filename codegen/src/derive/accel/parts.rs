@@ -33,6 +33,13 @@ pub enum Reference {
 }
 
 impl Parts {
+    /// f − Γ ξ ξ − ∂V.
+    pub fn right(&self, graph: &mut Graph) -> Vec<Edge> {
+        (0..self.inertia.len())
+            .map(|i| graph.sum(&[self.inertia[i], self.conservative[i], self.applied[i]]))
+            .collect()
+    }
+
     /// The same in another graph.
     pub fn rebuilt(&self, from: &Graph, into: &mut Graph) -> Parts {
         let mut vector = |v: &[Edge]| rebuild(from, into, v);

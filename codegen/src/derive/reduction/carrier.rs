@@ -3,8 +3,9 @@
 use super::kinetic::{drift, kinetic_terms};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::transplant::substitute;
+use crate::algebra::transplant::map_symbols;
 use crate::model::completion::Completion;
+use crate::model::invariants::{Invariant, Quantity};
 use crate::model::pfaffian::Pfaffian;
 use crate::model::value::Value;
 use crate::model::{Group, KineticTerms, Model, class};
@@ -57,11 +58,11 @@ impl Carrier {
     }
 
     fn carry(&mut self, edges: &[Edge]) -> Vec<Edge> {
-        substitute(&self.full.graph, &mut self.graph, edges, &self.images)
+        map_symbols(&self.full.graph, &mut self.graph, edges, &self.images)
     }
 
     fn carry_free(&mut self, edges: &[Edge]) -> Vec<Edge> {
-        substitute(
+        map_symbols(
             &self.full.points.free,
             &mut self.free,
             edges,
@@ -95,6 +96,8 @@ impl Carrier {
         let xi_dot: Vec<Edge> = self.active.iter().map(|&i| full.xi_dot[i]).collect();
         model.xi_dot = self.carry(&xi_dot);
         model.u = self.carry(&full.u);
+        let momenta: Vec<Edge> = self.active.iter().map(|&i| full.momenta[i]).collect();
+        model.momenta = self.carry(&momenta);
         model.rate = self.carry(&full.rate);
         // A C = ∂ẋ/∂ξₐ.
         let graph = &mut self.graph;
@@ -136,6 +139,11 @@ impl Carrier {
         model.gravity = self.three(full.gravity);
         model.generalized = self.generalized();
         model.outputs = self.named(&full.outputs);
+        model.invariants = full
+            .invariants
+            .iter()
+            .map(|claim| self.claim(claim))
+            .collect();
         model.lets = self.named(&full.lets);
         model.constraints = kept
             .iter()
@@ -172,6 +180,39 @@ impl Carrier {
         model.spans = false;
         model.graph = self.graph;
         model
+    }
+
+    fn claim(&mut self, claim: &Invariant) -> Invariant {
+        let quantity = match &claim.quantity {
+            Quantity::Energy => Quantity::Energy,
+            Quantity::LinearMomentum { of, along } => Quantity::LinearMomentum {
+                of: *of,
+                along: along.map(|along| self.three(along)),
+            },
+            Quantity::AngularMomentum { of, about, along } => Quantity::AngularMomentum {
+                of: *of,
+                about: self.three(*about),
+                along: along.map(|along| self.three(along)),
+            },
+            Quantity::Value(value) => Quantity::Value(self.value(value)),
+        };
+        let place = |graph: &Graph, edge: Edge| {
+            let symbols = graph.symbols();
+            symbols.iter().position(|symbol| symbol.node == edge.node())
+        };
+        let set = claim
+            .set
+            .iter()
+            .filter_map(|&(symbol, value)| {
+                let value = self.one(value);
+                Some((place(&self.graph, self.images[symbol])?, value))
+            })
+            .collect();
+        Invariant {
+            quantity,
+            set,
+            ..claim.clone()
+        }
     }
 
     /// Cᵀ f of the generalised forces that the user wrote.
@@ -243,12 +284,13 @@ fn restricted(
 ) -> (Graph, Vec<Edge>) {
     let mut graph = from.fresh();
     let mut images = Vec::new();
-    let (mut velocity, mut acceleration) = (0, 0);
+    let (mut velocity, mut acceleration, mut momentum) = (0, 0, 0);
     let mut solved = Vec::new();
     for (index, symbol) in from.symbols().iter().enumerate() {
         let counter = match symbol.class {
             class::VELOCITY => Some((&mut velocity, xi)),
             class::ACCEL => Some((&mut acceleration, xi_dot)),
+            class::MOMENTUM => Some((&mut momentum, xi)),
             _ => None,
         };
         if let Some((count, by)) = counter {
@@ -265,7 +307,7 @@ fn restricted(
     }
     // What was solved for is written in symbols that stay.
     let expressions: Vec<Edge> = solved.iter().map(|(_, edge)| *edge).collect();
-    let made = substitute(&full.graph, &mut graph, &expressions, &images);
+    let made = map_symbols(&full.graph, &mut graph, &expressions, &images);
     for ((index, _), edge) in solved.into_iter().zip(made) {
         images[index] = edge;
     }

@@ -97,6 +97,33 @@ fn canonical_spelling_ignores_layout() {
     assert_eq!(spelling(""), "");
 }
 
+#[test]
+fn invariants() {
+    for (text, told_as) in [
+        ("invariant energy;", "invariant energy energy when "),
+        (
+            "invariant e = energy when F = 0, s[1] = 2 * k;",
+            "invariant e energy when F = 0, s[1] = 2 * k",
+        ),
+        (
+            "invariant linear_momentum of hull along [1, 0, 0];",
+            "invariant linear_momentum P of Some(\"hull\") along [1, 0, 0] when ",
+        ),
+        (
+            "invariant l = angular_momentum about r along R * e when tau = 0;",
+            "invariant l L of None about r along (R * e) when tau = 0",
+        ),
+        // An expression may start with a name that is no word of the language elsewhere.
+        (
+            "invariant l = energy * 2;",
+            "invariant l (energy * 2) when ",
+        ),
+        ("invariant when = of^2;", "invariant when (of ^ 2) when "),
+    ] {
+        assert_eq!(told(&statement(text)), told_as);
+    }
+}
+
 fn value(text: &str) -> String {
     match statement(&format!("potential {text};")) {
         ItemKind::Potential(value) => spelled(&value),

@@ -159,7 +159,7 @@ fn unknown_statements() {
     let cases = [
         r#"velocty v;"#,
         r#"joint j: revolute;"#,
-        r#"invariant energy when F = 0;"#,
+        r#"spring 3;"#,
         r#"m = 3;"#,
         r#"banana m;"#,
         r#"3;"#,
@@ -171,7 +171,7 @@ fn unknown_statements() {
       did you mean `velocity`?
     2:1 this version does not have the statement `joint` <joint>
       the statements are 
-    2:1 this version does not have the statement `invariant` <invariant>
+    2:1 this version does not have the statement `spring` <spring>
       the statements are 
     2:1 `m` is declared without saying what it is <m>
       start with `param`, `const` or `let`, or say what moves with `rate`

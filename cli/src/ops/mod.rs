@@ -1,5 +1,7 @@
 //! `hamel ops`: what a call of each generated function costs.
 
+mod advice;
+
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::source::Source;
@@ -17,7 +19,7 @@ use std::path::PathBuf;
 /// parameters are set. flops are add + mul + div; negation is free.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  hamel ops heavy_top.eom\n  hamel ops heavy_top.eom --format json"
+    after_help = "Examples:\n  hamel ops heavy_top.eom\n  hamel ops heavy_top.eom --format json\n  hamel ops heavy_top.eom --advise"
 )]
 pub struct Arguments {
     /// Description, `-` for standard input.
@@ -26,6 +28,10 @@ pub struct Arguments {
     /// How to write the counts.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
+    /// Compare ξ̇ in other velocity coordinates: rotations in body or world axes, points in either,
+    /// angles absolute or relative; the cheapest first, with the statements to write.
+    #[arg(long)]
+    advise: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -47,7 +53,19 @@ struct Row {
 
 /// Counts and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let generated = Source::read(&arguments.file)?.derive()?;
+    let source = Source::read(&arguments.file)?;
+    let mut generated = source.derive()?;
+    if arguments.advise {
+        return advice::run(
+            &source,
+            &generated.model,
+            matches!(arguments.format, Format::Json),
+        );
+    }
+    // What is generated on demand alone is counted as well, unless functions were chosen.
+    if generated.model.generate.is_empty() {
+        generated = source.derive_linearized()?;
+    }
     let program = &generated.program;
     let schedule = Schedule::of(program);
     let rows = rows(program, &schedule);

@@ -1,0 +1,137 @@
+//! Eigenvalues of a general real matrix.
+//!
+//! States that drive one another form classes; the classes can be put in an order in which the matrix
+//! is block triangular, so its eigenvalues are those of the diagonal blocks. A displacement that
+//! nothing depends on is a block of its own, with an eigenvalue that is zero and not the square root
+//! of a rounding error. Blocks are balanced and go through the QR algorithm.
+
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
+use nalgebra::{DMatrix, Schur};
+
+/// Rounds of the QR algorithm for each row before it is tried otherwise.
+const ROUNDS: usize = 200;
+/// Shifts by multiples of the norm, under which an algorithm that stalls at a singular block goes on.
+const SHIFTS: [f64; 4] = [0.0, 1.0, -1.0, 0.37];
+
+/// Real and imaginary parts, the fastest growing first; `None` where the QR algorithm does not
+/// converge. The entries have to be finite.
+pub fn eigenvalues(rows: &[Vec<f64>]) -> Option<Vec<(f64, f64)>> {
+    let mut values = Vec::with_capacity(rows.len());
+    for class in classes(rows) {
+        if let [only] = class.as_slice() {
+            values.push((rows[*only][*only], 0.0));
+        } else {
+            let block = DMatrix::from_fn(class.len(), class.len(), |i, j| rows[class[i]][class[j]]);
+            values.extend(of_block(block)?);
+        }
+    }
+    values.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
+    Some(values)
+}
+
+/// The states that drive one another, directly or through others.
+fn classes(rows: &[Vec<f64>]) -> Vec<Vec<usize>> {
+    let n = rows.len();
+    let mut reaches: Vec<Vec<bool>> = (0..n)
+        .map(|i| (0..n).map(|j| i == j || rows[i][j] != 0.0).collect())
+        .collect();
+    for k in 0..n {
+        for i in 0..n {
+            for j in 0..n {
+                reaches[i][j] |= reaches[i][k] && reaches[k][j];
+            }
+        }
+    }
+    let mut open: Vec<usize> = (0..n).collect();
+    let mut classes = Vec::new();
+    while let Some(&first) = open.first() {
+        let (class, rest) = open
+            .into_iter()
+            .partition(|&other| reaches[first][other] && reaches[other][first]);
+        classes.push(class);
+        open = rest;
+    }
+    classes
+}
+
+fn of_block(mut block: DMatrix<f64>) -> Option<Vec<(f64, f64)>> {
+    balance_parlett_reinsch(&mut block);
+    let n = block.nrows();
+    let size = block.amax();
+    SHIFTS.iter().find_map(|part| {
+        let shift = part * size;
+        let shifted = &block + DMatrix::identity(n, n) * shift;
+        let schur = Schur::try_new(shifted, f64::EPSILON, ROUNDS * n)?;
+        let values = schur.complex_eigenvalues();
+        Some(
+            values
+                .iter()
+                .map(|value| (value.re - shift, value.im))
+                .collect(),
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::eigenvalues;
+
+    /// Sum and sum of squares of the eigenvalues are the traces of A and A².
+    fn assert_traces(rows: &[Vec<f64>]) {
+        let values = eigenvalues(rows).expect("converges");
+        assert_eq!(values.len(), rows.len());
+        let n = rows.len();
+        let trace: f64 = (0..n).map(|i| rows[i][i]).sum();
+        let square: f64 = (0..n)
+            .flat_map(|i| (0..n).map(move |j| (i, j)))
+            .map(|(i, j)| rows[i][j] * rows[j][i])
+            .sum();
+        let found: f64 = values.iter().map(|v| v.0).sum();
+        let squares: f64 = values.iter().map(|v| v.0 * v.0 - v.1 * v.1).sum();
+        assert!((found - trace).abs() < 1e-9, "{values:?}");
+        assert!((squares - square).abs() < 1e-7, "{values:?}");
+    }
+
+    #[test]
+    fn structured_matrices_converge() {
+        // A cycle, on which unshifted QR never moves.
+        let cycle: Vec<Vec<f64>> = (0..6)
+            .map(|i| {
+                (0..6)
+                    .map(|j| f64::from(u8::from((i + 1) % 6 == j)))
+                    .collect()
+            })
+            .collect();
+        assert_traces(&cycle);
+        // A top that spins: two tilts turned into one another.
+        let (a, b, c) = (60.0, 19.62, 44.0);
+        assert_traces(&[
+            vec![0.0, a, 1.0, 0.0],
+            vec![-a, 0.0, 0.0, 1.0],
+            vec![b, 0.0, 0.0, c],
+            vec![0.0, b, -c, 0.0],
+        ]);
+        let mut state = 1u64;
+        let mut number = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
+        };
+        for n in 2..12 {
+            let rows: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| number()).collect()).collect();
+            assert_traces(&rows);
+        }
+    }
+
+    #[test]
+    fn what_nothing_depends_on_has_an_eigenvalue_of_exactly_zero() {
+        let integrator = vec![
+            vec![0.0, 1.0, 0.5],
+            vec![0.0, 0.0, 2.0],
+            vec![0.0, 0.0, -3.0],
+        ];
+        let values = eigenvalues(&integrator).expect("converges");
+        assert_eq!(values, [(0.0, 0.0), (0.0, 0.0), (-3.0, 0.0)]);
+    }
+}

@@ -1,0 +1,218 @@
+//! `hamel linearize`: the motion near a state, with its eigenvalues.
+
+use crate::eigenvalues::eigenvalues;
+use crate::failure::{Failure, print};
+use crate::interpreted::{Interpreted, constant_singular, function};
+use crate::json::Json;
+use crate::names;
+use crate::number::short;
+use crate::source::Source;
+use crate::state::State;
+use clap::{Args, ValueEnum};
+use hamel::System;
+use std::path::PathBuf;
+
+/// A larger acceleration is no rounding of zero.
+const AT_REST: f64 = 1e-9;
+
+/// Prints the linearisation at a state: matrices A and B, and the eigenvalues of A.
+///
+/// The state (h, δξ) has no redundant directions: h are displacements along the columns of A(x),
+/// δx = A(x) h, one for each velocity coordinate, and δξ the changes of the velocities. Then
+/// d/dt (h, δξ) = A (h, δξ) + B δu. Where the system is neither at rest nor in steady motion, the
+/// matrices hold for that instant alone.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel linearize heavy_top.eom
+  hamel linearize heavy_top.eom --at state.json
+  hamel linearize heavy_top.eom --format json")]
+pub struct Arguments {
+    /// Description, `-` for standard input.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// State; see `hamel eval --help`.
+    #[arg(long, value_name = "STATE.json")]
+    at: Option<PathBuf>,
+    /// How to write the matrices.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// Parts of eigenvalues that are smaller, relative to the largest entry of A, are shown as zero.
+const ROUNDING: f64 = 1e-14;
+
+/// The numbers of a linearisation.
+struct Linear {
+    system: String,
+    /// Names of h and δξ.
+    states: Vec<String>,
+    /// Names of u.
+    inputs: Vec<String>,
+    a: Vec<Vec<f64>>,
+    b: Vec<Vec<f64>>,
+    /// Real and imaginary parts, the fastest growing first.
+    eigenvalues: Vec<(f64, f64)>,
+    /// ξ̇ at the state.
+    xi_dot: Vec<f64>,
+}
+
+/// Linearises and prints.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let generated = Source::read(&arguments.file)?.derive_linearized()?;
+    let state = State::read(&generated.model, arguments.at.as_deref())?;
+    let program = &generated.program;
+    let State { params, x, xi, u } = &state;
+    let singular = || {
+        Failure::failed(
+            "the mass matrix is not positive definite at this state: there is no linearisation",
+        )
+    };
+    if constant_singular(program, params) {
+        return Err(singular());
+    }
+    let xi_dot = Interpreted::new(&generated, &state)?.accel(x, xi, u);
+    let xi_dot = xi_dot.map_err(|_| singular())?;
+    let flat = function(program, "linearize", params)?
+        .call(x, xi, u, &[])
+        .map_err(|_| singular())?;
+    let inputs: Vec<String> = generated
+        .model
+        .inputs
+        .iter()
+        .flat_map(names::group)
+        .collect();
+    let velocities = names::velocities(&generated.model);
+    let displacements = velocities.iter().map(|name| format!("h({name})"));
+    let changes = velocities.iter().map(|name| format!("d({name})"));
+    let states: Vec<String> = displacements.chain(changes).collect();
+    if let Some(entry) = flat.iter().position(|value| !value.is_finite()) {
+        return Err(Failure::failed(format!(
+            "the linearisation is not finite at this state: row {} has no value",
+            entry / (states.len() + inputs.len()).max(1) + 1
+        )));
+    }
+    let rows: Vec<&[f64]> = flat.chunks((states.len() + inputs.len()).max(1)).collect();
+    let a: Vec<Vec<f64>> = rows
+        .iter()
+        .map(|row| row[..states.len()].to_vec())
+        .collect();
+    let b = rows
+        .iter()
+        .map(|row| row[states.len()..].to_vec())
+        .collect();
+    let linear = Linear {
+        system: generated.model.name.clone(),
+        eigenvalues: eigenvalues(&a).ok_or_else(|| {
+            Failure::failed("the eigenvalues were not found: the QR algorithm does not converge")
+        })?,
+        states,
+        inputs,
+        a,
+        b,
+        xi_dot,
+    };
+    print(&match arguments.format {
+        Format::Text => text(&linear),
+        Format::Json => json(&linear).pretty(),
+    })
+}
+
+fn text(linear: &Linear) -> String {
+    let mut text = format!(
+        "\x1b[1m{}\x1b[0m  d/dt (h, d) = A (h, d) + B du; displacements h along the columns of A(x), changes d of velocities\n",
+        linear.system
+    );
+    text.push_str("\n\x1b[1mA\x1b[0m\n");
+    text.push_str(&table(&linear.states, &linear.states, &linear.a));
+    if !linear.inputs.is_empty() {
+        text.push_str("\n\x1b[1mB\x1b[0m\n");
+        text.push_str(&table(&linear.states, &linear.inputs, &linear.b));
+    }
+    text.push_str("\n\x1b[1meigenvalues of A\x1b[0m\n");
+    let size = linear
+        .a
+        .iter()
+        .flatten()
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    let clean = |value: f64| {
+        if value.abs() < ROUNDING * size {
+            0.0
+        } else {
+            value
+        }
+    };
+    for &(re, im) in &linear.eigenvalues {
+        let re = clean(re);
+        // A pair of conjugates on one line.
+        if im > 0.0 {
+            text.push_str(&format!("  {} ± {} i\n", short(re), short(im)));
+        } else if im == 0.0 {
+            text.push_str(&format!("  {}\n", short(re)));
+        }
+    }
+    let largest = linear.xi_dot.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    if largest > AT_REST {
+        text.push_str(&format!(
+            "\nthe velocities change here, max |xi_dot| = {}: the matrices hold for this instant\n",
+            short(largest)
+        ));
+    }
+    text
+}
+
+/// Numbers below the names of their columns, after the names of their rows.
+fn table(rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
+    let cells: Vec<Vec<String>> = values
+        .iter()
+        .map(|row| row.iter().map(|&value| short(value)).collect())
+        .collect();
+    let first = rows
+        .iter()
+        .map(|name| name.chars().count())
+        .max()
+        .unwrap_or(0);
+    let widths: Vec<usize> = columns
+        .iter()
+        .enumerate()
+        .map(|(j, name)| {
+            let numbers = cells.iter().filter_map(|row| row.get(j));
+            let widest = numbers.map(|cell| cell.chars().count()).max().unwrap_or(0);
+            widest.max(name.chars().count())
+        })
+        .collect();
+    let line = |head: &str, entries: &[String]| {
+        let mut line = format!("  {head:first$}");
+        for (entry, width) in entries.iter().zip(&widths) {
+            line.push_str(&format!("  {entry:>width$}"));
+        }
+        line.push('\n');
+        line
+    };
+    let mut text = line("", columns);
+    for (name, row) in rows.iter().zip(&cells) {
+        text.push_str(&line(name, row));
+    }
+    text
+}
+
+fn json(linear: &Linear) -> Json {
+    let pair = |&(re, im): &(f64, f64)| Json::vector(&[re, im]);
+    Json::object([
+        ("system", Json::Text(linear.system.clone())),
+        ("states", Json::texts(&linear.states)),
+        ("inputs", Json::texts(&linear.inputs)),
+        ("A", Json::matrix(&linear.a)),
+        ("B", Json::matrix(&linear.b)),
+        (
+            "eigenvalues",
+            Json::List(linear.eigenvalues.iter().map(pair).collect()),
+        ),
+        ("xi_dot", Json::vector(&linear.xi_dot)),
+    ])
+}

@@ -1,0 +1,116 @@
+//! Functions beside the equations of motion: momenta, the motion nearby, invariants.
+
+use super::assemble::{Builder, shape_of};
+use super::calculus::Calculus;
+use super::invariants::quantity;
+use super::linearize::{Displacements, Motion, linearize};
+use super::momentum;
+use super::reduction::Reduction;
+use crate::algebra::graph::Edge;
+use crate::algebra::transplant::rebuild;
+use crate::model::Model;
+use crate::model::invariants::Quantity;
+use crate::program::{Argument, Function, Shape};
+use Argument::{Coordinates, Inputs, Momenta, Velocities};
+
+impl Builder<'_> {
+    /// ṗ of (x, ξ, u), and ξ of (x, p).
+    pub(super) fn momentum(&mut self) {
+        if !self.model.spans {
+            return;
+        }
+        let n = self.model.n();
+        if self.model.wants("momentum_rate") {
+            let rate = momentum::rate(self.model, &mut self.graph, &self.parts);
+            self.push(
+                "momentum_rate",
+                &["Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a))."],
+                &[Coordinates, Velocities, Inputs],
+                Shape::Vector(n),
+                rate,
+            );
+        }
+        if !self.model.wants("velocity_of_momentum") {
+            return;
+        }
+        let p = &self.model.momenta;
+        if let Some(solution) = momentum::velocity(&mut self.graph, &self.parts, p) {
+            let varying = |edge: &Edge| !self.graph.is_free(edge.node());
+            let guards = solution.pivots.into_iter().filter(varying).collect();
+            self.functions.push(Function {
+                name: "velocity_of_momentum".into(),
+                docs: vec!["Velocity coordinates of a generalised momentum, ξ = M⁻¹ p.".into()],
+                arguments: vec![Coordinates, Momenta],
+                shape: Shape::Vector(n),
+                outputs: solution.xi_dot,
+                guards,
+                fallible: true,
+            });
+        }
+    }
+
+    /// [A B] of the motion nearby.
+    pub(super) fn linearize(&mut self, full: &Model, reduction: Option<&Reduction>) {
+        let Some(nearby) = Displacements::new(full, reduction, &mut self.graph) else {
+            return;
+        };
+        let right = self.parts.right(&mut self.graph);
+        let motion = Motion {
+            graph: &self.graph,
+            xi_dot: &self.chosen.xi_dot,
+            nearby,
+            // With multipliers M F is not the right-hand side.
+            implicit: (self.model.constraints.is_empty()).then_some((&self.parts.mass, &right)),
+        };
+        let linear = linearize(self.model, &motion);
+        let rows = linear.rows.len();
+        let columns = linear.rows.first().map_or(0, Vec::len);
+        let outputs = rebuild(&linear.graph, &mut self.graph, &linear.rows.concat());
+        let varying = |edge: &Edge| !self.graph.is_free(edge.node());
+        self.functions.push(Function {
+            name: "linearize".into(),
+            docs: vec![
+                "The motion nearby in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,".into(),
+                "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).".into(),
+            ],
+            arguments: vec![Coordinates, Velocities, Inputs],
+            shape: Shape::Matrix(rows, columns),
+            outputs,
+            guards: self.chosen.pivots.iter().copied().filter(varying).collect(),
+            fallible: true,
+        });
+    }
+
+    /// What is claimed to be constant, as functions that watch it.
+    pub(super) fn invariants(&mut self) {
+        let mut model = self.model.clone();
+        let mut calculus = Calculus::new(&model);
+        for claim in &self.model.invariants {
+            // The energy has its function already.
+            if matches!(claim.quantity, Quantity::Energy) && claim.name == "energy" {
+                continue;
+            }
+            let energy = self.functions.iter().find(|f| f.name == "energy");
+            let energy = energy.and_then(|f| f.outputs.first()).copied();
+            let (shape, outputs) = match (&claim.quantity, energy) {
+                (Quantity::Energy, Some(energy)) => (Shape::Scalar, vec![energy]),
+                (quantity, _) => {
+                    let zero = model.graph.zero();
+                    let value = quantity::value(&mut model, &mut calculus, (zero, zero), quantity);
+                    let entries = rebuild(&model.graph, &mut self.graph, &value.entries());
+                    (shape_of(&value), entries)
+                }
+            };
+            let when = match claim.when.as_str() {
+                "" => String::new(),
+                when => format!(" when {when}"),
+            };
+            let docs = format!(
+                "Invariant `{}`: constant along the motion{when}.",
+                claim.name
+            );
+            let arguments = [Coordinates, Velocities];
+            self.push(&claim.name, &[&docs], &arguments, shape, outputs);
+        }
+    }
+}

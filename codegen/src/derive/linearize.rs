@@ -1,0 +1,232 @@
+//! The motion nearby, without redundant directions: with δx = A(x) h and ξ̇ = F(x, ξ, u)
+//!
+//! ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = (∂ⱼF) hʲ + (∂F/∂ξ) δξ + (∂F/∂u) δu.
+//!
+//! Where constraints leave ξ = C(x) ξₐ, the n displacements h stay, of ξ only ξₐ varies, and the
+//! matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ.
+
+use super::calculus::Calculus;
+use super::reduction::Reduction;
+use super::{commutation, kinematics};
+use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::solve_symmetric;
+use crate::algebra::resubstitute::resubstitute;
+use crate::algebra::transplant::{map_symbols, rebuild};
+use crate::derive::normal::{NormalForms, build};
+use crate::model::Model;
+use crate::program::count::count;
+
+/// Systems with more velocities are not expanded.
+const MOST_EXPANDED: usize = 8;
+/// Entries with more terms are not expanded.
+const MOST_TERMS: usize = 40;
+
+/// ξ̇ = F as edges of a graph that grew from the model's.
+pub struct Motion<'a> {
+    /// The graph.
+    pub graph: &'a Graph,
+    /// F, one entry for each active velocity.
+    pub xi_dot: &'a [Edge],
+    /// The displacements.
+    pub nearby: Displacements,
+    /// M and f − Γ ξ ξ − ∂V of the active velocities, where M F = right-hand side holds.
+    pub implicit: Option<(&'a [Vec<Edge>], &'a [Edge])>,
+}
+
+/// [A B]: n + nₐ rows of n + nₐ + m, for (h, δξ, δu).
+pub struct Linear {
+    /// The graph that it lives in.
+    pub graph: Graph,
+    /// The rows.
+    pub rows: Vec<Vec<Edge>>,
+}
+
+/// The frame that displacements are measured in, as edges of the graph of F.
+pub struct Displacements {
+    /// A of the full frame, ν rows of n.
+    a: Vec<Vec<Edge>>,
+    /// ξ = C ξₐ.
+    xi: Vec<Edge>,
+    /// γ of the full frame.
+    gamma: Vec<Vec<Vec<Edge>>>,
+}
+
+impl Displacements {
+    /// Those of a model, in the graph of its program.
+    pub fn new(full: &Model, reduction: Option<&Reduction>, graph: &mut Graph) -> Option<Self> {
+        let mut own = full.clone();
+        let mut calculus = Calculus::new(&own);
+        let rows = kinematics::left_inverse(&mut own)?;
+        let gamma = commutation::gamma(&mut own, &mut calculus, &rows);
+        let images =
+            reduction.map(|reduction| rebuild(&reduction.model.graph, graph, &reduction.images));
+        let mut carry = |edges: &[Edge]| match &images {
+            Some(images) => map_symbols(&own.graph, graph, edges, images),
+            None => rebuild(&own.graph, graph, edges),
+        };
+        Some(Displacements {
+            a: own.a.iter().map(|row| carry(row)).collect(),
+            xi: carry(&own.xi),
+            gamma: gamma
+                .iter()
+                .map(|table| table.iter().map(|row| carry(row)).collect())
+                .collect(),
+        })
+    }
+
+    fn n(&self) -> usize {
+        self.xi.len()
+    }
+}
+
+/// Linearises; `model` is that of the active velocities. The cheapest of three ways is taken: F itself
+/// differentiated; M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all columns; the
+/// entries expanded, their coefficients computed when parameters are set.
+pub fn linearize(model: &Model, motion: &Motion) -> Linear {
+    let upper = upper(model, motion);
+    let explicit = explicit(model, motion, &upper);
+    let mut candidates = Vec::new();
+    if model.n() <= MOST_EXPANDED {
+        candidates.extend(expanded(model, &explicit, motion.graph));
+    }
+    candidates.extend(implicit(model, motion, &upper));
+    candidates.push(explicit);
+    let cost = |linear: &Linear| count(&linear.graph, &linear.rows.concat()).weight();
+    // The first of equals; there is always the explicit one.
+    let cheapest = (1..candidates.len()).fold(0, |best, i| {
+        if cost(&candidates[i]) < cost(&candidates[best]) {
+            i
+        } else {
+            best
+        }
+    });
+    let mut best = candidates.swap_remove(cheapest);
+    let roots = best.rows.concat();
+    if let Some((graph, edges)) = resubstitute(&best.graph, &roots, motion.graph) {
+        let columns = best.rows.first().map_or(1, |row| row.len().max(1));
+        let rows: Vec<Vec<Edge>> = edges.chunks(columns).map(<[Edge]>::to_vec).collect();
+        let polished = Linear { graph, rows };
+        if cost(&polished) < cost(&best) {
+            best = polished;
+        }
+    }
+    best
+}
+
+/// The rows of ḣ.
+fn upper(model: &Model, motion: &Motion) -> Linear {
+    let mut graph = motion.graph.clone();
+    let nearby = &motion.nearby;
+    let (n, zero) = (nearby.n(), graph.zero());
+    let mut columns = columns(model, &mut graph, nearby);
+    let rows = (0..n)
+        .map(|k| {
+            let mut row: Vec<Edge> = columns
+                .iter_mut()
+                .map(|column| column.of(&mut graph, nearby.xi[k]))
+                .collect();
+            for (j, entry) in row.iter_mut().enumerate().take(n) {
+                for i in 0..n {
+                    let product = graph.mul(nearby.gamma[i][j][k], nearby.xi[i]);
+                    *entry = graph.sub(*entry, product);
+                }
+            }
+            row.iter_mut()
+                .skip(n + model.n())
+                .for_each(|entry| *entry = zero);
+            row
+        })
+        .collect();
+    Linear { graph, rows }
+}
+
+/// The derivations of all columns: ∂ⱼ, ∂/∂ξₐ, ∂/∂u.
+fn columns(model: &Model, graph: &mut Graph, nearby: &Displacements) -> Vec<Derivation> {
+    let one = graph.one();
+    let along = |j: usize| {
+        let seeds = model.x.iter().zip(&nearby.a);
+        Derivation::new(seeds.map(|(x, row)| (x.node(), row[j])))
+    };
+    let by = |symbol: &Edge| Derivation::new([(symbol.node(), one)]);
+    (0..nearby.n())
+        .map(along)
+        .chain(model.xi.iter().map(by))
+        .chain(model.u.iter().map(by))
+        .collect()
+}
+
+/// F differentiated as it stands.
+fn explicit(model: &Model, motion: &Motion, upper: &Linear) -> Linear {
+    let mut graph = motion.graph.clone();
+    let mut columns = columns(model, &mut graph, &motion.nearby);
+    let mut rows = carried(upper, &mut graph);
+    rows.extend(motion.xi_dot.iter().map(|&rate| {
+        let entries = columns.iter_mut().map(|column| column.of(&mut graph, rate));
+        entries.collect::<Vec<Edge>>()
+    }));
+    Linear { graph, rows }
+}
+
+/// M δξ̇ = ∂(M F) − (∂M) F, all columns with one factorisation.
+fn implicit(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
+    let (mass, right) = motion.implicit?;
+    let mut graph = motion.graph.clone();
+    let mut columns = columns(model, &mut graph, &motion.nearby);
+    let changes: Vec<Vec<Edge>> = mass
+        .iter()
+        .zip(right)
+        .map(|(row, &force)| {
+            columns
+                .iter_mut()
+                .map(|column| {
+                    let change = column.of(&mut graph, force);
+                    let masses = column.all(&mut graph, row);
+                    let held = graph.dot(&masses, motion.xi_dot);
+                    graph.sub(change, held)
+                })
+                .collect()
+        })
+        .collect();
+    let solved = solve_symmetric(&mut graph, mass, &changes)?;
+    let mut rows = carried(upper, &mut graph);
+    rows.extend(solved);
+    Some(Linear { graph, rows })
+}
+
+/// Every entry as a sum of monomials with coefficients of parameters alone, where all are short.
+fn expanded(model: &Model, explicit: &Linear, base: &Graph) -> Option<Linear> {
+    let mut forms = NormalForms::new(&model.points);
+    let mut source = explicit.graph.clone();
+    let mut polynomials = Vec::new();
+    for &edge in explicit.rows.iter().flatten() {
+        let polynomial = forms.expand(&source, edge)?;
+        let reduced = forms.reduce(&source, &polynomial);
+        let shorter = if reduced.terms().len() <= polynomial.terms().len() {
+            reduced
+        } else {
+            polynomial
+        };
+        if shorter.terms().len() > MOST_TERMS {
+            return None;
+        }
+        polynomials.push(shorter);
+    }
+    let built: Vec<Edge> = polynomials
+        .iter()
+        .map(|polynomial| build(&mut source, polynomial))
+        .collect();
+    let mut graph = base.clone();
+    let entries = rebuild(&source, &mut graph, &built);
+    let columns = explicit.rows.first().map_or(1, |row| row.len().max(1));
+    Some(Linear {
+        graph,
+        rows: entries.chunks(columns).map(<[Edge]>::to_vec).collect(),
+    })
+}
+
+/// The rows of ḣ in another graph.
+fn carried(upper: &Linear, graph: &mut Graph) -> Vec<Vec<Edge>> {
+    let rows = upper.rows.iter();
+    rows.map(|row| rebuild(&upper.graph, graph, row)).collect()
+}

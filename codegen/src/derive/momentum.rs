@@ -1,0 +1,104 @@
+//! The Hamiltonian side: p = M ξ, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ (KR18 (30a)), and ξ = M⁻¹ p.
+
+use super::accel::all_plans;
+use super::accel::parts::Parts;
+use super::accel::solve::{Solution, solve};
+use super::calculus::Calculus;
+use super::{commutation, energy, inertia, kinematics};
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::transplant::rebuild;
+use crate::model::Model;
+use crate::program::count::count;
+
+/// ṗ in the graph of `parts`: ∂ᵢT − γᵢⱼᵏ ξʲ pₖ written out, or Ṁ ξ − Γ ξ ξ with what is there for ξ̇
+/// anyway, whichever costs less; then −∂V and the applied forces.
+pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
+    let mut own = model.clone();
+    let mut calculus = Calculus::new(&own);
+    let mass = inertia::mass_matrix(&mut own, &mut calculus);
+    let n = own.n();
+    let xi = own.xi.clone();
+    // Ṁ ξ.
+    let swing: Vec<Edge> = mass
+        .iter()
+        .map(|row| {
+            let rates: Vec<Edge> = row
+                .iter()
+                .map(|&entry| calculus.rate(&mut own.graph, entry))
+                .collect();
+            own.graph.dot(&rates, &xi)
+        })
+        .collect();
+    let swing = rebuild(&own.graph, graph, &swing);
+    let mut candidates = vec![
+        (0..n)
+            .map(|i| graph.add(swing[i], parts.inertia[i]))
+            .collect::<Vec<_>>(),
+    ];
+    if let Some(rows) = kinematics::left_inverse(&mut own) {
+        let gamma = commutation::gamma(&mut own, &mut calculus, &rows);
+        let kinetic = energy::kinetic(&mut own, &mass);
+        let p: Vec<Edge> = mass.iter().map(|row| own.graph.dot(row, &xi)).collect();
+        let hamel: Vec<Edge> = (0..n)
+            .map(|i| {
+                let mut sum = calculus.along(&mut own.graph, i, kinetic);
+                for j in 0..n {
+                    let turned = own.graph.dot(&gamma[i][j], &p);
+                    let product = own.graph.mul(turned, xi[j]);
+                    sum = own.graph.sub(sum, product);
+                }
+                sum
+            })
+            .collect();
+        candidates.push(rebuild(&own.graph, graph, &hamel));
+    }
+    let with_forces = |graph: &mut Graph, inner: &[Edge]| -> Vec<Edge> {
+        (0..n)
+            .map(|i| {
+                let sum = graph.add(inner[i], parts.conservative[i]);
+                graph.add(sum, parts.applied[i])
+            })
+            .collect()
+    };
+    let mut best: Option<Vec<Edge>> = None;
+    for candidate in candidates {
+        let full = with_forces(graph, &candidate);
+        let cost = count(graph, &full).weight();
+        if best
+            .as_ref()
+            .is_none_or(|best| cost < count(graph, best).weight())
+        {
+            best = Some(full);
+        }
+    }
+    best.unwrap_or_default()
+}
+
+/// M⁻¹ p with the cheapest elimination; `None` where M is singular everywhere.
+pub fn velocity(graph: &mut Graph, parts: &Parts, p: &[Edge]) -> Option<Solution> {
+    let parts = Parts {
+        mass: parts.mass.clone(),
+        groups: vec![p.to_vec()],
+        inertia: Vec::new(),
+        conservative: Vec::new(),
+        applied: Vec::new(),
+    };
+    let mut best: Option<(usize, Graph, Solution)> = None;
+    for plan in all_plans(graph, &parts) {
+        let mut own = graph.clone();
+        let Some(solution) = solve(&mut own, &parts, &plan) else {
+            continue;
+        };
+        let mut roots = solution.xi_dot.clone();
+        roots.extend(solution.pivots.iter().filter(|p| !own.is_free(p.node())));
+        let cost = count(&own, &roots).weight();
+        if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+            best = Some((cost, own, solution));
+        }
+    }
+    let (_, own, solution) = best?;
+    Some(Solution {
+        xi_dot: rebuild(&own, graph, &solution.xi_dot),
+        pivots: rebuild(&own, graph, &solution.pivots),
+    })
+}

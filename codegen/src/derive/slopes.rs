@@ -1,0 +1,204 @@
+//! Validation of what is a derivative or an inverse: [A B], ṗ, ξ of p, and invariants, at a point
+//! modulo p.
+//!
+//! Slopes are taken by dual numbers from M, h, ∂V and f of the independent derivation, and M ξ̇ = F
+//! is solved in numbers: no derivative of the generator's own takes part.
+
+use super::calculus::Calculus;
+use super::invariants::quantity;
+use super::validate::Reference;
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Node};
+use crate::algebra::lane::Lane;
+use crate::algebra::numeric::{evaluate_at, solve};
+use crate::algebra::tangent::tangent_at;
+use crate::program::Program;
+
+/// What is compared at every point.
+pub struct Slopes {
+    /// Names of the invariants with their entries in the reference's graph.
+    invariants: Vec<(String, Vec<Edge>)>,
+}
+
+/// M, F = f − h − ∂V, A and Aξ of one point, or their slopes.
+struct Numbers {
+    mass: Vec<Vec<Fp>>,
+    force: Vec<Fp>,
+    a: Vec<Vec<Fp>>,
+    rate: Vec<Fp>,
+}
+
+impl Numbers {
+    fn roots(reference: &Reference) -> Vec<Edge> {
+        let mut roots = reference.mass.concat();
+        for part in [&reference.force, &reference.bias, &reference.slope] {
+            roots.extend(part);
+        }
+        roots.extend(reference.model.a.concat());
+        roots.extend(&reference.model.rate);
+        roots
+    }
+
+    fn new(reference: &Reference, values: &[Fp]) -> Self {
+        let (n, nu) = (reference.model.n(), reference.model.nu());
+        let (mass, rest) = values.split_at(n * n);
+        let (forces, rest) = rest.split_at(3 * n);
+        let (a, rate) = rest.split_at(nu * n);
+        let rows = |flat: &[Fp]| flat.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
+        Numbers {
+            mass: rows(mass),
+            force: (0..n)
+                .map(|i| forces[i] - forces[n + i] - forces[2 * n + i])
+                .collect(),
+            a: rows(a),
+            rate: rate.to_vec(),
+        }
+    }
+}
+
+impl Slopes {
+    /// Prepares for a program.
+    pub fn new(reference: &mut Reference, program: &Program) -> Self {
+        let claims = reference.model.invariants.clone();
+        let energies = (reference.kinetic, reference.potential);
+        let mut calculus = Calculus::new(&reference.model);
+        let wanted = claims
+            .iter()
+            .filter(|claim| program.function(&claim.name).is_some());
+        let invariants = wanted
+            .map(|claim| {
+                let model = &mut reference.model;
+                let value = quantity::value(model, &mut calculus, energies, &claim.quantity);
+                (claim.name.clone(), value.entries())
+            })
+            .collect();
+        Slopes { invariants }
+    }
+
+    /// Compares at one point; `None` where it cannot be evaluated there.
+    pub fn at_point(
+        &self,
+        reference: &Reference,
+        program: &Program,
+        lane: &Lane,
+    ) -> Option<Result<(), &'static str>> {
+        let graph = &reference.model.graph;
+        let value = |name: &str| {
+            let function = program.function(name)?;
+            evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
+        };
+        let wanted = |name: &str| program.function(name).is_some();
+        for (name, entries) in &self.invariants {
+            if value(name)? != evaluate_at(graph, entries, &mut lane.clone())? {
+                return Some(Err("an invariant"));
+            }
+        }
+        if ![
+            "momentum",
+            "momentum_rate",
+            "velocity_of_momentum",
+            "linearize",
+        ]
+        .iter()
+        .any(|name| wanted(name))
+        {
+            return Some(Ok(()));
+        }
+        let roots = Numbers::roots(reference);
+        let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut lane.clone())?);
+        let symbol = |edges: &[Edge]| -> Vec<usize> {
+            edges
+                .iter()
+                .filter_map(|edge| match graph.node(edge.node()) {
+                    Node::Symbol(index) => Some(index as usize),
+                    _ => None,
+                })
+                .collect()
+        };
+        let model = &reference.model;
+        let (x, xi, u) = (symbol(&model.x), symbol(&model.xi), symbol(&model.u));
+        let numbers = |symbols: &[usize]| -> Vec<Fp> {
+            symbols.iter().map(|&index| lane.symbol(index)).collect()
+        };
+        let velocity = numbers(&xi);
+        let momentum = product(&here.mass, &velocity);
+        if wanted("momentum") && value("momentum")? != momentum {
+            return Some(Err("p"));
+        }
+        if wanted("velocity_of_momentum")
+            && product(&here.mass, &value("velocity_of_momentum")?)
+                != numbers(&symbol(&model.momenta))
+        {
+            return Some(Err("ξ of p"));
+        }
+        // The slopes of everything along a direction in the symbols.
+        let size = graph.symbols().len();
+        let slope = |moved: &[(usize, Fp)]| -> Option<Numbers> {
+            let mut direction = vec![Fp::ZERO; size];
+            moved.iter().for_each(|&(index, by)| direction[index] = by);
+            let duals = tangent_at(graph, &roots, &mut lane.clone(), &direction)?;
+            let slopes: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
+            Some(Numbers::new(reference, &slopes))
+        };
+        let along = |column: &[Fp]| -> Vec<(usize, Fp)> {
+            x.iter().copied().zip(column.iter().copied()).collect()
+        };
+        let moving = slope(&along(&here.rate))?;
+        if wanted("momentum_rate") {
+            // d/dt (M ξ) = Ṁ ξ + F.
+            let swing = product(&moving.mass, &velocity);
+            let rate: Vec<Fp> = (0..swing.len()).map(|i| swing[i] + here.force[i]).collect();
+            if value("momentum_rate")? != rate {
+                return Some(Err("ṗ"));
+            }
+        }
+        if !wanted("linearize") {
+            return Some(Ok(()));
+        }
+        let n = model.n();
+        let xi_dot = solve(here.mass.clone(), here.force.clone())?;
+        let columns = 2 * n + u.len();
+        let linear = value("linearize")?;
+        let column = |j: usize, rows: std::ops::Range<usize>| -> Vec<Fp> {
+            rows.map(|row| linear[row * columns + j]).collect()
+        };
+        for j in 0..columns {
+            let own: Vec<Fp> = here.a.iter().map(|row| row[j % n.max(1)]).collect();
+            // A ḣ = D(A ξ)[A h] − Ȧ h + A δξ.
+            let (changed, moved) = if j < n {
+                let changed = slope(&along(&own))?;
+                let moved: Vec<Fp> = (0..own.len())
+                    .map(|row| changed.rate[row] - moving.a[row][j])
+                    .collect();
+                (changed, moved)
+            } else if j < 2 * n {
+                (slope(&[(xi[j - n], Fp::ONE)])?, own)
+            } else {
+                (
+                    slope(&[(u[j - 2 * n], Fp::ONE)])?,
+                    vec![Fp::ZERO; own.len()],
+                )
+            };
+            if product(&here.a, &column(j, 0..n)) != moved {
+                return Some(Err("ḣ of the motion nearby"));
+            }
+            // M δξ̇ = δF − δM ξ̇.
+            let held = product(&changed.mass, &xi_dot);
+            let right: Vec<Fp> = (0..n).map(|i| changed.force[i] - held[i]).collect();
+            if product(&here.mass, &column(j, n..2 * n)) != right {
+                return Some(Err("δξ̇ of the motion nearby"));
+            }
+        }
+        Some(Ok(()))
+    }
+}
+
+fn product(rows: &[Vec<Fp>], vector: &[Fp]) -> Vec<Fp> {
+    let terms = |row: &Vec<Fp>| row.iter().zip(vector).map(|(&a, &b)| a * b).collect();
+    rows.iter()
+        .map(|row| {
+            let terms: Vec<Fp> = terms(row);
+            terms.into_iter().fold(Fp::ZERO, |sum, term| sum + term)
+        })
+        .collect()
+}

@@ -1,0 +1,98 @@
+//! Claims that something is constant along the motion.
+
+use super::ast::{Condition, Conserved, ExprKind, Ident, ItemKind};
+use super::cursor::{Cursor, Parsed};
+use super::expression::expression;
+use crate::diagnostics::Diagnostic;
+
+/// What has a name of its own.
+const BUILT_IN: [&str; 3] = ["energy", "linear_momentum", "angular_momentum"];
+/// The words that may follow it.
+const DETAILS: [&str; 4] = ["of", "about", "along", "when"];
+
+/// `[name =] energy | linear_momentum … | angular_momentum … | expr [when F = 0, tau = 0]`
+pub(super) fn invariant(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let (name, conserved) = if is_built_in(cursor) {
+        let name = Ident {
+            name: cursor.peek().text.clone(),
+            span: cursor.here(),
+        };
+        (name, built_in(cursor)?)
+    } else {
+        let name = cursor.name("an invariant")?;
+        cursor.assign()?;
+        let conserved = if is_built_in(cursor) {
+            built_in(cursor)?
+        } else {
+            Conserved::Value(expression(cursor)?)
+        };
+        (name, conserved)
+    };
+    let mut when = Vec::new();
+    if cursor.eat_word("when") {
+        when.push(condition(cursor)?);
+        while cursor.eat_punct(',') {
+            when.push(condition(cursor)?);
+        }
+    }
+    Ok(ItemKind::Invariant {
+        name,
+        conserved,
+        when,
+    })
+}
+
+/// Whether a built-in quantity is next, and no expression that starts with its name.
+fn is_built_in(cursor: &Cursor<'_>) -> bool {
+    BUILT_IN.iter().any(|word| cursor.is_word(word)) && cursor.is_followed_by(&[';'], &DETAILS)
+}
+
+fn built_in(cursor: &mut Cursor<'_>) -> Parsed<Conserved> {
+    let word = cursor.bump().text.as_str();
+    if word == "energy" {
+        return Ok(Conserved::Energy);
+    }
+    let of = if cursor.eat_word("of") {
+        Some(cursor.name("a frame")?)
+    } else {
+        None
+    };
+    if word == "linear_momentum" {
+        let along = after(cursor, "along")?;
+        return Ok(Conserved::LinearMomentum { of, along });
+    }
+    let about = after(cursor, "about")?;
+    let along = after(cursor, "along")?;
+    Ok(Conserved::AngularMomentum { of, about, along })
+}
+
+/// The expression after a word, where that stands.
+fn after(cursor: &mut Cursor<'_>, word: &str) -> Parsed<Option<super::ast::Expr>> {
+    if cursor.eat_word(word) {
+        expression(cursor).map(Some)
+    } else {
+        Ok(None)
+    }
+}
+
+/// `F = 0`, `s[1] = 0`
+fn condition(cursor: &mut Cursor<'_>) -> Parsed<Condition> {
+    let target = expression(cursor)?;
+    let named = match &target.kind {
+        ExprKind::Name(_) => true,
+        ExprKind::Index(base, _) => matches!(base.kind, ExprKind::Name(_)),
+        _ => false,
+    };
+    if !named {
+        return Err(Diagnostic::new(
+            target.span,
+            "a claim can set inputs and parameters, or entries of them",
+        )
+        .help("write `when F = 0` or `when s[1] = 0`"));
+    }
+    cursor.assign()?;
+    Ok(Condition {
+        target,
+        value: expression(cursor)?,
+    })
+}

@@ -1,0 +1,109 @@
+//! Expressions as text: one spelling for all sources of the same tokens.
+
+use super::ast::{BinaryOp, Condition, Expr, ExprKind};
+use num_rational::BigRational;
+use num_traits::{One, Signed};
+
+/// An expression in the language, with no more parentheses than it needs.
+pub fn written(expr: &Expr) -> String {
+    match &expr.kind {
+        ExprKind::Number(number) => decimal(number),
+        ExprKind::Name(name) => name.clone(),
+        ExprKind::Field(base, field) => format!("{}.{}", tight(base, 5), field.name),
+        ExprKind::Index(base, indices) => format!("{}[{}]", tight(base, 5), list(indices)),
+        ExprKind::Call(function, arguments) => format!("{}({})", function.name, list(arguments)),
+        ExprKind::Neg(inner) => format!("-{}", tight(inner, 3)),
+        ExprKind::Array(items) => format!("[{}]", list(items)),
+        ExprKind::Binary(op, left, right) => {
+            let (sign, own) = match op {
+                BinaryOp::Add => (" + ", 1),
+                BinaryOp::Sub => (" - ", 1),
+                BinaryOp::Mul => (" * ", 2),
+                BinaryOp::Div => (" / ", 2),
+                BinaryOp::Pow => ("^", 4),
+            };
+            // Equal strength groups from the left, but powers, which stand in parentheses.
+            let power = *op == BinaryOp::Pow;
+            let first = tight(left, own + u8::from(power));
+            format!("{first}{sign}{}", tight(right, own + 1))
+        }
+    }
+}
+
+/// What a claim sets: `F = 0, tau = 0`.
+pub fn conditions(when: &[Condition]) -> String {
+    let one = |c: &Condition| format!("{} = {}", written(&c.target), written(&c.value));
+    when.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+fn list(items: &[Expr]) -> String {
+    items.iter().map(written).collect::<Vec<_>>().join(", ")
+}
+
+/// An expression in parentheses where it binds less than is wanted.
+fn tight(expr: &Expr, wanted: u8) -> String {
+    let binds = match &expr.kind {
+        ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => 1,
+        ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => 2,
+        ExprKind::Neg(_) => 3,
+        ExprKind::Binary(BinaryOp::Pow, ..) => 4,
+        _ => 5,
+    };
+    if binds < wanted {
+        format!("({})", written(expr))
+    } else {
+        written(expr)
+    }
+}
+
+/// A number as a decimal where that is exact and short, else as a quotient.
+fn decimal(number: &BigRational) -> String {
+    if number.is_integer() {
+        return number.to_string();
+    }
+    let ten = BigRational::from_integer(10.into());
+    let mut scaled = number.abs();
+    for places in 1..=12usize {
+        scaled *= &ten;
+        if scaled.is_integer() {
+            let digits = scaled.to_integer().to_string();
+            let digits = format!("{digits:0>width$}", width = places + 1);
+            let (whole, part) = digits.split_at(digits.len() - places);
+            let sign = if number.is_negative() { "-" } else { "" };
+            return format!("{sign}{whole}.{part}");
+        }
+    }
+    debug_assert!(!number.denom().is_one());
+    format!("({} / {})", number.numer(), number.denom())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{conditions, written};
+    use crate::syntax::ast::{Conserved, ItemKind};
+
+    #[test]
+    fn expressions_read_as_they_were_written() {
+        for text in [
+            "a - (b + c) * 2 - -d^2",
+            "(a + b) / (c / 2)",
+            "dot(R.T * [0, 0, 1.25], s[1] * w)",
+            "(a^2)^3",
+            "-(a + b)",
+            "-0.05 * a",
+        ] {
+            let system = format!("system S {{ invariant e = {text} when F[2] = 0, k = {text}; }}");
+            let parsed = crate::syntax::parse_text(&system).expect("correct");
+            let Some(ItemKind::Invariant {
+                conserved: Conserved::Value(value),
+                when,
+                ..
+            }) = parsed.items.first().map(|item| &item.kind)
+            else {
+                panic!("an invariant");
+            };
+            assert_eq!(written(value), text);
+            assert_eq!(conditions(when), format!("F[2] = 0, k = {text}"));
+        }
+    }
+}
