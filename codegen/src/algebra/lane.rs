@@ -42,6 +42,13 @@ impl Lane {
         self.symbols.push(value);
     }
 
+    /// Gives a symbol another value; functions follow where their arguments change.
+    pub fn set_symbol(&mut self, index: usize, value: Fp) {
+        if let Some(known) = self.symbols.get_mut(index) {
+            *known = value;
+        }
+    }
+
     /// The value of a symbol.
     pub fn symbol(&self, index: usize) -> Fp {
         self.symbols[index]

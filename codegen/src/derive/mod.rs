@@ -8,6 +8,11 @@
 //! | `inertia` | mass matrix M | (20) |
 //! | `connection` | connection coefficients Γ | (23) |
 //! | `loads` | potential, gravity, applied forces | (28) |
+//! | `virtual_work` | applied forces by virtual work, in world axes | (28) |
+//! | `hamel_form` | equations of Lagrange and Hamel, from T and γ | (30a) |
+//! | `gibbs` | equations of Gibbs and Appell, from accelerations | (30b) |
+//! | `levi_civita` | explicit equations, from M and Γ | (30c) |
+//! | `forms` | all symbols side by side, to be compared | (30) |
 //! | `energy` | T, V, momentum | |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
 //! | `assemble` | the program of all generated functions | |
@@ -20,9 +25,14 @@ pub mod check;
 pub mod commutation;
 pub mod connection;
 pub mod energy;
+pub mod forms;
+pub mod gibbs;
+pub mod hamel_form;
 pub mod inertia;
 pub mod kinematics;
+pub mod levi_civita;
 pub mod loads;
 pub mod normal;
 pub mod tables;
 pub mod validate;
+pub mod virtual_work;

@@ -66,6 +66,8 @@ impl Geometry {
         let mut carry = |edges: &[Edge]| rebuild(&model.graph, &mut free.graph, edges);
         free.x = carry(&model.x);
         free.xi = carry(&model.xi);
+        free.xi_dot = carry(&model.xi_dot);
+        free.u = carry(&model.u);
         free.rate = carry(&model.rate);
         free.a = model.a.iter().map(|row| carry(row)).collect();
         free.kinetic = carry(&[model.kinetic])[0];
@@ -85,6 +87,12 @@ impl Geometry {
             particle.position = vec3(carry(&particle.position));
         }
         free.gravity = vec3(carry(&model.gravity));
+        free.generalized = carry(&model.generalized);
+        for wrench in &mut free.wrenches {
+            for vector in [&mut wrench.at, &mut wrench.force, &mut wrench.torque] {
+                *vector = vec3(carry(&*vector));
+            }
+        }
         let mut calculus = Calculus::new(&free);
         let mut merged = model.clone();
         let y = kinematics::left_inverse(&mut merged)?;
