@@ -4,8 +4,8 @@
 //! enough they are derived once more in the graph with free coordinates, where nothing is merged
 //! modulo φ, expanded over the rationals, and compared by normal forms modulo φ ("proved").
 
-use super::calculus::Calculus;
-use super::commutation::gamma_from_rows;
+use super::forms::Symbols;
+use super::motion;
 use super::normal::NormalForms;
 use super::tables::Geometry;
 use crate::algebra::derivation::Derivation;
@@ -47,27 +47,31 @@ const MOST_PROVED: usize = 6;
 const MOST_NODES: usize = 20_000;
 
 /// Left and right sides of an identity.
-struct Sides {
-    label: &'static str,
-    equation: &'static str,
-    left: Vec<Edge>,
-    right: Vec<Edge>,
+pub(super) struct Sides {
+    pub(super) label: &'static str,
+    pub(super) equation: &'static str,
+    pub(super) left: Vec<Edge>,
+    pub(super) right: Vec<Edge>,
 }
 
 /// Checks all identities of a model and its program.
 pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
-    let Some(mut geometry) = Geometry::new(model) else {
-        let verdict = Verdict::Failed("Y could not be derived".into());
-        return vec![Identity {
+    match Symbols::new(model) {
+        Some(symbols) => check_symbols(model, program, symbols),
+        None => vec![Identity {
             label: "(6)",
             equation: "Y A = I",
-            verdict,
-        }];
-    };
-    let mut all = geometric(&mut geometry);
-    all.extend(motion(&mut geometry, program));
+            verdict: Verdict::Failed("Y could not be derived".into()),
+        }],
+    }
+}
+
+/// Checks the identities that given symbols of a model have to satisfy.
+pub fn check_symbols(model: &Model, program: &Program, mut symbols: Symbols) -> Vec<Identity> {
+    let mut all = described(&mut symbols);
+    all.extend(motion::emitted(&mut symbols, program));
     let mut proofs = Proofs::new(model);
-    let graph = &geometry.model.graph;
+    let graph = &symbols.geometry.model.graph;
     all.iter()
         .enumerate()
         .map(|(index, sides)| {
@@ -85,11 +89,12 @@ pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
         .collect()
 }
 
-/// The identities of kinematics and inertia.
-fn geometric(geometry: &mut Geometry) -> Vec<Sides> {
-    let mut all = kinematic(geometry);
-    all.extend(jacobi(geometry));
-    all.extend(metric(geometry));
+/// The identities of everything but the emitted program.
+fn described(symbols: &mut Symbols) -> Vec<Sides> {
+    let mut all = kinematic(symbols);
+    all.extend(jacobi(&mut symbols.geometry));
+    all.extend(metric(&mut symbols.geometry));
+    all.extend(motion::forms(symbols));
     all
 }
 
@@ -110,11 +115,11 @@ impl Proofs {
         if model.n() > MOST_PROVED {
             return proofs;
         }
-        let Some(mut geometry) = Geometry::unreduced(model) else {
+        let Some(mut symbols) = Symbols::unreduced(model) else {
             return proofs;
         };
-        proofs.sides = geometric(&mut geometry);
-        proofs.graph = geometry.model.graph;
+        proofs.sides = described(&mut symbols);
+        proofs.graph = symbols.geometry.model.graph;
         proofs
     }
 
@@ -140,7 +145,8 @@ impl Proofs {
 }
 
 /// (6), (7), (12) = (13).
-fn kinematic(geometry: &mut Geometry) -> Vec<Sides> {
+fn kinematic(symbols: &mut Symbols) -> Vec<Sides> {
+    let geometry = &mut symbols.geometry;
     let n = geometry.model.n();
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for i in 0..n {
@@ -157,12 +163,11 @@ fn kinematic(geometry: &mut Geometry) -> Vec<Sides> {
         left,
         right,
     };
-    let from_rows = gamma_from_rows(&mut geometry.model, &geometry.y);
     let same = Sides {
         label: "(12) = (13)",
         equation: "γ from A and γ from Y agree",
         left: flat(&geometry.gamma),
-        right: flat(&from_rows),
+        right: flat(&symbols.gamma_of_rows),
     };
     vec![inverse, tangent(geometry), same]
 }
@@ -264,73 +269,6 @@ fn metric(geometry: &mut Geometry) -> Vec<Sides> {
         }
     }
     sides.into()
-}
-
-/// The emitted ξ̇ in (30c), (30a) = (30c), and d/dt (T + V) = fᵢ ξⁱ.
-fn motion(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
-    let Some(accel) = program.function("accel") else {
-        return Vec::new();
-    };
-    let n = geometry.model.n();
-    let xi = geometry.model.xi.clone();
-    let xi_dot = rebuild(&program.graph, &mut geometry.model.graph, &accel.outputs);
-    let mut calculus = Calculus::new(&geometry.model);
-    let applied = super::assemble::applied_force(&mut geometry.model, &mut calculus);
-    let hamel = super::connection::quadratic(
-        &mut geometry.model,
-        &mut calculus,
-        &geometry.mass,
-        &geometry.gamma,
-    );
-    let graph = &mut geometry.model.graph;
-    let (mut literal, mut forces) = (Vec::new(), Vec::new());
-    for i in 0..n {
-        let mut contracted = graph.zero();
-        for j in 0..n {
-            let row = graph.dot(&geometry.connection[i][j], &xi);
-            let product = graph.mul(row, xi[j]);
-            contracted = graph.add(contracted, product);
-        }
-        literal.push(contracted);
-        let inertial = graph.dot(&geometry.mass[i], &xi_dot);
-        let slope = calculus.along(graph, i, geometry.potential);
-        let sum = graph.add(inertial, contracted);
-        forces.push(graph.add(sum, slope));
-    }
-    // Ė = Dᵗ(T + V) at ξ̇ = 0, plus p·ξ̇.
-    let momentum: Vec<Edge> = geometry
-        .mass
-        .iter()
-        .map(|row| graph.dot(row, &xi))
-        .collect();
-    let twice = graph.dot(&momentum, &xi);
-    let half = graph.ratio(1, 2);
-    let kinetic = graph.mul(half, twice);
-    let energy = graph.add(kinetic, geometry.potential);
-    let drift = calculus.rate(graph, energy);
-    let gain = graph.dot(&momentum, &xi_dot);
-    let change = graph.add(drift, gain);
-    let power = graph.dot(&applied, &xi);
-    vec![
-        Sides {
-            label: "(30a) = (30c)",
-            equation: "ṗᵢ + γᵢⱼᵏ ξʲ pₖ − ∂ᵢT = Γᵢⱼₖ ξʲ ξᵏ at ξ̇ = 0",
-            left: hamel,
-            right: literal,
-        },
-        Sides {
-            label: "(30c)",
-            equation: "M ξ̇ + Γ ξ ξ + ∂V = f for the emitted ξ̇",
-            left: forces,
-            right: applied,
-        },
-        Sides {
-            label: "power",
-            equation: "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇",
-            left: vec![change],
-            right: vec![power],
-        },
-    ]
 }
 
 fn flat(table: &[Vec<Vec<Edge>>]) -> Vec<Edge> {

@@ -108,8 +108,9 @@ impl Forms {
         } else {
             connection::quadratic(&mut model, &mut calculus, &mass, &gamma_of_rows)
         };
+        let xi_dot = model.xi_dot.clone();
         let levi_civita =
-            levi_civita::levi_civita(&mut model, &mut calculus, &mass, &bias, potential);
+            levi_civita::levi_civita(&mut model, &mut calculus, &mass, &bias, potential, &xi_dot);
         let force = virtual_work::virtual_work(&mut model, &mut calculus);
         Some(Forms {
             model,

@@ -25,12 +25,12 @@ pub fn levi_civita(
     mass: &[Vec<Edge>],
     bias: &[Edge],
     potential: Edge,
+    xi_dot: &[Edge],
 ) -> Vec<Edge> {
-    let xi_dot = model.xi_dot.clone();
     let graph = &mut model.graph;
     (0..bias.len())
         .map(|i| {
-            let inertial = graph.dot(&mass[i], &xi_dot);
+            let inertial = graph.dot(&mass[i], xi_dot);
             let slope = calculus.along(graph, i, potential);
             let sum = graph.add(inertial, bias[i]);
             graph.add(sum, slope)

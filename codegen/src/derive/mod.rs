@@ -17,6 +17,8 @@
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
 //! | `assemble` | the program of all generated functions | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
+//! | `motion` | those of the equations of motion | (20), (28), (30) |
+//! | `geometry` | integrability, Lie algebras, patterns, symmetries | 2.5 |
 
 pub mod accel;
 pub mod assemble;
@@ -26,12 +28,14 @@ pub mod commutation;
 pub mod connection;
 pub mod energy;
 pub mod forms;
+pub mod geometry;
 pub mod gibbs;
 pub mod hamel_form;
 pub mod inertia;
 pub mod kinematics;
 pub mod levi_civita;
 pub mod loads;
+pub mod motion;
 pub mod normal;
 pub mod tables;
 pub mod validate;

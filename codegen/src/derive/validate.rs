@@ -70,12 +70,7 @@ struct Values {
 fn values(forms: &Forms, lane: &Lane) -> Option<Values> {
     let n = forms.model.n();
     let mut roots: Vec<Edge> = Vec::with_capacity(4 * n + 2);
-    for part in [
-        &forms.hamel,
-        &forms.gibbs,
-        &forms.levi_civita,
-        &forms.force,
-    ] {
+    for part in [&forms.hamel, &forms.gibbs, &forms.levi_civita, &forms.force] {
         roots.extend(part);
     }
     roots.extend([forms.kinetic, forms.potential]);
@@ -122,9 +117,8 @@ fn at_point(forms: &Forms, program: &Program, lane: &Lane) -> Option<Result<(), 
     let slow = values(forms, &coasting)?;
     let fast = values(forms, &twice)?;
     let third = Fp::new(3).inv()?;
-    let difference = |a: &[Fp], b: &[Fp]| -> Vec<Fp> {
-        a.iter().zip(b).map(|(&a, &b)| a - b).collect()
-    };
+    let difference =
+        |a: &[Fp], b: &[Fp]| -> Vec<Fp> { a.iter().zip(b).map(|(&a, &b)| a - b).collect() };
     let left = &moving.left[0];
     let bias: Vec<Fp> = difference(&fast.left[0], &slow.left[0])
         .into_iter()
@@ -141,14 +135,24 @@ fn at_point(forms: &Forms, program: &Program, lane: &Lane) -> Option<Result<(), 
             })
             .collect();
         if inertial != difference(left, &slow.left[0]) {
-            return Some(Err("(20), M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩ for the emitted M,".into()));
+            return Some(Err(
+                "(20), M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩ for the emitted M,".into()
+            ));
         }
     }
     let table: [(&str, &[Fp], &str); 6] = [
         ("bias", &bias, "h = Γ ξ ξ for the emitted bias force"),
         ("potential_force", &slope, "∂ᵢV for the emitted slope"),
-        ("generalized_force", &moving.force, "(28), fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted loads,"),
-        ("inverse_dynamics", left, "(30c) for the emitted inverse dynamics"),
+        (
+            "generalized_force",
+            &moving.force,
+            "(28), fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted loads,",
+        ),
+        (
+            "inverse_dynamics",
+            left,
+            "(30c) for the emitted inverse dynamics",
+        ),
         ("kinetic_energy", &[moving.kinetic], "T = ½ Σ m_p ‖ṙ_p‖²"),
         ("potential_energy", &[moving.potential], "V"),
     ];
