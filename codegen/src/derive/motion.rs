@@ -31,8 +31,8 @@ pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
     );
     let gibbs = match coverage(&geometry.model) {
         Coverage::Whole => "d/dt ∂L/∂ξⁱ + γᵢⱼᵏ ξʲ ∂L/∂ξᵏ − ∂ᵢL = ∂S/∂ξ̇ⁱ + ∂ᵢV",
-        Coverage::Part => "the same, where S of `kinetic` is taken from its M and Γ",
-        Coverage::None => "the same, but S is taken from M and Γ: `kinetic` has no particles",
+        Coverage::Part => "(30a) = ∂S/∂ξ̇ⁱ + ∂ᵢV; S of `kinetic` from its M and Γ",
+        Coverage::None => "(30a) = ∂S/∂ξ̇ⁱ + ∂ᵢV; S from M and Γ, not independent",
     };
     vec![
         Sides {

@@ -25,6 +25,8 @@ pub enum Table {
     GeneralizedForce,
     /// The outputs of the description.
     Outputs,
+    /// No coefficients, but what they say about the geometry.
+    Geometry,
 }
 
 struct Row {
@@ -54,7 +56,7 @@ const fn row(
     }
 }
 
-const ROWS: [Row; 11] = [
+const ROWS: [Row; 12] = [
     row(
         Table::Phi,
         "phi",
@@ -128,6 +130,14 @@ const ROWS: [Row; 11] = [
         "y",
         "",
         "outputs of the description",
+    ),
+    row(
+        Table::Geometry,
+        "geometry",
+        "",
+        "",
+        "",
+        "integrable velocities, Lie algebra, pattern of M, symmetries",
     ),
 ];
 

@@ -49,7 +49,9 @@ pub struct Velocity {
 pub struct Block {
     /// Indices of its velocities.
     pub members: Vec<usize>,
-    /// Its Lie algebra; `None` where γ depends on x.
+    /// Whether its γ are the same at every x.
+    pub constant: bool,
+    /// Its Lie algebra; `None` where γ depends on x, or is no rational function of parameters.
     pub algebra: Option<Name>,
     /// Whether γ depends on parameters, whose default values were taken.
     pub at_defaults: bool,
@@ -197,6 +199,7 @@ fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
         LieAlgebra::new(constants.collect())
     });
     Block {
+        constant,
         algebra: algebra.as_ref().map(recognise),
         at_defaults,
         side: side::side(geometry, &members),

@@ -4,7 +4,9 @@
 use super::super::calculus::Calculus;
 use super::Geometry;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{Vec3, add3, apply_transposed, apply3, cross};
+use crate::algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, zero3};
+use crate::model::Model;
+use crate::syntax::ast::CoordKind;
 
 /// How vector fields move a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,10 +33,10 @@ impl Side {
 pub fn side(geometry: &mut Geometry, block: &[usize]) -> Option<Side> {
     let zero = geometry.model.graph.zero().node();
     let vanishes = |edges: &[Edge]| edges.iter().all(|edge| edge.node() == zero);
-    for frame in geometry.model.frames.clone() {
+    for (rotation, position) in poses(&geometry.model) {
         let (graph, calculus) = (&mut geometry.model.graph, &mut geometry.calculus);
-        let spins = calculus.spin_jacobian(graph, &frame.rotation);
-        let moves = calculus.point_jacobian(graph, frame.position);
+        let spins = calculus.spin_jacobian(graph, &rotation);
+        let moves = calculus.point_jacobian(graph, position);
         let member = |all: &[Vec3]| -> Vec<Vec3> {
             block.iter().filter_map(|&i| all.get(i).copied()).collect()
         };
@@ -45,12 +47,12 @@ pub fn side(geometry: &mut Geometry, block: &[usize]) -> Option<Side> {
         let fixed = moves.iter().all(|moved| vanishes(moved));
         let (mut left, mut right) = (true, true);
         for (&spin, &moved) in spins.iter().zip(&moves) {
-            let turned = apply3(graph, &frame.rotation, spin);
+            let turned = apply3(graph, &rotation, spin);
             left &= are_constant(graph, calculus, &spin);
             right &= are_constant(graph, calculus, &turned);
             if !fixed {
-                let local = apply_transposed(graph, &frame.rotation, moved);
-                let lever = cross(graph, frame.position, turned);
+                let local = apply_transposed(graph, &rotation, moved);
+                let lever = cross(graph, position, turned);
                 let carried = add3(graph, moved, lever);
                 left &= are_constant(graph, calculus, &local);
                 right &= are_constant(graph, calculus, &carried);
@@ -63,6 +65,28 @@ pub fn side(geometry: &mut Geometry, block: &[usize]) -> Option<Side> {
         }
     }
     None
+}
+
+/// The poses of all frames, and of coordinates that are rotations or poses themselves.
+fn poses(model: &Model) -> Vec<(Mat3, Vec3)> {
+    let frames = model.frames.iter();
+    let mut poses: Vec<(Mat3, Vec3)> = frames
+        .map(|frame| (frame.rotation, frame.position))
+        .collect();
+    for coordinate in &model.coordinates {
+        let entries = model.x.get(coordinate.offset..).unwrap_or_default();
+        match (coordinate.kind, entries) {
+            (CoordKind::SO3, &[a, b, c, d, e, f, g, h, i, ..]) => {
+                let origin = zero3(&model.graph);
+                poses.push(([[a, b, c], [d, e, f], [g, h, i]], origin));
+            }
+            (CoordKind::SE3, &[x, y, z, a, b, c, d, e, f, g, h, i, ..]) => {
+                poses.push(([[a, b, c], [d, e, f], [g, h, i]], [x, y, z]));
+            }
+            _ => {}
+        }
+    }
+    poses
 }
 
 fn are_constant(graph: &mut Graph, calculus: &mut Calculus, edges: &[Edge]) -> bool {
