@@ -79,6 +79,8 @@ pub struct Forms {
     pub levi_civita: Vec<Edge>,
     /// f by virtual work (28).
     pub force: Vec<Edge>,
+    /// p = ∂T/∂ξ.
+    pub momentum: Vec<Edge>,
     /// T.
     pub kinetic: Edge,
     /// V.
@@ -113,11 +115,12 @@ impl Forms {
             levi_civita::levi_civita(&mut model, &mut calculus, &mass, &bias, potential, &xi_dot);
         let force = virtual_work::virtual_work(&mut model, &mut calculus);
         Some(Forms {
-            model,
             hamel,
             gibbs,
             levi_civita,
             force,
+            momentum: hamel_form::by_velocity(&mut model, kinetic),
+            model,
             kinetic,
             potential,
         })

@@ -8,6 +8,8 @@
 //! | `inverse_dynamics` | F(x, ξ, ξ̇) |
 //! | `bias` | h = ⅓ (F(x, 2ξ, 0) − F(x, ξ, 0)), as h is quadratic in ξ |
 //! | `potential_force` | F(x, ξ, 0) − h |
+//! | `generalized_force` | f by virtual work |
+//! | `momentum` | ∂T/∂ξ |
 //! | `mass_matrix` | M with M ξ̇ = F(x, ξ, ξ̇) − F(x, ξ, 0), for any ξ̇ |
 
 use super::forms::Forms;
@@ -30,7 +32,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         Diagnostic::new(
             model.span,
             format!(
-                "internal check failed: {what} does not hold for `{}`",
+                "internal check failed for `{}`: {what} does not hold",
                 model.name
             ),
         )
@@ -44,7 +46,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         loop {
             seed += 1;
             if seed > TRIES {
-                return Err(failure("that the equations have a value at some point"));
+                return Err(failure("that the equations have values at some points"));
             }
             let Some(lane) = model.points.lane(0x7a11 + seed) else {
                 continue;
@@ -63,25 +65,33 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
 struct Values {
     left: [Vec<Fp>; 3],
     force: Vec<Fp>,
+    momentum: Vec<Fp>,
     kinetic: Fp,
     potential: Fp,
 }
 
 fn values(forms: &Forms, lane: &Lane) -> Option<Values> {
     let n = forms.model.n();
-    let mut roots: Vec<Edge> = Vec::with_capacity(4 * n + 2);
-    for part in [&forms.hamel, &forms.gibbs, &forms.levi_civita, &forms.force] {
+    let mut roots: Vec<Edge> = Vec::with_capacity(5 * n + 2);
+    for part in [
+        &forms.hamel,
+        &forms.gibbs,
+        &forms.levi_civita,
+        &forms.force,
+        &forms.momentum,
+    ] {
         roots.extend(part);
     }
     roots.extend([forms.kinetic, forms.potential]);
     let values = evaluate_at(&forms.model.graph, &roots, &mut lane.clone())?;
     let mut parts = values.chunks(n.max(1)).map(<[Fp]>::to_vec);
     let left = [parts.next()?, parts.next()?, parts.next()?];
-    let force = parts.next()?;
+    let (force, momentum) = (parts.next()?, parts.next()?);
     let (&potential, rest) = values.split_last()?;
     Some(Values {
         left,
         force,
+        momentum,
         kinetic: *rest.last()?,
         potential,
     })
@@ -105,7 +115,7 @@ fn at_point(forms: &Forms, program: &Program, lane: &Lane) -> Option<Result<(), 
     let moving = values(forms, lane)?;
     let broken = disagreements(&moving.left);
     if !broken.is_empty() {
-        return Some(Err(broken.join(" and ")));
+        return Some(Err(broken.join(", ")));
     }
     let value = |name: &str| {
         let function = program.function(name)?;
@@ -136,25 +146,32 @@ fn at_point(forms: &Forms, program: &Program, lane: &Lane) -> Option<Result<(), 
             .collect();
         if inertial != difference(left, &slow.left[0]) {
             return Some(Err(
-                "(20), M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩ for the emitted M,".into()
+                "(20), M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩ for the emitted M".into()
             ));
         }
     }
-    let table: [(&str, &[Fp], &str); 6] = [
+    let energy = moving.kinetic + moving.potential;
+    let table: [(&str, &[Fp], &str); 8] = [
         ("bias", &bias, "h = Γ ξ ξ for the emitted bias force"),
         ("potential_force", &slope, "∂ᵢV for the emitted slope"),
         (
             "generalized_force",
             &moving.force,
-            "(28), fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted loads,",
+            "(28), fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted loads",
         ),
         (
             "inverse_dynamics",
             left,
             "(30c) for the emitted inverse dynamics",
         ),
+        ("momentum", &moving.momentum, "p = ∂T/∂ξ"),
         ("kinetic_energy", &[moving.kinetic], "T = ½ Σ m_p ‖ṙ_p‖²"),
-        ("potential_energy", &[moving.potential], "V"),
+        (
+            "potential_energy",
+            &[moving.potential],
+            "V = −Σ m_p ⟨g, r_p⟩",
+        ),
+        ("energy", &[energy], "T + V"),
     ];
     for (name, expected, what) in table {
         if wanted(name) && value(name)? != expected {
