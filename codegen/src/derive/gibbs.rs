@@ -1,6 +1,6 @@
 //! The equations of Gibbs and Appell, KR18 (30b): ∂S/∂ξ̇ⁱ + ∂ᵢV = fᵢ (N or N m, n entries).
 //!
-//! S = ½ Σ m ‖r̈‖² over particles (W² kg⁻¹, that is kg m²/s⁴); for a rigid body, up to terms without
+//! S = ½ Σ m ‖r̈‖² over particles (kg m²/s⁴); for a rigid body, up to terms without
 //! ξ̇, S = ½ m ‖a_c‖² + ½ α·Θα + α·(ω × Θω) with Θ about the centre of mass. Positions and rotations
 //! are differentiated twice; M, Γ and γ do not occur. The weight enters by its virtual work.
 //!

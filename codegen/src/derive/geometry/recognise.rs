@@ -99,7 +99,7 @@ fn indecomposable(algebra: &LieAlgebra) -> Option<Vec<String>> {
     let (derived, centre) = (algebra.derived(), algebra.centre());
     let (plus, minus) = algebra.killing_signature();
     let one = |name: &str| Some(vec![name.to_string()]);
-    if minus == n && n % 3 == 0 && n <= 9 {
+    if minus == n && n.is_multiple_of(3) && n <= 9 {
         return Some(vec!["so(3)".into(); n / 3]);
     }
     if derived.len() == 1 && centre.len() == 1 {
