@@ -1,12 +1,12 @@
 //! `hamel check`: the identities behind a description's equations, proved or refuted.
 
 use crate::failure::{Failure, print};
-use crate::names;
 use crate::source::Source;
 use clap::Args;
 use hamel_codegen::derive::check::{Identity, Verdict, check};
-use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::derive::geometry::Inspection;
 use hamel_codegen::generate::Generated;
+use hamel_codegen::tables::geometry::lines;
 use std::path::PathBuf;
 
 /// Proves the identities behind the equations of motion.
@@ -14,6 +14,9 @@ use std::path::PathBuf;
 /// Equation numbers are those of KR18, the paper of the method. "proved" is exact, over the rationals
 /// and modulo the constraint; "checked modulo p" is equality at random exact points of the
 /// configuration manifold, which errs with a probability below 1e-17.
+///
+/// Below them stands what the symbols say about the geometry: which velocities are integrable and what
+/// they are the rates of, which Lie algebra the frame is, the pattern of M, and symmetries.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  hamel check heavy_top.eom\n  hamel check models/*.eom && echo sound"
@@ -36,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let generated = source.derive_all()?;
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
-            print(&integrability(&generated))?;
+            print(&geometry(&generated))?;
             let failed = identities
                 .iter()
                 .filter(|identity| matches!(identity.verdict, Verdict::Failed(_)))
@@ -95,38 +98,14 @@ fn table(identities: &[Identity]) -> String {
         .collect()
 }
 
-/// ξᵏ is the rate of a coordinate, at least locally, where γᵢⱼᵏ = 0 for all i and j (KR18 section 2.5).
-fn integrability(generated: &Generated) -> String {
-    let Some(geometry) = Geometry::new(&generated.model) else {
-        return String::new();
+/// Integrable velocities, the Lie algebra of the frame, the pattern of M, symmetries.
+fn geometry(generated: &Generated) -> String {
+    let lines = match Inspection::new(&generated.model) {
+        Some(inspection) => lines(&inspection),
+        None => Vec::new(),
     };
-    // Of either sign: a negated zero is zero.
-    let zero = geometry.model.graph.zero().node();
-    let names = names::velocities(&generated.model);
-    let (integrable, other): (Vec<_>, Vec<_>) =
-        names.into_iter().enumerate().partition(|(k, _)| {
-            let mut rows = geometry.gamma.iter().flatten();
-            rows.all(|row| row[*k].node() == zero)
-        });
-    let list = |names: Vec<(usize, String)>| {
-        names
-            .into_iter()
-            .map(|(_, name)| name)
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
-    let mut text = String::new();
-    if !integrable.is_empty() {
-        text.push_str(&format!(
-            "  integrable (γᵢⱼᵏ = 0 for all i, j)  {}\n",
-            list(integrable)
-        ));
-    }
-    if !other.is_empty() {
-        text.push_str(&format!(
-            "  not integrable (quasi-velocities)   {}\n",
-            list(other)
-        ));
-    }
-    text
+    lines
+        .iter()
+        .map(|line| format!("  {}\n", line.trim_end()))
+        .collect()
 }

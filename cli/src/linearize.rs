@@ -65,7 +65,7 @@ struct Linear {
 /// Linearises and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let generated = Source::read(&arguments.file)?.derive_linearized()?;
-    let state = State::read(&generated.model, arguments.at.as_deref())?;
+    let state = State::read(&generated.active, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;
     let singular = || {
@@ -87,8 +87,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .iter()
         .flat_map(names::group)
         .collect();
-    let velocities = names::velocities(&generated.model);
-    let displacements = velocities.iter().map(|name| format!("h({name})"));
+    // Displacements along the full frame, changes of the velocities that constraints leave.
+    let frame = names::velocities(&generated.model);
+    let velocities = names::velocities(&generated.active);
+    let displacements = frame.iter().map(|name| format!("h({name})"));
     let changes = velocities.iter().map(|name| format!("d({name})"));
     let states: Vec<String> = displacements.chain(changes).collect();
     if let Some(entry) = flat.iter().position(|value| !value.is_finite()) {

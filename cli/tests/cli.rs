@@ -147,19 +147,61 @@ fn several_files_have_headings_and_one_bad_one_fails_all() {
     );
 }
 
+/// What stands right of a heading in a report of two columns.
+fn under<'a>(report: &'a str, heading: &str) -> &'a str {
+    let line = report.lines().find(|line| line.contains(heading));
+    let line = line.unwrap_or_else(|| panic!("no `{heading}` in {report}"));
+    let place = line.find(heading).expect("found above") + heading.len();
+    line[place..].trim()
+}
+
 #[test]
 fn integrable_velocities_are_named() {
     let report = stdout(&["check", &model("free_body_world_velocity.eom")]);
-    assert!(
-        report
-            .lines()
-            .any(|l| l.contains(" integrable") && l.ends_with("v[1], v[2], v[3]"))
-    );
-    assert!(
-        report
-            .lines()
-            .any(|l| l.contains("not integrable") && l.ends_with("w[1], w[2], w[3]"))
-    );
+    for i in 1..=3 {
+        let line = format!("v[{i}] = d/dt (r[{i}])");
+        assert!(report.contains(&line), "{report}");
+    }
+    let others = under(&report, "not integrable (quasi-velocities)");
+    assert_eq!(others, "w[1], w[2], w[3]");
+}
+
+#[test]
+fn lie_algebras_are_named_with_their_side() {
+    for (name, algebra, block) in [
+        ("free_body", "se(3)", "se(3), left-invariant (body)"),
+        ("heavy_top_world", "so(3)", "so(3), right-invariant (world)"),
+        ("planar_body", "se(2)", "se(2), left-invariant (body)"),
+        (
+            "two_bodies",
+            "so(3) ⊕ so(3)",
+            "so(3), left-invariant (body)",
+        ),
+    ] {
+        let report = stdout(&["tables", &model(&format!("{name}.eom")), "--of", "geometry"]);
+        let found = under(&report, "Lie algebra of the ∂ᵢ");
+        assert_eq!(found, format!("{algebra}: γ is constant"), "{name}");
+        assert!(report.contains(block), "{name}: {report}");
+    }
+    let json = stdout(&[
+        "tables",
+        &model("heavy_top_world.eom"),
+        "--of",
+        "geometry",
+        "--format",
+        "json",
+    ]);
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    let geometry = &json["geometry"];
+    assert_eq!(geometry["algebra"], "so(3)");
+    assert_eq!(geometry["constant_mass"], false);
+    let conserved: Vec<&Value> = geometry["velocities"]
+        .as_array()
+        .expect("velocities")
+        .iter()
+        .map(|velocity| &velocity["conserved_momentum"])
+        .collect();
+    assert_eq!(conserved, [false, false, true]);
 }
 
 #[test]

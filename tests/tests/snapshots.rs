@@ -6,7 +6,7 @@
 use hamel_codegen::builder::source;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::count::count;
-use hamel_codegen::tables::{json, latex, markdown, tables, text};
+use hamel_codegen::tables::{Table, json, latex, markdown, tables, text};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -85,6 +85,18 @@ fn coefficient_tables() {
         let tables = tables(&generated, &[]).expect("the default tables");
         insta::assert_snapshot!(format!("tables_{name}"), text(&tables, false));
     }
+}
+
+/// Integrable velocities, Lie algebras, patterns of M, symmetries.
+#[test]
+fn geometry() {
+    let mut report = String::new();
+    for path in models() {
+        let (_, _, generated) = read(&path);
+        let tables = tables(&generated, &[Table::Geometry]).expect("the geometry");
+        let _ = writeln!(report, "{}", text(&tables, false));
+    }
+    insta::assert_snapshot!(report);
 }
 
 /// One model in every format.

@@ -42,14 +42,16 @@ impl Lane {
         Lane::new(self.seed)
     }
 
-    /// Changes a symbol.
-    pub fn set_symbol(&mut self, index: usize, value: Fp) {
-        self.symbols[index] = value;
-    }
-
     /// Adds the next symbol.
     pub fn push_symbol(&mut self, value: Fp) {
         self.symbols.push(value);
+    }
+
+    /// Gives a symbol another value; functions follow where their arguments change.
+    pub fn set_symbol(&mut self, index: usize, value: Fp) {
+        if let Some(known) = self.symbols.get_mut(index) {
+            *known = value;
+        }
     }
 
     /// The value of a symbol.

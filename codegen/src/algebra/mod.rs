@@ -4,6 +4,7 @@
 
 pub mod blocks;
 pub mod derivation;
+pub mod echelon;
 mod fold;
 pub mod fp;
 pub mod graph;

@@ -4,19 +4,18 @@
 //! enough they are derived once more in the graph with free coordinates, where nothing is merged
 //! modulo φ, expanded over the rationals, and compared by normal forms modulo φ ("proved").
 
-use super::calculus::Calculus;
-use super::commutation::gamma_from_rows;
+use super::forms::Symbols;
+use super::motion;
 use super::normal::NormalForms;
 use super::reduction::reduce;
 use super::tables::Geometry;
-use super::virtual_power;
 use super::{constrained, invariants};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::multiply;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::transplant::rebuild;
-use crate::model::Model;
+use crate::model::{Model, class};
 use crate::program::Program;
 
 /// How an identity fared.
@@ -46,41 +45,59 @@ const POINTS: u64 = 4;
 /// Points tried where square roots have no value.
 const TRIES: u64 = 300;
 /// Models with more velocities are only checked modulo p.
-const MOST_PROVED: usize = 6;
+const MOST_PROVED: usize = 8;
 /// Expressions of more nodes are not expanded for a proof.
 const MOST_NODES: usize = 20_000;
+/// The same where ξ̇ occurs: twice differentiated rotations are long polynomials in free coordinates.
+const MOST_MOVING_NODES: usize = 640;
 
 /// Left and right sides of an identity.
-struct Sides {
-    label: &'static str,
-    equation: &'static str,
-    left: Vec<Edge>,
-    right: Vec<Edge>,
+pub(super) struct Sides {
+    pub(super) label: &'static str,
+    pub(super) equation: &'static str,
+    pub(super) left: Vec<Edge>,
+    pub(super) right: Vec<Edge>,
 }
 
 /// Checks all identities of a model and its program.
 pub fn check(model: &Model, program: &Program) -> Vec<Identity> {
-    let Some(mut geometry) = Geometry::new(model) else {
-        let verdict = Verdict::Failed("Y could not be derived".into());
-        return vec![Identity {
+    match Symbols::new(model) {
+        Some(symbols) => verdicts(model, program, symbols, Some(Proofs::new(model))),
+        None => vec![Identity {
             label: "(6)",
             equation: "Y A = I".into(),
-            verdict,
-        }];
-    };
-    let mut all = geometric(&mut geometry);
-    if model.constraints.is_empty() {
-        all.extend(motion(&mut geometry, program));
+            verdict: Verdict::Failed("Y could not be derived".into()),
+        }],
     }
-    let mut proofs = Proofs::new(model);
-    let graph = &geometry.model.graph;
+}
+
+/// The identities that given symbols of a model do not satisfy at points of X.
+pub fn failures(model: &Model, program: &Program, symbols: Symbols) -> Vec<Identity> {
+    let mut identities = verdicts(model, program, symbols, None);
+    identities.retain(|identity| matches!(identity.verdict, Verdict::Failed(_)));
+    identities
+}
+
+/// The verdicts on all identities; proofs are tried where they are given.
+fn verdicts(
+    model: &Model,
+    program: &Program,
+    mut symbols: Symbols,
+    mut proofs: Option<Proofs>,
+) -> Vec<Identity> {
+    let mut all = described(&mut symbols);
+    if model.constraints.is_empty() {
+        all.extend(motion::emitted(&mut symbols, program));
+    }
+    let graph = &symbols.geometry.model.graph;
     let mut identities: Vec<Identity> = all
         .iter()
         .enumerate()
         .map(|(index, sides)| {
+            let mut proved = || proofs.as_mut().is_some_and(|proofs| proofs.hold(index));
             let verdict = match at_points(model, graph, sides) {
                 Some(difference) => Verdict::Failed(difference),
-                None if proofs.hold(index) => Verdict::Proved,
+                None if proved() => Verdict::Proved,
                 None => Verdict::Checked,
             };
             Identity {
@@ -118,11 +135,12 @@ fn with_constraints(model: &Model, program: &Program) -> Vec<Identity> {
     }
 }
 
-/// The identities of kinematics and inertia.
-fn geometric(geometry: &mut Geometry) -> Vec<Sides> {
-    let mut all = kinematic(geometry);
-    all.extend(jacobi(geometry));
-    all.extend(metric(geometry));
+/// The identities of everything but the emitted program.
+fn described(symbols: &mut Symbols) -> Vec<Sides> {
+    let mut all = kinematic(symbols);
+    all.extend(jacobi(&mut symbols.geometry));
+    all.extend(metric(&mut symbols.geometry));
+    all.extend(motion::forms(symbols));
     all
 }
 
@@ -143,11 +161,11 @@ impl Proofs {
         if model.n() > MOST_PROVED {
             return proofs;
         }
-        let Some(mut geometry) = Geometry::unreduced(model) else {
+        let Some(mut symbols) = Symbols::unreduced(model) else {
             return proofs;
         };
-        proofs.sides = geometric(&mut geometry);
-        proofs.graph = geometry.model.graph;
+        proofs.sides = described(&mut symbols);
+        proofs.graph = symbols.geometry.model.graph;
         proofs
     }
 
@@ -157,7 +175,12 @@ impl Proofs {
             return false;
         };
         let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
-        if self.graph.reachable(&roots).len() > MOST_NODES {
+        let moving = |root: &Edge| self.graph.class(root.node()) & class::ACCEL != 0;
+        let most = match roots.iter().any(moving) {
+            true => MOST_MOVING_NODES,
+            false => MOST_NODES,
+        };
+        if self.graph.reachable(&roots).len() > most {
             return false;
         }
         sides.left.iter().zip(&sides.right).all(|(&left, &right)| {
@@ -173,7 +196,8 @@ impl Proofs {
 }
 
 /// (6), (7), (12) = (13).
-fn kinematic(geometry: &mut Geometry) -> Vec<Sides> {
+fn kinematic(symbols: &mut Symbols) -> Vec<Sides> {
+    let geometry = &mut symbols.geometry;
     let n = geometry.model.n();
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for i in 0..n {
@@ -190,12 +214,11 @@ fn kinematic(geometry: &mut Geometry) -> Vec<Sides> {
         left,
         right,
     };
-    let from_rows = gamma_from_rows(&mut geometry.model, &geometry.y);
     let same = Sides {
         label: "(12) = (13)",
         equation: "γ from A and γ from Y agree",
         left: flat(&geometry.gamma),
-        right: flat(&from_rows),
+        right: flat(&symbols.gamma_of_rows),
     };
     let mut all = vec![inverse, tangent(geometry), same];
     all.extend(inverses(geometry));
@@ -355,136 +378,6 @@ fn metric(geometry: &mut Geometry) -> Vec<Sides> {
         }
     }
     sides.into()
-}
-
-/// The emitted ξ̇ in (30c), (30a) = (30c), and d/dt (T + V) = fᵢ ξⁱ.
-fn motion(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
-    let Some(accel) = program.function("accel") else {
-        return Vec::new();
-    };
-    let n = geometry.model.n();
-    let xi = geometry.model.xi.clone();
-    let xi_dot = rebuild(&program.graph, &mut geometry.model.graph, &accel.outputs);
-    let mut calculus = Calculus::new(&geometry.model);
-    let applied = super::assemble::applied_force(&mut geometry.model, &mut calculus);
-    let hamel = super::connection::quadratic(
-        &mut geometry.model,
-        &mut calculus,
-        &geometry.mass,
-        &geometry.gamma,
-    );
-    let graph = &mut geometry.model.graph;
-    let (mut literal, mut forces) = (Vec::new(), Vec::new());
-    for i in 0..n {
-        let mut contracted = graph.zero();
-        for j in 0..n {
-            let row = graph.dot(&geometry.connection[i][j], &xi);
-            let product = graph.mul(row, xi[j]);
-            contracted = graph.add(contracted, product);
-        }
-        literal.push(contracted);
-        let inertial = graph.dot(&geometry.mass[i], &xi_dot);
-        let slope = calculus.along(graph, i, geometry.potential);
-        let sum = graph.add(inertial, contracted);
-        forces.push(graph.add(sum, slope));
-    }
-    // Ė = Dᵗ(T + V) at ξ̇ = 0, plus p·ξ̇.
-    let momentum: Vec<Edge> = geometry
-        .mass
-        .iter()
-        .map(|row| graph.dot(row, &xi))
-        .collect();
-    let twice = graph.dot(&momentum, &xi);
-    let half = graph.ratio(1, 2);
-    let kinetic = graph.mul(half, twice);
-    let energy = graph.add(kinetic, geometry.potential);
-    let drift = calculus.rate(graph, energy);
-    let gain = graph.dot(&momentum, &xi_dot);
-    let change = graph.add(drift, gain);
-    let power = graph.dot(&applied, &xi);
-    let mut all = vec![
-        Sides {
-            label: "(30a) = (30c)",
-            equation: "ṗᵢ + γᵢⱼᵏ ξʲ pₖ − ∂ᵢT = Γᵢⱼₖ ξʲ ξᵏ at ξ̇ = 0",
-            left: hamel,
-            right: literal,
-        },
-        Sides {
-            label: "(30c)",
-            equation: "M ξ̇ + Γ ξ ξ + ∂V = f for the emitted ξ̇",
-            left: forces,
-            right: applied,
-        },
-        Sides {
-            label: "power",
-            equation: "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇",
-            left: vec![change],
-            right: vec![power],
-        },
-    ];
-    all.extend(virtual_power(geometry, program));
-    all
-}
-
-/// (28): the emitted forces, 2 D, and the motions of points, each on the route of single particles.
-fn virtual_power(geometry: &mut Geometry, program: &Program) -> Vec<Sides> {
-    let mut graph = geometry.model.graph.clone();
-    let graph = &mut graph;
-    let model = &geometry.model;
-    let mut calculus = Calculus::new(model);
-    let calculus = &mut calculus;
-    let mut all = Vec::new();
-    let mut side = |label, equation, (left, right): (Vec<Edge>, Vec<Edge>)| {
-        all.push(Sides {
-            label,
-            equation,
-            left,
-            right,
-        });
-    };
-    let emitted = |graph: &mut Graph, name: &str| {
-        let function = program.function(name)?;
-        Some(rebuild(&program.graph, graph, &function.outputs))
-    };
-    if let Some(force) = emitted(graph, "generalized_force") {
-        let virtual_force = virtual_power::applied(model, graph, calculus);
-        let equation = "fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted f";
-        side("(28)", equation, (force, virtual_force));
-    }
-    if let Some(slope) = emitted(graph, "potential_force") {
-        let force = virtual_power::conservative(model, graph, calculus);
-        let force = force.into_iter().map(|edge| -edge).collect();
-        let equation = "−∂ᵢV = Σ ⟨F_p, ∂ᵢr_p⟩ of weights and springs";
-        side("(28)", equation, (slope, force));
-    }
-    if let Some(dissipation) = emitted(graph, "dissipation") {
-        let twice = dissipation
-            .iter()
-            .map(|&edge| graph.add(edge, edge))
-            .collect();
-        let power = vec![virtual_power::dissipated(model, graph, calculus)];
-        side("Rayleigh", "2 D = −fᵢ ξⁱ of dampers", (twice, power));
-    }
-    let lengths = virtual_power::lengths(model, graph);
-    side(
-        "lines",
-        "ℓ² = d·d of springs and forces along lines",
-        lengths,
-    );
-    let motions = virtual_power::motions(model, graph, calculus);
-    let equation = "ṙ and r̈ of points from ∂ᵢr and ∂ᵢ∂ⱼr";
-    side("motion", equation, motions);
-    let zero = graph.zero();
-    let says = |sides: &Sides| {
-        sides
-            .left
-            .iter()
-            .chain(&sides.right)
-            .any(|&edge| edge != zero)
-    };
-    all.retain(says);
-    geometry.model.graph = graph.clone();
-    all
 }
 
 fn flat(table: &[Vec<Vec<Edge>>]) -> Vec<Edge> {

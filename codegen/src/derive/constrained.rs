@@ -5,7 +5,8 @@
 use super::calculus::Calculus;
 use super::check::{Identity, Verdict};
 use super::reduction::{Reduction, drift};
-use super::validate::{Reference, failure};
+use super::reference::Reference;
+use super::validate::failure;
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::lane::Lane;
@@ -224,7 +225,8 @@ fn at_point(
     let same_loads = equal("generalized_force", project(force))?
         && equal("potential_force", project(slope))?
         && equal("kinetic_energy", vec![values.kinetic])?
-        && equal("potential_energy", vec![values.potential])?;
+        && equal("potential_energy", vec![values.potential])?
+        && equal("dissipation", vec![values.dissipation])?;
     let power = at.power(&kept, &random, seed)?;
     let result = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_string()) };
     Some([
@@ -256,6 +258,7 @@ struct Values {
     drift: Vec<Fp>,
     kinetic: Fp,
     potential: Fp,
+    dissipation: Fp,
     change: Fp,
     xi: Vec<Fp>,
 }
@@ -304,11 +307,16 @@ impl At<'_> {
         ] {
             roots.extend(part);
         }
-        roots.extend([reference.kinetic, reference.potential, self.full.change]);
+        roots.extend([
+            reference.kinetic,
+            reference.potential,
+            reference.dissipation,
+            self.full.change,
+        ]);
         let all = evaluate_at(graph, &roots, &mut point.clone())?;
         let (mass, rest) = all.split_at(n * n);
         let part = |i: usize| rest[i * n..(i + 1) * n].to_vec();
-        let [kinetic, potential, change] = rest[5 * n..] else {
+        let [kinetic, potential, dissipation, change] = rest[5 * n..] else {
             return None;
         };
         Some(Values {
@@ -320,6 +328,7 @@ impl At<'_> {
             xi: part(4),
             kinetic,
             potential,
+            dissipation,
             change,
         })
     }

@@ -11,6 +11,10 @@
 //! | `connection` | connection coefficients Γ | (23) |
 //! | `loads` | potential, gravity, applied forces | (28) |
 //! | `virtual_power` | loads as forces on points, motion of points | (28) |
+//! | `hamel_form` | equations of Lagrange and Hamel, from T and γ | (30a) |
+//! | `gibbs` | equations of Gibbs and Appell, from accelerations | (30b) |
+//! | `levi_civita` | explicit equations, from M and Γ | (30c) |
+//! | `forms` | all symbols side by side, to be compared | (30) |
 //! | `energy` | T, V, momentum | |
 //! | `momentum` | ṗ, and ξ from p | (30a) |
 //! | `linearize` | the motion nearby, in displacement coordinates | (12) |
@@ -20,6 +24,8 @@
 //! | `assemble` | the program of all generated functions | |
 //! | `further` | momenta, the motion nearby and invariants as functions | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
+//! | `motion` | those of the equations of motion | (20), (28), (30) |
+//! | `geometry` | integrability, Lie algebras, patterns, symmetries | 2.5 |
 
 pub mod accel;
 pub mod adviser;
@@ -32,16 +38,23 @@ pub mod connection;
 pub mod constrained;
 pub mod correction;
 pub mod energy;
+pub mod forms;
 mod further;
+pub mod geometry;
+pub mod gibbs;
+pub mod hamel_form;
 pub mod inertia;
 pub mod invariants;
 pub mod kinematics;
+pub mod levi_civita;
 pub mod linearize;
 pub mod loads;
 pub mod momentum;
+pub mod motion;
 pub mod multipliers;
 pub mod normal;
 pub mod reduction;
+mod reference;
 mod slopes;
 pub mod tables;
 pub mod validate;

@@ -6,7 +6,7 @@
 
 use super::calculus::Calculus;
 use super::invariants::quantity;
-use super::validate::Reference;
+use super::reference::Reference;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;

@@ -71,6 +71,8 @@ impl Geometry {
         let mut carry = |edges: &[Edge]| rebuild(&model.graph, &mut free.graph, edges);
         free.x = carry(&model.x);
         free.xi = carry(&model.xi);
+        free.xi_dot = carry(&model.xi_dot);
+        free.u = carry(&model.u);
         free.rate = carry(&model.rate);
         free.a = model.a.iter().map(|row| carry(row)).collect();
         free.kinetic = carry(&[model.kinetic])[0];

@@ -3,24 +3,29 @@
 //! `{ "hamel": version, "system", "coordinates", "velocities", "tables": { name: { "symbol", "shape",
 //! "nonzero", "entries": [{ "index", "value" }], "groups": [{ "value", "plus", "minus" }],
 //! "constants": [{ "name", "value" }], "temporaries": [{ "name", "value" }] } } }`; entries of φ have
-//! `reads`, entries with a name of their own have `name`.
+//! `reads`, entries with a name of their own have `name`. `geometry`, where it was asked for, is
+//! described in `geometry`.
 
-use super::Tables;
 use super::listing::{Definition, Entry, Group, Listing};
 use super::print::Notation;
+use super::{Tables, geometry};
 use serde_json::{Value, json as object};
 
 /// All tables as JSON; entries that are zero are among the entries where `all`.
 pub fn json(tables: &Tables, all: bool) -> Value {
     let listings = tables.listings.iter();
     let listings = listings.map(|listing| (listing.table.name().to_string(), table(listing, all)));
-    object!({
+    let mut all = object!({
         "hamel": env!("CARGO_PKG_VERSION"),
         "system": tables.system,
         "coordinates": tables.coordinates,
         "velocities": tables.velocities,
         "tables": Value::Object(listings.collect()),
-    })
+    });
+    if let (Some(inspection), Value::Object(fields)) = (&tables.geometry, &mut all) {
+        fields.insert("geometry".into(), geometry::json(inspection));
+    }
+    all
 }
 
 fn table(listing: &Listing, all: bool) -> Value {

@@ -29,6 +29,8 @@ pub enum Table {
     GeneralizedForce,
     /// The outputs of the description.
     Outputs,
+    /// No coefficients, but what they say about the geometry.
+    Geometry,
 }
 
 struct Row {
@@ -58,7 +60,7 @@ const fn row(
     }
 }
 
-const ROWS: [Row; 13] = [
+const ROWS: [Row; 14] = [
     row(
         Table::Phi,
         "phi",
@@ -148,6 +150,14 @@ const ROWS: [Row; 13] = [
         "y",
         "",
         "outputs of the description",
+    ),
+    row(
+        Table::Geometry,
+        "geometry",
+        "",
+        "",
+        "",
+        "integrable velocities, Lie algebra, pattern of M, symmetries",
     ),
 ];
 

@@ -1,11 +1,11 @@
-//! Tables as LaTeX, one displayed array each; needs amsmath.
+//! Tables as LaTeX, one displayed array each; needs amsmath. The report on the geometry is comments.
 
-use super::Tables;
 use super::kind::Table;
 use super::listing::{Definition, Entry, Group, Listing};
 use super::notation::latex_name;
 use super::print::{Notation, index};
 use super::text::leads;
+use super::{Tables, geometry};
 
 /// All tables as LaTeX; ungrouped and with zeros where `all`.
 pub fn latex(tables: &Tables, all: bool) -> String {
@@ -50,6 +50,12 @@ pub fn latex(tables: &Tables, all: bool) -> String {
         if !leads(listing) {
             let rest: Vec<String> = listing.temporaries.iter().map(definition).collect();
             text.push_str(&display("rcl", &rest));
+        }
+    }
+    if let Some(inspection) = &tables.geometry {
+        text.push_str(&format!("\n% {}\n", Table::Geometry.title()));
+        for line in geometry::lines(inspection) {
+            text.push_str(&format!("%   {}\n", line.trim_end()));
         }
     }
     text

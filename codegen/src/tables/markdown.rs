@@ -1,9 +1,9 @@
 //! Tables as Markdown, expressions in code spans.
 
-use super::Tables;
 use super::listing::{Definition, Listing};
 use super::print::Notation;
 use super::text::{indices, label, leads, summary};
+use super::{Table, Tables, geometry};
 
 /// All tables as Markdown; ungrouped and with zeros where `all`.
 pub fn markdown(tables: &Tables, all: bool) -> String {
@@ -32,7 +32,7 @@ pub fn markdown(tables: &Tables, all: bool) -> String {
             entries(listing, all)
         };
         if !rows.is_empty() {
-            let head = match (grouped, table == super::Table::Phi) {
+            let head = match (grouped, table == Table::Phi) {
                 (true, _) => format!(
                     "| value | {} | negative of it |\n|---|---|---|\n",
                     table.indices()
@@ -45,6 +45,13 @@ pub fn markdown(tables: &Tables, all: bool) -> String {
         if !leads(listing) {
             block(&mut text, "where", &listing.temporaries);
         }
+    }
+    if let Some(inspection) = &tables.geometry {
+        text.push_str(&format!("\n## {}\n\n```text\n", Table::Geometry.title()));
+        for line in geometry::lines(inspection) {
+            text.push_str(&format!("{}\n", line.trim_end()));
+        }
+        text.push_str("```\n");
     }
     text
 }

@@ -10,12 +10,14 @@
 //! | `polish` | polynomials to expressions, common factors in front |
 //! | `expression` | products, sums, calls |
 //! | `listing`, `rows` | entries in order, and grouped by value |
+//! | `geometry` | the report on integrable velocities, Lie algebras, symmetries |
 //! | `notation`, `print` | names and expressions as text or LaTeX |
 //! | `text`, `markdown`, `latex`, `json` | a whole set of tables |
 
 mod circles;
 mod collect;
 pub mod expression;
+pub mod geometry;
 mod json;
 pub mod kind;
 mod latex;
@@ -40,6 +42,7 @@ pub use listing::{Definition, Entry, Group, Listing};
 pub use markdown::markdown;
 pub use text::text;
 
+use crate::derive::geometry::Inspection;
 use crate::generate::Generated;
 use collect::Collector;
 
@@ -54,6 +57,8 @@ pub struct Tables {
     pub velocities: Vec<String>,
     /// The tables, in the order asked for.
     pub listings: Vec<Listing>,
+    /// The report on the geometry, where it was asked for.
+    pub geometry: Option<Inspection>,
 }
 
 /// Derives tables; all of [`Table::DEFAULT`] where none is named. The error says which table
@@ -63,8 +68,13 @@ pub fn tables(generated: &Generated, of: &[Table]) -> Result<Tables, String> {
     let of = if of.is_empty() { &Table::DEFAULT } else { of };
     let mut collector = Collector::new(generated);
     let mut listings: Vec<Listing> = Vec::new();
+    let mut geometry = None;
     for &table in of {
-        if listings.iter().all(|known| known.table != table) {
+        if table == Table::Geometry {
+            geometry = Some(Inspection::new(model).ok_or(
+                "there is no table `geometry`: the columns of A are dependent, so that no Y has Y A = I",
+            )?);
+        } else if listings.iter().all(|known| known.table != table) {
             listings.push(collector.listing(table)?);
         }
     }
@@ -79,5 +89,6 @@ pub fn tables(generated: &Generated, of: &[Table]) -> Result<Tables, String> {
         coordinates: names(&model.x),
         velocities: names(&model.xi),
         listings,
+        geometry,
     })
 }

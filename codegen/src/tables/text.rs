@@ -1,8 +1,8 @@
 //! Tables as plain text for a terminal.
 
-use super::Tables;
 use super::listing::{Definition, Entry, Group, Listing};
 use super::print::{Notation, index};
+use super::{Table, Tables, geometry};
 
 /// Widest value that indices are aligned behind.
 const WIDEST: usize = 60;
@@ -33,12 +33,22 @@ pub fn text(tables: &Tables, all: bool) -> String {
             }
         }
     }
+    if let Some(inspection) = &tables.geometry {
+        text.push_str(&format!(
+            "\n{}: {}\n",
+            Table::Geometry.name(),
+            Table::Geometry.title()
+        ));
+        for line in geometry::lines(inspection) {
+            text.push_str(&format!("  {}\n", line.trim_end()));
+        }
+    }
     text
 }
 
 /// Whether temporaries stand before what uses them: in straight-line code.
 pub fn leads(listing: &Listing) -> bool {
-    listing.table == super::Table::Accel
+    listing.table == Table::Accel
 }
 
 /// `6×6×6, 48 of 216 nonzero`

@@ -19,7 +19,7 @@ mod remainder;
 
 use super::calculus::Calculus;
 use super::check::{Identity, Verdict};
-use super::validate::Reference;
+use super::reference::Reference;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::lane::Lane;

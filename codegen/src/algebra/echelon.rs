@@ -1,0 +1,173 @@
+//! Linear algebra over a field: reduced row echelon form, and what it answers.
+
+use super::poly::field::Field;
+
+/// A matrix in reduced row echelon form, without zero rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Echelon<F> {
+    /// The rows, each with 1 at its pivot.
+    pub rows: Vec<Vec<F>>,
+    /// The column of each row's pivot, increasing.
+    pub pivots: Vec<usize>,
+}
+
+impl<F: Field> Echelon<F> {
+    /// Reduces the rows of a matrix; all of one length.
+    pub fn new(mut rows: Vec<Vec<F>>) -> Self {
+        let columns = rows.first().map_or(0, Vec::len);
+        let mut pivots = Vec::new();
+        for column in 0..columns {
+            let rank = pivots.len();
+            let Some(found) = (rank..rows.len()).find(|&row| !rows[row][column].is_zero()) else {
+                continue;
+            };
+            rows.swap(rank, found);
+            let Some(inverse) = rows[rank][column].inv() else {
+                continue;
+            };
+            let pivot: Vec<F> = rows[rank].iter().map(|entry| entry.mul(&inverse)).collect();
+            for (row, entries) in rows.iter_mut().enumerate() {
+                let factor = entries[column].clone();
+                if row == rank || factor.is_zero() {
+                    continue;
+                }
+                for (entry, other) in entries.iter_mut().zip(&pivot) {
+                    *entry = entry.sub(&factor.mul(other));
+                }
+            }
+            rows[rank] = pivot;
+            pivots.push(column);
+        }
+        rows.truncate(pivots.len());
+        Echelon { rows, pivots }
+    }
+
+    /// Rank.
+    pub fn rank(&self) -> usize {
+        self.pivots.len()
+    }
+
+    /// A basis of {v : rows · v = 0} in a space of `columns` dimensions.
+    pub fn null_space(&self, columns: usize) -> Vec<Vec<F>> {
+        let open = (0..columns).filter(|column| !self.pivots.contains(column));
+        open.map(|column| {
+            let mut vector = vec![F::zero(); columns];
+            vector[column] = F::one();
+            for (row, &pivot) in self.rows.iter().zip(&self.pivots) {
+                vector[pivot] = row[column].neg();
+            }
+            vector
+        })
+        .collect()
+    }
+}
+
+/// Some solution of A v = b that uses the leftmost independent columns of A; `None` where there is none.
+/// Every row is one of A with its entry of b behind it.
+pub fn solution<F: Field>(augmented: Vec<Vec<F>>) -> Option<Vec<F>> {
+    let columns = augmented.first()?.len().checked_sub(1)?;
+    let echelon = Echelon::new(augmented);
+    if echelon.pivots.last() == Some(&columns) {
+        return None;
+    }
+    let mut solution = vec![F::zero(); columns];
+    for (row, &pivot) in echelon.rows.iter().zip(&echelon.pivots) {
+        solution[pivot] = row[columns].clone();
+    }
+    Some(solution)
+}
+
+/// Numbers of positive and negative squares of a symmetric matrix over Q, by Lagrange's reduction
+/// (Sylvester's law of inertia: they do not depend on the basis).
+pub fn signature(matrix: &[Vec<num_rational::BigRational>]) -> (usize, usize) {
+    use num_traits::Signed;
+    let mut m = matrix.to_vec();
+    let n = m.len();
+    let (mut plus, mut minus) = (0, 0);
+    let mut done = vec![false; n];
+    loop {
+        let open: Vec<usize> = (0..n).filter(|&i| !done[i]).collect();
+        let diagonal = open.iter().copied().find(|&i| !m[i][i].is_zero());
+        let Some(k) = diagonal else {
+            // No square left: a mixed product x y gets one by x → x + y.
+            let pair = open.iter().find_map(|&i| {
+                let mixed = open.iter().find(|&&j| !m[i][j].is_zero());
+                mixed.map(|&j| (i, j))
+            });
+            let Some((i, j)) = pair else { break };
+            for row in 0..n {
+                let term = m[row][j].clone();
+                m[row][i] += term;
+            }
+            for column in 0..n {
+                let term = m[j][column].clone();
+                m[i][column] += term;
+            }
+            continue;
+        };
+        if m[k][k].is_positive() {
+            plus += 1;
+        } else {
+            minus += 1;
+        }
+        done[k] = true;
+        for &i in open.iter().filter(|&&i| i != k) {
+            for &j in open.iter().filter(|&&j| j != k) {
+                let change = &m[i][k] * &m[k][j] / &m[k][k];
+                m[i][j] -= change;
+            }
+        }
+        for i in 0..n {
+            if i != k {
+                m[i][k] = Field::zero();
+                m[k][i] = Field::zero();
+            }
+        }
+    }
+    (plus, minus)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_rational::BigRational;
+
+    fn matrix(rows: &[&[i64]]) -> Vec<Vec<BigRational>> {
+        let entry = |&value: &i64| BigRational::integer(value);
+        rows.iter()
+            .map(|row| row.iter().map(entry).collect())
+            .collect()
+    }
+
+    #[test]
+    fn null_spaces_and_solutions_satisfy_their_equations() {
+        let a = matrix(&[&[1, 2, 3, 4], &[2, 4, 7, 9], &[3, 6, 10, 13]]);
+        let echelon = Echelon::new(a.clone());
+        assert_eq!(echelon.rank(), 2);
+        let kernel = echelon.null_space(4);
+        assert_eq!(kernel.len(), 2);
+        let times = |row: &[BigRational], v: &[BigRational]| {
+            let products = row.iter().zip(v).map(|(a, b)| a * b);
+            products.fold(BigRational::integer(0), |sum, product| sum + product)
+        };
+        for vector in &kernel {
+            for row in &a {
+                assert!(Field::is_zero(&times(row, vector)));
+            }
+        }
+        let solved = solution(matrix(&[&[1, 2, 5], &[2, 4, 10], &[0, 1, 2]]));
+        assert_eq!(solved, Some(matrix(&[&[1, 2]]).concat()));
+        assert_eq!(solution(matrix(&[&[1, 2, 5], &[2, 4, 11]])), None);
+    }
+
+    #[test]
+    fn signatures_count_squares() {
+        assert_eq!(signature(&matrix(&[&[-2, 0], &[0, 3]])), (1, 1));
+        assert_eq!(signature(&matrix(&[&[0, 1], &[1, 0]])), (1, 1));
+        assert_eq!(signature(&matrix(&[&[1, 1], &[1, 1]])), (1, 0));
+        assert_eq!(
+            signature(&matrix(&[&[-2, 1, 0], &[1, -2, 0], &[0, 0, 0]])),
+            (0, 2)
+        );
+    }
+}

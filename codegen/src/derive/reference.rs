@@ -1,0 +1,60 @@
+//! One derivation beside the emitted one, by Hamel's form (30a): what slopes, claims and constrained
+//! systems are compared with in numbers.
+
+use super::calculus::Calculus;
+use super::{commutation, connection, energy, inertia, kinematics, virtual_power};
+use crate::algebra::graph::Edge;
+use crate::model::Model;
+
+/// M, h = Γ ξ ξ, ∂V, f, T, V.
+pub(super) struct Reference {
+    /// The model, its graph holding the rest.
+    pub(super) model: Model,
+    /// M.
+    pub(super) mass: Vec<Vec<Edge>>,
+    /// h.
+    pub(super) bias: Vec<Edge>,
+    /// ∂V.
+    pub(super) slope: Vec<Edge>,
+    /// f.
+    pub(super) force: Vec<Edge>,
+    /// T.
+    pub(super) kinetic: Edge,
+    /// V.
+    pub(super) potential: Edge,
+    /// D.
+    pub(super) dissipation: Edge,
+}
+
+impl Reference {
+    /// Hamel's form (30a), from T and γ, not from traced bodies.
+    pub(super) fn new(model: &Model) -> Option<Self> {
+        let mut model = model.clone();
+        let mut calculus = Calculus::new(&model);
+        let mass = inertia::mass_matrix(&mut model, &mut calculus);
+        let rows = kinematics::left_inverse(&mut model)?;
+        let gamma = commutation::gamma(&mut model, &mut calculus, &rows);
+        let bias = connection::quadratic(&mut model, &mut calculus, &mass, &gamma);
+        let potential = energy::potential(&mut model);
+        let slope = (0..model.n())
+            .map(|i| calculus.along(&mut model.graph, i, potential))
+            .collect();
+        let mut graph = model.graph.clone();
+        let force = virtual_power::applied(&model, &mut graph, &mut calculus);
+        let power = virtual_power::dissipated(&model, &mut graph, &mut calculus);
+        let half = graph.ratio(1, 2);
+        let dissipation = graph.mul(half, power);
+        model.graph = graph;
+        let kinetic = energy::kinetic(&mut model, &mass);
+        Some(Reference {
+            model,
+            mass,
+            bias,
+            slope,
+            force,
+            kinetic,
+            potential,
+            dissipation,
+        })
+    }
+}
