@@ -17,7 +17,7 @@ fn generated(name: &str) -> Generated {
     from_text(&text(name)).unwrap_or_else(|errors| panic!("{name}: {errors:?}"))
 }
 
-fn failures(model: &Model, program: &Program) -> Vec<&'static str> {
+fn failures(model: &Model, program: &Program) -> Vec<String> {
     check(model, program)
         .into_iter()
         .filter(|identity| matches!(identity.verdict, Verdict::Failed(_)))
@@ -50,7 +50,10 @@ fn a_wrong_sign_in_an_emitted_force_is_noticed() {
         let outputs = &mut emitted.expect("the function").outputs;
         outputs[entry] = -outputs[entry];
         let found = failures(&model, &program);
-        assert!(found.contains(&equation), "{name}: {found:?}");
+        assert!(
+            found.iter().any(|found| found == equation),
+            "{name}: {found:?}"
+        );
     }
 }
 
@@ -96,7 +99,12 @@ fn a_wrong_sign_in_the_derivation_of_a_load_is_noticed() {
             "{name}"
         );
         // The identity is about the loads as given: the right program satisfies it still.
-        assert!(!failures(&model, &program).contains(&equation), "{name}");
+        assert!(
+            !failures(&model, &program)
+                .iter()
+                .any(|found| found == equation),
+            "{name}"
+        );
     }
 }
 
@@ -113,7 +121,9 @@ fn a_wrong_length_or_motion_is_noticed() {
     };
     let found = failures(&model, &program);
     assert!(
-        found.contains(&LENGTH) && found.contains(&SLOPE),
+        [LENGTH, SLOPE]
+            .iter()
+            .all(|wanted| found.iter().any(|found| found == wanted)),
         "{found:?}"
     );
 

@@ -50,7 +50,8 @@ pub fn symmetries(geometry: &mut Geometry, applied: &[Edge]) -> Vec<Symmetry> {
                 mass_constant,
                 keeps_kinetic,
                 keeps_potential: slope.node() == zero,
-                unloaded: applied.get(i).is_none_or(|force| force.node() == zero),
+                unloaded: applied.get(i).is_none_or(|force| force.node() == zero)
+                    && geometry.model.constraints.is_empty(),
             }
         })
         .collect()
