@@ -123,6 +123,12 @@ fn motion(
             Json::Null
         }
     };
+    // λ of constraints on the velocities; none where there are no such constraints.
+    let constraint_force = match generated.program.function("constraint_force") {
+        _ if generated.model.constraints.is_empty() => None,
+        Some(_) => Some(vector("constraint_force")?),
+        None => Some(Json::vector(&[])),
+    };
     let outputs = system.outputs().iter().map(|output| {
         let values = system.output(output, x, xi);
         let value = match output.shape {
@@ -137,7 +143,7 @@ fn motion(
         };
         (output.name.as_str(), value)
     });
-    Ok(vec![
+    let mut members = vec![
         ("bias", vector("bias")?),
         ("potential_force", vector("potential_force")?),
         ("generalized_force", vector("generalized_force")?),
@@ -147,7 +153,9 @@ fn motion(
         ("potential_energy", Json::Number(system.potential_energy(x))),
         ("constraint", Json::vector(&system.constraint(x))),
         ("outputs", Json::object(outputs)),
-    ])
+    ];
+    members.extend(constraint_force.map(|force| ("constraint_force", force)));
+    Ok(members)
 }
 
 fn finite(value: &Json) -> bool {

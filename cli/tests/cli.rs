@@ -208,6 +208,10 @@ fn lie_algebras_are_named_with_their_side() {
 fn evaluation_obeys_the_laws() {
     for file in fixtures() {
         let all: Value = serde_json::from_str(&stdout(&["eval", &file])).expect("JSON");
+        // Constraints on the velocities: M and Γ are of the full frame, the forces have multipliers.
+        if all.get("constraint_force").is_some() {
+            continue;
+        }
         let (a, m) = (matrix(&all["A"]), matrix(&all["M"]));
         let (xi, accel) = (vector(&all["xi"]), vector(&all["accel"]));
         assert_balance(&file, &[vector(&all["rate"]), minus(&apply(&a, &xi))]);

@@ -195,7 +195,11 @@ fn critical_disk_has_eight_zero_eigenvalues() {
         assert!(trace.abs() < 1e-14, "tr A^{k} = {trace:e}");
         power = power
             .iter()
-            .map(|row| (0..8).map(|j| (0..8).map(|l| row[l] * a[l][j]).sum()).collect())
+            .map(|row| {
+                (0..8)
+                    .map(|j| (0..8).map(|l| row[l] * a[l][j]).sum())
+                    .collect()
+            })
             .collect();
     }
     assert!(power.iter().flatten().all(|entry| entry.abs() < 1e-14));

@@ -11,6 +11,7 @@ use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
+use crate::algebra::tangent::tangent_at;
 use crate::derive::accel::saddle;
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
@@ -22,7 +23,7 @@ const POINTS: u64 = 8;
 const TRIES: u64 = 400;
 
 /// What is compared, with the label and equation that `check` prints.
-const IDENTITIES: [(&str, &str); 7] = [
+const IDENTITIES: [(&str, &str); 8] = [
     ("C", "B C = 0 for the rows that were solved"),
     (
         "(30c)",
@@ -35,6 +36,10 @@ const IDENTITIES: [(&str, &str); 7] = [
     (
         "power",
         "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ = 0",
+    ),
+    (
+        "nearby",
+        "the emitted [A B] are the slopes of ẋ and ξ̇ along δx = A h",
     ),
 ];
 
@@ -228,6 +233,7 @@ fn at_point(
         && equal("potential_energy", vec![values.potential])?
         && equal("dissipation", vec![values.dissipation])?;
     let power = at.power(&kept, &random, seed)?;
+    let nearby = at.nearby(&point, &inner)?;
     let result = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_string()) };
     Some([
         result(vanish, "a row does not vanish"),
@@ -237,6 +243,7 @@ fn at_point(
         result(same_bias, "the bias differs"),
         result(same_loads, "a force or energy differs"),
         result(power, "the power differs"),
+        result(nearby, "a slope differs"),
     ])
 }
 
@@ -348,6 +355,68 @@ impl At<'_> {
             .map(|i| dot(&values.mass[i * n..][..n], &values.xi))
             .collect();
         Some(values.change + dot(&momentum, &xi_dot) == dot(&values.force, &values.xi))
+    }
+}
+
+impl At<'_> {
+    /// [A B] against dual numbers: δξ̇ = DF, and A ḣ = D(ẋ)[A h] − Ȧ h.
+    fn nearby(&self, point: &Lane, inner: &Lane) -> Option<bool> {
+        let (Some(linear), Some(accel)) = (
+            self.program.function("linearize"),
+            self.program.function("accel"),
+        ) else {
+            return Some(true);
+        };
+        let reduced = &self.full.reduced;
+        let full = &self.full.reference.model;
+        let (n, na, nu) = (full.n(), reduced.n(), full.nu());
+        let width = n + na + reduced.u.len();
+        let table = evaluate_at(&self.program.graph, &linear.outputs, &mut inner.clone())?;
+        let entry = |row: usize, column: usize| table[row * width + column];
+        let a_edges = full.a.concat();
+        let a = evaluate_at(&full.graph, &a_edges, &mut point.clone())?;
+        let rate = evaluate_at(&reduced.graph, &reduced.rate, &mut inner.clone())?;
+        let symbols = |class| places(&reduced.graph, class);
+        let (x, mut others) = (symbols(class::COORD), symbols(class::VELOCITY));
+        others.extend(symbols(class::INPUT));
+        let size = reduced.graph.symbols().len();
+        // How the columns of A change along the motion.
+        let mut moving = vec![Fp::ZERO; full.graph.symbols().len()];
+        for (&place, &slope) in places(&full.graph, class::COORD).iter().zip(&rate) {
+            moving[place] = slope;
+        }
+        let swept = tangent_at(&full.graph, &a_edges, &mut point.clone(), &moving)?;
+        for column in 0..width {
+            let mut direction = vec![Fp::ZERO; size];
+            if column < n {
+                for (alpha, &place) in x.iter().enumerate() {
+                    direction[place] = a[alpha * n + column];
+                }
+            } else {
+                direction[others[column - n]] = Fp::ONE;
+            }
+            let graph = &self.program.graph;
+            let slopes = tangent_at(graph, &accel.outputs, &mut inner.clone(), &direction)?;
+            let ahead = tangent_at(
+                &reduced.graph,
+                &reduced.rate,
+                &mut inner.clone(),
+                &direction,
+            )?;
+            let bent = (0..na).any(|row| entry(n + row, column) != slopes[row].1);
+            let moved = (0..nu).all(|alpha| {
+                let sum = (0..n).fold(Fp::ZERO, |sum, k| sum + a[alpha * n + k] * entry(k, column));
+                let swept = match column < n {
+                    true => swept[alpha * n + column].1,
+                    false => Fp::ZERO,
+                };
+                sum == ahead[alpha].1 - swept
+            });
+            if bent || !moved {
+                return Some(false);
+            }
+        }
+        Some(true)
     }
 }
 

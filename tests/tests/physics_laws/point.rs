@@ -2,6 +2,7 @@
 
 use crate::lists::{assert_close, largest};
 use hamel::{Block, Method, State, System, manifold};
+use hamel_codegen::generate::from_text;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// States tried per system and law.
@@ -70,9 +71,13 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
     fn new(name: &str, seed: u64) -> Self {
         let system = Sys::default();
         let mut random = Random(seed);
+        let mut tries = 0;
         let state = loop {
+            tries += 1;
+            assert!(tries < 1000, "{name}: no state was found");
             let mut state = Self::random_state(&system, &mut random);
-            let moderate = largest(&columns(&system, &state.x).concat()) <= 2.0;
+            let usual = largest(&columns(&system, &State::start(&system).x).concat());
+            let moderate = largest(&columns(&system, &state.x).concat()) <= 2.0 * usual.max(1.0);
             // A linkage may have been turned into its other assembly, which is none of the start's.
             let assembled = system.accel(&state.x, &state.xi, &system.zero_inputs());
             let assembled = !assembled.is_err_and(|e| e.kinematic_pivot().is_some());
@@ -245,11 +250,16 @@ macro_rules! models {
 }
 
 models! {
+    actuated_pendulum::ActuatedPendulum,
+    body_with_rotor::BodyWithRotor,
     cart_pole::CartPole,
     double_pendulum_angles::DoublePendulum,
     double_pendulum_circles::CircleDoublePendulum,
+    drone::Drone,
+    elastic_pendulum::ElasticPendulum,
     euler_top_quaternion::EulerTop,
     four_bar::FourBar,
+    frame_graph::FrameGraph,
     free_body::FreeBody,
     free_body_both::FreeBodyBoth,
     free_body_momenta::FreeBodyMomenta,
@@ -257,11 +267,13 @@ models! {
     free_body_rows::FreeBodyRows,
     free_body_world::WorldBody,
     free_body_world_velocity::WorldVelocityBody,
+    gyrostat::Gyrostat,
     heavy_top::HeavyTop,
     heavy_top_axis::AxisTop,
     heavy_top_columns::ColumnTop,
     heavy_top_quaternion::QuaternionTop,
     heavy_top_world::WorldTop,
+    heisenberg::Heisenberg,
     hoop_bead::HoopBead,
     kovalevskaya_top::KovalevskayaTop,
     lagrange_top::LagrangeTop,
@@ -269,6 +281,7 @@ models! {
     pendulum_circle::CirclePendulum,
     pendulum_rows::PendulumRows,
     planar_body::PlanarBody,
+    planar_world::PlanarWorld,
     polar_particle::PolarParticle,
     principal_axes::PrincipalAxes,
     rod_particles::RodParticles,
@@ -276,7 +289,12 @@ models! {
     satellite::Satellite,
     six_particles::SixParticles,
     slider_crank::SliderCrank,
+    spherical_angles::SphericalAngles,
+    spherical_orthonormal::SphericalOrthonormal,
     spherical_pendulum::SphericalPendulum,
+    spinning_particles::SpinningParticles,
+    spring_chain::SpringChain,
+    suspended_body::SuspendedBody,
     two_bodies::TwoBodies,
 }
 
@@ -287,6 +305,13 @@ fn no_model_is_left_out() {
         .expect("models")
         .map(|entry| entry.expect("an entry").path())
         .filter(|path| path.extension().is_some_and(|e| e == "eom"))
+        .filter(|path| {
+            // Where constraints hold velocities back A is no frame of the tangent space, and these
+            // laws are others: see `physics_constraints.rs`.
+            let text = std::fs::read_to_string(path).expect("readable");
+            let generated = from_text(&text).expect("correct");
+            generated.model.constraints.is_empty()
+        })
         .map(|path| path.file_stem().expect("a name").to_string_lossy().into())
         .collect();
     stems.sort();
