@@ -22,7 +22,12 @@ const TWINS: &[Twin] = &[
         "hat(w)",
         "this rate leaves the constraint",
     ),
-    ("heavy_top_quaternion", "/ 2", "* [1, 0, 0, 0]", "this rate"),
+    (
+        "heavy_top_quaternion",
+        "qmul(q, [0,",
+        "qmul(q, [w[1],",
+        "this rate leaves the constraint",
+    ),
     (
         "pendulum",
         "rate s = c * w",
@@ -38,7 +43,7 @@ const TWINS: &[Twin] = &[
     (
         "six_particles",
         "R * hat(w)",
-        "R * outer(w, w)",
+        "R * diag(w[1], w[2], w[3])",
         "this rate leaves the constraint",
     ),
     // Y A = I.
@@ -186,7 +191,12 @@ const TWINS: &[Twin] = &[
         "the velocities are not independent",
     ),
     // D of degree two.
-    ("spring_chain", "", "dissipation v1;", "degree two"),
+    (
+        "spring_chain",
+        "",
+        "dissipation v1;",
+        "not quadratic in the velocities",
+    ),
 ];
 
 fn text(name: &str) -> String {
