@@ -303,7 +303,7 @@ fn elimination(model: &Model, order: &[usize]) -> String {
             .find(|s| s.node == model.xi[*i].node())
             .map_or("", |s| s.name.as_str())
     };
-    let names: Vec<&str> = order.iter().map(name).collect();
+    let names: Vec<String> = order.iter().map(|i| format!("`{}`", name(i))).collect();
     format!("velocities eliminated in the order {}", names.join(", "))
 }
 
