@@ -1,73 +1,33 @@
-//! Methods by name, and the run from one time to another.
+//! The run from one time to another.
 
 use crate::error::StepError;
+use crate::manifold;
+use crate::methods::Method;
 use crate::state::State;
 use crate::store::is_finite;
 use crate::system::System;
-use crate::{manifold, rk4, rkmk4};
 
-/// A method of fixed step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub enum Method {
-    /// [`rkmk4`]: order 4, stays on the manifold; for any system.
-    #[default]
-    Rkmk4,
-    /// [`rk4`]: order 4 on the coordinates, with the stabilising term of KR18 (8).
-    Rk4 {
-        /// λ ≥ 0 in 1/time. Fixed, of the order of 10/s: λ ~ 1/h costs two orders.
-        lambda: f64,
-    },
-    /// [`rk4`] without stabilisation, each step followed by [`manifold::normalise`]: order 4.
-    Rk4Projected,
-}
-
-impl Method {
-    /// The order p: the error at a fixed time is O(hᵖ).
-    pub const fn order(self) -> u32 {
-        match self {
-            Self::Rkmk4 | Self::Rk4 { .. } | Self::Rk4Projected => 4,
-        }
-    }
-
-    /// Evaluations of ξ̇ in one step.
-    pub const fn evaluations(self) -> u32 {
-        match self {
-            Self::Rkmk4 | Self::Rk4 { .. } | Self::Rk4Projected => 4,
-        }
-    }
-
-    /// Moves `state` by one step of length `h`, of either sign or zero. `inputs(t, x, ξ)` gives u.
-    ///
-    /// # Errors
-    /// [`StepError`]; `state` then keeps its value.
-    #[inline]
-    pub fn step<Sys, U>(
-        self,
-        system: &Sys,
-        state: &mut State<Sys>,
-        h: f64,
-        inputs: &U,
-    ) -> Result<(), StepError>
-    where
-        Sys: System + ?Sized,
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
-        let next = match self {
-            Self::Rkmk4 => rkmk4::step(system, state, h, inputs)?,
-            Self::Rk4 { lambda } => rk4::step(system, state, h, lambda, inputs)?,
-            Self::Rk4Projected => {
-                let mut next = rk4::step(system, state, h, 0.0, inputs)?;
-                manifold::normalise(system.blocks(), next.x.as_mut());
-                if !next.is_finite() {
-                    return Err(StepError::NonFinite { time: state.t });
-                }
-                next
-            }
-        };
-        *state = projected(system, next)?;
-        Ok(())
-    }
+/// Moves `state` by one step of length `h`, of either sign or zero, and back onto the constraints
+/// that multipliers keep. `inputs(t, x, ξ)` gives u.
+///
+/// # Errors
+/// [`StepError`]; `state` then keeps its value.
+#[inline]
+pub fn step<Sys, M, U>(
+    system: &Sys,
+    method: M,
+    state: &mut State<Sys>,
+    h: f64,
+    inputs: &U,
+) -> Result<(), StepError>
+where
+    Sys: System + ?Sized,
+    M: Method<Sys>,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    let next = method.step(system, state, h, inputs)?;
+    *state = projected(system, next)?;
+    Ok(())
 }
 
 /// The state on the constraints that multipliers keep: loops closed by one Newton step, velocities
@@ -93,9 +53,9 @@ where
     }
 }
 
-/// Moves `state` to the time `until`, forwards or backwards, in equal steps no longer than `step`.
+/// Moves `state` to the time `until`, forwards or backwards, in equal steps no longer than `length`.
 ///
-/// The count of steps is |until − t| / |step| rounded up (a ratio within 1e-9 of a whole number is
+/// The count of steps is |until − t| / |length| rounded up (a ratio within 1e-9 of a whole number is
 /// taken as that number), so that all steps are equal, the method keeps its order, and the last state
 /// is at `until` exactly. `inputs(t, x, ξ)` gives u and is called at the points that the method
 /// visits; `observe` is called with the first state and after every step.
@@ -103,17 +63,18 @@ where
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, at which `observe` was called last.
 #[inline]
-pub fn integrate<Sys, U, O>(
+pub fn integrate<Sys, M, U, O>(
     system: &Sys,
-    method: Method,
+    method: M,
     state: &mut State<Sys>,
-    step: f64,
+    length: f64,
     until: f64,
     inputs: U,
     mut observe: O,
 ) -> Result<(), StepError>
 where
     Sys: System + ?Sized,
+    M: Method<Sys>,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     O: FnMut(&State<Sys>),
 {
@@ -123,11 +84,11 @@ where
     }
     let from = state.t;
     let span = until - from;
-    let steps = count_steps(span, step)?;
+    let steps = count_steps(span, length)?;
     observe(state);
     for index in 1..=steps {
         let time = from + span * (index as f64 / steps as f64);
-        method.step(system, state, span / steps as f64, &inputs)?;
+        step(system, &method, state, span / steps as f64, &inputs)?;
         state.t = if index == steps { until } else { time };
         observe(state);
     }

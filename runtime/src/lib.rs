@@ -2,7 +2,7 @@
 //!
 //! A generated type implements [`System`]: coordinates x, possibly redundant and of the kinds of
 //! [`Block`], velocity coordinates ξ, and the equations ẋ = A(x) ξ, ξ̇ = M⁻¹(f − c). This crate moves
-//! such systems in time on their manifold ([`integrate`](integrate()), [`Method`]) and watches what
+//! such systems in time on their manifold ([`integrate`](integrate()), [`methods`]) and watches what
 //! they conserve ([`Monitor`]). It knows nothing of descriptions, does not allocate, and never panics;
 //! what fails is a [`StepError`].
 //!
@@ -18,7 +18,8 @@
 //! A pendulum of length l, x = (cos θ, sin θ), ξ = θ̇, l θ̈ = −g sin θ, as written by hand:
 //!
 //! ```
-//! use hamel::{integrate, s1, Block, Method, Monitor, Singular, State, System};
+//! use hamel::methods::Rkmk4;
+//! use hamel::{integrate, s1, Block, Monitor, Singular, State, System};
 //!
 //! struct Pendulum { g: f64, l: f64 }
 //!
@@ -52,7 +53,7 @@
 //! let pendulum = Pendulum { g: 9.81, l: 0.5 };
 //! let mut state = State::start(&pendulum);
 //! let mut monitor = Monitor::new(&pendulum, &state);
-//! integrate(&pendulum, Method::Rkmk4, &mut state, 1e-3, 10.0, |_, _, _| [], |state| {
+//! integrate(&pendulum, Rkmk4, &mut state, 1e-3, 10.0, |_, _, _| [], |state| {
 //!     monitor.observe(&pendulum, state);
 //! })?;
 //! assert_eq!(state.t, 10.0);
@@ -64,30 +65,36 @@
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
+pub mod canonical;
 #[cfg(feature = "nalgebra")]
 pub mod edge;
 pub mod error;
 pub mod integrate;
 pub mod manifold;
+pub mod methods;
 pub mod monitor;
-pub mod rk4;
-pub mod rkmk4;
+pub mod rotor;
 pub mod s1;
 pub mod s3;
 pub mod scalar;
 pub mod so3;
+pub mod split;
 pub mod state;
 pub mod store;
 pub mod system;
 
+pub use canonical::Canonical;
 pub use error::{Singular, StepError};
 #[cfg(feature = "macros")]
 pub use hamel_macros::rigid_eom;
-pub use integrate::{Method, integrate};
+pub use integrate::{integrate, step};
+pub use methods::Method;
 pub use monitor::Monitor;
 #[cfg(feature = "nalgebra")]
 pub use nalgebra;
+pub use rotor::Rotor;
 pub use scalar::Scalar;
+pub use split::Split;
 pub use state::State;
 pub use store::Store;
 pub use system::{Block, System};

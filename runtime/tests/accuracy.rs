@@ -6,7 +6,8 @@
 mod common;
 
 use common::{FreeBody, QuaternionTop, Reference, Top, distance, relative, run, slopes};
-use hamel::{Method, State, StepError, System, integrate, s3};
+use hamel::methods::General;
+use hamel::{State, StepError, System, integrate, s3};
 
 /// How far a measured error may be from the expected one.
 const SIZE: f64 = 0.10;
@@ -33,7 +34,7 @@ fn assert_order(what: &str, errors: &[f64], order: f64) {
 }
 
 /// Error of R (Frobenius) of a body with a fixed point.
-fn top_error(case: &str, method: Method, until: f64, n: u32) -> f64 {
+fn top_error(case: &str, method: General, until: f64, n: u32) -> f64 {
     let reference = Reference::read(case);
     let state = run(&Top(reference.body()), method, until, n).expect(case);
     assert_eq!(state.t, until);
@@ -53,7 +54,7 @@ fn free_body_error(case: &str, until: f64, n: u32) -> f64 {
     let step = until / f64::from(n);
     integrate(
         &system,
-        Method::Rkmk4,
+        General::Rkmk4,
         &mut state,
         step,
         until,
@@ -86,7 +87,7 @@ fn rkmk4_error_of_tops_and_free_rotation() {
         ("free-elongated-1000", 5.0, 16000, 1.99e-4),
         ("free-fast-spin-1000", 0.5, 16000, 2.23e-7),
     ] {
-        assert_size(case, top_error(case, Method::Rkmk4, until, n), expected);
+        assert_size(case, top_error(case, General::Rkmk4, until, n), expected);
     }
 }
 
@@ -106,7 +107,7 @@ fn rkmk4_error_of_free_bodies() {
 fn rkmk4_has_order_four() {
     for (case, until) in [("heavy-top-benchmark-150", 1.0), ("kovalevskaya-top", 20.0)] {
         let coarsest = if until < 2.0 { 2000 } else { 1000 };
-        let errors = [1, 2, 4, 8].map(|f| top_error(case, Method::Rkmk4, until, f * coarsest));
+        let errors = [1, 2, 4, 8].map(|f| top_error(case, General::Rkmk4, until, f * coarsest));
         // Rounding shows below 1e-12: leave such errors out of the slopes.
         let clean: Vec<f64> = errors.into_iter().filter(|e| *e > 1e-11).collect();
         assert!(clean.len() >= 3, "{case}: {errors:?}");
@@ -121,8 +122,8 @@ fn rkmk4_on_quaternions_equals_rkmk4_on_matrices() {
         ("kovalevskaya-top", 20.0, 2000, 3.70e-9),
     ] {
         let reference = Reference::read(case);
-        let by_quaternion = run(&QuaternionTop(reference.body()), Method::Rkmk4, until, n);
-        let by_matrix = run(&Top(reference.body()), Method::Rkmk4, until, n).expect(case);
+        let by_quaternion = run(&QuaternionTop(reference.body()), General::Rkmk4, until, n);
+        let by_matrix = run(&Top(reference.body()), General::Rkmk4, until, n).expect(case);
         let r = s3::to_matrix(by_quaternion.expect(case).x);
         assert_size(case, distance(r, reference.sample(until, "R")), expected);
         // The same chart: the two differ by rounding, amplified by the motion.
@@ -133,9 +134,9 @@ fn rkmk4_on_quaternions_equals_rkmk4_on_matrices() {
 #[test]
 fn rk4_on_entries_keeps_order_four_when_stabilised() {
     let methods = [
-        Method::Rk4 { lambda: 0.0 },
-        Method::Rk4 { lambda: 10.0 },
-        Method::Rk4Projected,
+        General::Rk4 { lambda: 0.0 },
+        General::Rk4 { lambda: 10.0 },
+        General::Rk4Projected,
     ];
     for method in methods {
         for (case, until, coarsest) in [
@@ -152,7 +153,7 @@ fn rk4_on_entries_keeps_order_four_when_stabilised() {
 fn stabilisation_like_one_over_h_costs_two_orders() {
     let errors = [500, 1000, 2000, 4000].map(|n| {
         let lambda = 1.0 / (20.0 / f64::from(n));
-        top_error("kovalevskaya-top", Method::Rk4 { lambda }, 20.0, n)
+        top_error("kovalevskaya-top", General::Rk4 { lambda }, 20.0, n)
     });
     println!("{errors:?} {:?}", slopes(&errors));
     assert!(slopes(&errors).into_iter().all(|slope| slope < 3.0));
@@ -164,7 +165,7 @@ fn stabilisation_decays_a_defect_exponentially() -> Result<(), StepError> {
     let mut state = State::start(&system);
     state.x = state.x.map(|q| q * 1.001);
     let before = system.constraint_norm(&state.x);
-    let method = Method::Rk4 { lambda: 10.0 };
+    let method = General::Rk4 { lambda: 10.0 };
     integrate(&system, method, &mut state, 1e-3, 1.0, |_, _, _| [], |_| {})?;
     let after = system.constraint_norm(&state.x);
     // φ = q·q − 1 obeys φ̇ = −λ φ (1 + φ): exp(−λ t) but for terms of φ².
@@ -187,7 +188,7 @@ fn single_precision_reaches_its_own_rounding() {
         r0: double.r0.map(|v| v as f32),
         w0: double.w0.map(|v| v as f32),
     });
-    let state = run(&system, Method::Rkmk4, 20.0, 2000).expect("a run of f32");
+    let state = run(&system, General::Rkmk4, 20.0, 2000).expect("a run of f32");
     let error = distance(state.x.map(f64::from), reference.sample(20.0, "R"));
     println!("f32: {error:e}");
     assert!(error < 2e-4);

@@ -5,7 +5,8 @@ mod common;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use common::{Body, QuaternionTop, Reference, Top, run};
-use hamel::{Method, Monitor, Scalar, State, StepError, s3, so3};
+use hamel::methods::General;
+use hamel::{Monitor, Scalar, State, StepError, s3, so3};
 
 /// Two lanes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -101,15 +102,15 @@ fn bodies() -> ([Body<f64>; 2], Body<Pair>) {
 #[test]
 fn lanes_agree_with_single_runs() -> Result<(), StepError> {
     let (single, both) = bodies();
-    let state = run(&Top(both.clone()), Method::Rkmk4, 1.0, 500)?;
-    let unit = run(&QuaternionTop(both.clone()), Method::Rkmk4, 1.0, 500)?;
+    let state = run(&Top(both.clone()), General::Rkmk4, 1.0, 500)?;
+    let unit = run(&QuaternionTop(both.clone()), General::Rkmk4, 1.0, 500)?;
     let mut monitor = Monitor::new(&Top(both.clone()), &State::start(&Top(both.clone())));
     monitor.observe(&Top(both.clone()), &state);
     for (index, body) in single.into_iter().enumerate() {
-        let alone = run(&Top(body.clone()), Method::Rkmk4, 1.0, 500)?;
+        let alone = run(&Top(body.clone()), General::Rkmk4, 1.0, 500)?;
         assert_eq!(lane(state.x, index), alone.x);
         assert_eq!(lane(state.xi, index), alone.xi);
-        let unit_alone = run(&QuaternionTop(body.clone()), Method::Rkmk4, 1.0, 500)?;
+        let unit_alone = run(&QuaternionTop(body.clone()), General::Rkmk4, 1.0, 500)?;
         assert_eq!(lane(unit.x, index), unit_alone.x);
         let mut monitor_alone = Monitor::new(&Top(body.clone()), &State::start(&Top(body.clone())));
         monitor_alone.observe(&Top(body.clone()), &alone);
@@ -145,6 +146,6 @@ fn one_bad_lane_is_an_error() {
     let top = Top(both);
     let mut state = State::start(&top);
     state.xi[1].0[1] = f64::NAN;
-    let outcome = Method::Rkmk4.step(&top, &mut state, 0.1, &|_, _, _| []);
+    let outcome = hamel::step(&top, General::Rkmk4, &mut state, 0.1, &|_, _, _| []);
     assert_eq!(outcome, Err(StepError::NonFinite { time: 0.0 }));
 }

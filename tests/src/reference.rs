@@ -1,6 +1,7 @@
 //! The reference solutions of `tests/reference/`, and how far a run is from them.
 
-use hamel::{Method, State, StepError, System, integrate};
+use hamel::methods::General;
+use hamel::{State, StepError, System, integrate};
 use serde_json::Value;
 
 /// A reference solution: see the README beside the files.
@@ -99,7 +100,7 @@ pub fn relative(a: &[f64], b: &[f64]) -> f64 {
 /// Those of [`integrate()`].
 pub fn run<Sys: System>(
     system: &Sys,
-    method: Method,
+    method: General,
     mut state: State<Sys>,
     until: f64,
     n: u32,

@@ -1,7 +1,8 @@
 //! Claims of constancy: proved where they are true, refused at every door where they are not, and
 //! watched by generated functions.
 
-use hamel::{Method, State, System, integrate};
+use hamel::methods::General;
+use hamel::{State, System, integrate};
 use hamel_codegen::builder::source;
 use hamel_codegen::derive::check::{Identity, Verdict, check};
 use hamel_codegen::generate::from_text;
@@ -122,7 +123,7 @@ where
             *worst = worst.max((now - first).abs() / first.abs().max(1.0));
         }
     };
-    integrate(system, Method::Rkmk4, &mut state, 5e-4, 2.0, none, observe).expect("a run");
+    integrate(system, General::Rkmk4, &mut state, 5e-4, 2.0, none, observe).expect("a run");
     for worst in worst {
         assert!(worst < DRIFT, "{worst:e}");
     }

@@ -1,6 +1,7 @@
 //! Motions with closed forms of textbooks.
 
-use hamel::{Method, State, System, integrate, s1, so3};
+use hamel::methods::General;
+use hamel::{State, System, integrate, s1, so3};
 use hamel_tests::cart_pole::CartPole;
 use hamel_tests::free_body::FreeBody;
 use hamel_tests::heavy_top::HeavyTop;
@@ -26,7 +27,7 @@ fn end<Sys: System>(
     until: f64,
 ) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
-    run(system, Method::Rkmk4, start, until, STEPS).expect("a run without failure")
+    run(system, General::Rkmk4, start, until, STEPS).expect("a run without failure")
 }
 
 #[track_caller]
@@ -239,7 +240,7 @@ fn hovering_body_under_a_torque() {
     let inputs = |_, _: &_, _: &_| [0.0, 0.0, m * g, 0.0, 0.0, tau];
     integrate(
         &system,
-        Method::Rkmk4,
+        General::Rkmk4,
         &mut state,
         1e-3,
         until,

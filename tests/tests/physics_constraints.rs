@@ -1,7 +1,8 @@
 //! Systems with constraints on their velocities, against reference solutions, published states and
 //! conservation laws.
 
-use hamel::{Method, Singular, State, StepError, System, integrate};
+use hamel::methods::General;
+use hamel::{Singular, State, StepError, System, integrate};
 use hamel_tests::bicycle::Bicycle;
 use hamel_tests::bricard::Bricard;
 use hamel_tests::double_four_bar::DoubleFourBar;
@@ -33,7 +34,7 @@ fn drift<Sys: System<Scalar = f64>>(
     let none = |_, _: &_, _: &_| system.zero_inputs();
     integrate(
         system,
-        Method::Rkmk4,
+        General::Rkmk4,
         &mut state,
         step,
         until,
@@ -67,7 +68,7 @@ fn sleigh_follows_its_reference() {
             x: [x, y, theta.cos(), theta.sin()],
             xi: [u, w],
         };
-        let end = run(&system, Method::Rkmk4, start, 20.0, n).expect("a run");
+        let end = run(&system, General::Rkmk4, start, 20.0, n).expect("a run");
         let error = |found: f64, name: &str| relative(&[found], &reference.sample::<1>(20.0, name));
         let [angle] = reference.sample::<1>(20.0, "theta");
         let turned = (end.x[3].atan2(end.x[2]) - angle + std::f64::consts::PI)
@@ -96,7 +97,7 @@ fn disk_follows_its_reference() {
     x[3..].copy_from_slice(&rotation);
     for (n, expected) in [(1000, 2.23e-7), (2000, 1.32e-8), (4000, 8.0e-10)] {
         let xi = reference.initial("omega");
-        let end = run(&system, Method::Rkmk4, State { t: 0.0, x, xi }, 5.0, n).expect("a run");
+        let end = run(&system, General::Rkmk4, State { t: 0.0, x, xi }, 5.0, n).expect("a run");
         let errors = [
             relative(&end.x[..3], &reference.sample::<3>(5.0, "r")),
             relative(&end.x[3..], &reference.sample::<9>(5.0, "R")),
@@ -132,7 +133,7 @@ fn spherical_pendulum_passes_both_poles() {
         x: rotation,
         xi,
     };
-    let end = run(&system, Method::Rkmk4, start, 10.0, 8000).expect("a run");
+    let end = run(&system, General::Rkmk4, start, 10.0, 8000).expect("a run");
     let rod = [end.x[2], end.x[5], end.x[8]];
     let error = relative(&rod, &reference.sample::<3>(10.0, "x"));
     assert!(error < 1e-9, "{error:e}");
@@ -151,7 +152,7 @@ fn squeezer_reaches_the_published_state() {
         1.048080741042263,
     ];
     let system = Squeezer::<f64>::default();
-    let end = run(&system, Method::Rkmk4, State::start(&system), 0.03, 3000).expect("a run");
+    let end = run(&system, General::Rkmk4, State::start(&system), 0.03, 3000).expect("a run");
     for (found, expected) in end.x.iter().zip(published) {
         assert!((found - expected).abs() < 1e-8, "{found} {expected}");
     }
@@ -236,7 +237,16 @@ fn snakeboard_moves_by_turning_its_rotor() {
     let system = Snakeboard::default();
     let mut state = State::start(&system);
     let twist = |t: f64, _: &_, _: &_| [0.3 * (3.0 * t).sin(), 0.02 * (3.0 * t).cos()];
-    integrate(&system, Method::Rkmk4, &mut state, 1e-3, 4.0, twist, |_| {}).expect("a run");
+    integrate(
+        &system,
+        General::Rkmk4,
+        &mut state,
+        1e-3,
+        4.0,
+        twist,
+        |_| {},
+    )
+    .expect("a run");
     assert!(state.x[0].hypot(state.x[1]) > 0.05, "{:?}", state.x);
 }
 
@@ -252,7 +262,7 @@ fn bicycle_is_stable_at_five_metres_a_second() {
         xi = [0.05, xi[1], xi[2], xi[3], -speed / rr, -speed / rf];
         state.xi = system.settle(&state.x, &xi).expect("regular");
         let none = |_, _: &_, _: &_| system.zero_inputs();
-        integrate(&system, Method::Rkmk4, &mut state, 2e-3, 6.0, none, |_| {}).map(|()| {
+        integrate(&system, General::Rkmk4, &mut state, 2e-3, 6.0, none, |_| {}).map(|()| {
             // Sine of the lean angle: how far the frame's y axis points down.
             state.x[3 + 7].abs()
         })

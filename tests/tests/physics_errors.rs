@@ -1,6 +1,7 @@
 //! What cannot be: singular mass, by parameters and by configuration, is a typed error and never NaN.
 
-use hamel::{Method, Singular, State, StepError, integrate};
+use hamel::methods::General;
+use hamel::{Singular, State, StepError, integrate};
 use hamel_tests::cart_pole::CartPole;
 use hamel_tests::free_body::FreeBody;
 use hamel_tests::heavy_top::HeavyTop;
@@ -96,7 +97,7 @@ fn a_mass_matrix_singular_in_places_is_an_error_there() {
         x: on_axis,
         xi,
     };
-    let step = Method::Rkmk4.step(&system, &mut state, 0.1, &|_, _, _| [0.0]);
+    let step = hamel::step(&system, General::Rkmk4, &mut state, 0.1, &|_, _, _| [0.0]);
     assert_eq!(
         step,
         Err(StepError::Singular {
@@ -142,7 +143,7 @@ fn states_that_are_not_numbers_are_errors() {
     state.xi[1] = f64::NAN;
     let run = integrate(
         &system,
-        Method::Rkmk4,
+        General::Rkmk4,
         &mut state,
         1e-3,
         1.0,

@@ -1,6 +1,7 @@
 //! One body, many descriptions: the motion does not depend on coordinates, velocities or frames.
 
-use hamel::{Method, State, System, s1, s3, so3};
+use hamel::methods::General;
+use hamel::{State, System, s1, s3, so3};
 use hamel_tests::double_pendulum_angles::DoublePendulum;
 use hamel_tests::double_pendulum_circles::CircleDoublePendulum;
 use hamel_tests::free_body::FreeBody;
@@ -28,7 +29,7 @@ type Matrix = [f64; 9];
 
 fn end<Sys: System>(system: &Sys, x: Sys::Coordinates, xi: Sys::Velocities) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
-    run(system, Method::Rkmk4, start, UNTIL, STEPS).expect("a run without failure")
+    run(system, General::Rkmk4, start, UNTIL, STEPS).expect("a run without failure")
 }
 
 fn join<const A: usize, const B: usize, const C: usize>(a: [f64; A], b: [f64; B]) -> [f64; C] {

@@ -1,7 +1,8 @@
 //! Frames and groups beyond the plain ones: the same motion in frames with constant and with varying γ,
 //! bodies known by their particles, rotors, Heisenberg's group.
 
-use hamel::{Method, State, System, so3};
+use hamel::methods::General;
+use hamel::{State, System, so3};
 use hamel_tests::body_with_rotor::BodyWithRotor;
 use hamel_tests::gyrostat::Gyrostat;
 use hamel_tests::heavy_top::HeavyTop;
@@ -22,7 +23,7 @@ const SAME: f64 = 1e-10;
 
 fn end<Sys: System>(system: &Sys, x: Sys::Coordinates, xi: Sys::Velocities) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
-    run(system, Method::Rkmk4, start, UNTIL, STEPS).expect("a run without failure")
+    run(system, General::Rkmk4, start, UNTIL, STEPS).expect("a run without failure")
 }
 
 #[track_caller]

@@ -1,6 +1,7 @@
 //! Loads and sensors against closed forms, finite differences and the balance of energy.
 
-use hamel::{Method, State, System, so3};
+use hamel::methods::General;
+use hamel::{State, System, so3};
 use hamel_tests::actuated_pendulum::ActuatedPendulum;
 use hamel_tests::drone::Drone;
 use hamel_tests::elastic_pendulum::ElasticPendulum;
@@ -52,8 +53,9 @@ fn energy_of_a_suspended_body_goes_into_its_dampers() {
     let mut lost = 0.0;
     for _ in 0..steps {
         // Simpson's rule over one step.
-        let middle = run(&body, Method::Rkmk4, state.clone(), state.t + h / 2.0, 4).expect("a run");
-        let end = run(&body, Method::Rkmk4, middle.clone(), state.t + h, 4).expect("a run");
+        let middle =
+            run(&body, General::Rkmk4, state.clone(), state.t + h / 2.0, 4).expect("a run");
+        let end = run(&body, General::Rkmk4, middle.clone(), state.t + h, 4).expect("a run");
         let power = |s: &State<_>| 2.0 * body.dissipation(&s.x, &s.xi);
         lost += h / 6.0 * (power(&state) + 4.0 * power(&middle) + power(&end));
         state = end;
@@ -126,7 +128,7 @@ fn energy_of_an_actuated_pendulum_balances() {
         };
         hamel::integrate(
             &arm,
-            Method::Rkmk4,
+            General::Rkmk4,
             &mut state,
             STEP * steps.signum(),
             STEP * steps,
@@ -145,7 +147,7 @@ fn energy_of_an_actuated_pendulum_balances() {
     };
     hamel::integrate(
         &arm,
-        Method::Rkmk4,
+        General::Rkmk4,
         &mut state,
         STEP,
         STEP,
@@ -167,7 +169,7 @@ where
     State<Sys>: Clone,
 {
     let next = |from: &State<Sys>| {
-        run(system, Method::Rkmk4, from.clone(), from.t + STEP, 1).expect("a run")
+        run(system, General::Rkmk4, from.clone(), from.t + STEP, 1).expect("a run")
     };
     let middle = next(&start);
     let last = next(&middle);

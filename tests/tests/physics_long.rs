@@ -1,6 +1,7 @@
 //! Long runs: drift of what is conserved, decay of what is disturbed, orders, and work done.
 
-use hamel::{Method, Monitor, State, System, integrate, so3};
+use hamel::methods::General;
+use hamel::{Monitor, State, System, integrate, so3};
 use hamel_tests::heavy_top::HeavyTop;
 use hamel_tests::hoop_bead::HoopBead;
 use hamel_tests::planar_body::PlanarBody;
@@ -29,7 +30,7 @@ fn heavy_top_keeps_energy_vertical_momentum_and_rotation() {
         let inputs = |_, _: &_, _: &_| [];
         integrate(
             &system,
-            Method::Rkmk4,
+            General::Rkmk4,
             &mut state,
             step,
             50.0,
@@ -67,7 +68,7 @@ fn two_bodies_keep_energy_and_vertical_momentum() {
         let observe = |state: &_| monitor.observe(&system, state);
         integrate(
             &system,
-            Method::Rkmk4,
+            General::Rkmk4,
             &mut state,
             step,
             10.0,
@@ -101,7 +102,7 @@ where
         *x += disturb(k);
     }
     let before = phi(&state.x);
-    let method = Method::Rk4 { lambda: LAMBDA };
+    let method = General::Rk4 { lambda: LAMBDA };
     let end = run(system, method, state, UNTIL, 500).expect("a run");
     let expected = (-LAMBDA * UNTIL).exp();
     for (before, after) in before.iter().zip(phi(&end.x)) {
@@ -124,10 +125,10 @@ fn disturbed_constraints_decay_exponentially() {
 fn rods_are_integrated_with_order_four() {
     let system: RodParticles<f64> = RodParticles::default();
     let methods = [
-        Method::Rkmk4,
-        Method::Rk4 { lambda: 0.0 },
-        Method::Rk4 { lambda: 10.0 },
-        Method::Rk4Projected,
+        General::Rkmk4,
+        General::Rk4 { lambda: 0.0 },
+        General::Rk4 { lambda: 10.0 },
+        General::Rk4Projected,
     ];
     for method in methods {
         let ends = [1000, 2000, 4000, 8000].map(|n| {
@@ -157,7 +158,7 @@ fn hoop_takes_up_the_work_of_its_torque() {
     let inputs = |t, _: &_, _: &_| [torque(t)];
     integrate(
         &system,
-        Method::Rkmk4,
+        General::Rkmk4,
         &mut state,
         1e-3,
         until,

@@ -4,7 +4,8 @@
 //! of systems written by hand; a correct one gives them to about 5 %. A wrong term gives errors of
 //! order 1.
 
-use hamel::{Method, State, System, integrate, so3};
+use hamel::methods::General;
+use hamel::{State, System, integrate, so3};
 use hamel_tests::double_pendulum_angles::DoublePendulum;
 use hamel_tests::double_pendulum_circles::CircleDoublePendulum;
 use hamel_tests::free_body::FreeBody;
@@ -37,7 +38,7 @@ fn ends<Sys: System>(
     n: u32,
 ) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
-    run(system, Method::Rkmk4, start, until, n).expect("a run without failure")
+    run(system, General::Rkmk4, start, until, n).expect("a run without failure")
 }
 
 fn gravity(reference: &Reference) -> f64 {
@@ -97,7 +98,7 @@ fn benchmark_top_with_its_own_start() {
     // The model carries the parameters and the start of the benchmark.
     let case = "heavy-top-benchmark-150";
     let system = AxisTop::default();
-    let end = run(&system, Method::Rkmk4, State::start(&system), 1.0, 2000).expect(case);
+    let end = run(&system, General::Rkmk4, State::start(&system), 1.0, 2000).expect(case);
     let expected = Reference::read(case).sample::<9>(1.0, "R");
     assert_size(case, distance(&end.x, &expected), 2.75e-5);
 }
@@ -173,7 +174,16 @@ fn free_bodies_off_their_centre_and_under_a_wrench() {
             let mut end: State<FreeBody<f64>> = State { t: 0.0, x, xi };
             let step = 10.0 / f64::from(n);
             let inputs = |_, _: &_, _: &_| wrench;
-            integrate(&system, Method::Rkmk4, &mut end, step, 10.0, inputs, |_| {}).expect(case);
+            integrate(
+                &system,
+                General::Rkmk4,
+                &mut end,
+                step,
+                10.0,
+                inputs,
+                |_| {},
+            )
+            .expect(case);
             let error = [
                 relative(&end.x[..3], &reference.sample::<3>(10.0, "r")),
                 relative(&end.x[3..], &reference.sample::<9>(10.0, "R")),
@@ -239,7 +249,7 @@ fn satellite_under_gravity_gradient() {
         let step = until / f64::from(n);
         integrate(
             &system,
-            Method::Rkmk4,
+            General::Rkmk4,
             &mut end,
             step,
             until,
@@ -289,7 +299,7 @@ fn chaotic_double_pendulum_on_circles() {
         let inputs = |_, _: &_, _: &_| [];
         integrate(
             &system,
-            Method::Rkmk4,
+            General::Rkmk4,
             &mut end,
             step,
             10.0,

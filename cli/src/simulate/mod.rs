@@ -11,7 +11,7 @@ use crate::plot;
 use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
-use hamel::Method;
+use hamel::methods::General;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
 use record::{Plan, Run};
@@ -146,16 +146,16 @@ fn coefficients(generated: &Generated) -> String {
     }
 }
 
-fn method(arguments: &Arguments) -> Result<Method, Failure> {
+fn method(arguments: &Arguments) -> Result<General, Failure> {
     match (arguments.method, arguments.lambda) {
-        (Kind::Rk4, lambda) => Ok(Method::Rk4 {
+        (Kind::Rk4, lambda) => Ok(General::Rk4 {
             lambda: lambda.unwrap_or(LAMBDA),
         }),
         (_, Some(_)) => Err(Failure::usage(
             "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
         )),
-        (Kind::Rkmk4, None) => Ok(Method::Rkmk4),
-        (Kind::Rk4Projected, None) => Ok(Method::Rk4Projected),
+        (Kind::Rkmk4, None) => Ok(General::Rkmk4),
+        (Kind::Rk4Projected, None) => Ok(General::Rk4Projected),
     }
 }
 

@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use crate::interpreted::{Interpreted, Output};
 use crate::names;
 use crate::number::short;
-use hamel::{Method, Monitor, State, StepError, System, integrate};
+use hamel::methods::General;
+use hamel::{Monitor, State, StepError, System, integrate};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -21,7 +22,7 @@ const TICK: u64 = 500;
 /// What is to be run.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    pub method: Method,
+    pub method: General,
     pub until: f64,
     pub step: f64,
     /// Expected number of steps.
@@ -32,7 +33,7 @@ pub struct Plan {
 
 impl Plan {
     /// A plan with about a thousand samples, or one every so many steps.
-    pub fn new(method: Method, until: f64, step: f64, every: Option<u64>) -> Self {
+    pub fn new(method: General, until: f64, step: f64, every: Option<u64>) -> Self {
         // As the integrator counts: a ratio that is whole but for rounding is whole.
         let steps = ((until / step) * (1.0 - 1e-9)).ceil().max(1.0) as u64;
         Plan {

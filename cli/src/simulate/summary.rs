@@ -2,7 +2,7 @@
 
 use super::record::{Run, Sample};
 use crate::number::{digits, error, grouped, short};
-use hamel::Method;
+use hamel::methods::General;
 use hamel_codegen::syntax::ast::CoordKind;
 
 /// Rows of the table.
@@ -44,8 +44,8 @@ pub fn text(run: &Run, default_step: bool) -> String {
         return String::new();
     };
     let method = match run.plan.method {
-        Method::Rk4 { lambda } => format!("rk4, lambda {}", short(lambda)),
-        Method::Rk4Projected => "rk4-projected".into(),
+        General::Rk4 { lambda } => format!("rk4, lambda {}", short(lambda)),
+        General::Rk4Projected => "rk4-projected".into(),
         _ => "rkmk4".into(),
     };
     let plural = |count: u64, word: &str| {

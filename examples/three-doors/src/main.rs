@@ -1,7 +1,8 @@
 //! One mechanism through two of the three doors: the macro and the build script give the same
 //! functions. The third door is the command line: `hamel emit examples/three-doors/pendulum.eom`.
 
-use hamel::{Method, Monitor, State, integrate};
+use hamel::methods::Rkmk4;
+use hamel::{Monitor, State, integrate};
 
 /// What the build script wrote.
 mod built {
@@ -45,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut monitor = Monitor::new(&built, &state);
     integrate(
         &built,
-        Method::Rkmk4,
+        Rkmk4,
         &mut state,
         1e-3,
         10.0,

@@ -450,7 +450,7 @@ pub fn relative(a: &[f64], b: &[f64]) -> f64 {
 /// `n` steps from the start to `until`, without inputs.
 pub fn run<Sys: System>(
     system: &Sys,
-    method: hamel::Method,
+    method: hamel::methods::General,
     until: f64,
     n: u32,
 ) -> Result<State<Sys>, hamel::StepError> {

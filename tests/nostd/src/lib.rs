@@ -5,7 +5,8 @@
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 
-use hamel::{Method, State, StepError, integrate};
+use hamel::methods::Rkmk4;
+use hamel::{State, StepError, integrate};
 
 hamel::rigid_eom! {
     /// A top on a fixed point, its centre of mass on its axis.
@@ -47,7 +48,7 @@ pub fn spin(until: f64) -> Result<State<Top<f32>>, StepError> {
     let mut state = State::start(&top);
     integrate(
         &top,
-        Method::Rkmk4,
+        Rkmk4,
         &mut state,
         1e-3,
         until,
@@ -62,7 +63,7 @@ pub fn spin(until: f64) -> Result<State<Top<f32>>, StepError> {
 /// # Errors
 /// Those of the integrator.
 pub fn balance(cart: &Cart<f64>, state: &mut State<Cart<f64>>) -> Result<(), StepError> {
-    Method::Rkmk4.step(cart, state, 1e-3, &|_, x: &[f64; 3], xi: &[f64; 2]| {
+    hamel::step(cart, Rkmk4, state, 1e-3, &|_, x: &[f64; 3], xi: &[f64; 2]| {
         [20.0 * x[2] + 3.0 * xi[1]]
     })
 }

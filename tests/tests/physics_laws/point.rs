@@ -1,7 +1,8 @@
 //! Every generated system at pseudo-random states, behind one trait.
 
 use crate::lists::{assert_close, largest};
-use hamel::{Block, Method, State, System, manifold};
+use hamel::methods::General;
+use hamel::{Block, State, System, manifold};
 use hamel_codegen::generate::from_text;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -212,7 +213,7 @@ macro_rules! models {
             }
             fn energy_after(&self, h: f64) -> f64 {
                 let mut state = self.state.clone();
-                let step = Method::Rkmk4.step(&self.system, &mut state, h, &|_, _, _| self.inputs);
+                let step = hamel::step(&self.system, General::Rkmk4, &mut state, h, &|_, _, _| self.inputs);
                 step.expect(&self.label);
                 self.system.energy(&state.x, &state.xi)
             }

@@ -1,0 +1,35 @@
+//! Systems in momenta.
+
+use crate::error::Singular;
+use crate::system::System;
+
+/// A system that also gives its motion in generalised momenta p = M(x) ξ, KR18 (30a).
+///
+/// Methods for long runs step (x, p): where M depends on x, it is p that has the conserved structure.
+#[diagnostic::on_unimplemented(
+    message = "the momenta of `{Self}` are not generated",
+    label = "this method steps generalised momenta",
+    note = "systems with constraints on velocities have none; a `generate` list has to name momentum_rate and velocity_of_momentum"
+)]
+pub trait Canonical: System {
+    /// p = M(x) ξ.
+    fn momentum(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Velocities;
+
+    /// ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ.
+    fn momentum_rate(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+        u: &Self::Inputs,
+    ) -> Self::Velocities;
+
+    /// ξ = M(x)⁻¹ p.
+    ///
+    /// # Errors
+    /// [`Singular`] when M is not positive definite at x.
+    fn velocity_of_momentum(
+        &self,
+        x: &Self::Coordinates,
+        p: &Self::Velocities,
+    ) -> Result<Self::Velocities, Singular>;
+}
