@@ -10,8 +10,9 @@ mod kinetic;
 
 pub use kinetic::drift;
 
+use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::numeric::evaluate;
+use crate::algebra::numeric::{evaluate, rank};
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::model::pfaffian::{Kind, Pfaffian};
@@ -184,15 +185,27 @@ fn start_numbers(model: &Model) -> Vec<f64> {
 }
 
 /// The rows to keep, and how many of them are independent at the start, the largest first. A loop may
-/// have redundant rows (an overconstrained mechanism); a nonholonomic constraint may not.
+/// have rows that depend on others where it is closed (an overconstrained mechanism); a nonholonomic
+/// constraint may not. Rows of loops that depend on others wherever the tree is say nothing new.
 fn keep(
     model: &Model,
     rows: &[Vec<Edge>],
     solved: &[(usize, usize)],
 ) -> Result<(Vec<usize>, usize), Diagnostic> {
-    let open: Vec<usize> = (0..rows.len())
-        .filter(|i| solved.iter().all(|(row, _)| row != i))
-        .collect();
+    let mut open: Vec<usize> = Vec::new();
+    let mut values: Vec<Vec<Fp>> = Vec::new();
+    for i in 0..rows.len() {
+        if solved.iter().any(|&(row, _)| row == i) {
+            continue;
+        }
+        let at_point = rows[i].iter().map(|&entry| model.graph.value(entry)[0]);
+        values.push(at_point.collect());
+        if model.constraints[i].kind == Kind::Loop && rank(values.clone()) < values.len() {
+            values.pop();
+        } else {
+            open.push(i);
+        }
+    }
     let edges: Vec<Edge> = open.iter().flat_map(|&i| rows[i].iter().copied()).collect();
     let values = evaluate(&model.graph, &edges, &start_numbers(model));
     let mut left: Vec<Vec<f64>> = values.chunks(model.n()).map(<[f64]>::to_vec).collect();
