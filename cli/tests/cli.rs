@@ -1,8 +1,11 @@
 //! The binary as it is used: results that obey laws, exit statuses, messages.
 
+mod common;
+
+use common::text;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 /// Laws that hold but for rounding, relative to the largest term.
 const ROUNDING: f64 = 1e-12;
@@ -34,28 +37,7 @@ fn scratch(name: &str) -> PathBuf {
 }
 
 fn hamel(arguments: &[&str]) -> Output {
-    hamel_with(arguments, "")
-}
-
-fn hamel_with(arguments: &[&str], input: &str) -> Output {
-    use std::io::Write;
-    let mut child = Command::new(env!("CARGO_BIN_EXE_hamel"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the binary runs");
-    // A command that does not read its input may be gone already.
-    let _ = child
-        .stdin
-        .take()
-        .map(|mut stdin| stdin.write_all(input.as_bytes()));
-    child.wait_with_output().expect("the binary ends")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+    common::hamel(arguments, "")
 }
 
 /// Standard output of a command that succeeds without a word on standard error.
@@ -72,7 +54,7 @@ fn stdout(arguments: &[&str]) -> String {
 
 /// Standard error of a command that fails with a status.
 fn stderr(arguments: &[&str], input: &str, status: i32) -> String {
-    let output = hamel_with(arguments, input);
+    let output = common::hamel(arguments, input);
     let errors = text(&output.stderr);
     assert_eq!(
         output.status.code(),
@@ -245,7 +227,7 @@ fn evaluation_obeys_the_laws() {
 #[test]
 fn a_state_changes_the_numbers() {
     let state = r#"{"param": {"m": 2}, "velocity": {"w": [0, 0, 0]}}"#;
-    let output = hamel_with(&["eval", &model("heavy_top.eom"), "--at", "-"], state);
+    let output = common::hamel(&["eval", &model("heavy_top.eom"), "--at", "-"], state);
     let all: Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
     assert_eq!(all["kinetic_energy"], 0.0);
     assert!((all["potential_energy"].as_f64().expect("V") - 2.0 * 9.81 * 0.3).abs() < 1e-12);
@@ -282,7 +264,7 @@ fn a_singular_mass_matrix_is_an_error_and_no_nan() {
         ("pendulum.eom", r#"{"param": {"m": 0}}"#),
         ("cart_pole.eom", r#"{"param": {"mp": 0}}"#),
     ] {
-        let output = hamel_with(&["eval", &model(file), "--at", "-"], state);
+        let output = common::hamel(&["eval", &model(file), "--at", "-"], state);
         let all: Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
         assert_eq!(
             (output.status.code(), &all["accel"]),

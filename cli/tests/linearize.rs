@@ -1,34 +1,15 @@
 //! `hamel linearize` and `hamel ops --advise` as they are used: eigenvalues with closed forms.
 
+mod common;
+
+use common::{hamel, text};
 use serde_json::Value;
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
 
 /// The QR algorithm on matrices of some ten rows, entries up to 1e3.
 const ROUNDING: f64 = 1e-9;
 
 fn model(name: &str) -> String {
     format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn hamel(arguments: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_hamel"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the binary runs");
-    // A command that does not read its input may be gone already.
-    let _ = child
-        .stdin
-        .take()
-        .map(|mut stdin| stdin.write_all(input.as_bytes()));
-    child.wait_with_output().expect("the binary ends")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("UTF-8")
 }
 
 fn linearized(name: &str, state: &str) -> Value {

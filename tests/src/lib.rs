@@ -3,6 +3,7 @@
 #![deny(warnings)]
 
 pub mod chain;
-pub mod reference;
+
+pub use hamel_cases::reference;
 
 include!(concat!(env!("OUT_DIR"), "/models.rs"));

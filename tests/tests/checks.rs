@@ -85,6 +85,26 @@ fn constraints_may_have_functions_of_parameters() {
     }
 }
 
+/// A loop written twice, or as rows that say the same, is one loop: the motion is that of the loop
+/// written once, and every identity holds.
+#[test]
+fn rows_of_loops_that_say_the_same_are_one() {
+    const WRITTEN: &str = "loop l1 * sin(q1) + l2 * sin(q2) = l3 * sin(q3);";
+    let once = text("four_bar_loop");
+    assert!(once.contains(WRITTEN), "the model has another loop");
+    let twice = format!("{WRITTEN} loop 2 * (l1 * sin(q1) + l2 * sin(q2)) = 2 * l3 * sin(q3);");
+    let [once, twice] = [once.clone(), once.replace(WRITTEN, &twice)]
+        .map(|text| from_text(&text).unwrap_or_else(|errors| panic!("{errors:?}")));
+    assert_eq!(
+        once.active.constraints.len(),
+        twice.active.constraints.len()
+    );
+    for identity in check(&twice.model, &twice.program) {
+        let failed = matches!(identity.verdict, Verdict::Failed(_));
+        assert!(!failed, "{} {:?}", identity.label, identity.verdict);
+    }
+}
+
 /// A wrong acceleration is caught: by the equation of motion and by the power balance.
 #[test]
 fn a_wrong_sign_is_noticed() {

@@ -41,16 +41,10 @@ fn ends<Sys: System>(
     run(system, General::Rkmk4, start, until, n).expect("a run without failure")
 }
 
-fn gravity(reference: &Reference) -> f64 {
-    let [x, y, z] = reference.parameter("g");
-    assert_eq!([x, y], [0.0; 2], "gravity of the models points down");
-    -z
-}
-
 fn heavy_top(reference: &Reference) -> HeavyTop<f64> {
     let [m] = reference.parameter("m");
     let s = reference.parameter("s");
-    HeavyTop::new(m, gravity(reference), s, reference.matrix("J")).expect("a body")
+    HeavyTop::new(m, reference.gravity(), s, reference.matrix("J")).expect("a body")
 }
 
 fn principal_axes(reference: &Reference) -> PrincipalAxes<f64> {
@@ -112,7 +106,7 @@ fn tops_on_quaternions() {
         let reference = Reference::read(case);
         let [m] = reference.parameter("m");
         let s = reference.parameter("s");
-        let system = QuaternionTop::new(m, gravity(&reference), s, reference.matrix("J"));
+        let system = QuaternionTop::new(m, reference.gravity(), s, reference.matrix("J"));
         let system = system.expect("a body");
         let q = hamel::s3::from_matrix(reference.initial("R"));
         let end = ends(&system, q, reference.initial("omega"), until, n);
@@ -134,7 +128,7 @@ fn spherical_pendulum_through_the_poles() {
     let ([m], [l]) = (reference.parameter("m"), reference.parameter("l"));
     let isotropic =
         std::array::from_fn(|i| std::array::from_fn(|j| if i == j { m * l * l } else { 0.0 }));
-    let system = WorldTop::new(m, gravity(&reference), [0.0, 0.0, l], isotropic).expect("a body");
+    let system = WorldTop::new(m, reference.gravity(), [0.0, 0.0, l], isotropic).expect("a body");
 
     let x0: [f64; 3] = reference.initial("x");
     let v0: [f64; 3] = reference.initial("xdot");
@@ -162,7 +156,7 @@ fn free_bodies_off_their_centre_and_under_a_wrench() {
         let reference = Reference::read(case);
         let [m] = reference.parameter("m");
         let s = reference.parameter("s");
-        let system = FreeBody::new(m, gravity(&reference), s, reference.matrix("Theta"));
+        let system = FreeBody::new(m, reference.gravity(), s, reference.matrix("Theta"));
         let system = system.expect("a body");
         let wrench = join(
             reference.parameter::<3>("F"),
@@ -209,7 +203,7 @@ fn two_bodies_on_ball_joints() {
     let system = TwoBodies::new(
         m1,
         m2,
-        gravity(&reference),
+        reference.gravity(),
         reference.parameter("s1"),
         reference.parameter("s2"),
         reference.parameter("d"),
@@ -271,7 +265,7 @@ const CHAOTIC: [(u32, f64); 2] = [(2000, 4.61), (4000, 0.366)];
 fn chaotic_double_pendulum_in_angles() {
     let reference = Reference::read("double-pendulum-planar-chaotic");
     let ([m1, m2], [l1, l2]) = (reference.parameter("m"), reference.parameter("l"));
-    let system = DoublePendulum::new(m1, m2, l1, l2, gravity(&reference)).expect("a pendulum");
+    let system = DoublePendulum::new(m1, m2, l1, l2, reference.gravity()).expect("a pendulum");
     let (x, xi) = (reference.initial("theta"), reference.initial("thetadot"));
     for (n, expected) in CHAOTIC {
         let end = ends(&system, x, xi, 10.0, n);
@@ -288,7 +282,7 @@ fn chaotic_double_pendulum_on_circles() {
     let reference = Reference::read("double-pendulum-planar-chaotic");
     let ([m1, m2], [l1, l2]) = (reference.parameter("m"), reference.parameter("l"));
     let system =
-        CircleDoublePendulum::new(m1, m2, l1, l2, gravity(&reference)).expect("a pendulum");
+        CircleDoublePendulum::new(m1, m2, l1, l2, reference.gravity()).expect("a pendulum");
     let [a, b] = reference.initial::<2>("theta").map(hamel::s1::exp);
     let (x, xi) = (join(a, b), reference.initial("thetadot"));
     for (n, expected) in CHAOTIC {

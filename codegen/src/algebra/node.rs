@@ -59,6 +59,20 @@ pub enum Function {
     Atan2,
 }
 
+impl Function {
+    /// Its name in descriptions.
+    pub fn name(self) -> &'static str {
+        match self {
+            Function::Sin => "sin",
+            Function::Cos => "cos",
+            Function::Exp => "exp",
+            Function::Log => "log",
+            Function::Sqrt => "sqrt",
+            Function::Atan2 => "atan2",
+        }
+    }
+}
+
 /// What a node computes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Node {

@@ -1,6 +1,6 @@
 //! Short expressions as text, for messages.
 
-use super::graph::{Edge, Function, Graph, Node};
+use super::graph::{Edge, Graph, Node};
 
 /// How tightly the outermost operation binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,14 +56,7 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
             (format!("{left} / {right}"), Binding::Product)
         }
         Node::Apply(function, a) => {
-            let name = match function {
-                Function::Sin => "sin",
-                Function::Cos => "cos",
-                Function::Exp => "exp",
-                Function::Log => "log",
-                Function::Sqrt => "sqrt",
-                Function::Atan2 => return None,
-            };
+            let name = function.name();
             let inner = within(graph, a, Binding::Sum, most, depth)?;
             (format!("{name}({inner})"), Binding::Whole)
         }

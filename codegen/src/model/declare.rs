@@ -208,25 +208,32 @@ fn define_const(
     report: &mut Report,
 ) {
     let name = &declaration.name;
-    let value = match &declaration.value {
-        Some(expr) => {
-            let value = Evaluator {
-                graph,
-                scope,
-                report,
-            }
-            .value(expr);
-            value.filter(|value| shape_fits(declaration, value, report))
-        }
-        None => {
-            report.push(
-                Diagnostic::new(name.span, format!("`{}` has no value", name.name))
-                    .help(format!("write `const {} = 1;`", name.name)),
-            );
-            None
-        }
-    };
+    let missing = format!("write `const {} = 1;`", name.name);
+    let value = declared_value(declaration, &missing, graph, scope, report);
     scope.define(name, NameKind::Const, value, report);
+}
+
+/// The value that a declaration has to have, if it fits the declared shape.
+pub fn declared_value(
+    declaration: &Declaration,
+    missing: &str,
+    graph: &mut Graph,
+    scope: &Scope,
+    report: &mut Report,
+) -> Option<Value> {
+    let name = &declaration.name;
+    let Some(expr) = &declaration.value else {
+        let error = Diagnostic::new(name.span, format!("`{}` has no value", name.name));
+        report.push(error.help(missing));
+        return None;
+    };
+    let value = Evaluator {
+        graph,
+        scope,
+        report,
+    }
+    .value(expr);
+    value.filter(|value| shape_fits(declaration, value, report))
 }
 
 /// Whether a value has the declared shape; a declaration without a shape takes any.

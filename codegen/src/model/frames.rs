@@ -1,7 +1,7 @@
 //! One named expression; the pose that one `frame` statement gives.
 
 use super::class;
-use super::declare::shape_fits;
+use super::declare::declared_value;
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
@@ -18,24 +18,8 @@ pub fn define_let(
     report: &mut Report,
 ) -> Option<Value> {
     let name = &declaration.name;
-    let value = match &declaration.value {
-        Some(expr) => {
-            let value = Evaluator {
-                graph,
-                scope,
-                report,
-            }
-            .value(expr);
-            value.filter(|value| shape_fits(declaration, value, report))
-        }
-        None => {
-            report.push(
-                Diagnostic::new(name.span, format!("`{}` has no value", name.name))
-                    .help(format!("write `let {} = …;`", name.name)),
-            );
-            None
-        }
-    };
+    let missing = format!("write `let {} = …;`", name.name);
+    let value = declared_value(declaration, &missing, graph, scope, report);
     let free = scope.define(name, NameKind::Let, value.clone(), report);
     value.filter(|_| free)
 }

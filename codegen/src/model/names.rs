@@ -272,7 +272,7 @@ impl<'a> Names<'a> {
         );
         report.push(
             Diagnostic::new(relation.span, message)
-                .help("remove one of these statements; what closes a loop of a mechanism is a `constraint` between coordinates")
+                .help("remove one of these statements; what closes a mechanism is a `loop` between coordinates")
                 .note(first.span, "it follows from here already"),
         );
         true

@@ -137,12 +137,10 @@ impl Reader<'_> {
         right: &Expr,
         stabilized: Option<&Expr>,
     ) -> Option<Vec<Pfaffian>> {
-        let span = left.span.to(right.span);
-        let entries = self.difference(left, right);
-        let stabilized = self.rate_of_decay(stabilized)?;
+        let (span, entries, stabilized) = self.equation(left, right, stabilized)?;
         let graph = &mut *self.evaluator.graph;
         let mut rows = Vec::new();
-        for edge in entries? {
+        for edge in entries {
             let row: Vec<Edge> = self
                 .declared
                 .xi
@@ -191,10 +189,7 @@ impl Reader<'_> {
         right: &Expr,
         stabilized: Option<&Expr>,
     ) -> Option<Vec<Pfaffian>> {
-        let span = left.span.to(right.span);
-        let entries = self.difference(left, right);
-        let stabilized = self.rate_of_decay(stabilized)?;
-        let entries = entries?;
+        let (span, entries, stabilized) = self.equation(left, right, stabilized)?;
         let graph = &mut *self.evaluator.graph;
         let class = entries
             .iter()
@@ -241,6 +236,18 @@ impl Reader<'_> {
             );
         }
         Some(rows)
+    }
+
+    /// The place, left − right entry by entry, and λ of a constraint.
+    fn equation(
+        &mut self,
+        left: &Expr,
+        right: &Expr,
+        stabilized: Option<&Expr>,
+    ) -> Option<(Span, Vec<Edge>, Option<Edge>)> {
+        let entries = self.difference(left, right);
+        let stabilized = self.rate_of_decay(stabilized)?;
+        Some((left.span.to(right.span), entries?, stabilized))
     }
 
     /// left − right, entry by entry.

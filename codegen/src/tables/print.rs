@@ -76,7 +76,7 @@ impl Notation {
             (Notation::Text, Atom::Name(name), _) => raised(self, name.clone(), power),
             (Notation::Latex, Atom::Name(name), _) => raised(self, latex_name(name), power),
             (Notation::Text, Atom::Call(function, arguments), _) => {
-                let name = text_function(*function);
+                let name = function.name();
                 raised(
                     self,
                     format!("{name}({})", self.arguments(arguments)),
@@ -182,17 +182,6 @@ fn juxtaposed(factors: &[String]) -> String {
         text.push_str(factor);
     }
     text
-}
-
-fn text_function(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Exp => "exp",
-        Function::Log => "log",
-        Function::Sqrt => "sqrt",
-        Function::Atan2 => "atan2",
-    }
 }
 
 fn latex_function(function: Function) -> &'static str {

@@ -6,6 +6,7 @@
 
 use super::monomial::Var;
 use super::polynomial::Poly;
+use crate::algebra::echelon::Echelon;
 use crate::algebra::fp::{Fp, Random};
 
 /// Those of the given variables that are free one at a time, in the given order.
@@ -21,44 +22,13 @@ pub(super) fn free_variables(
         let entries = variables.iter().map(|&v| f.derivative(v).eval(&at));
         entries.collect()
     };
-    let mut rows: Vec<Vec<Fp>> = system.iter().map(row).collect();
-    let pivots = reduce(&mut rows, variables.len());
+    let Echelon { rows, pivots } = Echelon::new(system.iter().map(row).collect());
     let fixed = |column: usize| {
         let own = pivots.iter().position(|&pivot| pivot == column);
         own.is_some_and(|row| rows[row].iter().filter(|entry| !entry.is_zero()).count() == 1)
     };
     let free = (0..variables.len()).filter(|&column| !fixed(column));
     free.map(|column| variables[column]).collect()
-}
-
-/// Brings rows into reduced echelon form; returns the pivot column of each row kept.
-fn reduce(rows: &mut Vec<Vec<Fp>>, columns: usize) -> Vec<usize> {
-    let mut pivots = Vec::new();
-    for column in 0..columns {
-        let rank = pivots.len();
-        let Some(found) = (rank..rows.len()).find(|&row| !rows[row][column].is_zero()) else {
-            continue;
-        };
-        rows.swap(rank, found);
-        let Some(inverse) = rows[rank][column].inv() else {
-            continue;
-        };
-        rows[rank]
-            .iter_mut()
-            .for_each(|entry| *entry = *entry * inverse);
-        let pivot = rows[rank].clone();
-        for (index, row) in rows.iter_mut().enumerate() {
-            let factor = row[column];
-            if index != rank && !factor.is_zero() {
-                row.iter_mut()
-                    .zip(&pivot)
-                    .for_each(|(a, &b)| *a = *a - factor * b);
-            }
-        }
-        pivots.push(column);
-    }
-    rows.truncate(pivots.len());
-    pivots
 }
 
 #[cfg(test)]

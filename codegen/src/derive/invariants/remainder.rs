@@ -1,6 +1,6 @@
 //! A polynomial as people read it: `m g s[1] R[3,2] - 1/2 d w^2`.
 
-use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::poly::monomial::Var;
 use crate::algebra::poly::polynomial::Poly;
 use crate::derive::normal::variable_node;
@@ -68,14 +68,7 @@ fn expression(graph: &Graph, edge: Edge, depth: usize) -> Option<String> {
         }
         Node::Div(..) | Node::Atan2(..) => return None,
         Node::Apply(function, a) => {
-            let name = match function {
-                Function::Sin => "sin",
-                Function::Cos => "cos",
-                Function::Exp => "exp",
-                Function::Log => "log",
-                Function::Sqrt => "sqrt",
-                Function::Atan2 => return None,
-            };
+            let name = function.name();
             format!("{name}({})", of(a)?)
         }
     };

@@ -1,7 +1,6 @@
 //! The reference solutions of `tests/reference/`, and how far a run is from them.
 
-use hamel::methods::General;
-use hamel::{State, StepError, System, integrate};
+use hamel::{Method, State, StepError, System, integrate};
 use serde_json::Value;
 
 /// A reference solution: see the README beside the files.
@@ -13,7 +12,7 @@ impl Reference {
     /// # Panics
     /// When there is no such file, or it is not JSON: a test cannot go on.
     pub fn read(name: &str) -> Self {
-        let path = format!("{}/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/../reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
         Self(serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}")))
     }
@@ -31,6 +30,16 @@ impl Reference {
         rows(self.parameter(name))
     }
 
+    /// |g|, of gravity that points down.
+    ///
+    /// # Panics
+    /// When it points elsewhere: the models of the cases have it point down.
+    pub fn gravity(&self) -> f64 {
+        let [x, y, z] = self.parameter("g");
+        assert_eq!([x, y], [0.0; 2], "gravity points down");
+        -z
+    }
+
     /// A field of the state at t = 0.
     pub fn initial<const N: usize>(&self, name: &str) -> [f64; N] {
         numbers(&self.0["initial"][name], name)
@@ -42,22 +51,49 @@ impl Reference {
         value
     }
 
+    /// The times listed, in order.
+    pub fn times(&self) -> Vec<f64> {
+        let samples = self.0["samples"].as_array().expect("a list of samples");
+        let times = samples.iter().map(|sample| {
+            let [t] = numbers(&sample["t"], "t");
+            t
+        });
+        times.collect()
+    }
+
     /// A field of the state at one of the times listed.
     ///
     /// # Panics
     /// When the time or the field is not listed.
     pub fn sample<const N: usize>(&self, t: f64, name: &str) -> [f64; N] {
+        let list = self.entries(t, name);
+        list.try_into()
+            .unwrap_or_else(|list| panic!("{name}: {N} numbers expected, found {list:?}"))
+    }
+
+    /// The same, of any length.
+    ///
+    /// # Panics
+    /// When the time or the field is not listed.
+    pub fn entries(&self, t: f64, name: &str) -> Vec<f64> {
         let samples = self.0["samples"].as_array().expect("a list of samples");
         let sample = samples
             .iter()
             .find(|sample| numbers(&sample["t"], "t") == [t])
             .unwrap_or_else(|| panic!("no sample at t = {t}"));
-        numbers(&sample[name], name)
+        list(&sample[name])
     }
 }
 
 /// N decimal strings, however nested.
 fn numbers<const N: usize>(value: &Value, name: &str) -> [f64; N] {
+    list(value)
+        .try_into()
+        .unwrap_or_else(|list| panic!("{name}: {N} numbers expected, found {list:?}"))
+}
+
+/// Decimal strings, however nested.
+fn list(value: &Value) -> Vec<f64> {
     fn collect(value: &Value, into: &mut Vec<f64>) {
         match value {
             Value::String(text) => into.push(text.parse().expect("a decimal number")),
@@ -67,8 +103,7 @@ fn numbers<const N: usize>(value: &Value, name: &str) -> [f64; N] {
     }
     let mut list = Vec::new();
     collect(value, &mut list);
-    list.try_into()
-        .unwrap_or_else(|list| panic!("{name}: {N} numbers expected, found {list:?}"))
+    list
 }
 
 /// Nine entries, row by row, as rows.
@@ -98,9 +133,9 @@ pub fn relative(a: &[f64], b: &[f64]) -> f64 {
 ///
 /// # Errors
 /// Those of [`integrate()`].
-pub fn run<Sys: System>(
+pub fn run<Sys: System, M: Method<Sys>>(
     system: &Sys,
-    method: General,
+    method: M,
     mut state: State<Sys>,
     until: f64,
     n: u32,

@@ -1,0 +1,17 @@
+//! The hard cases of rigid body motion, ready to run: a generated system, its start, its loads, and
+//! the states at listed times, computed in 240-bit arithmetic by two unrelated methods.
+//!
+//! Each function of [`bodies`] and [`mechanisms`] is one case. Tests and the report of speed against
+//! error run the same ones.
+
+pub mod bodies;
+pub mod case;
+pub mod mechanisms;
+pub mod reference;
+
+pub use case::{Case, Field, Measure};
+
+/// Generated systems.
+pub mod models {
+    include!(concat!(env!("OUT_DIR"), "/models.rs"));
+}
