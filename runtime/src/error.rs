@@ -88,15 +88,15 @@ pub enum StepError {
         /// What they leave, relative to the size of the unknowns.
         residual: f64,
     },
-    /// The tolerance asks for steps below the resolution of time: it is finer than rounding allows,
-    /// or the motion has a singularity ahead.
+    /// The tolerance asks for steps below the resolution of time: the motion has a singularity ahead,
+    /// or the tolerance is close to rounding.
     StepTooSmall {
         /// Time at the start of the step.
         time: f64,
         /// The step that was refused.
         step: f64,
     },
-    /// A tolerance is not a positive number.
+    /// A tolerance is not a positive number, or is below the rounding of the scalar.
     InvalidTolerance,
 }
 
@@ -128,7 +128,9 @@ impl fmt::Display for StepError {
                 f,
                 "the tolerance asks for a step of {step:e} at t = {time}, which time does not resolve"
             ),
-            Self::InvalidTolerance => write!(f, "tolerances have to be positive"),
+            Self::InvalidTolerance => {
+                write!(f, "tolerances have to be positive numbers above rounding")
+            }
         }
     }
 }

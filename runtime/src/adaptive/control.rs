@@ -14,11 +14,12 @@ use crate::system::Block;
 /// kind; errors at the end of a run are proportional to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Of circles, quaternions and rotations, in rad.
+    /// Of circles, quaternions and rotations, in rad; not below the rounding of the scalar.
     pub angle: f64,
     /// Of flat blocks and ξ, in their units.
     pub absolute: f64,
-    /// Of flat blocks and ξ, over the largest |entry| of the block or of ξ.
+    /// Of flat blocks and ξ, over the largest |entry| of the block or of ξ; zero, or not below the
+    /// rounding of the scalar.
     pub relative: f64,
 }
 
@@ -32,10 +33,12 @@ impl Tolerance {
         }
     }
 
-    pub(crate) fn check(&self) -> Result<(), StepError> {
-        let positive = |value: f64| value > 0.0 && value < f64::INFINITY;
-        let relative = self.relative == 0.0 || positive(self.relative);
-        if positive(self.angle) && positive(self.absolute) && relative {
+    /// Whether numbers of this scalar can be that accurate.
+    pub(crate) fn check<S: Scalar>(&self) -> Result<(), StepError> {
+        let between = |least: f64, value: f64| value >= least && value < f64::INFINITY;
+        let relative = self.relative == 0.0 || between(S::EPSILON, self.relative);
+        let absolute = between(f64::MIN_POSITIVE, self.absolute);
+        if between(S::EPSILON, self.angle) && absolute && relative {
             Ok(())
         } else {
             Err(StepError::InvalidTolerance)

@@ -253,7 +253,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         state.check_shape(system)?;
-        self.tolerance.check()?;
+        self.tolerance.check::<Sys::Scalar>()?;
         if !state.is_finite() {
             return Err(StepError::NonFinite { time: state.t });
         }
