@@ -5,6 +5,7 @@ mod common;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use common::{Body, QuaternionTop, Reference, Top, run};
+use hamel::adaptive::Adaptive;
 use hamel::methods::General;
 use hamel::{Monitor, Scalar, State, StepError, s3, so3};
 
@@ -39,6 +40,8 @@ impl Neg for Pair {
 }
 
 impl Scalar for Pair {
+    const EPSILON: f64 = f64::EPSILON;
+
     fn from_f64(value: f64) -> Self {
         Self([value; 2])
     }
@@ -75,6 +78,9 @@ impl Scalar for Pair {
     }
     fn is_finite(self) -> bool {
         self.0.into_iter().all(Scalar::is_finite)
+    }
+    fn largest_lane(self) -> f64 {
+        Scalar::max(self.0[0], self.0[1])
     }
 }
 
@@ -121,6 +127,43 @@ fn lanes_agree_with_single_runs() -> Result<(), StepError> {
 }
 
 #[test]
+fn lanes_take_the_steps_that_the_worst_needs() -> Result<(), StepError> {
+    let (single, both) = bodies();
+    let method = Adaptive::rkmk54(1e-8);
+    let system = Top(both);
+    let mut state = State::start(&system);
+    let together = method.run(&system, &mut state, 1.0, |_, _, _| [])?;
+    for (index, body) in single.into_iter().enumerate() {
+        let alone = Top(body);
+        let mut single = State::start(&alone);
+        let cost = method.run(&alone, &mut single, 1.0, |_, _, _| [])?;
+        let mut exact = State::start(&alone);
+        Adaptive::rkmk8(1e-13).run(&alone, &mut exact, 1.0, |_, _, _| [])?;
+        assert!(
+            together.accepted + 2 >= cost.accepted,
+            "{together:?} {cost:?}"
+        );
+        let error = |x: [f64; 9]| common::distance(x, exact.x);
+        let (together, alone) = (error(lane(state.x, index)), error(single.x));
+        // Steps that suit both are not longer than those of one alone.
+        assert!(together < 1.5 * alone, "{together:e} {alone:e}");
+    }
+    Ok(())
+}
+
+#[test]
+fn implicit_steps_converge_in_every_lane() -> Result<(), StepError> {
+    let (single, both) = bodies();
+    let state = run(&Top(both), General::BackwardEuler, 0.1, 1000)?;
+    for (index, body) in single.into_iter().enumerate() {
+        let alone = run(&Top(body), General::BackwardEuler, 0.1, 1000)?;
+        // What ends the iteration, a thousand times.
+        assert!(common::distance(lane(state.x, index), alone.x) < 1e-8);
+    }
+    Ok(())
+}
+
+#[test]
 fn lanes_take_different_branches() {
     // Zero beside a large angle; different columns of q qᵀ.
     let (a, b) = ([0.0; 3], [-1.0, 2.5, 0.3]);
@@ -147,5 +190,7 @@ fn one_bad_lane_is_an_error() {
     let mut state = State::start(&top);
     state.xi[1].0[1] = f64::NAN;
     let outcome = hamel::step(&top, General::Rkmk4, &mut state, 0.1, &|_, _, _| []);
+    assert_eq!(outcome, Err(StepError::NonFinite { time: 0.0 }));
+    let outcome = Adaptive::rkmk54(1e-6).run(&top, &mut state, 1.0, |_, _, _| []);
     assert_eq!(outcome, Err(StepError::NonFinite { time: 0.0 }));
 }
