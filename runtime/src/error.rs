@@ -79,6 +79,18 @@ pub enum StepError {
         /// The time to be covered by such steps.
         span: f64,
     },
+    /// An iteration did not converge: the step is too long for the method.
+    NotConverged {
+        /// Time at the start of the step.
+        time: f64,
+        /// How many iterations were made.
+        iterations: u32,
+    },
+    /// The method is for motion without forces, and forces may act on this system.
+    Forces {
+        /// Time at the start of the step.
+        time: f64,
+    },
 }
 
 impl fmt::Display for StepError {
@@ -96,6 +108,15 @@ impl fmt::Display for StepError {
             Self::InvalidStep { step, span } => {
                 write!(f, "a time of {span} cannot be covered by steps of {step}")
             }
+            Self::NotConverged { time, iterations } => write!(
+                f,
+                "no convergence in {iterations} iterations, in the step from t = {time}: \
+                 the step is too long"
+            ),
+            Self::Forces { time } => write!(
+                f,
+                "forces may act, in the step from t = {time}: the closed form is for free motion"
+            ),
         }
     }
 }

@@ -8,15 +8,33 @@
 //! | method | order | for |
 //! |---|---|---|
 //! | [`Rkmk4`] | 4 | any system; stays on the manifold |
+//! | [`Splitting`] | 2, 4, 6 | bodies in potentials ([`Split`](crate::Split)): the most accurate per evaluation |
+//! | [`Free`] | exact | bodies without forces, at any time |
+//! | [`Lgvi`] | 2 | bodies in potentials; the variational reference |
+//! | [`Gauss4`], [`Gauss6`] | 4, 6 | long runs of systems with M(x) ([`Canonical`](crate::Canonical)); implicit |
 //! | [`Rk4`], [`Rk4Projected`] | 4 | baselines on the coordinates x |
+//! | [`Slide`], [`Buss`] | 1, 2, 4 | baselines that keep R P |
 
+pub mod free;
+pub mod gauss;
 pub mod general;
+pub mod lgvi;
+mod phase;
 pub mod rk4;
 pub mod rkmk4;
+pub mod scheme;
+pub mod splitting;
+pub mod world;
 
+pub use free::Free;
+pub use gauss::{Gauss4, Gauss6};
 pub use general::General;
+pub use lgvi::Lgvi;
 pub use rk4::{Rk4, Rk4Projected};
 pub use rkmk4::Rkmk4;
+pub use scheme::Scheme;
+pub use splitting::Splitting;
+pub use world::{Buss, Slide};
 
 use crate::error::StepError;
 use crate::state::State;
