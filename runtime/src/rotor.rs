@@ -34,4 +34,15 @@ impl<S: Scalar> Rotor<S> {
             symmetry,
         }
     }
+
+    /// A rotor whose body axes are principal; that moments are equal is not known.
+    pub fn of_moments(moments: [S; 3]) -> Self {
+        Self::principal(moments, Symmetry::None)
+    }
+
+    /// A rotor of any inertia J, body axes.
+    pub fn general(inertia: [[S; 3]; 3]) -> Self {
+        let [[a, ..], [_, b, _], [.., c]] = inertia;
+        Self::of_moments([a, b, c])
+    }
 }
