@@ -79,6 +79,25 @@ pub enum StepError {
         /// The time to be covered by such steps.
         span: f64,
     },
+    /// The equations of an implicit step were not solved: the step is too long for the iteration.
+    NotConverged {
+        /// Time at the start of the step.
+        time: f64,
+        /// How many times they were evaluated.
+        iterations: u32,
+        /// What they leave, relative to the size of the unknowns.
+        residual: f64,
+    },
+    /// The tolerance asks for steps below the resolution of time: it is finer than rounding allows,
+    /// or the motion has a singularity ahead.
+    StepTooSmall {
+        /// Time at the start of the step.
+        time: f64,
+        /// The step that was refused.
+        step: f64,
+    },
+    /// A tolerance is not a positive number.
+    InvalidTolerance,
 }
 
 impl fmt::Display for StepError {
@@ -96,6 +115,20 @@ impl fmt::Display for StepError {
             Self::InvalidStep { step, span } => {
                 write!(f, "a time of {span} cannot be covered by steps of {step}")
             }
+            Self::NotConverged {
+                time,
+                iterations,
+                residual,
+            } => write!(
+                f,
+                "no solution of the implicit step from t = {time}: {residual:e} left after \
+                 {iterations} iterations"
+            ),
+            Self::StepTooSmall { time, step } => write!(
+                f,
+                "the tolerance asks for a step of {step:e} at t = {time}, which time does not resolve"
+            ),
+            Self::InvalidTolerance => write!(f, "tolerances have to be positive"),
         }
     }
 }

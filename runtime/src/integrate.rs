@@ -26,28 +26,35 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let next = method.step(system, state, h, inputs)?;
-    *state = projected(system, next)?;
+    *state = projected(system, next)?.0;
     Ok(())
 }
 
 /// The state on the constraints that multipliers keep: loops closed by one Newton step, velocities
-/// by the projection that is orthogonal in kinetic energy. Nothing is done where there are none.
+/// by the projection that is orthogonal in kinetic energy. Nothing is done where there are none; the
+/// flag says whether something was.
 #[inline]
-fn projected<Sys>(system: &Sys, mut state: State<Sys>) -> Result<State<Sys>, StepError>
+pub(crate) fn projected<Sys>(
+    system: &Sys,
+    mut state: State<Sys>,
+) -> Result<(State<Sys>, bool), StepError>
 where
     Sys: System + ?Sized,
 {
     let time = state.t;
+    let mut moved = false;
     let singular = |cause| StepError::Singular { cause, time };
     if let Some(step) = system.close(&state.x).map_err(singular)? {
         let chart = system.chart_rate(&state.x, &step);
         manifold::retract(system.blocks(), state.x.as_mut(), chart.as_ref());
+        moved = true;
     }
     if let Some(xi) = system.settle(&state.x, &state.xi).map_err(singular)? {
         state.xi = xi;
+        moved = true;
     }
     if state.is_finite() {
-        Ok(state)
+        Ok((state, moved))
     } else {
         Err(StepError::NonFinite { time })
     }

@@ -22,6 +22,9 @@ pub trait Scalar:
     + MulAssign
     + DivAssign
 {
+    /// The distance from 1 to the next larger number.
+    const EPSILON: f64;
+
     /// The nearest number to `value`, in every lane.
     fn from_f64(value: f64) -> Self;
 
@@ -58,6 +61,10 @@ pub trait Scalar:
 
     /// Whether no lane is infinite or NaN.
     fn is_finite(self) -> bool;
+
+    /// The largest lane, NaN when one is NaN: lanes that are stepped together take the step that the
+    /// worst of them needs.
+    fn largest_lane(self) -> f64;
 }
 
 /// Whether `mul_add` of the standard library is one instruction on this target.
@@ -76,6 +83,8 @@ macro_rules! math {
 macro_rules! scalar {
     ($float:ident, $sincos:ident, $sqrt:ident, $exp:ident, $log:ident, $atan2:ident, $fabs:ident) => {
         impl Scalar for $float {
+            const EPSILON: f64 = $float::EPSILON as f64;
+
             #[inline]
             fn from_f64(value: f64) -> Self {
                 value as $float
@@ -142,6 +151,11 @@ macro_rules! scalar {
             #[inline]
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
+            }
+
+            #[inline]
+            fn largest_lane(self) -> f64 {
+                f64::from(self)
             }
         }
     };

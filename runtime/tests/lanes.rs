@@ -39,6 +39,8 @@ impl Neg for Pair {
 }
 
 impl Scalar for Pair {
+    const EPSILON: f64 = f64::EPSILON;
+
     fn from_f64(value: f64) -> Self {
         Self([value; 2])
     }
@@ -75,6 +77,9 @@ impl Scalar for Pair {
     }
     fn is_finite(self) -> bool {
         self.0.into_iter().all(Scalar::is_finite)
+    }
+    fn largest_lane(self) -> f64 {
+        Scalar::max(self.0[0], self.0[1])
     }
 }
 

@@ -1,61 +1,94 @@
 //! A method for any system, chosen at run time.
 
 use crate::error::StepError;
-use crate::methods::{Method, Rk4, Rk4Projected, Rkmk4};
+use crate::methods::{
+    BackwardEuler, Cf4, ForwardEuler, Method, Rk4, Rk4Added, Rk4Projected, Rkmk4, Rkmk8, Rkmk54,
+    SemiImplicitEuler,
+};
 use crate::state::State;
 use crate::system::System;
 
-/// The methods that need nothing but [`System`], as one type.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum General {
-    /// [`Rkmk4`]
-    Rkmk4,
-    /// [`Rk4`]
-    Rk4 {
-        /// λ ≥ 0 in 1/time.
-        lambda: f64,
-    },
-    /// [`Rk4Projected`]
-    Rk4Projected,
-}
+/// Declares [`General`], its names, and the call of the method that is meant.
+macro_rules! general {
+    ($($(#[$note:meta])* $variant:ident $name:literal,)*) => {
+        /// The methods that need nothing but [`System`], as one type.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub enum General {
+            /// [`Rk4`]
+            Rk4 {
+                /// λ ≥ 0 in 1/time.
+                lambda: f64,
+            },
+            $($(#[$note])* $variant,)*
+        }
 
-/// Calls the same function of the method that is meant.
-macro_rules! each {
-    ($general:expr, $method:ident => $call:expr) => {
-        match $general {
-            General::Rkmk4 => {
-                let $method = Rkmk4;
-                $call
+        impl General {
+            /// All of them, the recommended first; [`Rk4`] without stabilisation.
+            pub const ALL: &[Self] = &[$(Self::$variant,)* Self::Rk4 { lambda: 0.0 }];
+
+            /// The name by which people choose it.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    Self::Rk4 { .. } => "rk4",
+                    $(Self::$variant => $name,)*
+                }
             }
-            General::Rk4 { lambda } => {
-                let $method = Rk4 { lambda: *lambda };
-                $call
+        }
+
+        impl<Sys: System + ?Sized> Method<Sys> for General {
+            fn order(&self) -> u32 {
+                match self {
+                    Self::Rk4 { lambda } => Method::<Sys>::order(&Rk4 { lambda: *lambda }),
+                    $(Self::$variant => Method::<Sys>::order(&$variant),)*
+                }
             }
-            General::Rk4Projected => {
-                let $method = Rk4Projected;
-                $call
+
+            #[inline]
+            fn step<U>(
+                &self,
+                system: &Sys,
+                state: &State<Sys>,
+                h: f64,
+                inputs: &U,
+            ) -> Result<State<Sys>, StepError>
+            where
+                U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+            {
+                match self {
+                    Self::Rk4 { lambda } => Rk4 { lambda: *lambda }.step(system, state, h, inputs),
+                    $(Self::$variant => $variant.step(system, state, h, inputs),)*
+                }
             }
         }
     };
 }
 
-impl<Sys: System + ?Sized> Method<Sys> for General {
-    fn order(&self) -> u32 {
-        each!(self, method => Method::<Sys>::order(&method))
-    }
+general! {
+    /// [`Rkmk4`]
+    Rkmk4 "rkmk4",
+    /// [`Cf4`]
+    Cf4 "cf4",
+    /// [`Rkmk54`]
+    Rkmk54 "rkmk54",
+    /// [`Rkmk8`]
+    Rkmk8 "rkmk8",
+    /// [`Rk4Projected`]
+    Rk4Projected "rk4-projected",
+    /// [`Rk4Added`]
+    Rk4Added "rk4-added",
+    /// [`ForwardEuler`]
+    ForwardEuler "euler",
+    /// [`SemiImplicitEuler`]
+    SemiImplicitEuler "semi-implicit-euler",
+    /// [`BackwardEuler`]
+    BackwardEuler "backward-euler",
+}
 
-    #[inline]
-    fn step<U>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        h: f64,
-        inputs: &U,
-    ) -> Result<State<Sys>, StepError>
-    where
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
-        each!(self, method => method.step(system, state, h, inputs))
+impl General {
+    /// The method of this name; `rk4` without stabilisation.
+    pub fn named(name: &str) -> Option<Self> {
+        let mut all = Self::ALL.iter().copied();
+        all.find(|method| method.name() == name)
     }
 }

@@ -7,18 +7,39 @@
 //!
 //! | method | order | for |
 //! |---|---|---|
-//! | [`Rkmk4`] | 4 | any system; stays on the manifold |
+//! | [`Rkmk4`], [`Cf4`] | 4 | any system; stay on the manifold |
+//! | [`Rkmk54`] | 5 | any system; errors of 1e-4 to 1e-8 |
+//! | [`Rkmk8`] | 8 | any system; errors below 1e-6 |
+//! | [`tableau::Rkmk`] | any | other explicit tableaux, on the manifold |
 //! | [`Rk4`], [`Rk4Projected`] | 4 | baselines on the coordinates x |
+//! | [`Rk4Added`] | 2 | baseline: rotations without dexpinv |
+//! | [`ForwardEuler`], [`SemiImplicitEuler`], [`BackwardEuler`] | 1 | baselines |
+//!
+//! [`Adaptive`](crate::adaptive::Adaptive) chooses the steps of [`Rkmk54`] and [`Rkmk8`] itself.
 
+pub mod backward_euler;
+pub mod cf4;
+pub mod euler;
 pub mod general;
 pub mod rk4;
+pub mod rk4_added;
 pub mod rkmk4;
+pub mod rkmk54;
+pub mod rkmk8;
+pub mod tableau;
 
+pub use backward_euler::BackwardEuler;
+pub use cf4::Cf4;
+pub use euler::{ForwardEuler, SemiImplicitEuler};
 pub use general::General;
 pub use rk4::{Rk4, Rk4Projected};
+pub use rk4_added::Rk4Added;
 pub use rkmk4::Rkmk4;
+pub use rkmk8::Rkmk8;
+pub use rkmk54::Rkmk54;
 
 use crate::error::StepError;
+use crate::manifold;
 use crate::state::State;
 use crate::system::System;
 
@@ -63,5 +84,25 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         (**self).step(system, state, h, inputs)
+    }
+}
+
+/// The end of a step of length `h` from `state`: (x, ξ), with x brought back onto its manifold from
+/// what rounding did.
+#[inline]
+pub(crate) fn arrive<Sys: System + ?Sized>(
+    system: &Sys,
+    state: &State<Sys>,
+    h: f64,
+    mut x: Sys::Coordinates,
+    xi: Sys::Velocities,
+) -> Result<State<Sys>, StepError> {
+    manifold::normalise(system.blocks(), x.as_mut());
+    let t = state.t + h;
+    let next = State { t, x, xi };
+    if next.is_finite() {
+        Ok(next)
+    } else {
+        Err(StepError::NonFinite { time: state.t })
     }
 }

@@ -1,0 +1,126 @@
+//! How an estimated error becomes the length of the next step.
+//!
+//! Source: E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II* (1996), IV.2; K.
+//! Gustafsson, *Control theoretic techniques for stepsize selection*, ACM TOMS 17 (1991) 533.
+
+use crate::error::StepError;
+use crate::scalar::Scalar;
+use crate::store::Store;
+use crate::system::Block;
+
+/// The error that a step may make.
+///
+/// The estimate of a step is small enough when each of its entries is below the tolerance of its
+/// kind; errors at the end of a run are proportional to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Of circles, quaternions and rotations, in rad.
+    pub angle: f64,
+    /// Of flat blocks and ξ, in their units.
+    pub absolute: f64,
+    /// Of flat blocks and ξ, over the largest |entry| of the block or of ξ.
+    pub relative: f64,
+}
+
+impl Tolerance {
+    /// The same number for all three: rad for angles, `tolerance` · (1 + |v|) for the rest.
+    pub const fn new(tolerance: f64) -> Self {
+        Self {
+            angle: tolerance,
+            absolute: tolerance,
+            relative: tolerance,
+        }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), StepError> {
+        let positive = |value: f64| value > 0.0 && value < f64::INFINITY;
+        let relative = self.relative == 0.0 || positive(self.relative);
+        if positive(self.angle) && positive(self.absolute) && relative {
+            Ok(())
+        } else {
+            Err(StepError::InvalidTolerance)
+        }
+    }
+
+    /// The largest entry of a change (u, v) over its tolerance, in the worst lane; (x, ξ) give the
+    /// sizes. NaN where an entry is NaN.
+    pub(crate) fn weigh<S: Scalar>(
+        &self,
+        blocks: &[Block],
+        (u, v): (&impl Store<S>, &impl Store<S>),
+        (x, xi): (&impl Store<S>, &impl Store<S>),
+    ) -> f64 {
+        let size = |list: &[S]| {
+            let largest = |most, entry: &S| Scalar::max(most, entry.abs());
+            list.iter().fold(S::default(), largest)
+        };
+        let allowed =
+            |list: &[S]| S::from_f64(self.relative).mul_add(size(list), S::from_f64(self.absolute));
+        let mut worst = size(v.as_ref()) / allowed(xi.as_ref());
+        let (mut u, mut x) = (u.as_ref(), x.as_ref());
+        for block in blocks {
+            let (Some((change, u_rest)), Some((here, x_rest))) = (
+                u.split_at_checked(block.chart()),
+                x.split_at_checked(block.coordinates()),
+            ) else {
+                break;
+            };
+            let tolerance = match block {
+                Block::Flat(_) => allowed(here),
+                Block::Circle | Block::Quaternion | Block::Rotation => S::from_f64(self.angle),
+            };
+            worst = Scalar::max(worst, size(change) / tolerance);
+            (u, x) = (u_rest, x_rest);
+        }
+        worst.largest_lane()
+    }
+}
+
+/// Proportional and integral control of the step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Controller {
+    /// Order of the method: errors of a step grow as its power.
+    order: f64,
+    /// Error of the last accepted step over its tolerance.
+    before: f64,
+    /// Whether the step at hand was refused before.
+    refused: bool,
+}
+
+const SAFETY: f64 = 0.9;
+const SMALLEST: f64 = 0.2;
+const LARGEST: f64 = 5.0;
+
+impl Controller {
+    pub(crate) fn new(order: u32) -> Self {
+        Self {
+            order: f64::from(order),
+            before: 1e-4,
+            refused: false,
+        }
+    }
+
+    /// The factor of the next step after one with the error q ≤ 1:
+    /// 0.9 q^(−0.7/p) q₋₁^(0.4/p), in 0.2..5; no growth right after a refusal.
+    pub(crate) fn accept(&mut self, q: f64) -> f64 {
+        // Below this error the factor is the largest anyway, and zero has no logarithm.
+        let q = q.max(1e-10);
+        let factor = SAFETY * power(q, -0.7 / self.order) * power(self.before, 0.4 / self.order);
+        let most = if self.refused { 1.0 } else { LARGEST };
+        self.before = q.max(1e-4);
+        self.refused = false;
+        factor.clamp(SMALLEST, most)
+    }
+
+    /// The factor for another attempt, after one with the error q > 1, or with none (NaN).
+    pub(crate) fn refuse(&mut self, q: f64) -> f64 {
+        self.refused = true;
+        let factor = SAFETY * power(q, -1.0 / self.order);
+        if factor > SMALLEST { factor } else { SMALLEST }
+    }
+}
+
+/// base^exponent for base > 0.
+pub(crate) fn power(base: f64, exponent: f64) -> f64 {
+    Scalar::exp(exponent * Scalar::ln(base))
+}

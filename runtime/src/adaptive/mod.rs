@@ -1,0 +1,397 @@
+//! Runs that choose their steps: error control, dense output, events.
+//!
+//! Explicit pairs in the chart: u and ξ are advanced and their errors estimated as those of any
+//! Runge-Kutta pair, in rad for angles, relative for the rest ([`Tolerance`]). Between the ends of a
+//! step the state is known as well ([`Step::at`]), and so are the times at which a function of it
+//! changes its sign ([`Event`]).
+//!
+//! ```
+//! # use hamel::{s1, Block, Singular, State, System};
+//! # struct Pendulum;
+//! # impl System for Pendulum {
+//! #     type Scalar = f64;
+//! #     type Coordinates = [f64; 2];
+//! #     type Velocities = [f64; 1];
+//! #     type Chart = [f64; 1];
+//! #     type Inputs = [f64; 0];
+//! #     fn blocks(&self) -> &[Block] { &[Block::Circle] }
+//! #     fn zero_coordinates(&self) -> [f64; 2] { [0.0; 2] }
+//! #     fn zero_velocities(&self) -> [f64; 1] { [0.0] }
+//! #     fn zero_chart(&self) -> [f64; 1] { [0.0] }
+//! #     fn zero_inputs(&self) -> [f64; 0] { [] }
+//! #     fn start(&self) -> ([f64; 2], [f64; 1]) { (s1::exp(1.0), [0.0]) }
+//! #     fn rate(&self, x: &[f64; 2], xi: &[f64; 1]) -> [f64; 2] { s1::rate(*x, xi[0]) }
+//! #     fn chart_rate(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] { *xi }
+//! #     fn accel(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
+//! #         Ok([-9.81 * x[1]])
+//! #     }
+//! #     fn correction(&self, x: &[f64; 2]) -> [f64; 2] { s1::correction(*x) }
+//! #     fn constraint_norm(&self, x: &[f64; 2]) -> f64 { s1::defect(*x) }
+//! #     fn kinetic_energy(&self, _: &[f64; 2], xi: &[f64; 1]) -> f64 { 0.5 * xi[0] * xi[0] }
+//! #     fn potential_energy(&self, x: &[f64; 2]) -> f64 { -9.81 * x[0] }
+//! # }
+//! # fn main() -> Result<(), hamel::StepError> {
+//! use hamel::adaptive::{Adaptive, Event, Report};
+//!
+//! // A pendulum of length 1, x = (cos θ, sin θ), let go at θ = 1: where does it first hang straight?
+//! let mut state = State::start(&Pendulum);
+//! let lowest = |state: &State<Pendulum>| state.x[1];
+//! let events = [Event::new(&lowest).stopping()];
+//! let mut greatest: f64 = 0.0;
+//! let outcome = Adaptive::rkmk54(1e-9).integrate(
+//!     &Pendulum, &mut state, 10.0, |_, _, _| [], &events,
+//!     |report| if let Report::Step(step) = report {
+//!         // Between the ends of the step, too.
+//!         let middle = 0.5 * (step.start().t + step.end().t);
+//!         greatest = greatest.max(step.at(middle).xi[0].abs());
+//!     },
+//! )?;
+//! assert_eq!(outcome.stopped_by, Some(0));
+//! assert!(state.x[1].abs() < 1e-8 && state.t < 1.0);
+//! # Ok(())
+//! # }
+//! ```
+
+pub mod control;
+pub mod events;
+pub mod pair;
+mod start;
+pub mod step;
+
+pub use control::Tolerance;
+pub use events::{Direction, Event};
+pub use step::Step;
+
+use crate::adaptive::control::{Controller, power};
+use crate::adaptive::pair::Pair;
+use crate::error::StepError;
+use crate::integrate::{acceleration, projected};
+use crate::methods::tableau::{Stages, Sums};
+use crate::methods::{rkmk8, rkmk54};
+use crate::scalar::Scalar;
+use crate::state::State;
+use crate::system::System;
+
+/// A method with error control, and how it chooses its steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Adaptive<const M: usize, const D: usize> {
+    pair: &'static Pair<M, D>,
+    /// The error that a step may make.
+    pub tolerance: Tolerance,
+    /// Length of the first step, in time; `None` for Hairer's rule, at one evaluation of ξ̇ more.
+    pub first: Option<f64>,
+    /// No step is longer, in time.
+    pub longest: f64,
+    /// To how much time events are located; never finer than rounding of t.
+    pub precision: f64,
+}
+
+impl Adaptive<7, 1> {
+    /// [`Rkmk54`](crate::methods::Rkmk54): six evaluations of ξ̇ an accepted step, dense output of
+    /// order 4; for tolerances of 1e-3 to 1e-8.
+    pub const fn rkmk54(tolerance: f64) -> Self {
+        Self::new(&rkmk54::PAIR, Tolerance::new(tolerance))
+    }
+}
+
+impl Adaptive<16, 4> {
+    /// [`Rkmk8`](crate::methods::Rkmk8): twelve evaluations of ξ̇ an accepted step, three more for
+    /// dense output of order 7; for tolerances of 1e-6 to 1e-13.
+    pub const fn rkmk8(tolerance: f64) -> Self {
+        Self::new(&rkmk8::PAIR, Tolerance::new(tolerance))
+    }
+}
+
+/// What a run has done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Steps taken.
+    pub accepted: u64,
+    /// Attempts whose error was too large.
+    pub rejected: u64,
+    /// Evaluations of ξ̇.
+    pub evaluations: u64,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// What it cost.
+    pub statistics: Statistics,
+    /// Index of the event that stopped it; `None` at the time asked for.
+    pub stopped_by: Option<usize>,
+}
+
+/// What an observer is told, in order of time: the events within a step before the step.
+#[derive(Debug)]
+pub enum Report<'r, Sys: System + ?Sized, const D: usize> {
+    /// An event happened.
+    Event {
+        /// Its place in the list of events.
+        index: usize,
+        /// The state, at the first time known at which g has changed its sign.
+        state: &'r State<Sys>,
+    },
+    /// A step was taken. One that an event stops ends there.
+    Step(&'r Step<'r, Sys, D>),
+}
+
+impl<const M: usize, const D: usize> Adaptive<M, D> {
+    /// The method of a pair.
+    pub const fn new(pair: &'static Pair<M, D>, tolerance: Tolerance) -> Self {
+        Self {
+            pair,
+            tolerance,
+            first: None,
+            longest: f64::INFINITY,
+            precision: 0.0,
+        }
+    }
+
+    /// Moves `state` to the time `until`, forwards or backwards, and back onto the constraints that
+    /// multipliers keep after every step. `inputs(t, x, ξ)` gives u.
+    ///
+    /// # Errors
+    /// [`StepError`]; `state` is then the last valid one.
+    pub fn run<Sys, U>(
+        &self,
+        system: &Sys,
+        state: &mut State<Sys>,
+        until: f64,
+        inputs: U,
+    ) -> Result<Statistics, StepError>
+    where
+        Sys: System + ?Sized,
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let outcome = self.drive(system, state, until, &inputs, false, |_| Ok(None))?;
+        Ok(outcome.statistics)
+    }
+
+    /// As [`run`](Self::run), with events, and an observer of events and steps.
+    ///
+    /// # Errors
+    /// [`StepError`]; `state` is then the last valid one. An event function that gives NaN is
+    /// [`StepError::NonFinite`].
+    pub fn integrate<Sys, U, O>(
+        &self,
+        system: &Sys,
+        state: &mut State<Sys>,
+        until: f64,
+        inputs: U,
+        events: &[Event<'_, Sys>],
+        mut observe: O,
+    ) -> Result<Outcome, StepError>
+    where
+        Sys: System + ?Sized,
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+        O: FnMut(Report<'_, Sys, D>),
+    {
+        self.drive(system, state, until, &inputs, true, |step| {
+            let stopped_by = self.happen(step, events, &mut observe)?;
+            observe(Report::Step(step));
+            Ok(stopped_by)
+        })
+    }
+
+    /// Reports the events of a step in order of time. One that stops becomes the end of the step.
+    fn happen<Sys, O>(
+        &self,
+        step: &mut Step<'_, Sys, D>,
+        events: &[Event<'_, Sys>],
+        observe: &mut O,
+    ) -> Result<Option<usize>, StepError>
+    where
+        Sys: System + ?Sized,
+        O: FnMut(Report<'_, Sys, D>),
+    {
+        let (from, to) = (step.start().t, step.end().t);
+        let resolution = 2.0 * f64::EPSILON * from.abs().max(to.abs());
+        let precision = self.precision.max(resolution);
+        // Elapsed time and index of the last event reported: nothing is stored but this.
+        let mut last = None;
+        loop {
+            let mut next: Option<(f64, usize, f64)> = None;
+            for (index, event) in events.iter().enumerate() {
+                if let Some(time) = event.time(step, precision)? {
+                    let elapsed = (time - from).abs();
+                    let is_new = last.is_none_or(|last| (elapsed, index) > last);
+                    if is_new && next.is_none_or(|(best, ..)| elapsed < best) {
+                        next = Some((elapsed, index, time));
+                    }
+                }
+            }
+            let Some((elapsed, index, time)) = next else {
+                return Ok(None);
+            };
+            let state = projected(step.system, step.at(time))?.0;
+            observe(Report::Event {
+                index,
+                state: &state,
+            });
+            if events.get(index).is_some_and(|event| event.stops) {
+                step.end = state;
+                return Ok(Some(index));
+            }
+            last = Some((elapsed, index));
+        }
+    }
+
+    /// The loop of attempts. `accept` sees every step (if `dense`, complete with its path) and may
+    /// shorten it and end the run.
+    fn drive<Sys, U>(
+        &self,
+        system: &Sys,
+        state: &mut State<Sys>,
+        until: f64,
+        inputs: &U,
+        dense: bool,
+        mut accept: impl FnMut(&mut Step<'_, Sys, D>) -> Result<Option<usize>, StepError>,
+    ) -> Result<Outcome, StepError>
+    where
+        Sys: System + ?Sized,
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        state.check_shape(system)?;
+        self.tolerance.check()?;
+        if !state.is_finite() {
+            return Err(StepError::NonFinite { time: state.t });
+        }
+        let span = until - state.t;
+        let longest = self.longest.min(span.abs());
+        let first = self.first.unwrap_or(longest);
+        let advances = self.longest > 0.0 && (first > 0.0 || span == 0.0);
+        if !span.is_finite() || !advances {
+            let step = first.min(self.longest);
+            return Err(StepError::InvalidStep { step, span });
+        }
+        let mut outcome = Outcome::default();
+        if span == 0.0 {
+            return Ok(outcome);
+        }
+        let statistics = &mut outcome.statistics;
+        let mut stages: Stages<Sys, M> = Stages::start(system, state, inputs)?;
+        statistics.evaluations += 1;
+        let direction = if span < 0.0 { -1.0 } else { 1.0 };
+        let mut length = match self.first {
+            Some(first) => first.min(longest),
+            None => {
+                statistics.evaluations += 1;
+                self.first_step(system, state, inputs, &stages, direction, longest)?
+            }
+        };
+        let mut controller = Controller::new(self.pair.order);
+        while state.t != until {
+            let left = (until - state.t).abs();
+            let is_last = 1.01 * length >= left;
+            let h = if is_last {
+                until - state.t
+            } else {
+                direction * length
+            };
+            let attempt = self.attempt(system, state, h, inputs, dense, &mut stages, statistics);
+            let (mut end, change, q) = match attempt {
+                Ok(attempt) if attempt.2 <= 1.0 => attempt,
+                attempt => {
+                    statistics.rejected += 1;
+                    length =
+                        h.abs() * controller.refuse(attempt.as_ref().map_or(f64::NAN, |a| a.2));
+                    // A point without ξ̇ may be the fault of the step; when short steps do not
+                    // avoid it, it is the reason.
+                    if length < 16.0 * f64::EPSILON * state.t.abs().max(until.abs()) {
+                        let (time, step) = (state.t, direction * length);
+                        return Err(match attempt {
+                            Err(cause) => cause,
+                            Ok(_) => StepError::StepTooSmall { time, step },
+                        });
+                    }
+                    continue;
+                }
+            };
+            if is_last {
+                end.t = until;
+            }
+            let (end, moved) = projected(system, end)?;
+            let mut step = Step::new(system, state, end, h, &stages, self.pair, change);
+            let stopped_by = accept(&mut step)?;
+            let end = step.end;
+            *state = end;
+            statistics.accepted += 1;
+            if stopped_by.is_some() {
+                outcome.stopped_by = stopped_by;
+                return Ok(outcome);
+            }
+            length = (h.abs() * controller.accept(q)).min(longest);
+
+            // The last stage is the first of the next step, where the state is the one it saw.
+            let mut f = stages.f.get(self.pair.end).cloned();
+            if moved {
+                statistics.evaluations += 1;
+                f = Some(acceleration(
+                    system, state.t, 0.0, &state.x, &state.xi, inputs,
+                )?);
+            }
+            if let Some(f) = f {
+                stages.set(0, system.chart_rate(&state.x, &state.xi), f);
+            }
+        }
+        Ok(outcome)
+    }
+
+    /// The stages of one step: its end, its change, its error over the tolerance.
+    #[inline]
+    fn attempt<Sys, U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        dense: bool,
+        stages: &mut Stages<Sys, M>,
+        statistics: &mut Statistics,
+    ) -> Result<(State<Sys>, Sums<Sys>, f64), StepError>
+    where
+        Sys: System + ?Sized,
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let mut change = stages.sums(system, h, &[]);
+        for (index, row) in self.pair.rows.iter().enumerate().skip(1) {
+            if index > self.pair.end && !dense {
+                break;
+            }
+            statistics.evaluations += 1;
+            let sums = stages.evaluate(system, state, h, inputs, index, row)?;
+            if index == self.pair.end {
+                change = sums;
+            }
+        }
+        let end = change.end(system, state, h)?;
+        let q = self.error(system, stages, h, &end);
+        Ok((end, change, q))
+    }
+
+    /// The estimated error over the tolerance.
+    fn error<Sys: System + ?Sized>(
+        &self,
+        system: &Sys,
+        stages: &Stages<Sys, M>,
+        h: f64,
+        end: &State<Sys>,
+    ) -> f64 {
+        let mut sizes = self.pair.errors.iter().map(|weights| {
+            let Sums { u, dxi } = stages.sums(system, h, weights);
+            let at = (&end.x, &end.xi);
+            self.tolerance
+                .weigh::<Sys::Scalar>(system.blocks(), (&u, &dxi), at)
+        });
+        let first = sizes.next().unwrap_or(f64::NAN);
+        match sizes.next() {
+            None => first,
+            Some(_) if first == 0.0 => first,
+            Some(second) => {
+                let ratio = second / first;
+                first / Scalar::sqrt(1.0 + 0.01 * ratio * ratio)
+            }
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Explicit Runge-Kutta methods in the chart, for any tableau (Runge-Kutta-Munthe-Kaas).
+//!
+//! Each step starts at u = 0: uᵢ = h Σⱼ aᵢⱼ kⱼ, ξᵢ = ξ + h Σⱼ aᵢⱼ fⱼ, kᵢ = dexpinv(uᵢ, wᵢ), with the
+//! chart rate wᵢ and ξ̇ = fᵢ at x moved along uᵢ; it closes with the weights b. The order is that of
+//! the tableau. Source: H. Munthe-Kaas, *High order Runge-Kutta methods on manifolds*, Appl. Numer.
+//! Math. 29 (1999) 115.
+
+use core::array::from_fn;
+
+use crate::error::StepError;
+use crate::integrate::acceleration;
+use crate::manifold;
+use crate::methods::{Method, arrive};
+use crate::scalar::Scalar;
+use crate::state::State;
+use crate::store::add_scaled;
+use crate::system::System;
+
+/// The coefficients that are not zero, each with its stage, from 0.
+pub type Weights = &'static [(usize, f64)];
+
+/// One stage: cᵢ and row i of a.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// cᵢ = Σⱼ aᵢⱼ
+    pub node: f64,
+    /// aᵢⱼ, stages j < i
+    pub weights: Weights,
+}
+
+/// An explicit tableau of N stages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tableau<const N: usize> {
+    /// The order p.
+    pub order: u32,
+    /// The stages; the first has no weights.
+    pub rows: [Row; N],
+    /// b
+    pub closing: Weights,
+}
+
+/// The method of a tableau: N evaluations of ξ̇ a step; for any system.
+///
+/// x stays on its manifold to rounding: rotations by a polar step, quaternions and circles by their
+/// norm; flat blocks move as in the plain method.
+///
+/// ```
+/// use hamel::methods::tableau::{Rkmk, Row, Tableau};
+///
+/// /// Ralston's third-order method.
+/// static RALSTON: Tableau<3> = Tableau {
+///     order: 3,
+///     rows: [
+///         Row { node: 0.0, weights: &[] },
+///         Row { node: 0.5, weights: &[(0, 0.5)] },
+///         Row { node: 0.75, weights: &[(1, 0.75)] },
+///     ],
+///     closing: &[(0, 2.0 / 9.0), (1, 1.0 / 3.0), (2, 4.0 / 9.0)],
+/// };
+/// let method = Rkmk(&RALSTON);
+/// # let _ = method;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rkmk<const N: usize>(pub &'static Tableau<N>);
+
+impl<Sys: System + ?Sized, const N: usize> Method<Sys> for Rkmk<N> {
+    fn order(&self) -> u32 {
+        self.0.order
+    }
+
+    #[inline]
+    fn step<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        state.check_shape(system)?;
+        let mut stages: Stages<Sys, N> = Stages::start(system, state, inputs)?;
+        for (index, row) in self.0.rows.iter().enumerate().skip(1) {
+            stages.evaluate(system, state, h, inputs, index, row)?;
+        }
+        stages.sums(system, h, self.0.closing).end(system, state, h)
+    }
+}
+
+/// kᵢ and fᵢ of the stages of one step.
+pub(crate) struct Stages<Sys: System + ?Sized, const N: usize> {
+    pub(crate) k: [Sys::Chart; N],
+    pub(crate) f: [Sys::Velocities; N],
+}
+
+/// u = h Σ aⱼ kⱼ and Δξ = h Σ aⱼ fⱼ.
+pub(crate) struct Sums<Sys: System + ?Sized> {
+    pub(crate) u: Sys::Chart,
+    pub(crate) dxi: Sys::Velocities,
+}
+
+impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
+    /// The first stage, at u = 0, where dexpinv is the identity.
+    #[inline]
+    pub(crate) fn start<U>(system: &Sys, state: &State<Sys>, inputs: &U) -> Result<Self, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let mut stages = Self {
+            k: from_fn(|_| system.zero_chart()),
+            f: from_fn(|_| system.zero_velocities()),
+        };
+        let f = acceleration(system, state.t, 0.0, &state.x, &state.xi, inputs)?;
+        stages.set(0, system.chart_rate(&state.x, &state.xi), f);
+        Ok(stages)
+    }
+
+    /// Stage `index`, from those before it.
+    #[inline]
+    pub(crate) fn evaluate<U>(
+        &mut self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        index: usize,
+        row: &Row,
+    ) -> Result<Sums<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let sums = self.sums(system, h, row.weights);
+        let (x, xi) = sums.point(system, state);
+        let mut k = system.chart_rate(&x, &xi);
+        manifold::dexpinv(system.blocks(), sums.u.as_ref(), k.as_mut());
+        let f = acceleration(system, state.t, row.node * h, &x, &xi, inputs)?;
+        self.set(index, k, f);
+        Ok(sums)
+    }
+
+    #[inline]
+    pub(crate) fn set(&mut self, index: usize, k: Sys::Chart, f: Sys::Velocities) {
+        if let (Some(k_slot), Some(f_slot)) = (self.k.get_mut(index), self.f.get_mut(index)) {
+            (*k_slot, *f_slot) = (k, f);
+        }
+    }
+
+    #[inline]
+    pub(crate) fn sums(&self, system: &Sys, h: f64, weights: Weights) -> Sums<Sys> {
+        let mut sums = Sums::<Sys> {
+            u: system.zero_chart(),
+            dxi: system.zero_velocities(),
+        };
+        for (j, weight) in weights {
+            let a = Sys::Scalar::from_f64(h * weight);
+            if let (Some(k), Some(f)) = (self.k.get(*j), self.f.get(*j)) {
+                add_scaled(sums.u.as_mut(), a, k.as_ref());
+                add_scaled(sums.dxi.as_mut(), a, f.as_ref());
+            }
+        }
+        sums
+    }
+}
+
+impl<Sys: System + ?Sized> Sums<Sys> {
+    /// x moved along u, ξ + Δξ.
+    #[inline]
+    pub(crate) fn point(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+    ) -> (Sys::Coordinates, Sys::Velocities) {
+        let mut x = state.x.clone();
+        manifold::retract(system.blocks(), x.as_mut(), self.u.as_ref());
+        let mut xi = state.xi.clone();
+        add_scaled(xi.as_mut(), Sys::Scalar::from_f64(1.0), self.dxi.as_ref());
+        (x, xi)
+    }
+
+    /// The state at the end of a step, on its manifold.
+    #[inline]
+    pub(crate) fn end(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+    ) -> Result<State<Sys>, StepError> {
+        let (x, xi) = self.point(system, state);
+        arrive(system, state, h, x, xi)
+    }
+}
