@@ -79,14 +79,12 @@ pub enum StepError {
         /// The time to be covered by such steps.
         span: f64,
     },
-    /// The equations of an implicit step were not solved: the step is too long for the iteration.
+    /// An iteration did not converge: the step is too long for the method.
     NotConverged {
         /// Time at the start of the step.
         time: f64,
-        /// How many times they were evaluated.
+        /// How many iterations were made.
         iterations: u32,
-        /// What they leave, relative to the size of the unknowns.
-        residual: f64,
     },
     /// The tolerance asks for steps below the resolution of time: it is finer than rounding allows,
     /// or the motion has a singularity ahead.
@@ -98,6 +96,11 @@ pub enum StepError {
     },
     /// A tolerance is not a positive number.
     InvalidTolerance,
+    /// The method is for motion without forces, and forces may act on this system.
+    Forces {
+        /// Time at the start of the step.
+        time: f64,
+    },
 }
 
 impl fmt::Display for StepError {
@@ -115,20 +118,20 @@ impl fmt::Display for StepError {
             Self::InvalidStep { step, span } => {
                 write!(f, "a time of {span} cannot be covered by steps of {step}")
             }
-            Self::NotConverged {
-                time,
-                iterations,
-                residual,
-            } => write!(
+            Self::NotConverged { time, iterations } => write!(
                 f,
-                "no solution of the implicit step from t = {time}: {residual:e} left after \
-                 {iterations} iterations"
+                "no convergence in {iterations} iterations, in the step from t = {time}: \
+                 the step is too long"
             ),
             Self::StepTooSmall { time, step } => write!(
                 f,
                 "the tolerance asks for a step of {step:e} at t = {time}, which time does not resolve"
             ),
             Self::InvalidTolerance => write!(f, "tolerances have to be positive"),
+            Self::Forces { time } => write!(
+                f,
+                "forces may act, in the step from t = {time}: the closed form is for free motion"
+            ),
         }
     }
 }

@@ -70,6 +70,7 @@ pub mod canonical;
 #[cfg(feature = "nalgebra")]
 pub mod edge;
 pub mod error;
+pub mod flows;
 pub mod integrate;
 pub mod manifold;
 pub mod methods;

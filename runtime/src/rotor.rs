@@ -1,7 +1,9 @@
 //! The inertia of a torque-free rotor, and what its symmetry lets a method do.
 
-use crate::scalar::Scalar;
-use crate::so3::{Matrix, Vector};
+use core::array::from_fn;
+
+use crate::scalar::{Scalar, epsilon};
+use crate::so3::{self, Matrix, Vector};
 
 /// How the principal moments are equal, which decides how the torque-free flow is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +27,14 @@ pub struct Rotor<S> {
     pub symmetry: Symmetry,
 }
 
+/// Moments of a diagonal inertia that differ by less than this many units of rounding of the largest
+/// are equal.
+const ULPS_GIVEN: f64 = 4.0;
+/// The same for moments that come out of rotations.
+const ULPS_COMPUTED: f64 = 16.0;
+/// Sweeps of Jacobi's method: the off-diagonal part shrinks quadratically, three sweeps are usual.
+const SWEEPS: usize = 7;
+
 impl<S: Scalar> Rotor<S> {
     /// A rotor whose body axes are principal and whose symmetry is known from its description.
     pub fn principal(moments: Vector<S>, symmetry: Symmetry) -> Self {
@@ -35,14 +45,85 @@ impl<S: Scalar> Rotor<S> {
         }
     }
 
-    /// A rotor whose body axes are principal; that moments are equal is not known.
-    pub fn of_moments(moments: [S; 3]) -> Self {
-        Self::principal(moments, Symmetry::None)
+    /// A rotor whose body axes are principal; moments that are equal to rounding in all lanes are
+    /// taken as equal.
+    pub fn of_moments(moments: Vector<S>) -> Self {
+        Self::principal(moments, symmetry(moments, ULPS_GIVEN))
     }
 
-    /// A rotor of any inertia J, body axes.
-    pub fn general(inertia: [[S; 3]; 3]) -> Self {
-        let [[a, ..], [_, b, _], [.., c]] = inertia;
-        Self::of_moments([a, b, c])
+    /// A rotor of any inertia, of which the symmetric part counts: principal moments and axes by
+    /// Jacobi's rotations, equal moments found to rounding.
+    ///
+    /// C. G. J. Jacobi 1846; W. H. Press et al., *Numerical Recipes*, 11.1.
+    pub fn general(inertia: Matrix<S>) -> Self {
+        let half = S::from_f64(0.5);
+        let mut j: Matrix<S> = from_fn(|k| half * (inertia[k] + inertia[3 * (k % 3) + k / 3]));
+        let off_diagonal = j[1].abs() + j[2].abs() + j[5].abs();
+        let (zero, one) = (S::default(), S::from_f64(1.0));
+        if zero.select_lt(off_diagonal, zero, one).is_positive() {
+            return Self::of_moments([j[0], j[4], j[8]]);
+        }
+        let mut axes = so3::identity();
+        for _ in 0..SWEEPS {
+            for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+                let turn = rotation(j, a, b);
+                j = so3::transpose_product(turn, so3::product(j, turn));
+                axes = so3::product(axes, turn);
+            }
+        }
+        let moments = [j[0], j[4], j[8]];
+        Self {
+            moments,
+            axes: Some(so3::polar(axes)),
+            symmetry: symmetry(moments, ULPS_COMPUTED),
+        }
+    }
+
+    /// A vector of body axes in principal axes.
+    #[inline]
+    pub fn to_principal(&self, body: Vector<S>) -> Vector<S> {
+        self.axes
+            .map_or(body, |axes| so3::apply_transpose(axes, body))
+    }
+
+    /// A vector of principal axes in body axes.
+    #[inline]
+    pub fn to_body(&self, principal: Vector<S>) -> Vector<S> {
+        self.axes
+            .map_or(principal, |axes| so3::apply(axes, principal))
+    }
+}
+
+/// The rotation about the third axis that makes the entry (a, b) of a symmetric matrix vanish:
+/// tan θ = 2 j_ab sgn d / (|d| + √(d² + 4 j_ab²)), d = j_bb − j_aa.
+fn rotation<S: Scalar>(j: Matrix<S>, a: usize, b: usize) -> Matrix<S> {
+    let (zero, one) = (S::default(), S::from_f64(1.0));
+    let twice = S::from_f64(2.0) * j[3 * a + b];
+    let difference = j[4 * b] - j[4 * a];
+    let length = difference.abs() + (difference * difference + twice * twice).sqrt();
+    let signed = difference.select_lt(zero, -twice, twice);
+    let tangent = zero.select_lt(length, signed / length, zero);
+    let cosine = one / (one + tangent * tangent).sqrt();
+    let sine = tangent * cosine;
+    let mut turn = so3::identity();
+    turn[4 * a] = cosine;
+    turn[4 * b] = cosine;
+    turn[3 * a + b] = sine;
+    turn[3 * b + a] = -sine;
+    turn
+}
+
+/// Which moments differ by less than `ulps` units of rounding of the largest, in all lanes.
+fn symmetry<S: Scalar>(moments: Vector<S>, ulps: f64) -> Symmetry {
+    let [a, b, c] = moments;
+    let largest = Scalar::max(Scalar::max(a.abs(), b.abs()), c.abs());
+    let limit = S::from_f64(ulps) * epsilon::<S>();
+    let equal = |a: S, b: S| (limit * largest - (a - b).abs()).is_positive();
+    match (equal(b, c), equal(c, a), equal(a, b)) {
+        (true, true, true) => Symmetry::Spherical,
+        (true, _, false) => Symmetry::Axial(0),
+        (_, true, false) => Symmetry::Axial(1),
+        (_, _, true) => Symmetry::Axial(2),
+        _ => Symmetry::None,
     }
 }

@@ -164,6 +164,17 @@ macro_rules! scalar {
 scalar!(f64, sincos, sqrt, exp, log, atan2, fabs);
 scalar!(f32, sincosf, sqrtf, expf, logf, atan2f, fabsf);
 
+/// The spacing of numbers at 1: of `f64`, or of `f32` where that of `f64` is lost beside 1.
+#[inline]
+pub(crate) fn epsilon<S: Scalar>() -> S {
+    let (one, double) = (S::from_f64(1.0), S::from_f64(f64::EPSILON));
+    if (one + double - one).is_positive() {
+        double
+    } else {
+        S::from_f64(f32::EPSILON as f64)
+    }
+}
+
 /// Σ cᵢ zⁱ, the first term apart (it carries the rounding) and the others in pairs, which halves the
 /// chain of dependent operations of Horner's rule.
 #[inline]

@@ -21,7 +21,7 @@ pub type Matrix<S> = [S; 9];
 const SERIES_BELOW: f64 = 0.25;
 
 /// sin t / t: (−1)ᵏ / (2k+1)!
-const SINE_RATIO: [f64; 7] = [
+pub(crate) const SINE_RATIO: [f64; 7] = [
     1.0,
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -32,7 +32,7 @@ const SINE_RATIO: [f64; 7] = [
 ];
 
 /// (1 − cos t) / t²: (−1)ᵏ / (2k+2)!
-const VERSINE_RATIO: [f64; 7] = [
+pub(crate) const VERSINE_RATIO: [f64; 7] = [
     0.5,
     -1.0 / 24.0,
     1.0 / 720.0,

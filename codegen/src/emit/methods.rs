@@ -75,13 +75,7 @@ fn rotors(emitter: &Emitter, forms: &[RotorForm]) -> Option<String> {
                 )
             }
             Inertia::Moments => format!("::hamel::Rotor::of_moments([{}])", j.join(", ")),
-            Inertia::General => {
-                let rows: Vec<String> = j
-                    .chunks(3)
-                    .map(|row| format!("[{}]", row.join(", ")))
-                    .collect();
-                format!("::hamel::Rotor::general([{}])", rows.join(", "))
-            }
+            Inertia::General => format!("::hamel::Rotor::general([{}])", j.join(", ")),
         }
     });
     let rotors: Vec<String> = rotors.collect();

@@ -8,6 +8,9 @@ use hamel::{Block, Scalar, Singular, State, System, s3, so3};
 use serde_json::Value;
 use so3::{Matrix, Vector};
 
+mod split;
+pub use split::Spin;
+
 /// Solves M a = b by Cholesky's factorisation.
 pub fn solve<S: Scalar, const N: usize>(
     mut m: [[S; N]; N],
@@ -379,6 +382,10 @@ impl Reference {
         numbers(&self.0["parameters"][name])
     }
 
+    pub fn extra<const N: usize>(&self, name: &str) -> [f64; N] {
+        numbers(&self.0["extra"][name]).expect(name)
+    }
+
     pub fn initial<const N: usize>(&self, name: &str) -> [f64; N] {
         numbers(&self.0["initial"][name]).expect(name)
     }
@@ -448,9 +455,9 @@ pub fn relative(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// `n` steps from the start to `until`, without inputs.
-pub fn run<Sys: System>(
+pub fn run<Sys: System, M: hamel::Method<Sys>>(
     system: &Sys,
-    method: hamel::methods::General,
+    method: M,
     until: f64,
     n: u32,
 ) -> Result<State<Sys>, hamel::StepError> {

@@ -1,0 +1,151 @@
+//! What a flow does to an attitude, whichever way it is stored.
+
+use core::array::from_fn;
+
+use crate::scalar::Scalar;
+use crate::so3::{self, Matrix, Vector, by_series};
+use crate::{s3, so3::SINE_RATIO, so3::VERSINE_RATIO};
+
+/// A rotation, body to world, that can be turned in its own (body) axes.
+pub trait Attitude<S: Scalar>: Copy {
+    /// Turned by nothing.
+    fn identity() -> Self;
+
+    /// Turned by |u| about u.
+    fn turned(self, u: Vector<S>) -> Self;
+
+    /// Turned by a unit quaternion.
+    fn turned_by(self, f: s3::Quaternion<S>) -> Self;
+
+    /// Turned by a rotation matrix.
+    fn turned_by_matrix(self, f: Matrix<S>) -> Self;
+
+    /// Turned about body axis `axis` by the angle whose half has this sine and cosine.
+    fn turned_about(self, axis: usize, half: SineCosine<S>) -> Self;
+}
+
+/// Sine and cosine of an angle.
+#[derive(Clone, Copy, Debug)]
+pub struct SineCosine<S> {
+    /// sin
+    pub sine: S,
+    /// cos
+    pub cosine: S,
+}
+
+impl<S: Scalar> SineCosine<S> {
+    /// Of an angle in rad: by series below half a radian.
+    #[inline]
+    pub fn of(angle: S) -> Self {
+        let t2 = angle * angle;
+        let one = S::from_f64(1.0);
+        let [a, b] = by_series(t2, [SINE_RATIO, VERSINE_RATIO], || {
+            let (sine, cosine) = angle.sin_cos();
+            [sine / angle, (one - cosine) / t2]
+        });
+        Self {
+            sine: a * angle,
+            cosine: one - b * t2,
+        }
+    }
+
+    /// Of twice the angle.
+    #[inline]
+    pub fn doubled(self) -> Self {
+        let twice = S::from_f64(2.0) * self.sine;
+        Self {
+            sine: twice * self.cosine,
+            cosine: S::from_f64(1.0) - twice * self.sine,
+        }
+    }
+
+    /// The vector p of body axes, at rest in the world, after the body turned by this angle about `axis`.
+    #[inline]
+    pub fn turn_back(self, axis: usize, p: &mut Vector<S>) {
+        let (b, c) = others(axis);
+        let (along, across) = (p[b], p[c]);
+        p[b] = self.cosine.mul_add(along, self.sine * across);
+        p[c] = self.cosine.mul_add(across, -(self.sine * along));
+    }
+}
+
+/// The axes after `axis`, in cyclic order.
+#[inline]
+pub(crate) const fn others(axis: usize) -> (usize, usize) {
+    match axis {
+        0 => (1, 2),
+        1 => (2, 0),
+        _ => (0, 1),
+    }
+}
+
+impl<S: Scalar> Attitude<S> for Matrix<S> {
+    #[inline]
+    fn identity() -> Self {
+        so3::identity()
+    }
+
+    #[inline]
+    fn turned(self, u: Vector<S>) -> Self {
+        so3::retract(self, u)
+    }
+
+    #[inline]
+    fn turned_by(self, f: s3::Quaternion<S>) -> Self {
+        so3::product(self, s3::to_matrix(f))
+    }
+
+    #[inline]
+    fn turned_by_matrix(self, f: Matrix<S>) -> Self {
+        so3::product(self, f)
+    }
+
+    #[inline]
+    fn turned_about(self, axis: usize, half: SineCosine<S>) -> Self {
+        let angle = half.doubled();
+        let mut r = self;
+        for row in 0..3 {
+            let mut entries: Vector<S> = from_fn(|column| r[3 * row + column]);
+            angle.turn_back(axis, &mut entries);
+            for column in 0..3 {
+                r[3 * row + column] = entries[column];
+            }
+        }
+        r
+    }
+}
+
+impl<S: Scalar> Attitude<S> for s3::Quaternion<S> {
+    #[inline]
+    fn identity() -> Self {
+        let zero = S::default();
+        [S::from_f64(1.0), zero, zero, zero]
+    }
+
+    #[inline]
+    fn turned(self, u: Vector<S>) -> Self {
+        s3::retract(self, u)
+    }
+
+    #[inline]
+    fn turned_by(self, f: s3::Quaternion<S>) -> Self {
+        s3::product(self, f)
+    }
+
+    #[inline]
+    fn turned_by_matrix(self, f: Matrix<S>) -> Self {
+        s3::product(self, s3::from_matrix(f))
+    }
+
+    #[inline]
+    fn turned_about(self, axis: usize, half: SineCosine<S>) -> Self {
+        let (b, c) = others(axis);
+        let (along, beside, across) = (1 + axis, 1 + b, 1 + c);
+        let mut q = self;
+        q[0] = half.cosine * self[0] - half.sine * self[along];
+        q[along] = half.cosine * self[along] + half.sine * self[0];
+        q[beside] = half.cosine * self[beside] + half.sine * self[across];
+        q[across] = half.cosine * self[across] - half.sine * self[beside];
+        q
+    }
+}

@@ -1,0 +1,217 @@
+//! The torque-free rotor with three different moments in closed form.
+//!
+//! In axes named so that the component along the third never vanishes,
+//! P/|P| = (a cn, a/√r sn, σ b dn)(u | m), and the attitude follows from the angle of P's frame about
+//! the constant R P. With κᵢ = 1/Iᵢ, r = (κ₂−κ₃)/(κ₁−κ₃), q = (κ₁−κ₂)/(κ₁−κ₃), r + q = 1 and
+//! (p₁, p₂, p₃) = P/|P| at the start
+//!
+//! a² = p₁² + r p₂², b² = p₃² + q p₂², m = a² q/(b² r), 1 − m = (r p₃² − q p₁²)/(r b²),
+//! u̇ = ±|P| b √r (κ₁−κ₃).
+//!
+//! Nothing here subtracts |P|² from 2 E I: all terms are sums, or differences of inertias that are given.
+//! sn, cn, dn at the start are p₁/a, p₂ √r/a, |p₃|/b, so that no inverse function is needed; they are
+//! advanced by the addition theorem. Sources: E. Celledoni, F. Fassò, N. Säfström, A. Zanna, SIAM J.
+//! Sci. Comput. 30 (2008) 2084; R. van Zon, J. Schofield, J. Comput. Phys. 225 (2007) 145.
+
+use core::array::from_fn;
+
+use crate::flows::attitude::{Attitude, SineCosine};
+use crate::flows::jacobi::{Jacobi, Mean};
+use crate::flows::nodes::{self, Angle};
+use crate::scalar::Scalar;
+use crate::so3::{self, Matrix, Vector};
+
+/// One torque-free motion: constants and start.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion<S> {
+    /// P/|P|
+    unit: Vector<S>,
+    /// |P|
+    length: S,
+    /// Named axes as rows, in principal axes.
+    names: [Vector<S>; 3],
+    /// κ₁, κ₃
+    inverses: [S; 2],
+    /// |P| (κ₁ − κ₃), the factor of the integral.
+    pub(crate) factor: S,
+    /// a, a/√r, σ b
+    amplitudes: Vector<S>,
+    /// 2 E/|P|², the rate of a steady turn over |P|.
+    steady_rate: S,
+    /// 0 for a turn about a principal axis, or three equal moments.
+    moving: S,
+    pub(crate) m: S,
+    pub(crate) complement: S,
+    pub(crate) start: Jacobi<S>,
+    /// u̇
+    pub(crate) rate: S,
+    /// The angle about R P is |P| κ h and the integral of |P| (κ₁ − κ₃) n sn²/(1 + n sn²), n ≤ 1: added
+    /// to κ = κ₃ where the first axis gives the node, taken from κ = κ₁ where the third does.
+    pub(crate) n: S,
+    /// u̇ over the factor.
+    pub(crate) per_factor: S,
+    /// Whether the angle is that of the first axis (1) or of the third (0).
+    by_first: S,
+}
+
+/// A principal axis with its moment.
+#[derive(Clone, Copy)]
+struct Named<S> {
+    moment: S,
+    axis: Vector<S>,
+}
+
+/// Exchanges two axes in the lanes where `condition` is positive.
+fn exchange<S: Scalar>(axes: &mut [Named<S>; 3], a: usize, b: usize, condition: S) {
+    let zero = S::default();
+    let pick = |yes: S, no: S| zero.select_lt(condition, yes, no);
+    let (first, second) = (axes[a], axes[b]);
+    let mix = |yes: Named<S>, no: Named<S>| Named {
+        moment: pick(yes.moment, no.moment),
+        axis: from_fn(|i| pick(yes.axis[i], no.axis[i])),
+    };
+    axes[a] = mix(second, first);
+    axes[b] = mix(first, second);
+}
+
+impl<S: Scalar> Motion<S> {
+    /// The motion with angular momentum `p` now, in principal axes.
+    pub(crate) fn new(moments: Vector<S>, p: Vector<S>) -> Self {
+        let (zero, one) = (S::default(), S::from_f64(1.0));
+        // Scaled by its largest component, so that the square of a small P is not lost.
+        let largest = Scalar::max(Scalar::max(p[0].abs(), p[1].abs()), p[2].abs());
+        let scaled: Vector<S> = from_fn(|i| {
+            let rest = if i == 2 { one } else { zero };
+            zero.select_lt(largest, p[i] / largest, rest)
+        });
+        let norm = so3::dot(scaled, scaled).sqrt();
+        let length = largest * norm;
+        let unit = scaled.map(|component| component / norm);
+
+        let mut axes: [Named<S>; 3] = from_fn(|i| Named {
+            moment: moments[i],
+            axis: from_fn(|k| if i == k { one } else { zero }),
+        });
+        for (a, b) in [(0, 1), (1, 2), (0, 1)] {
+            let excess = axes[a].moment - axes[b].moment;
+            exchange(&mut axes, a, b, excess);
+        }
+        let differences = |axes: &[Named<S>; 3]| {
+            let k = |i: usize, j: usize| {
+                (axes[j].moment - axes[i].moment) / (axes[i].moment * axes[j].moment)
+            };
+            let whole = k(0, 2);
+            let spread = zero.select_lt(whole.abs(), whole, one);
+            (k(1, 2) / spread, k(0, 1) / spread, whole)
+        };
+        let (r, q, _) = differences(&axes);
+        let x = r.sqrt() * so3::dot(axes[2].axis, unit).abs();
+        let y = q.sqrt() * so3::dot(axes[0].axis, unit).abs();
+        // On the separatrix either naming serves, but for one with r = 0.
+        let tie = r.select_lt(q, one, zero);
+        let swap = x.select_lt(y, one, y.select_lt(x, zero, tie));
+        exchange(&mut axes, 0, 2, swap);
+        let (r, q, whole) = differences(&axes);
+
+        let names = axes.map(|named| named.axis);
+        let [p1, p2, p3] = names.map(|axis| so3::dot(axis, unit));
+        let a2 = p1 * p1 + r * (p2 * p2);
+        let b2 = p3 * p3 + q * (p2 * p2);
+        let (a, b, root) = (a2.sqrt(), b2.sqrt(), r.sqrt());
+        let (x, y) = (root * p3.abs(), q.sqrt() * p1.abs());
+        let sigma = p3.select_lt(zero, -one, one);
+        let parity = so3::dot(names[0], so3::cross(names[1], names[2]));
+        let turning = zero.select_lt(a, one, zero);
+        let start = Jacobi {
+            sn: zero.select_lt(a, p2 * root / a, zero),
+            cn: zero.select_lt(a, p1 / a, one),
+            dn: p3.abs() / b,
+        };
+        let off_axis = zero.select_lt(p1 * p1 + p3 * p3, one, zero);
+        let by_first = b2.select_lt(a2, zero, one);
+        let per_factor = sigma * parity * b * root;
+        Self {
+            unit,
+            length,
+            names,
+            inverses: [one / axes[0].moment, one / axes[2].moment],
+            factor: length * whole,
+            amplitudes: [a, a / root, sigma * b],
+            steady_rate: (p1 * p1) / axes[0].moment
+                + (p2 * p2) / axes[1].moment
+                + (p3 * p3) / axes[2].moment,
+            moving: turning * off_axis * zero.select_lt(whole.abs(), one, zero),
+            m: a2 * q / (b2 * r),
+            complement: (x - y) * (x + y) / (r * b2),
+            start,
+            rate: length * per_factor * whole,
+            n: by_first.select_lt(one, q / r, a2 / b2),
+            per_factor,
+            by_first,
+        }
+    }
+
+    /// The rotation F of the body in time `h`, R₁ = R₀ F, and P = Fᵀ P₀.
+    pub(crate) fn after(&self, h: S) -> (Matrix<S>, Vector<S>) {
+        let zero = S::default();
+        let Angle { end, integral } = nodes::advance(self, h);
+        let named = [
+            self.amplitudes[0] * end.cn,
+            self.amplitudes[1] * end.sn,
+            self.amplitudes[2] * end.dn,
+        ];
+        let mut unit: Vector<S> =
+            from_fn(|i| (0..3).fold(zero, |sum, k| self.names[k][i].mul_add(named[k], sum)));
+        let norm = so3::dot(unit, unit).sqrt();
+        unit = from_fn(|i| zero.select_lt(self.moving, unit[i] / norm, self.unit[i]));
+
+        let part = self.n * integral;
+        let time = self.length * h;
+        let by_first = self.inverses[1] * time + part;
+        let by_third = self.inverses[0] * time - part;
+        let angle = zero.select_lt(self.by_first, by_first, by_third);
+        let angle = zero.select_lt(self.moving, angle, self.steady_rate * time);
+        let reference: Vector<S> = from_fn(|i| {
+            zero.select_lt(self.by_first, self.names[0][i], self.names[2][i])
+        });
+        let (before, after) = (frame(reference, self.unit), frame(reference, unit));
+        let turned = before.turned_about(2, SineCosine::of(S::from_f64(0.5) * angle));
+        let transposed: Matrix<S> = from_fn(|k| after[3 * (k % 3) + k / 3]);
+        let f = so3::product(turned, transposed);
+        (f, unit.map(|component| self.length * component))
+    }
+}
+
+/// Columns: the node reference × p, p × node, p, for a unit vector p.
+fn frame<S: Scalar>(reference: Vector<S>, p: Vector<S>) -> Matrix<S> {
+    let node = so3::cross(reference, p);
+    let length = so3::dot(node, node).sqrt();
+    let node = node.map(|component| component / length);
+    let third = so3::cross(p, node);
+    from_fn(|k| match k % 3 {
+        0 => node[k / 3],
+        1 => third[k / 3],
+        _ => p[k / 3],
+    })
+}
+
+/// Three different moments, any others too: the attitude and P after `h`. Exact.
+#[inline]
+pub fn exact<S: Scalar, A: Attitude<S>>(
+    attitude: A,
+    p: &mut Vector<S>,
+    moments: Vector<S>,
+    h: S,
+) -> A {
+    let (f, after) = Motion::new(moments, *p).after(h);
+    *p = after;
+    attitude.turned_by_matrix(f)
+}
+
+/// The time between two flips of a torque-free rotor, half a period of its angular velocity: 2K/|u̇|;
+/// for a given angular momentum in principal axes. Infinite or NaN where it does not flip.
+pub fn half_period<S: Scalar>(moments: Vector<S>, p: Vector<S>) -> S {
+    let motion = Motion::new(moments, p);
+    let quarter = Mean::new(motion.complement).quarter_period();
+    S::from_f64(2.0) * quarter / motion.rate.abs()
+}

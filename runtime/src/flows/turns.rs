@@ -1,0 +1,100 @@
+//! Torque-free flows that are made of turns about fixed axes.
+//!
+//! All act on the attitude and on the angular momentum P in principal axes, and keep R P. Sources:
+//! R. McLachlan 1993; S. Reich, Physica D 76 (1994) 375; J. Touma, J. Wisdom, Astron. J. 107 (1994)
+//! 1189.
+
+use crate::flows::attitude::{Attitude, SineCosine, others};
+use crate::scalar::Scalar;
+use crate::so3::Vector;
+
+/// Three equal moments J: R exp(h P/J). Exact.
+#[inline]
+pub fn spherical<S: Scalar, A: Attitude<S>>(attitude: A, p: Vector<S>, j: S, h: S) -> A {
+    let factor = h / j;
+    attitude.turned(p.map(|p| factor * p))
+}
+
+/// Two equal moments beside `axis`: R exp(h P/Jₐ), then a turn by h P_c (1/J_c − 1/Jₐ) about the axis
+/// c, in which P turns back. Exact.
+#[inline]
+pub fn axial<S: Scalar, A: Attitude<S>>(
+    attitude: A,
+    p: &mut Vector<S>,
+    moments: Vector<S>,
+    axis: usize,
+    h: S,
+) -> A {
+    let (equal, own) = (moments[others(axis).0], moments[axis]);
+    let turned = spherical(attitude, *p, equal, h);
+    about(turned, p, axis, h * (equal - own) / (equal * own))
+}
+
+/// Any moments: turns by h Pᵢ/Jᵢ about the axes 1, 2, 3, 2, 1 for h/2, h/2, h, h/2, h/2. Order 2,
+/// symmetric, symplectic.
+#[inline]
+pub fn axes<S: Scalar, A: Attitude<S>>(
+    attitude: A,
+    p: &mut Vector<S>,
+    moments: Vector<S>,
+    h: S,
+) -> A {
+    let half = S::from_f64(0.5) * h;
+    let mut turned = attitude;
+    for (axis, time) in [(0, half), (1, half), (2, h), (1, half), (0, half)] {
+        turned = about(turned, p, axis, time / moments[axis]);
+    }
+    turned
+}
+
+/// Nearly equal moments Jₐ, J_b: the flow for two moments Jₐ between half turns by
+/// (h/2) P_b (1/J_b − 1/Jₐ) about b. Order 2 with an error proportional to that difference.
+///
+/// The pair are those of the closest 1/J.
+#[inline]
+pub fn pair<S: Scalar, A: Attitude<S>>(
+    attitude: A,
+    p: &mut Vector<S>,
+    moments: Vector<S>,
+    h: S,
+) -> A {
+    let axis = odd_one_out(moments);
+    let (a, b) = others(axis);
+    let (kept, other) = (moments[a], moments[b]);
+    let rate = S::from_f64(0.5) * h * (kept - other) / (kept * other);
+    let mut symmetric = moments;
+    symmetric[b] = kept;
+    let mut turned = about(attitude, p, b, rate);
+    turned = axial(turned, p, symmetric, axis, h);
+    about(turned, p, b, rate)
+}
+
+/// A turn by `rate` P_axis about a principal axis.
+#[inline]
+fn about<S: Scalar, A: Attitude<S>>(attitude: A, p: &mut Vector<S>, axis: usize, rate: S) -> A {
+    let half = SineCosine::of(S::from_f64(0.5) * rate * p[axis]);
+    half.doubled().turn_back(axis, p);
+    attitude.turned_about(axis, half)
+}
+
+/// The axis beside the two moments whose inverses are closest, in all lanes; the third otherwise.
+#[inline]
+fn odd_one_out<S: Scalar>(moments: Vector<S>) -> usize {
+    let gap = |axis: usize| {
+        let (a, b) = others(axis);
+        ((moments[a] - moments[b]) / (moments[a] * moments[b])).abs()
+    };
+    let gaps = [gap(0), gap(1), gap(2)];
+    let least = |axis: usize| {
+        let (a, b) = others(axis);
+        (gaps[a] - gaps[axis]).is_positive() && (gaps[b] - gaps[axis]).is_positive()
+    };
+    if least(0) {
+        0
+    } else if least(1) {
+        1
+    } else {
+        2
+    }
+}
+

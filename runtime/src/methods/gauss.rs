@@ -1,0 +1,304 @@
+//! Gauss collocation on (x, p): symplectic methods for systems with M(x).
+//!
+//! Zᵢ = z + h Σⱼ aᵢⱼ kⱼ, Pᵢ = p + h Σⱼ aᵢⱼ ṗⱼ, closed by the weights b. In every step a rotation is R₀ times
+//! an unnormalised quaternion that starts at 1 and moves by ½ z ⊗ ω, a circle likewise by a plane vector, so
+//! that |z|², the energy and |P|² of a free body are quadratic invariants, which Gauss methods keep
+//! exactly. The stages are found by fixed-point iteration to rounding. Sources: J. C. Butcher, Math.
+//! Comput. 18 (1964) 50; E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration* (2006), IV.2,
+//! VIII.6.
+
+use core::array::from_fn;
+
+use crate::canonical::Canonical;
+use crate::error::StepError;
+use crate::manifold;
+use crate::methods::Method;
+use crate::scalar::{Scalar, epsilon};
+use crate::state::State;
+use crate::store::{add_scaled, is_finite};
+use crate::system::Block;
+use crate::{s1, s3, so3};
+
+/// Order 4, two stages; symplectic. For systems that implement [`Canonical`].
+///
+/// The iteration converges where h times the rates is below about 2; beyond,
+/// [`StepError::NotConverged`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Gauss4;
+
+/// Order 6, three stages; otherwise as [`Gauss4`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Gauss6;
+
+/// Nodes, matrix and weights of a collocation method of N stages.
+struct Tableau<const N: usize> {
+    c: [f64; N],
+    a: [[f64; N]; N],
+    b: [f64; N],
+}
+
+/// √3 and √15
+const ROOTS: (f64, f64) = (1.732_050_807_568_877_3, 3.872_983_346_207_417);
+
+const TWO_STAGES: Tableau<2> = Tableau {
+    c: [0.5 - ROOTS.0 / 6.0, 0.5 + ROOTS.0 / 6.0],
+    a: [
+        [0.25, 0.25 - ROOTS.0 / 6.0],
+        [0.25 + ROOTS.0 / 6.0, 0.25],
+    ],
+    b: [0.5, 0.5],
+};
+
+const THREE_STAGES: Tableau<3> = Tableau {
+    c: [0.5 - ROOTS.1 / 10.0, 0.5, 0.5 + ROOTS.1 / 10.0],
+    a: [
+        [
+            5.0 / 36.0,
+            2.0 / 9.0 - ROOTS.1 / 15.0,
+            5.0 / 36.0 - ROOTS.1 / 30.0,
+        ],
+        [
+            5.0 / 36.0 + ROOTS.1 / 24.0,
+            2.0 / 9.0,
+            5.0 / 36.0 - ROOTS.1 / 24.0,
+        ],
+        [
+            5.0 / 36.0 + ROOTS.1 / 30.0,
+            2.0 / 9.0 + ROOTS.1 / 15.0,
+            5.0 / 36.0,
+        ],
+    ],
+    b: [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0],
+};
+
+/// At a contraction of one half, rounding is reached after 52.
+const ITERATIONS: u32 = 100;
+/// Changes of so many units of rounding end the iteration.
+const ULPS: f64 = 4.0;
+/// Changes that rounding may keep alive to the last iteration.
+const ULPS_AT_LAST: f64 = 256.0;
+
+macro_rules! method {
+    ($name:ident, $order:expr, $tableau:expr) => {
+        impl<Sys: Canonical + ?Sized> Method<Sys> for $name {
+            fn order(&self) -> u32 {
+                $order
+            }
+
+            #[inline]
+            fn step<U>(
+                &self,
+                system: &Sys,
+                state: &State<Sys>,
+                h: f64,
+                inputs: &U,
+            ) -> Result<State<Sys>, StepError>
+            where
+                U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+            {
+                step(&$tableau, system, state, h, inputs)
+            }
+        }
+    };
+}
+
+method!(Gauss4, 4, TWO_STAGES);
+method!(Gauss6, 6, THREE_STAGES);
+
+#[inline]
+fn step<Sys, U, const N: usize>(
+    tableau: &Tableau<N>,
+    system: &Sys,
+    state: &State<Sys>,
+    h: f64,
+    inputs: &U,
+) -> Result<State<Sys>, StepError>
+where
+    Sys: Canonical + ?Sized,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    state.check_shape(system)?;
+    let blocks = system.blocks();
+    let singular = |cause| StepError::Singular {
+        cause,
+        time: state.t,
+    };
+    let unfinite = StepError::NonFinite { time: state.t };
+    let start = unit::<Sys>(blocks, system.zero_coordinates());
+    let p = system.momentum(&state.x, &state.xi);
+
+    // (ż, ṗ) at the increment z with the momentum p.
+    let rates = |node: f64, z: &Sys::Coordinates, p: &Sys::Velocities| {
+        let mut x = state.x.clone();
+        compose(blocks, x.as_mut(), z.as_ref());
+        let xi = system.velocity_of_momentum(&x, p).map_err(|cause| {
+            if is_finite(x.as_ref()) && is_finite(p.as_ref()) {
+                singular(cause)
+            } else {
+                unfinite
+            }
+        })?;
+        let u = inputs(state.t + node * h, &x, &xi);
+        let mut k = z.clone();
+        slope(blocks, k.as_mut(), system.chart_rate(&x, &xi).as_ref());
+        Ok((k, system.momentum_rate(&x, &xi, &u)))
+    };
+    // The start moved by h times the rates with the weights of one row.
+    let moved = |weights: &[f64; N], rates: &[(Sys::Coordinates, Sys::Velocities); N]| {
+        let (mut z, mut p) = (start.clone(), p.clone());
+        for (weight, (k, f)) in weights.iter().zip(rates) {
+            let weight = Sys::Scalar::from_f64(weight * h);
+            add_scaled(z.as_mut(), weight, k.as_ref());
+            add_scaled(p.as_mut(), weight, f.as_ref());
+        }
+        (z, p)
+    };
+
+    let first = rates(0.0, &start, &p)?;
+    let mut stages: [_; N] = from_fn(|_| first.clone());
+    let tolerance = epsilon::<Sys::Scalar>();
+    let length = Sys::Scalar::from_f64(h.abs());
+    let one = Sys::Scalar::from_f64(1.0);
+    let mut change = one;
+    let mut found = false;
+    for _ in 0..ITERATIONS {
+        change = Sys::Scalar::default();
+        for (i, (node, row)) in tableau.c.iter().zip(&tableau.a).enumerate() {
+            let (z, p) = moved(row, &stages);
+            let new = rates(*node, &z, &p)?;
+            if let Some(old) = stages.get_mut(i) {
+                let of_z = length * largest_difference(new.0.as_ref(), old.0.as_ref())
+                    / (one + largest(state.x.as_ref()));
+                let of_p = length * largest_difference(new.1.as_ref(), old.1.as_ref())
+                    / (largest(p.as_ref()) + Sys::Scalar::from_f64(1e-30));
+                change = Scalar::max(change, Scalar::max(of_z, of_p));
+                *old = new;
+            }
+        }
+        if (Sys::Scalar::from_f64(ULPS) * tolerance - change).is_positive() {
+            found = true;
+            break;
+        }
+        if !change.is_finite() {
+            break;
+        }
+    }
+    if !found && !(Sys::Scalar::from_f64(ULPS_AT_LAST) * tolerance - change).is_positive() {
+        return Err(StepError::NotConverged {
+            time: state.t,
+            iterations: ITERATIONS,
+        });
+    }
+
+    let (z, p) = moved(&tableau.b, &stages);
+    let mut next = state.clone();
+    next.t += h;
+    compose(blocks, next.x.as_mut(), z.as_ref());
+    manifold::normalise(blocks, next.x.as_mut());
+    next.xi = system
+        .velocity_of_momentum(&next.x, &p)
+        .map_err(singular)?;
+    if next.is_finite() {
+        Ok(next)
+    } else {
+        Err(unfinite)
+    }
+}
+
+/// No increment, in the storage of x: zeros (flat), (1, 0) (circle), the quaternion 1 (quaternion, and
+/// the first four entries of a rotation).
+#[inline]
+fn unit<Sys: Canonical + ?Sized>(blocks: &[Block], mut z: Sys::Coordinates) -> Sys::Coordinates {
+    let mut rest = z.as_mut();
+    for block in blocks {
+        let Some((here, after)) = rest.split_at_mut_checked(block.coordinates()) else {
+            break;
+        };
+        if let (Block::Circle | Block::Quaternion | Block::Rotation, [first, ..]) = (block, here) {
+            *first = Sys::Scalar::from_f64(1.0);
+        }
+        rest = after;
+    }
+    z
+}
+
+/// x moved by the increment z, whose norm does not matter.
+#[inline]
+fn compose<S: Scalar>(blocks: &[Block], x: &mut [S], z: &[S]) {
+    let (mut x, mut z) = (x, z);
+    for block in blocks {
+        let count = block.coordinates();
+        let (Some((here, x_rest)), Some((by, z_rest))) =
+            (x.split_at_mut_checked(count), z.split_at_checked(count))
+        else {
+            return;
+        };
+        match block {
+            Block::Flat(_) => add_scaled(here, S::from_f64(1.0), by),
+            Block::Circle => {
+                if let (Some(point), Some(by)) = (here.first_chunk_mut::<2>(), by.first_chunk()) {
+                    let [c, s] = s1::normalise(*by);
+                    let [x, y] = *point;
+                    *point = [x * c - y * s, y * c + x * s];
+                }
+            }
+            Block::Quaternion => {
+                if let (Some(q), Some(by)) = (here.first_chunk_mut(), by.first_chunk()) {
+                    *q = s3::product(*q, s3::normalise(*by));
+                }
+            }
+            Block::Rotation => {
+                if let (Some(r), Some(by)) = (here.first_chunk_mut(), by.first_chunk()) {
+                    *r = so3::product(*r, s3::to_matrix(s3::normalise(*by)));
+                }
+            }
+        }
+        (x, z) = (x_rest, z_rest);
+    }
+}
+
+/// z ← ż for the chart rate w: w (flat), θ̇ times z turned a quarter (circle), ½ z ⊗ ω.
+#[inline]
+fn slope<S: Scalar>(blocks: &[Block], z: &mut [S], w: &[S]) {
+    let (mut z, mut w) = (z, w);
+    for block in blocks {
+        let (Some((here, z_rest)), Some((rate, w_rest))) = (
+            z.split_at_mut_checked(block.coordinates()),
+            w.split_at_checked(block.chart()),
+        ) else {
+            return;
+        };
+        match block {
+            Block::Flat(_) => {
+                for (z, w) in here.iter_mut().zip(rate) {
+                    *z = *w;
+                }
+            }
+            Block::Circle => {
+                if let (Some(z), [rate]) = (here.first_chunk_mut(), rate) {
+                    *z = s1::rate(*z, *rate);
+                }
+            }
+            Block::Quaternion | Block::Rotation => {
+                if let (Some(z), Some(w)) = (here.first_chunk_mut(), rate.first_chunk()) {
+                    *z = s3::rate(*z, *w);
+                }
+            }
+        }
+        (z, w) = (z_rest, w_rest);
+    }
+}
+
+#[inline]
+fn largest<S: Scalar>(values: &[S]) -> S {
+    values.iter().fold(S::default(), |largest, value| {
+        Scalar::max(largest, value.abs())
+    })
+}
+
+#[inline]
+fn largest_difference<S: Scalar>(a: &[S], b: &[S]) -> S {
+    a.iter().zip(b).fold(S::default(), |largest, (a, b)| {
+        Scalar::max(largest, (*a - *b).abs())
+    })
+}

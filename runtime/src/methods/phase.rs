@@ -1,0 +1,173 @@
+//! Positions and momenta of a system that splits, and the two motions they are composed of.
+
+use crate::error::StepError;
+use crate::flows::{Attitude, Flow};
+use crate::manifold;
+use crate::rotor::Rotor;
+use crate::s1;
+use crate::scalar::Scalar;
+use crate::so3::Vector;
+use crate::split::Split;
+use crate::state::State;
+use crate::store::add_scaled;
+use crate::system::Block;
+
+/// A free motion of one rotor: [`Flow`], or the approximation by which a method is known.
+pub(crate) trait Drift {
+    /// The attitude after `h`, P changed with it; `None` where an iteration does not converge.
+    fn turn<S: Scalar, A: Attitude<S>>(
+        &self,
+        rotor: &Rotor<S>,
+        attitude: A,
+        p: &mut Vector<S>,
+        h: S,
+    ) -> Option<A>;
+}
+
+impl Drift for Flow {
+    #[inline]
+    fn turn<S: Scalar, A: Attitude<S>>(
+        &self,
+        rotor: &Rotor<S>,
+        attitude: A,
+        p: &mut Vector<S>,
+        h: S,
+    ) -> Option<A> {
+        Some(Self::turn(*self, rotor, attitude, p, h))
+    }
+}
+
+/// Centred coordinates y and momenta p of [`Split`], on the way through one step.
+pub(crate) struct Phase<'s, Sys: Split + ?Sized> {
+    system: &'s Sys,
+    rotors: Sys::Rotors,
+    /// Start of the step.
+    start: f64,
+    /// Time since then.
+    elapsed: f64,
+    y: Sys::Coordinates,
+    pub(crate) p: Sys::Chart,
+}
+
+impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
+    #[inline]
+    pub(crate) fn new(system: &'s Sys, state: &State<Sys>) -> Result<Self, StepError> {
+        state.check_shape(system)?;
+        Ok(Self {
+            system,
+            rotors: system.rotors(),
+            start: state.t,
+            elapsed: 0.0,
+            y: system.centre(&state.x),
+            p: system.momenta(&state.x, &state.xi),
+        })
+    }
+
+    /// ṗ by the forces, with the inputs of this moment.
+    #[inline]
+    pub(crate) fn force<U>(&self, inputs: &U) -> Sys::Chart
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let x = self.system.uncentre(&self.y);
+        let xi = self.system.velocities(&x, &self.p);
+        let u = inputs(self.start + self.elapsed, &x, &xi);
+        self.system.kick(&x, &u)
+    }
+
+    /// p ← p + h ṗ
+    #[inline]
+    pub(crate) fn kick<U>(&mut self, h: f64, inputs: &U)
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let force = self.force(inputs);
+        self.push(h, &force);
+    }
+
+    /// p ← p + h ṗ for a force that is known.
+    #[inline]
+    pub(crate) fn push(&mut self, h: f64, force: &Sys::Chart) {
+        add_scaled(self.p.as_mut(), Sys::Scalar::from_f64(h), force.as_ref());
+    }
+
+    /// Free motion for the time `h`; `None` where an iteration does not converge.
+    #[inline]
+    pub(crate) fn drift<D: Drift>(&mut self, h: f64, drift: &D) -> Option<()> {
+        let time = Sys::Scalar::from_f64(h);
+        let mut rotors = self.rotors.as_ref().iter();
+        let (mut y, mut p) = (self.y.as_mut(), self.p.as_mut());
+        for block in self.system.blocks() {
+            let (Some((here, y_rest)), Some((along, p_rest))) = (
+                y.split_at_mut_checked(block.coordinates()),
+                p.split_at_mut_checked(block.chart()),
+            ) else {
+                break;
+            };
+            match block {
+                Block::Flat(_) => add_scaled(here, time, along),
+                Block::Circle => {
+                    if let (Some(point), [rate]) = (here.first_chunk_mut(), along) {
+                        *point = s1::retract(*point, time * *rate);
+                    }
+                }
+                Block::Quaternion => {
+                    if let (Some(q), Some(p), Some(rotor)) =
+                        (here.first_chunk_mut(), along.first_chunk_mut(), rotors.next())
+                    {
+                        *q = drift.turn::<_, [Sys::Scalar; 4]>(rotor, *q, p, time)?;
+                    }
+                }
+                Block::Rotation => {
+                    if let (Some(r), Some(p), Some(rotor)) =
+                        (here.first_chunk_mut(), along.first_chunk_mut(), rotors.next())
+                    {
+                        *r = drift.turn::<_, [Sys::Scalar; 9]>(rotor, *r, p, time)?;
+                    }
+                }
+            }
+            (y, p) = (y_rest, p_rest);
+        }
+        self.elapsed += h;
+        Some(())
+    }
+
+    /// The state after a step of length `h`, back on the manifold.
+    #[inline]
+    pub(crate) fn state(&self, h: f64) -> Result<State<Sys>, StepError> {
+        let mut y = self.y.clone();
+        manifold::normalise(self.system.blocks(), y.as_mut());
+        let x = self.system.uncentre(&y);
+        let xi = self.system.velocities(&x, &self.p);
+        let t = self.start + h;
+        let next = State { t, x, xi };
+        if next.is_finite() {
+            Ok(next)
+        } else {
+            Err(StepError::NonFinite { time: self.start })
+        }
+    }
+}
+
+/// A kick of h/2, free motion, a kick of h/2: order 2, symmetric, and symplectic with the flow.
+#[inline]
+pub(crate) fn strang<Sys, D, U>(
+    system: &Sys,
+    state: &State<Sys>,
+    h: f64,
+    drift: &D,
+    inputs: &U,
+) -> Result<Option<State<Sys>>, StepError>
+where
+    Sys: Split + ?Sized,
+    D: Drift,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    let mut phase = Phase::new(system, state)?;
+    phase.kick(0.5 * h, inputs);
+    if phase.drift(h, drift).is_none() {
+        return Ok(None);
+    }
+    phase.kick(0.5 * h, inputs);
+    phase.state(h).map(Some)
+}

@@ -1,0 +1,180 @@
+//! Coefficients of compositions of kicks and free motion.
+//!
+//! A step is kick b₀ h, drift a₀ h, kick b₁ h, …, drift, kick; both lists are palindromes, so that a
+//! step back returns to the start. The last kick and the first of the next step are at the same
+//! point. Sources: G. Strang, SIAM J. Numer. Anal. 5 (1968) 506; M. Suzuki, Phys. Lett. A 146 (1990)
+//! 319; W. Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089; S. Blanes, P. C. Moan, J. Comput. Appl. Math.
+//! 142 (2002) 313.
+
+/// Which composition.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Scheme {
+    /// Order 2, one kick a step.
+    Strang,
+    /// Order 4, five steps of [`Strang`](Self::Strang).
+    Suzuki4,
+    /// Order 6, nine steps of [`Strang`](Self::Strang).
+    KahanLi6,
+    /// Order 4, six kicks a step, with small error constants; needs the free flow in closed form.
+    #[default]
+    Nystrom4,
+    /// Order 6, eleven kicks a step; needs the free flow in closed form.
+    Nystrom6,
+}
+
+/// 1/(4 − ∛4)
+const SUZUKI: f64 = 0.414_490_771_794_375_74;
+
+/// Kahan and Li's nine stages, the first five.
+const KAHAN_LI: [f64; 5] = [
+    0.392_161_444_007_314_14,
+    0.332_599_136_789_359_44,
+    -0.706_246_172_557_639_36,
+    0.082_213_596_293_550_8,
+    0.798_543_990_934_829_96,
+];
+
+/// Blanes and Moan, SRKN₆ᵇ: kicks and drifts up to the middle, the middle ones last.
+const NYSTROM_4: ([f64; 3], [f64; 2]) = (
+    [0.082_984_406_417_405_2, 0.396_309_801_498_368, -0.039_056_304_922_348_6],
+    [0.245_298_957_184_271, 0.604_872_665_711_08],
+);
+
+/// Blanes and Moan, SRKN₁₁ᵇ.
+const NYSTROM_6: ([f64; 5], [f64; 5]) = (
+    [
+        0.041_464_998_518_262_4,
+        0.198_128_671_918_067,
+        -0.040_006_192_104_153_3,
+        0.075_253_984_301_580_7,
+        -0.011_511_387_420_688_7,
+    ],
+    [
+        0.123_229_775_946_271,
+        0.290_553_797_799_558,
+        -0.127_049_212_625_417,
+        -0.246_331_761_062_075,
+        0.357_208_872_795_928,
+    ],
+);
+
+impl Scheme {
+    /// The order p with a flow in closed form.
+    pub const fn order(self) -> u32 {
+        match self {
+            Self::Strang => 2,
+            Self::Suzuki4 | Self::Nystrom4 => 4,
+            Self::KahanLi6 | Self::Nystrom6 => 6,
+        }
+    }
+
+    /// Number of drifts in a step, which is also its number of kicks when the last is shared with
+    /// the next step.
+    pub const fn drifts(self) -> usize {
+        match self {
+            Self::Strang => 1,
+            Self::Suzuki4 => 5,
+            Self::KahanLi6 => 9,
+            Self::Nystrom4 => 6,
+            Self::Nystrom6 => 11,
+        }
+    }
+
+    /// Whether the order is that of the free flow too, when that is of order 2 only: true for
+    /// compositions of [`Strang`](Self::Strang) steps.
+    pub const fn composes_steps(self) -> bool {
+        !matches!(self, Self::Nystrom4 | Self::Nystrom6)
+    }
+
+    /// aᵢ, the part of the step of drift `index` from 0, in [0, [`drifts`](Self::drifts)).
+    pub fn drift(self, index: usize) -> f64 {
+        let count = self.drifts();
+        let mirrored = index.min(count.saturating_sub(1).saturating_sub(index));
+        let rest = |list: &[f64]| 0.5 - list.iter().sum::<f64>();
+        let whole = |list: &[f64]| 1.0 - 2.0 * list.iter().sum::<f64>();
+        match self {
+            Self::Strang => 1.0,
+            Self::Suzuki4 if mirrored == 2 => 1.0 - 4.0 * SUZUKI,
+            Self::Suzuki4 => SUZUKI,
+            Self::KahanLi6 => KAHAN_LI.get(mirrored).copied().unwrap_or_default(),
+            Self::Nystrom4 => {
+                let list = &NYSTROM_4.1;
+                list.get(mirrored).copied().unwrap_or_else(|| rest(list))
+            }
+            Self::Nystrom6 => {
+                let list = &NYSTROM_6.1;
+                list.get(mirrored).copied().unwrap_or_else(|| whole(list))
+            }
+        }
+    }
+
+    /// bᵢ, the part of the step of kick `index` from 0, in [0, [`drifts`](Self::drifts)].
+    pub fn kick(self, index: usize) -> f64 {
+        let mirrored = index.min(self.drifts().saturating_sub(index));
+        let rest = |list: &[f64]| 0.5 - list.iter().sum::<f64>();
+        let whole = |list: &[f64]| 1.0 - 2.0 * list.iter().sum::<f64>();
+        match self {
+            Self::Nystrom4 => {
+                let list = &NYSTROM_4.0;
+                list.get(mirrored).copied().unwrap_or_else(|| whole(list))
+            }
+            Self::Nystrom6 => {
+                let list = &NYSTROM_6.0;
+                list.get(mirrored).copied().unwrap_or_else(|| rest(list))
+            }
+            _ => {
+                let before = mirrored.checked_sub(1).map_or(0.0, |i| self.drift(i));
+                0.5 * (before + self.drift(mirrored))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Scheme;
+
+    const ALL: [Scheme; 5] = [
+        Scheme::Strang,
+        Scheme::Suzuki4,
+        Scheme::KahanLi6,
+        Scheme::Nystrom4,
+        Scheme::Nystrom6,
+    ];
+
+    #[test]
+    fn parts_add_up_to_the_step_and_read_the_same_backwards() {
+        for scheme in ALL {
+            let count = scheme.drifts();
+            let drifts: Vec<f64> = (0..count).map(|i| scheme.drift(i)).collect();
+            let kicks: Vec<f64> = (0..=count).map(|i| scheme.kick(i)).collect();
+            for list in [drifts, kicks] {
+                assert!((list.iter().sum::<f64>() - 1.0).abs() < 1e-15, "{scheme:?}");
+                assert!(list.iter().eq(list.iter().rev()), "{scheme:?}");
+            }
+        }
+    }
+
+    /// Exactness for a constant and for a linear force: Σᵢ bᵢ cᵢ = 1/2 and Σ bᵢ cᵢ² = 1/3, with the time
+    /// cᵢ of each kick, are conditions of order 2 and 3.
+    #[test]
+    fn times_of_kicks_satisfy_the_conditions_of_quadrature() {
+        for scheme in ALL {
+            let (mut time, mut sums) = (0.0, [0.0; 4]);
+            for index in 0..=scheme.drifts() {
+                for (power, sum) in sums.iter_mut().enumerate() {
+                    *sum += scheme.kick(index) * f64::powi(time, power as i32);
+                }
+                if index < scheme.drifts() {
+                    time += scheme.drift(index);
+                }
+            }
+            let known = scheme.order().min(4) as usize;
+            for (power, sum) in sums.iter().enumerate().take(known) {
+                let exact = 1.0 / (power as f64 + 1.0);
+                assert!((sum - exact).abs() < 1e-13, "{scheme:?} {power}");
+            }
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! What the hand-written bodies offer to methods of their structure.
+
+use hamel::{Block, Canonical, Rotor, Scalar, Singular, Split, System, s3, so3};
+use so3::{Matrix, Vector};
+
+use super::{
+    Body, FreeBody, QuaternionTop, Top, add, pose, position, rotation, rows, solve, sub, twist,
+};
+
+impl<S: Scalar> Body<S> {
+    /// s × m Rᵀ g
+    pub fn torque(&self, r: Matrix<S>) -> Vector<S> {
+        let weight = so3::apply_transpose(r, self.g).map(|g| self.m * g);
+        so3::cross(self.s, weight)
+    }
+
+    pub fn momentum(&self, w: Vector<S>) -> Vector<S> {
+        so3::apply(self.inertia, w)
+    }
+
+    pub fn velocity(&self, p: Vector<S>) -> Result<Vector<S>, Singular> {
+        solve(rows(self.inertia), p)
+    }
+}
+
+/// A body about a fixed point or its centre of mass, without forces; x = R or q.
+#[derive(Clone, Debug)]
+pub struct Spin<T>(pub T);
+
+/// [`System`] of the wrapped top.
+macro_rules! delegate {
+    ($top:ident, $coordinates:ty) => {
+        impl<S: Scalar> System for Spin<$top<S>> {
+            type Scalar = S;
+            type Coordinates = $coordinates;
+            type Velocities = [S; 3];
+            type Chart = [S; 3];
+            type Inputs = [S; 0];
+
+            fn blocks(&self) -> &[Block] {
+                self.0.blocks()
+            }
+            fn zero_coordinates(&self) -> Self::Coordinates {
+                self.0.zero_coordinates()
+            }
+            fn zero_velocities(&self) -> [S; 3] {
+                self.0.zero_velocities()
+            }
+            fn zero_chart(&self) -> [S; 3] {
+                self.0.zero_chart()
+            }
+            fn zero_inputs(&self) -> [S; 0] {
+                self.0.zero_inputs()
+            }
+            fn start(&self) -> (Self::Coordinates, [S; 3]) {
+                self.0.start()
+            }
+            fn rate(&self, x: &Self::Coordinates, xi: &[S; 3]) -> Self::Coordinates {
+                self.0.rate(x, xi)
+            }
+            fn chart_rate(&self, x: &Self::Coordinates, xi: &[S; 3]) -> [S; 3] {
+                self.0.chart_rate(x, xi)
+            }
+            fn accel(
+                &self,
+                x: &Self::Coordinates,
+                xi: &[S; 3],
+                u: &[S; 0],
+            ) -> Result<[S; 3], Singular> {
+                self.0.accel(x, xi, u)
+            }
+            fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates {
+                self.0.correction(x)
+            }
+            fn constraint_norm(&self, x: &Self::Coordinates) -> S {
+                self.0.constraint_norm(x)
+            }
+            fn kinetic_energy(&self, x: &Self::Coordinates, xi: &[S; 3]) -> S {
+                self.0.kinetic_energy(x, xi)
+            }
+            fn potential_energy(&self, _: &Self::Coordinates) -> S {
+                S::default()
+            }
+        }
+    };
+}
+
+delegate!(Top, [S; 9]);
+delegate!(QuaternionTop, [S; 4]);
+
+macro_rules! split {
+    ($system:ty, $free:literal, $coordinates:ty, |$this:ident| $body:expr, |$x:ident| $matrix:expr) => {
+        impl<S: Scalar> Split for $system {
+            type Rotors = [Rotor<S>; 1];
+            const FREE: bool = $free;
+
+            fn rotors(&self) -> [Rotor<S>; 1] {
+                let $this = self;
+                [Rotor::general($body.inertia)]
+            }
+            fn centre(&self, x: &$coordinates) -> $coordinates {
+                *x
+            }
+            fn uncentre(&self, y: &$coordinates) -> $coordinates {
+                *y
+            }
+            fn momenta(&self, _: &$coordinates, xi: &[S; 3]) -> [S; 3] {
+                let $this = self;
+                $body.momentum(*xi)
+            }
+            fn velocities(&self, _: &$coordinates, p: &[S; 3]) -> [S; 3] {
+                let $this = self;
+                $body.velocity(*p).expect("an inertia")
+            }
+            fn kick(&self, $x: &$coordinates, _: &[S; 0]) -> [S; 3] {
+                let $this = self;
+                if $free {
+                    [S::default(); 3]
+                } else {
+                    $body.torque($matrix)
+                }
+            }
+        }
+
+        impl<S: Scalar> Canonical for $system {
+            fn momentum(&self, _: &$coordinates, xi: &[S; 3]) -> [S; 3] {
+                let $this = self;
+                $body.momentum(*xi)
+            }
+            fn momentum_rate(&self, x: &$coordinates, xi: &[S; 3], u: &[S; 0]) -> [S; 3] {
+                let $this = self;
+                add(
+                    so3::cross($body.momentum(*xi), *xi),
+                    Split::kick(self, x, u),
+                )
+            }
+            fn velocity_of_momentum(
+                &self,
+                _: &$coordinates,
+                p: &[S; 3],
+            ) -> Result<[S; 3], Singular> {
+                let $this = self;
+                $body.velocity(*p)
+            }
+        }
+    };
+}
+
+split!(Top<S>, false, [S; 9], |this| this.0, |x| *x);
+split!(Spin<Top<S>>, true, [S; 9], |this| this.0.0, |x| *x);
+split!(QuaternionTop<S>, false, [S; 4], |this| this.0, |x| s3::to_matrix(*x));
+split!(Spin<QuaternionTop<S>>, true, [S; 4], |this| this.0.0, |x| s3::to_matrix(*x));
+
+/// y = (r + R s, R), p = (ẏ, P about the centre of mass).
+impl Split for FreeBody {
+    type Rotors = [Rotor<f64>; 1];
+    const FREE: bool = false;
+
+    fn rotors(&self) -> [Rotor<f64>; 1] {
+        [Rotor::general(self.about_centre())]
+    }
+    fn centre(&self, x: &[f64; 12]) -> [f64; 12] {
+        let lever = so3::apply(rotation(x), self.body.s);
+        pose(add(position(x), lever), rotation(x))
+    }
+    fn uncentre(&self, y: &[f64; 12]) -> [f64; 12] {
+        let lever = so3::apply(rotation(y), self.body.s);
+        pose(sub(position(y), lever), rotation(y))
+    }
+    fn momenta(&self, x: &[f64; 12], xi: &[f64; 6]) -> [f64; 6] {
+        let (v, w) = twist(xi);
+        let [a, b, c] = so3::apply(rotation(x), add(v, so3::cross(w, self.body.s)));
+        let [d, e, f] = so3::apply(self.about_centre(), w);
+        [a, b, c, d, e, f]
+    }
+    fn velocities(&self, x: &[f64; 12], p: &[f64; 6]) -> [f64; 6] {
+        let (velocity, momentum) = twist(p);
+        let w = solve(rows(self.about_centre()), momentum).expect("an inertia");
+        let v = so3::apply_transpose(rotation(x), velocity);
+        let [a, b, c] = sub(v, so3::cross(w, self.body.s));
+        [a, b, c, w[0], w[1], w[2]]
+    }
+    fn kick(&self, x: &[f64; 12], u: &[f64; 6]) -> [f64; 6] {
+        let (force, torque) = twist(u);
+        let push = so3::apply(rotation(x), force).map(|f| f / self.body.m);
+        let [a, b, c] = add(push, self.body.g);
+        let [d, e, f] = sub(torque, so3::cross(self.body.s, force));
+        [a, b, c, d, e, f]
+    }
+}
+
+impl FreeBody {
+    /// Θ − m (|s|² I − s sᵀ)
+    fn about_centre(&self) -> Matrix<f64> {
+        let Body { m, s, inertia, .. } = self.body;
+        std::array::from_fn(|k| {
+            let (i, j) = (k / 3, k % 3);
+            let unit = if i == j { so3::dot(s, s) } else { 0.0 };
+            inertia[k] - m * (unit - s[i] * s[j])
+        })
+    }
+}

@@ -1,0 +1,206 @@
+//! The closed form of torque-free rotation against reference solutions, and where it degenerates.
+
+mod common;
+
+use common::{Body, QuaternionTop, Reference, Spin, Top, distance};
+use hamel::methods::{Free, free};
+use hamel::rotor::Symmetry;
+use hamel::{Rotor, State, StepError, System, flows, s3, so3};
+
+/// ω over the largest of one and |ω₀|, at the last sample: rounding of the phase and of the period.
+const VELOCITY: f64 = 1e-13;
+/// R (Frobenius) at the last sample: rounding of some hundred radians about the angular momentum.
+const ROTATION: f64 = 1e-11;
+/// Time between flips, relative.
+const PERIOD: f64 = 1e-13;
+
+const CASES: [(&str, f64); 5] = [
+    ("free-dzhanibekov-1e-3", 100.0),
+    ("free-dzhanibekov-1e-8", 300.0),
+    ("free-elongated-1000", 5.0),
+    ("free-fast-spin-1000", 0.5),
+    ("free-near-symmetric", 100.0),
+];
+
+
+#[test]
+fn closed_form_at_the_last_sample() -> Result<(), StepError> {
+    for (case, t) in CASES {
+        let reference = Reference::read(case);
+        let (r, w): ([f64; 9], [f64; 3]) = (reference.sample(t, "R"), reference.sample(t, "omega"));
+        let body = reference.body();
+        let scale = so3::dot(body.w0, body.w0).sqrt().max(1.0);
+
+        let top = Spin(Top(body.clone()));
+        let end = free::at(&top, &State::start(&top), t)?;
+        let errors = (distance(end.xi, w) / scale, distance(end.x, r));
+        println!("{case}: {errors:?}");
+        assert_eq!(end.t, t);
+        assert!(errors.0 <= VELOCITY && errors.1 <= ROTATION, "{case}");
+        assert!(top.constraint_norm(&end.x) <= 1e-14, "{case}");
+
+        let top = Spin(QuaternionTop(body));
+        let end = free::at(&top, &State::start(&top), t)?;
+        let error = distance(s3::to_matrix(end.x), r);
+        assert!(error <= ROTATION, "{case}: {error:e}");
+    }
+    Ok(())
+}
+
+#[test]
+fn flips_come_at_the_known_period() {
+    for case in CASES.map(|(case, _)| case) {
+        let reference = Reference::read(case);
+        let body = reference.body();
+        let rotor = Rotor::general(body.inertia);
+        let period = flows::half_period(rotor.moments, body.momentum(body.w0));
+        let [expected] = reference.extra("half_period_between_flips");
+        println!("{case}: {:e}", period / expected - 1.0);
+        assert!((period / expected - 1.0).abs() <= PERIOD, "{case}");
+    }
+}
+
+fn spin(moments: [f64; 3], w0: [f64; 3]) -> Spin<Top<f64>> {
+    let [a, b, c] = moments;
+    Spin(Top(Body {
+        inertia: [a, 0.0, 0.0, 0.0, b, 0.0, 0.0, 0.0, c],
+        m: 0.0,
+        s: [0.0; 3],
+        g: [0.0; 3],
+        r0: so3::exp([0.3, -1.1, 0.6]),
+        w0,
+    }))
+}
+
+/// Laws of free motion: R P and the energy constant, R a rotation, there and back again the start,
+/// t₁ + t₂ like one after the other.
+fn keeps_its_laws(top: &Spin<Top<f64>>, t: f64) -> Result<(), StepError> {
+    let start = State::start(top);
+    let end = free::at(top, &start, t)?;
+    let momentum = |state: &State<_>| so3::apply(state.x, top.0.0.momentum(state.xi));
+    let scale = so3::dot(momentum(&start), momentum(&start)).sqrt();
+    let drift = distance(momentum(&end), momentum(&start));
+    assert!(drift <= 1e-14 * scale, "{top:?} {t}: {drift:e} of {scale:e}");
+    let energy = |state: &State<_>| top.kinetic_energy(&state.x, &state.xi);
+    let drift = (energy(&end) - energy(&start)).abs();
+    assert!(drift <= 2e-15 * energy(&start), "{top:?} {t}: energy {drift:e}");
+    assert!(top.constraint_norm(&end.x) <= 2e-15);
+
+    let back = free::at(top, &end, start.t)?;
+    let via = free::at(top, &free::at(top, &start, 0.3 * t)?, t)?;
+    // The phase about R P is known to rounding of its size; on the way it may be magnified.
+    let rate = so3::dot(top.0.0.w0, top.0.0.w0).sqrt();
+    let phase = 4e-15 * (1.0 + rate * t.abs());
+    assert!(distance(back.x, start.x) <= phase, "{top:?} {t}: {:e}", distance(back.x, start.x));
+    assert!(distance(via.x, end.x) <= phase, "{top:?} {t}: {:e}", distance(via.x, end.x));
+    Ok(())
+}
+
+#[test]
+fn laws_hold_for_every_symmetry_and_time() -> Result<(), StepError> {
+    let close = 1.0 + 1e-9;
+    for moments in [
+        [1.0, 2.0, 2.9],
+        [2.9, 2.0, 1.0],
+        [2.0, 1.0, 2.9],
+        [1.0, 1.0, 1.0],
+        [1.0, 1.0, 1.7],
+        [1.0, 1.7, 1.0],
+        [0.4, 1.0, 1.0],
+        [1.0, close, 1.7],
+        [1.0, 1.7, close],
+        [0.4, 1.0, close],
+        [1.0, close, close],
+        [1e-6, 2e-6, 2.5e-6],
+    ] {
+        for w in [
+            [0.4, -0.7, 1.1],
+            [-2.0, 0.3, -0.2],
+            [0.1, 0.2, -3.0],
+            [0.0, 0.0, 2.0],
+            [-2.0, 0.0, 0.0],
+        ] {
+            for t in [0.0, 1e-9, 0.01, 0.09, 0.3, 1.0, -2.5, 7.0, 30.0] {
+                keeps_its_laws(&spin(moments, w), t)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_steady_turn_stays_steady() -> Result<(), StepError> {
+    // About each principal axis, the unstable one included, and at rest.
+    for moments in [[1.0, 2.0, 2.9], [1.0, 1.0, 1.7], [1.0, 1.0, 1.0]] {
+        for axis in [0, 1, 2] {
+            for rate in [3.0, -3.0, 1e-160, 0.0] {
+                let mut w = [0.0; 3];
+                w[axis] = rate;
+                let top = spin(moments, w);
+                for t in [0.3, 1000.0] {
+                    let end = free::at(&top, &State::start(&top), t)?;
+                    assert!(distance(end.xi, w) <= 1e-15 * rate.abs(), "{end:?}");
+                    let r = so3::retract(top.0.0.r0, w.map(|w| w * t));
+                    assert!(distance(end.x, r) <= 1e-15 * (2.0 + rate.abs() * t), "{end:?}");
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn on_the_separatrix_the_body_comes_to_turn_about_its_middle_axis() -> Result<(), StepError> {
+    // r p₃² = q p₁² for J = (1, 2, 4): r = 1/3, q = 2/3; p = (1, p₂, √2), exact to rounding only.
+    let top = spin([1.0, 2.0, 4.0], [1.0, 0.5, 2.0_f64.sqrt() / 4.0]);
+    let start = State::start(&top);
+    for t in [1.0, 10.0, 15.0] {
+        let end = free::at(&top, &start, t)?;
+        assert!(end.is_finite());
+        let energy = top.kinetic_energy(&end.x, &end.xi) / top.kinetic_energy(&start.x, &start.xi);
+        assert!((energy - 1.0).abs() < 1e-14);
+    }
+    let end = free::at(&top, &start, 15.0)?;
+    // Of the deviation from the middle axis e^(−λ t) is left, λ = 0.72/s.
+    assert!(end.xi[0].abs() < 1e-3 && end.xi[2].abs() < 1e-3, "{end:?}");
+    Ok(())
+}
+
+#[test]
+fn forces_are_refused() {
+    let top = Top(Reference::read("kovalevskaya-top").body());
+    let refused = free::at(&top, &State::start(&top), 1.0);
+    assert!(matches!(refused, Err(StepError::Forces { time: 0.0 })));
+    let mut state = State::start(&top);
+    let step = hamel::step(&top, Free, &mut state, 0.1, &|_, _, _| []);
+    assert_eq!(step, Err(StepError::Forces { time: 0.0 }));
+}
+
+#[test]
+fn principal_axes_of_a_full_inertia() {
+    let moments = [0.3, 1.2, 1.4];
+    for axes in [[0.0; 3], [0.3, -1.1, 0.6], [1e-9, 0.0, 0.0], [0.0, 0.0, 3.0]].map(so3::exp) {
+        for moments in [moments, [1.0, 1.0, 1.7], [1.7, 1.0, 1.0], [1.0; 3]] {
+            let scaled: [f64; 9] = std::array::from_fn(|k| axes[k] * moments[k % 3]);
+            let transposed: [f64; 9] = std::array::from_fn(|k| axes[3 * (k % 3) + k / 3]);
+            let inertia = so3::product(scaled, transposed);
+            let rotor = Rotor::general(inertia);
+            let found = rotor.axes.unwrap_or_else(so3::identity);
+            let scaled: [f64; 9] = std::array::from_fn(|k| found[k] * rotor.moments[k % 3]);
+            let transposed: [f64; 9] = std::array::from_fn(|k| found[3 * (k % 3) + k / 3]);
+            assert!(distance(so3::product(scaled, transposed), inertia) < 4e-15);
+            let turned = so3::cross([found[0], found[3], found[6]], [found[1], found[4], found[7]]);
+            assert!(distance(turned, [found[2], found[5], found[8]]) < 1e-15);
+            let equal = moments.iter().filter(|m| **m == 1.0).count();
+            let symmetry = match rotor.symmetry {
+                Symmetry::Spherical => 3,
+                Symmetry::Axial(axis) => {
+                    assert!((rotor.moments[axis] - 1.7).abs() < 1e-14);
+                    2
+                }
+                Symmetry::None => 0,
+            };
+            assert_eq!(symmetry, equal, "{rotor:?}");
+        }
+    }
+}
