@@ -5,6 +5,7 @@ use crate::source::Source;
 use clap::Args;
 use hamel_codegen::derive::check::{Identity, Verdict, check};
 use hamel_codegen::derive::geometry::Inspection;
+use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::geometry::lines;
 use std::path::PathBuf;
@@ -17,6 +18,9 @@ use std::path::PathBuf;
 ///
 /// Below them stands what the symbols say about the geometry: which velocities are integrable and what
 /// they are the rates of, which Lie algebra the frame is, the pattern of M, and symmetries.
+/// The last lines say what methods of integration ask: whether the equations split into free motion
+/// and kicks, what stands in the way where they do not, and the method that `simulate --method auto`
+/// takes.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  hamel check heavy_top.eom\n  hamel check models/*.eom && echo sound"
@@ -40,6 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
             print(&geometry(&generated))?;
+            print(&methods(&generated))?;
             let failed = identities
                 .iter()
                 .filter(|identity| matches!(identity.verdict, Verdict::Failed(_)))
@@ -108,4 +113,12 @@ fn geometry(generated: &Generated) -> String {
         .iter()
         .map(|line| format!("  {}\n", line.trim_end()))
         .collect()
+}
+
+/// What methods of integration ask of the system, and the one that fits.
+fn methods(generated: &Generated) -> String {
+    let structure = &generated.program.structure;
+    let mut lines = structure.lines();
+    lines.push(format!("method {}", choose(structure, None)));
+    lines.iter().map(|line| format!("  {line}\n")).collect()
 }

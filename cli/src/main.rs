@@ -7,6 +7,7 @@
 //! | `source` | reading and deriving a description |
 //! | `state` | reading the numbers of a state |
 //! | `interpreted` | a described system that the integrators can run |
+//! | `method` | the methods by their names, and which systems they are for |
 //! | `plot` | SVG |
 //! | `json`, `number`, `names` | how results are written |
 //! | `failure` | errors and exit statuses |
@@ -19,6 +20,7 @@ mod failure;
 mod interpreted;
 mod json;
 mod linearize;
+mod method;
 mod names;
 mod number;
 mod ops;

@@ -7,10 +7,12 @@ mod write;
 
 use crate::failure::{Failure, print};
 use crate::interpreted::{Interpreted, constant_singular};
+use crate::method::{self, Chosen, Stepper};
 use crate::plot;
 use crate::source::Source;
 use crate::state::State;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use hamel::methods::General;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
@@ -26,6 +28,8 @@ const MOST: f64 = 1e6;
 const MOST_SHOWN: usize = 6;
 /// λ where --lambda is left out.
 const LAMBDA: f64 = 10.0;
+/// The tolerance where `auto` takes a method that chooses its steps.
+const TOLERANCE: f64 = 1e-9;
 
 /// Integrates the equations of motion from a start.
 ///
@@ -35,8 +39,10 @@ const LAMBDA: f64 = 10.0;
 #[command(after_help = "Examples:
   hamel simulate dzhanibekov.eom --until 100 --plot flip.svg
   hamel simulate heavy_top.eom --until 10 --step 1e-3 --out run.csv --every 10
+  hamel simulate heavy_top.eom --until 10 --method auto
+  hamel simulate heavy_top.eom --until 10 --method rkmk8 --tol 1e-10
   hamel simulate heavy_top.eom --until 10 --method rk4 --lambda 5
-  hamel simulate heavy_top.eom --until 10 --at state.json")]
+  hamel simulate heavy_top.eom --until 10 --at state.json", after_long_help = method::described())]
 pub struct Arguments {
     /// Description, `-` for standard input.
     #[arg(value_name = "FILE")]
@@ -47,9 +53,12 @@ pub struct Arguments {
     /// Length of a step; 0.001, within a thousand to a million steps, where it is left out.
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     step: Option<f64>,
-    /// How to step.
-    #[arg(long, value_enum, default_value = "rkmk4")]
-    method: Kind,
+    /// How to step; `auto` takes what fits the system and says why. --help tells them apart.
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(method::names()), default_value = "rkmk4")]
+    method: String,
+    /// Error that a step may make, for rkmk54 and rkmk8, which then choose their steps themselves.
+    #[arg(long, value_name = "E", value_parser = positive, allow_negative_numbers = true, conflicts_with = "step")]
+    tol: Option<f64>,
     /// Rate at which rk4 leads back to the constraint (1/s); 10 where it is left out.
     #[arg(long, value_name = "L", value_parser = rate, allow_negative_numbers = true)]
     lambda: Option<f64>,
@@ -67,20 +76,13 @@ pub struct Arguments {
     plot: Option<PathBuf>,
 }
 
-/// Methods by their names on the command line.
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Kind {
-    /// Runge-Kutta-Munthe-Kaas of order 4: stays on the manifold
-    Rkmk4,
-    /// Runge-Kutta of order 4 on the coordinates, led back to the constraint at the rate λ
-    Rk4,
-    /// Runge-Kutta of order 4 on the coordinates, projected after each step
-    Rk4Projected,
-}
-
 /// Runs and reports.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let method = method(arguments)?;
+    if arguments.lambda.is_some() && arguments.method != "rk4" {
+        return Err(Failure::usage(
+            "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
+        ));
+    }
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
     if arguments
         .at
@@ -103,7 +105,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let step = arguments
         .step
         .unwrap_or_else(|| STEP.clamp(until / MOST, until / FEWEST));
-    let plan = Plan::new(method, until, step, arguments.every);
+    let steps = (until / step).ceil() as u64;
+    let method = chosen(arguments, &generated, &system, steps)?;
+    let tolerance = tolerance(arguments, &method)?;
+    let plan = Plan::new(method, until, step, arguments.every, tolerance);
     let run = Run::new(&generated, &system, plan)?;
 
     let mut written = String::new();
@@ -146,16 +151,36 @@ fn coefficients(generated: &Generated) -> String {
     }
 }
 
-fn method(arguments: &Arguments) -> Result<General, Failure> {
-    match (arguments.method, arguments.lambda) {
-        (Kind::Rk4, lambda) => Ok(General::Rk4 {
-            lambda: lambda.unwrap_or(LAMBDA),
-        }),
-        (_, Some(_)) => Err(Failure::usage(
-            "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
-        )),
-        (Kind::Rkmk4, None) => Ok(General::Rkmk4),
-        (Kind::Rk4Projected, None) => Ok(General::Rk4Projected),
+/// The method that is asked for, or that fits; checked against the structure of the system.
+fn chosen(
+    arguments: &Arguments,
+    generated: &Generated,
+    system: &Interpreted,
+    steps: u64,
+) -> Result<Chosen, Failure> {
+    let structure = system.structure(&generated.program);
+    let mut chosen = Chosen::new(&arguments.method, system, &structure, steps)?;
+    if let Stepper::General(General::Rk4 { lambda }) = &mut chosen.stepper {
+        *lambda = arguments.lambda.unwrap_or(LAMBDA);
+    }
+    Ok(chosen)
+}
+
+/// The tolerance of a run that chooses its steps; `None` for equal steps.
+fn tolerance(arguments: &Arguments, chosen: &Chosen) -> Result<Option<f64>, Failure> {
+    let adapts = matches!(
+        chosen.stepper,
+        Stepper::General(General::Rkmk54 | General::Rkmk8)
+    );
+    match arguments.tol {
+        Some(_) if !adapts => Err(Failure::usage(format!(
+            "--tol goes with --method rkmk54 and rkmk8, which choose their steps; {} takes --step",
+            chosen.name
+        ))),
+        None if chosen.name == "rkmk54" && chosen.reason.is_some() && arguments.step.is_none() => {
+            Ok(Some(TOLERANCE))
+        }
+        tol => Ok(tol),
     }
 }
 

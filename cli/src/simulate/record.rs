@@ -4,6 +4,8 @@ use crate::failure::Failure;
 use crate::interpreted::{Interpreted, Output};
 use crate::names;
 use crate::number::short;
+use crate::method::{Chosen, Stepper};
+use hamel::adaptive::{Adaptive, Report};
 use hamel::methods::General;
 use hamel::{Monitor, State, StepError, System, integrate};
 use hamel_codegen::generate::Generated;
@@ -20,28 +22,42 @@ const LONG: u64 = 20_000;
 const TICK: u64 = 500;
 
 /// What is to be run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct Plan {
-    pub method: General,
+    pub method: Chosen,
     pub until: f64,
     pub step: f64,
     /// Expected number of steps.
     pub steps: u64,
     /// A sample every so many steps.
     pub every: u64,
+    /// The error that a step may make, where steps are chosen by it.
+    pub tolerance: Option<f64>,
 }
 
 impl Plan {
     /// A plan with about a thousand samples, or one every so many steps.
-    pub fn new(method: General, until: f64, step: f64, every: Option<u64>) -> Self {
+    pub fn new(
+        method: Chosen,
+        until: f64,
+        step: f64,
+        every: Option<u64>,
+        tolerance: Option<f64>,
+    ) -> Self {
         // As the integrator counts: a ratio that is whole but for rounding is whole.
         let steps = ((until / step) * (1.0 - 1e-9)).ceil().max(1.0) as u64;
+        let default = match tolerance {
+            // How many steps there will be is not known.
+            Some(_) => 1,
+            None => (steps / SAMPLES).max(1),
+        };
         Plan {
             method,
             until,
             step,
             steps,
-            every: every.unwrap_or((steps / SAMPLES).max(1)),
+            every: every.unwrap_or(default),
+            tolerance,
         }
     }
 }
@@ -109,30 +125,29 @@ impl<'a> Run<'a> {
         let mut state = State::start(system);
         let mut monitor = Monitor::new(system, &state);
         let (mut samples, mut track) = (Vec::new(), Vec::new());
-        let stride = (plan.steps / POINTS).max(1);
+        let stride = match plan.tolerance {
+            Some(_) => 1,
+            None => (plan.steps / POINTS).max(1),
+        };
         let bar = progress(plan.steps);
         let mut steps = 0;
-        let outcome = integrate(
-            system,
-            plan.method,
-            &mut state,
-            plan.step,
-            plan.until,
-            |_, _, _| system.inputs().to_vec(),
-            |state| {
-                monitor.observe(system, state);
-                if steps % plan.every == 0 {
-                    samples.push(Sample::of(system, state));
-                }
-                if steps % stride == 0 {
-                    track.push(Sample::of(system, state));
-                }
-                if steps % TICK == 0 {
-                    bar.set_position(steps);
-                }
-                steps += 1;
-            },
-        );
+        let observe = |state: &State<Interpreted>| {
+            monitor.observe(system, state);
+            if steps % plan.every == 0 {
+                samples.push(Sample::of(system, state));
+            }
+            if steps % stride == 0 {
+                track.push(Sample::of(system, state));
+            }
+            if steps % TICK == 0 {
+                bar.set_position(match plan.tolerance {
+                    Some(_) => (state.t / plan.until * plan.steps as f64) as u64,
+                    None => steps,
+                });
+            }
+            steps += 1;
+        };
+        let outcome = advance(system, &plan, &mut state, observe);
         bar.finish_and_clear();
         let failure = match outcome {
             Ok(()) => None,
@@ -180,6 +195,38 @@ impl<'a> Run<'a> {
             failure,
         })
     }
+}
+
+/// The run from the start to its end, in equal steps or in those that a tolerance asks for.
+fn advance(
+    system: &Interpreted,
+    plan: &Plan,
+    state: &mut State<Interpreted>,
+    mut observe: impl FnMut(&State<Interpreted>),
+) -> Result<(), StepError> {
+    let inputs = |_, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
+    let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
+    else {
+        let method = &plan.method.stepper;
+        return integrate(system, method, state, plan.step, plan.until, inputs, observe);
+    };
+    observe(state);
+    let until = plan.until;
+    let outcome = match general {
+        General::Rkmk8 => {
+            Adaptive::rkmk8(tolerance).integrate(system, state, until, inputs, &[], |report| {
+                if let Report::Step(step) = report {
+                    observe(step.end());
+                }
+            })
+        }
+        _ => Adaptive::rkmk54(tolerance).integrate(system, state, until, inputs, &[], |report| {
+            if let Report::Step(step) = report {
+                observe(step.end());
+            }
+        }),
+    };
+    outcome.map(|_| ())
 }
 
 /// A bar on standard error, where that is a terminal and the run is long.

@@ -2,7 +2,6 @@
 
 use super::record::{Run, Sample};
 use crate::number::{digits, error, grouped, short};
-use hamel::methods::General;
 use hamel_codegen::syntax::ast::CoordKind;
 
 /// Rows of the table.
@@ -43,11 +42,8 @@ pub fn text(run: &Run, default_step: bool) -> String {
     let (Some(first), Some(last)) = (run.samples.first(), run.samples.last()) else {
         return String::new();
     };
-    let method = match run.plan.method {
-        General::Rk4 { lambda } => format!("rk4, lambda {}", short(lambda)),
-        General::Rk4Projected => "rk4-projected".into(),
-        _ => "rkmk4".into(),
-    };
+    let chosen = &run.plan.method;
+    let method = format!("{}{}", chosen.name, chosen.stepper.settings());
     let plural = |count: u64, word: &str| {
         format!(
             "{} {word}{}",
@@ -55,15 +51,24 @@ pub fn text(run: &Run, default_step: bool) -> String {
             if count == 1 { "" } else { "s" }
         )
     };
-    let step = run.plan.until / run.plan.steps as f64;
     let default = if default_step { " (default)" } else { "" };
+    let steps = match run.plan.tolerance {
+        Some(tolerance) => format!("{} by tolerance {}", plural(run.steps, "step"), short(tolerance)),
+        None => format!(
+            "{} of {}{default}",
+            plural(run.steps, "step"),
+            short(run.plan.until / run.plan.steps as f64)
+        ),
+    };
     let mut text = format!(
-        "\x1b[1m{}\x1b[0m  {method}, {} of {}{default}, {} of the acceleration\n",
+        "\x1b[1m{}\x1b[0m  {method}, {steps}, {} of {}\n",
         run.program.name,
-        plural(run.steps, "step"),
-        short(step),
         plural(run.evaluations, "evaluation"),
+        chosen.stepper.evaluated(),
     );
+    if let Some(reason) = chosen.reason {
+        text.push_str(&format!("{method} was chosen: {reason}\n"));
+    }
     text.push_str(&format!("\n\x1b[1mt = {}\x1b[0m\n", short(last.t)));
     text.push_str(&state(run, last));
     text.push_str(&invariants(run, first, last));

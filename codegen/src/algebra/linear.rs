@@ -65,6 +65,12 @@ pub fn multiply3(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Mat3 {
     std::array::from_fn(|i| std::array::from_fn(|j| graph.dot(&a[i], &columns[j])))
 }
 
+/// ⟨A, B⟩ = Σ Aᵢⱼ Bᵢⱼ.
+pub fn dot_mat3(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Edge {
+    let rows: Vec<Edge> = (0..3).map(|i| graph.dot(&a[i], &b[i])).collect();
+    graph.sum(&rows)
+}
+
 /// A B for matrices as rows.
 pub fn multiply(graph: &mut Graph, a: &[Vec<Edge>], b: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
     let columns = b.first().map_or(0, Vec::len);

@@ -5,12 +5,14 @@ use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
 use super::multipliers::multipliers;
 use super::reduction::Reduction;
+use super::structure::{self, Found};
 use super::{constrained, correction, energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
 use crate::model::value::Value;
 use crate::model::{Model, class};
+use crate::program::structure::Structure;
 use crate::program::{Argument, Function, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
@@ -48,7 +50,9 @@ pub fn assemble(
         builder.constraint_force(full, reduction);
         builder.projections();
     }
-    let program = builder.finish();
+    let found = structure::analyse(full, model, &builder.graph, &builder.parts);
+    let structure = builder.splitting(found)?;
+    let program = builder.finish(structure);
     match reduction {
         Some(reduction) => constrained::validate(full, reduction, &program)?,
         None => super::validate::validate(model, &program)?,
@@ -71,6 +75,8 @@ pub(super) struct Builder<'a> {
     pub(super) functions: Vec<Function>,
     /// Pivots of [Y; Φ].
     pub(super) kinematic_guards: Vec<Edge>,
+    /// Pivots of the inertias of a system that splits, where M has none that are constant.
+    pub(super) split_guards: Vec<Edge>,
 }
 
 impl<'a> Builder<'a> {
@@ -84,6 +90,7 @@ impl<'a> Builder<'a> {
             parts,
             functions: Vec::new(),
             kinematic_guards,
+            split_guards: Vec::new(),
         }
     }
 
@@ -373,18 +380,42 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn finish(mut self) -> Program {
+    /// What the methods for systems that split call; an error where it is asked for in vain.
+    fn splitting(&mut self, found: Found) -> Result<Structure, Diagnostic> {
+        let model = self.model;
+        if let (Err(reasons), true) = (&found.structure.split, model.asks("splitting")) {
+            let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
+            return Err(Diagnostic::new(
+                model.span,
+                format!("the equations do not split: {}", reasons.join("; ")),
+            )
+            .help("leave `splitting` out of `generate`; `accel` serves the methods for any system"));
+        }
+        if let (Some(functions), true) = (&found.functions, model.wants("splitting")) {
+            let pivots = functions.add(self);
+            let graph = &self.graph;
+            let varies = |pivot: &Edge| !graph.is_free(pivot.node());
+            if self.chosen.pivots.iter().any(varies) {
+                self.split_guards = pivots;
+            }
+        }
+        Ok(found.structure)
+    }
+
+    fn finish(mut self, structure: Structure) -> Program {
         let model = self.model;
         let names = names(model, &mut self.graph);
         self.functions.retain(|function| {
-            model.wants(&function.name) || (function.name == "energy" && model.wants("energy"))
+            let name = function.name.as_str();
+            model.wants(name)
+                || (structure::FUNCTIONS.contains(&name) && model.wants("splitting"))
         });
         let constants = &model.completion.constants;
         self.kinematic_guards
             .extend(rebuild(&model.graph, &mut self.graph, constants));
         let of_parameters = |edge: &Edge| self.graph.is_free(edge.node());
         let kinematic = self.kinematic_guards.iter().copied().filter(of_parameters);
-        let constant_guards = if self.functions.iter().any(|f| f.fallible) {
+        let mut constant_guards: Vec<Edge> = if self.functions.iter().any(|f| f.fallible) {
             self.chosen
                 .pivots
                 .iter()
@@ -395,6 +426,7 @@ impl<'a> Builder<'a> {
         } else {
             Vec::new()
         };
+        constant_guards.extend(&self.split_guards);
         let loops = self.loops().len();
         Program {
             name: model.name.clone(),
@@ -417,6 +449,7 @@ impl<'a> Builder<'a> {
             constant_guards,
             kinematic_guards: self.kinematic_guards,
             functions: self.functions,
+            structure,
         }
     }
 }

@@ -23,6 +23,7 @@
 //! | `adviser` | other velocity coordinates for the same motion, and their cost | |
 //! | `assemble` | the program of all generated functions | |
 //! | `further` | momenta, the motion nearby and invariants as functions | |
+//! | `structure` | whether a system splits into free motion and kicks; which method fits | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
 //! | `motion` | those of the equations of motion | (20), (28), (30) |
 //! | `geometry` | integrability, Lie algebras, patterns, symmetries | 2.5 |
@@ -56,6 +57,7 @@ pub mod normal;
 pub mod reduction;
 mod reference;
 mod slopes;
+pub mod structure;
 pub mod tables;
 pub mod validate;
 pub mod virtual_power;

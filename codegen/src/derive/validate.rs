@@ -11,11 +11,13 @@
 //! | `generalized_force` | f by virtual work |
 //! | `momentum` | ∂T/∂ξ |
 //! | `dissipation` | D of the dampers' forces on points |
+//! | `kick` and its kind | the motion of the system, see `structure/proof` |
 //! | `mass_matrix` | M with M ξ̇ = F(x, ξ, ξ̇) − F(x, ξ, 0), for any ξ̇ |
 
 use super::forms::Forms;
 use super::reference::Reference;
 use super::slopes::Slopes;
+use super::structure::Proof;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
@@ -34,6 +36,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     let forms = Forms::new(model).ok_or_else(|| failure(model, "Y A = I"))?;
     let mut reference = Reference::new(model).ok_or_else(|| failure(model, "Y A = I"))?;
     let slopes = Slopes::new(&mut reference, program);
+    let splitting = Proof::new(&mut reference, program);
     let mut seed = 0;
     for _ in 0..POINTS {
         loop {
@@ -53,6 +56,12 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
                     .at_point(&reference, program, &lane)
                     .map(|found| found.map_err(str::to_string)),
                 found => found,
+            };
+            let found = match (found, &splitting) {
+                (Some(Ok(())), Some(splitting)) => splitting
+                    .at_point(&reference, program, &lane)
+                    .map(|found| found.map_err(str::to_string)),
+                (found, _) => found,
             };
             match found {
                 None => continue,

@@ -15,6 +15,7 @@
 //! | `structure` | the type: fields, sizes, constructor, defaults |
 //! | `parameters` | accessors, and the constants kept for parameters |
 //! | `system` | `impl hamel::System` |
+//! | `methods` | `impl hamel::Split`, `impl hamel::Canonical` |
 //!
 //! Text is built first and parsed second, so that all doors share every byte.
 
@@ -23,6 +24,7 @@ mod docs;
 mod function;
 mod locals;
 mod lower;
+mod methods;
 pub mod names;
 mod number;
 mod parameters;
@@ -161,7 +163,11 @@ pub fn rust(program: &Program, options: &Options) -> String {
         "impl<S: ::hamel::Scalar> {name}<S> {{\n{methods}}}\n"
     ));
     text.push_str(&structure::default(&emitter));
-    text.push_str(&system::implementation(&emitter));
+    let system = system::implementation(&emitter);
+    if !system.is_empty() {
+        text.push_str(&system);
+        text.push_str(&methods::implementations(&emitter));
+    }
     text
 }
 

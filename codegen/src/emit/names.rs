@@ -66,6 +66,7 @@ const METHODS: &[&str] = &[
     "zero_inputs",
     "start",
     "constraint_norm",
+    "rotors",
 ];
 
 /// Local names that a function may use besides those of its values.

@@ -38,6 +38,8 @@ pub fn structure(emitter: &Emitter) -> String {
     if lines.is_empty() {
         lines.push(format!("Equations of motion of `{}`.", program.name));
     }
+    lines.push(String::new());
+    lines.extend(program.structure.documentation());
     let mut fields = String::new();
     for (group, field) in program.params.iter().zip(&emitter.names.fields) {
         fields.push_str(&format!(

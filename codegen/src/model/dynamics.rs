@@ -32,10 +32,22 @@ pub const FUNCTIONS: &[&str] = &[
     "constraint",
     "constraint_force",
     "linearize",
+    "splitting",
 ];
 
 /// Further functions that a program has, whose names no output can take.
-pub const INTERNAL: &[&str] = &["chart_rate", "correction", "close", "settle"];
+pub const INTERNAL: &[&str] = &[
+    "chart_rate",
+    "correction",
+    "close",
+    "settle",
+    "centre",
+    "uncentre",
+    "momenta",
+    "velocities",
+    "kick",
+    "rotor_inertia",
+];
 
 /// What the statements about inertia and loads say.
 pub struct Dynamics {

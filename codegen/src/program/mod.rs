@@ -3,10 +3,12 @@
 pub mod count;
 pub mod interpret;
 pub mod schedule;
+pub mod structure;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::model::layout::Block;
 use crate::model::{Coordinate, Group};
+use structure::Structure;
 
 /// What a generated function takes, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -96,6 +98,8 @@ pub struct Program {
     pub kinematic_guards: Vec<Edge>,
     /// The functions.
     pub functions: Vec<Function>,
+    /// What methods of integration ask of the system.
+    pub structure: Structure,
 }
 
 impl Program {

@@ -121,10 +121,9 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
         scale(z.u.as_mut(), step);
         let mut steps: [Unknowns<Sys>; MEMORY] = from_fn(|_| Unknowns::zero(system));
         let mut known = 0;
-        let mut residual = f64::NAN;
         for iterations in 1..=MOST {
             let mut next = defect(&z)?;
-            residual = (next.size() / (one + z.size())).largest_lane();
+            let residual = (next.size() / (one + z.size())).largest_lane();
             if residual <= ENOUGH * Sys::Scalar::EPSILON {
                 return arrive(system, state, h, point(&z.u), z.xi);
             }
@@ -132,7 +131,6 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
                 return Err(StepError::NotConverged {
                     time: state.t,
                     iterations,
-                    residual,
                 });
             }
             // next ← B⁻¹ defect, with B⁻¹ as the product of the updates that the steps define.
@@ -160,7 +158,6 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
         Err(StepError::NotConverged {
             time: state.t,
             iterations: MOST,
-            residual,
         })
     }
 }

@@ -5,6 +5,7 @@ use crate::algebra::graph::{Edge, Graph, LANES};
 use crate::model::layout::{blocks, entry_names};
 use crate::model::value::Value;
 use crate::model::{Coordinate, Group, class};
+use crate::program::structure::Structure;
 use crate::program::{Argument, Function, Program, Shape};
 use crate::syntax::ast::Span as Place;
 use crate::syntax::ast::{CoordKind, ShapeKind};
@@ -109,6 +110,14 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
         constant_guards: Vec::new(),
         kinematic_guards: Vec::new(),
         functions: Vec::new(),
+        structure: Structure {
+            split: Err(Vec::new()),
+            canonical: Ok(()),
+            mass: Vec::new(),
+            damped: Vec::new(),
+            conservative: false,
+            multipliers: false,
+        },
         graph,
     };
     (program, [p, x, xi, u, xi_dot])

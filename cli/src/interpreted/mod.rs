@@ -1,5 +1,7 @@
 //! A described system that the integrators can run without its being compiled.
 
+mod momenta;
+
 use crate::failure::Failure;
 use crate::state::State;
 use hamel::{Block, Singular, System};
@@ -8,6 +10,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::model::layout;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Argument, Program, Shape};
+use momenta::Functions;
 use std::cell::Cell;
 
 /// A program with its parameters set; x, ξ and u are `Vec`s.
@@ -30,6 +33,7 @@ pub struct Interpreted {
     /// For every guard of `accel` its number among the pivots of [Y; Φ], if it is one.
     kinematic: Vec<Option<usize>>,
     invariants: Vec<Output>,
+    functions: Functions,
     evaluations: Cell<u64>,
 }
 
@@ -81,13 +85,18 @@ impl Interpreted {
             outputs: outputs.collect::<Result<_, Failure>>()?,
             kinematic: kinematic(program),
             invariants: invariants.collect::<Result<_, Failure>>()?,
+            functions: Functions::new(program, &state.params)?,
             evaluations: Cell::new(0),
         })
     }
 
-    /// How often ξ̇ was evaluated.
+    /// How often ξ̇, a kick or ṗ was evaluated.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
+    }
+
+    fn count(&self) {
+        self.evaluations.set(self.evaluations.get() + 1);
     }
 
     /// u, constant in a run.
@@ -218,7 +227,7 @@ impl System for Interpreted {
     }
 
     fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
-        self.evaluations.set(self.evaluations.get() + 1);
+        self.count();
         self.accel.call(x, xi, u, &[]).map_err(|pivot| {
             match self.kinematic.get(pivot).copied().flatten() {
                 Some(pivot) => Singular::kinematics(pivot),

@@ -1,0 +1,251 @@
+//! The methods by their names on the command line, and which systems they are for.
+
+use crate::failure::Failure;
+use crate::interpreted::Interpreted;
+use crate::number::short;
+use hamel::flows::Flow;
+use hamel::methods::{
+    Buss, Gauss4, Gauss6, General, Lgvi, Method, Scheme, Slide, Splitting,
+};
+use hamel::{State, StepError, System};
+use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::program::structure::Structure;
+
+/// The name that leaves the choice to the structure of the system.
+pub const AUTO: &str = "auto";
+
+/// What a method asks of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Needs {
+    /// Nothing beyond ξ̇.
+    Any,
+    /// Generalised momenta.
+    Momenta,
+    /// Free motion in closed form, and kicks.
+    Split,
+    /// The same, without kicks.
+    Free,
+}
+
+/// One method.
+struct Entry {
+    name: &'static str,
+    about: &'static str,
+    needs: Needs,
+    make: fn(&Interpreted) -> Stepper,
+}
+
+macro_rules! entries {
+    ($($name:literal $needs:ident $make:expr, $about:literal;)*) => {
+        &[$(Entry { name: $name, about: $about, needs: Needs::$needs, make: $make }),*]
+    };
+}
+
+fn split(system: &Interpreted, scheme: Scheme) -> Stepper {
+    Stepper::Splitting(Splitting::new(system, scheme))
+}
+
+/// A line for every method.
+const METHODS: &[Entry] = entries! {
+    "rkmk4" Any |_| Stepper::General(General::Rkmk4), "any system; order 4, on the manifold";
+    "cf4" Any |_| Stepper::General(General::Cf4), "any system; order 4, without commutators";
+    "rkmk54" Any |_| Stepper::General(General::Rkmk54), "any system; order 5, or steps by --tol";
+    "rkmk8" Any |_| Stepper::General(General::Rkmk8), "any system; order 8, or steps by --tol";
+    "splitting" Split |s| split(s, Scheme::Nystrom4), "bodies in potentials; order 4, no drift";
+    "splitting2" Split |s| split(s, Scheme::Strang), "the same; order 2";
+    "splitting6" Split |s| split(s, Scheme::Nystrom6), "the same; order 6";
+    "suzuki" Split |s| split(s, Scheme::Suzuki4), "the same; order 4, of steps of order 2";
+    "kahan-li" Split |s| split(s, Scheme::KahanLi6), "the same; order 6, of steps of order 2";
+    "free" Free Stepper::closed_form, "bodies without forces; exact at any time";
+    "lgvi" Split |_| Stepper::Lgvi, "bodies in potentials; variational, order 2";
+    "gauss4" Momenta |_| Stepper::Gauss4, "long runs with M(x); implicit, order 4, no drift";
+    "gauss6" Momenta |_| Stepper::Gauss6, "the same; order 6";
+    "euler" Any |_| Stepper::General(General::ForwardEuler), "baseline; order 1";
+    "backward-euler" Any |_| Stepper::General(General::BackwardEuler), "baseline; implicit, order 1";
+    "semi-implicit-euler" Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as game engines step";
+    "rk4" Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, led back at the rate --lambda";
+    "rk4-projected" Any |_| Stepper::General(General::Rk4Projected), "baseline; the same, projected after each step";
+    "slide" Split |_| Stepper::Slide, "baseline; order 1, keeps angular momentum";
+    "buss1" Split |_| Stepper::Buss(Buss::First), "baseline; order 1, keeps angular momentum";
+    "buss2" Split |_| Stepper::Buss(Buss::Second), "baseline; the same, order 2";
+    "buss-augmented2" Split |_| Stepper::Buss(Buss::AugmentedSecond), "baseline; the same, order 2";
+    "buss4" Split |_| Stepper::Buss(Buss::Fourth), "baseline; the same, order 4 without torques";
+};
+
+/// Every name that `--method` takes.
+pub fn names() -> Vec<&'static str> {
+    let all = METHODS.iter().map(|entry| entry.name);
+    std::iter::once(AUTO).chain(all).collect()
+}
+
+/// The names with what they are for, a line each.
+pub fn described() -> String {
+    let width = METHODS.iter().map(|entry| entry.name.len()).max();
+    let width = width.unwrap_or(0);
+    let lines = METHODS
+        .iter()
+        .map(|entry| format!("  {:width$}  {}\n", entry.name, entry.about));
+    format!("Methods:\n  {AUTO:width$}  what fits the system, with the reason\n")
+        + &lines.collect::<String>()
+}
+
+/// A method for one system, and why it was taken where `auto` took it.
+#[derive(Debug)]
+pub struct Chosen {
+    /// Its name.
+    pub name: &'static str,
+    /// The method.
+    pub stepper: Stepper,
+    /// The reason of `auto`.
+    pub reason: Option<&'static str>,
+}
+
+impl Chosen {
+    /// The method of this name for a run of about so many steps; refused, with the reasons of the
+    /// system's structure, where it cannot be run by it.
+    pub fn new(
+        name: &str,
+        system: &Interpreted,
+        structure: &Structure,
+        steps: u64,
+    ) -> Result<Self, Failure> {
+        let (name, reason) = match name {
+            AUTO => {
+                let choice = choose(structure, Some(steps));
+                (choice.method, Some(choice.reason))
+            }
+            name => (name, None),
+        };
+        let Some(entry) = METHODS.iter().find(|entry| entry.name == name) else {
+            return Err(Failure::usage(format!(
+                "no method is called `{name}`; there are {}",
+                names().join(", ")
+            )));
+        };
+        let obstacles = entry.needs.obstacles(structure);
+        if !obstacles.is_empty() {
+            return Err(Failure::usages(
+                &format!("--method {name} does not fit"),
+                &obstacles,
+            ));
+        }
+        Ok(Chosen {
+            name: entry.name,
+            stepper: (entry.make)(system),
+            reason,
+        })
+    }
+}
+
+impl Needs {
+    /// What stands in the way.
+    fn obstacles(self, structure: &Structure) -> Vec<String> {
+        match (self, &structure.split) {
+            (Needs::Any, _) => Vec::new(),
+            (Needs::Momenta, _) => {
+                let reason = structure.canonical.as_ref().err();
+                reason.map(ToString::to_string).into_iter().collect()
+            }
+            (Needs::Split | Needs::Free, Err(reasons)) => {
+                reasons.iter().map(ToString::to_string).collect()
+            }
+            (Needs::Free, Ok(splitting)) if !splitting.free => {
+                vec!["forces act on the system".into()]
+            }
+            (Needs::Split | Needs::Free, Ok(_)) => Vec::new(),
+        }
+    }
+}
+
+/// A method as a type that steps interpreted systems.
+#[derive(Clone, Debug)]
+pub enum Stepper {
+    /// One for any system.
+    General(General),
+    /// Kicks between free motions.
+    Splitting(Splitting),
+    /// The free motion from the start, with nothing gathered on the way.
+    Closed {
+        /// Time, x and ξ of the start.
+        start: (Vec<f64>, Vec<f64>),
+        /// One free motion; its kicks are zero.
+        motion: Splitting,
+    },
+    /// Variational.
+    Lgvi,
+    /// Collocation of order 4.
+    Gauss4,
+    /// Collocation of order 6.
+    Gauss6,
+    /// Angular momentum of first order.
+    Slide,
+    /// Buss' methods.
+    Buss(Buss),
+}
+
+impl Stepper {
+    fn closed_form(system: &Interpreted) -> Self {
+        Stepper::Closed {
+            start: system.start(),
+            motion: Splitting::with_flow(system, Scheme::Strang, Flow::Exact),
+        }
+    }
+
+    /// What it evaluates, for counts.
+    pub fn evaluated(&self) -> &'static str {
+        match self {
+            Stepper::General(_) => "the acceleration",
+            Stepper::Gauss4 | Stepper::Gauss6 => "the rates of momenta",
+            _ => "the forces",
+        }
+    }
+
+    /// What is set beside its name.
+    pub fn settings(&self) -> String {
+        match self {
+            Stepper::General(General::Rk4 { lambda }) => format!(", lambda {}", short(*lambda)),
+            _ => String::new(),
+        }
+    }
+}
+
+impl Method<Interpreted> for Stepper {
+    fn order(&self) -> u32 {
+        match self {
+            Stepper::General(method) => Method::<Interpreted>::order(method),
+            Stepper::Splitting(method) => Method::<Interpreted>::order(method),
+            Stepper::Closed { .. } => 0,
+            Stepper::Lgvi => Method::<Interpreted>::order(&Lgvi),
+            Stepper::Gauss4 => Method::<Interpreted>::order(&Gauss4),
+            Stepper::Gauss6 => Method::<Interpreted>::order(&Gauss6),
+            Stepper::Slide => Method::<Interpreted>::order(&Slide),
+            Stepper::Buss(method) => Method::<Interpreted>::order(method),
+        }
+    }
+
+    fn step<U>(
+        &self,
+        system: &Interpreted,
+        state: &State<Interpreted>,
+        h: f64,
+        inputs: &U,
+    ) -> Result<State<Interpreted>, StepError>
+    where
+        U: Fn(f64, &Vec<f64>, &Vec<f64>) -> Vec<f64>,
+    {
+        match self {
+            Stepper::General(method) => method.step(system, state, h, inputs),
+            Stepper::Splitting(method) => method.step(system, state, h, inputs),
+            Stepper::Closed { start, motion } => {
+                let (x, xi) = start.clone();
+                let start = State { t: 0.0, x, xi };
+                motion.step(system, &start, state.t + h, inputs)
+            }
+            Stepper::Lgvi => Lgvi.step(system, state, h, inputs),
+            Stepper::Gauss4 => Gauss4.step(system, state, h, inputs),
+            Stepper::Gauss6 => Gauss6.step(system, state, h, inputs),
+            Stepper::Slide => Slide.step(system, state, h, inputs),
+            Stepper::Buss(method) => method.step(system, state, h, inputs),
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Expressions that have the same value everywhere, written without what they do not depend on.
+
+use super::rates::Part;
+use super::variation::Variation;
+use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::transplant::substitute;
+use crate::model::Model;
+use crate::model::layout::identity;
+
+/// A symbol, by its number, and what stands in its place.
+pub type Substitution = Vec<(usize, Edge)>;
+
+/// The number of a symbol.
+pub fn symbol(graph: &Graph, edge: Edge) -> Option<usize> {
+    match graph.node(edge.node()) {
+        Node::Symbol(index) => Some(index as usize),
+        _ => None,
+    }
+}
+
+/// Numbers for all coordinates: no rotation, angle 0, and this number for plain ones.
+pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> Substitution {
+    let mut set = Substitution::new();
+    for part in parts {
+        let flat = !part.turns() && part.block.len() == part.block.dimension();
+        for (&entry, value) in part
+            .entries(&model.x)
+            .iter()
+            .zip(identity(part.block))
+        {
+            let value = if flat { plain } else { value as i64 };
+            let number = graph.ratio(value, 1);
+            set.extend(symbol(graph, entry).map(|index| (index, number)));
+        }
+    }
+    set
+}
+
+/// The expressions, those that change with no coordinate and no velocity written without them.
+/// What cannot be written so stays as it is.
+pub fn settle(
+    model: &Model,
+    graph: &mut Graph,
+    parts: &[Part],
+    variation: &Variation,
+    edges: &[Edge],
+) -> Vec<Edge> {
+    let open = edges.iter().any(|edge| !graph.is_free(edge.node()));
+    if !open {
+        return edges.to_vec();
+    }
+    let moved: Vec<Edge> = model.x.iter().chain(&model.xi).copied().collect();
+    let changes = variation.changes(graph, edges, &moved);
+    let zero = graph.zero();
+    let mut settled = edges.to_vec();
+    for plain in [0, 1] {
+        let mut set = resting(model, graph, parts, plain);
+        set.extend(model.xi.iter().filter_map(|&xi| Some((symbol(graph, xi)?, zero))));
+        let images = substitute(graph, edges, &set);
+        for (index, image) in images.into_iter().enumerate() {
+            let same = graph.value(image) == graph.value(edges[index]);
+            if !changes[index] && same && !graph.is_free(settled[index].node()) {
+                settled[index] = image;
+            }
+        }
+    }
+    settled
+}

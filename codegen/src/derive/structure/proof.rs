@@ -1,0 +1,174 @@
+//! Validation of the functions of a system that splits, at a point modulo p.
+//!
+//! With p free, ξ of p, and ξ̇ solved from M ξ̇ = f − h − ∂V of the independent derivation:
+//!
+//! | function | has to be |
+//! |---|---|
+//! | `velocities` | a right inverse of `momenta`: p of ξ of p is p |
+//! | `uncentre` | a left inverse of `centre` |
+//! | `centre` | y with ẏ = p for plain coordinates, x itself for all others |
+//! | `momenta` | θ̇ of circles, J ω of rotors |
+//! | `kick` | d/dt p of plain coordinates and circles, d/dt P − P × ω of rotors |
+
+use super::rates::{Part, parts};
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::lane::Lane;
+use crate::algebra::numeric::{evaluate_at, solve};
+use crate::algebra::tangent::tangent_at;
+use crate::derive::kinematics::chart_rates;
+use crate::derive::reference::Reference;
+use crate::program::Program;
+use crate::program::structure::Structure;
+
+/// What is compared with.
+pub struct Proof {
+    parts: Vec<Part>,
+    /// The rates of the coordinates, in the reference's graph.
+    rates: Vec<Edge>,
+    /// Numbers of the symbols x, ξ, p.
+    x: Vec<usize>,
+    xi: Vec<usize>,
+    p: Vec<usize>,
+}
+
+impl Proof {
+    /// Prepares for a program; `None` where it has no such functions.
+    pub fn new(reference: &mut Reference, program: &Program) -> Option<Self> {
+        program.function("kick")?;
+        let model = &mut reference.model;
+        let rates = chart_rates(&mut model.graph, &model.blocks, &model.x, &model.rate);
+        let numbers = |graph: &Graph, edges: &[Edge]| -> Vec<usize> {
+            let nodes = edges.iter().map(|edge| graph.node(edge.node()));
+            nodes
+                .filter_map(|node| match node {
+                    Node::Symbol(index) => Some(index as usize),
+                    _ => None,
+                })
+                .collect()
+        };
+        Some(Proof {
+            parts: parts(model),
+            rates,
+            x: numbers(&model.graph, &model.x),
+            xi: numbers(&model.graph, &model.xi),
+            p: numbers(&model.graph, &model.momenta),
+        })
+    }
+
+    /// Compares at one point; `None` where it cannot be evaluated there.
+    pub fn at_point(
+        &self,
+        reference: &Reference,
+        program: &Program,
+        lane: &Lane,
+    ) -> Option<Result<(), &'static str>> {
+        let at = |name: &str, lane: &Lane| {
+            let function = program.function(name)?;
+            evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
+        };
+        let x: Vec<Fp> = self.x.iter().map(|&place| lane.symbol(place)).collect();
+        let p: Vec<Fp> = self.p.iter().map(|&place| lane.symbol(place)).collect();
+        let xi = at("velocities", lane)?;
+        let mut moving = lane.clone();
+        set(&mut moving, &self.xi, &xi);
+        if at("momenta", &moving)? != p {
+            return Some(Err("p of ξ of p is p, for the emitted momenta"));
+        }
+        if program.function("centre").is_some() {
+            let mut shifted = lane.clone();
+            set(&mut shifted, &self.x, &at("centre", lane)?);
+            if at("uncentre", &shifted)? != x {
+                return Some(Err("x of y of x is x, for the emitted centre"));
+            }
+        }
+        let kick = at("kick", lane)?;
+        let spin = evaluate_at(&reference.model.graph, &self.rates, &mut moving.clone())?;
+        let (p_dot, y_dot) = self.slopes(reference, program, &moving)?;
+        let mut inertia = match program.function("rotor_inertia") {
+            Some(_) => at("rotor_inertia", lane)?.into_iter(),
+            None => Vec::new().into_iter(),
+        };
+        let Structure {
+            split: Ok(splitting),
+            ..
+        } = &program.structure
+        else {
+            return Some(Err("a system that splits, for the emitted kick"));
+        };
+        let mut rotors = splitting.rotors.iter();
+        for part in &self.parts {
+            let here = part.rates();
+            let entries = part.first..part.first + part.block.len();
+            if !part.turns() {
+                let plain = part.block.len() == part.block.dimension();
+                let rate = if plain { &y_dot[entries] } else { &spin[here.clone()] };
+                if rate != &p[here.clone()] || p_dot[here.clone()] != kick[here] {
+                    return Some(Err("ẏ = p, ṗ = kick, for the emitted splitting"));
+                }
+                continue;
+            }
+            let rotor = rotors.next()?;
+            let (w, big_p) = (&spin[here.clone()], &p[here.clone()]);
+            let j: Vec<Fp> = inertia.by_ref().take(rotor.inertia.entries()).collect();
+            let jw: Vec<Fp> = match j.as_slice() {
+                [a, b, c] => vec![*a * w[0], *b * w[1], *c * w[2]],
+                j => j
+                    .chunks(3)
+                    .map(|row| row[0] * w[0] + row[1] * w[1] + row[2] * w[2])
+                    .collect(),
+            };
+            if jw != big_p {
+                return Some(Err("P = J ω, for the emitted rotors"));
+            }
+            for i in 0..3 {
+                let (a, b) = ((i + 1) % 3, (i + 2) % 3);
+                let gyroscopic = big_p[a] * w[b] - big_p[b] * w[a];
+                if p_dot[here.start + i] != gyroscopic + kick[here.start + i] {
+                    return Some(Err("Ṗ = P × ω + kick, for the emitted splitting"));
+                }
+            }
+        }
+        Some(Ok(()))
+    }
+
+    /// d/dt of the momenta and of y along the motion.
+    fn slopes(
+        &self,
+        reference: &Reference,
+        program: &Program,
+        moving: &Lane,
+    ) -> Option<(Vec<Fp>, Vec<Fp>)> {
+        let model = &reference.model;
+        let n = model.n();
+        let mut roots = reference.mass.concat();
+        for part in [&reference.force, &reference.bias, &reference.slope] {
+            roots.extend(part);
+        }
+        roots.extend(&model.rate);
+        let values = evaluate_at(&model.graph, &roots, &mut moving.clone())?;
+        let (mass, rest) = values.split_at(n * n);
+        let (forces, rate) = rest.split_at(3 * n);
+        let right = (0..n).map(|i| forces[i] - forces[n + i] - forces[2 * n + i]);
+        let rows = mass.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
+        let xi_dot = solve(rows, right.collect())?;
+        let mut direction = vec![Fp::ZERO; model.graph.symbols().len()];
+        let moves = self.x.iter().zip(rate).chain(self.xi.iter().zip(&xi_dot));
+        for (&place, &by) in moves {
+            *direction.get_mut(place)? = by;
+        }
+        let slopes = |edges: &[Edge]| -> Option<Vec<Fp>> {
+            let duals = tangent_at(&program.graph, edges, &mut moving.clone(), &direction)?;
+            Some(duals.into_iter().map(|dual| dual.1).collect())
+        };
+        let y = program.function("centre").map_or(&model.x, |f| &f.outputs);
+        let momenta = program.function("momenta")?;
+        Some((slopes(&momenta.outputs)?, slopes(y)?))
+    }
+}
+
+fn set(lane: &mut Lane, places: &[usize], values: &[Fp]) {
+    for (&place, &value) in places.iter().zip(values) {
+        lane.set_symbol(place, value);
+    }
+}

@@ -1,0 +1,133 @@
+//! The rates w of the coordinates: w = B(x) ξ per block, ẋ of plain coordinates, θ̇ of circles, the body
+//! angular velocity of quaternions and rotations; ξ = N(x) w.
+
+use super::variation::Variation;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::{multiply, transpose};
+use crate::algebra::transplant::rebuild;
+use crate::derive::kinematics::{chart_rates, left_inverse};
+use crate::model::Model;
+use crate::model::charts::all_tangents;
+use crate::model::layout::{Block, blocks};
+
+/// A block of x with its place in x and among the rates, and the name of its coordinate.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Its kind.
+    pub block: Block,
+    /// As the language writes it: `R`, `X.p`.
+    pub name: String,
+    /// Place of its first entry in x.
+    pub first: usize,
+    /// Place of its first rate.
+    pub rate: usize,
+}
+
+impl Part {
+    /// Places of its rates.
+    pub fn rates(&self) -> std::ops::Range<usize> {
+        self.rate..self.rate + self.block.dimension()
+    }
+
+    /// Its entries.
+    pub fn entries<'a>(&self, x: &'a [Edge]) -> &'a [Edge] {
+        x.get(self.first..self.first + self.block.len())
+            .unwrap_or_default()
+    }
+
+    /// Whether it is a rotor's attitude.
+    pub fn turns(&self) -> bool {
+        matches!(self.block, Block::Quaternion | Block::Rotation)
+    }
+}
+
+/// The blocks of x in their order.
+pub fn parts(model: &Model) -> Vec<Part> {
+    let mut parts = Vec::new();
+    let (mut first, mut rate) = (0, 0);
+    for coordinate in &model.coordinates {
+        let kinds = blocks(coordinate.kind);
+        for (index, &block) in kinds.iter().enumerate() {
+            let suffix = match (kinds.len(), index) {
+                (1, _) => "",
+                (_, 0) => ".p",
+                _ => ".R",
+            };
+            parts.push(Part {
+                block,
+                name: format!("{}{suffix}", coordinate.name),
+                first,
+                rate,
+            });
+            first += block.len();
+            rate += block.dimension();
+        }
+    }
+    parts
+}
+
+/// B and N.
+pub struct Rates {
+    /// w = B ξ.
+    pub of_velocities: Vec<Vec<Edge>>,
+    /// ξ = N w.
+    pub to_velocities: Vec<Vec<Edge>>,
+}
+
+/// B and N of a model with as many velocities as its blocks have rates, in another graph with its
+/// symbols.
+pub fn rates(model: &Model, graph: &mut Graph) -> Option<Rates> {
+    let mut own = model.clone();
+    let y = left_inverse(&mut own)?;
+    let columns = transpose(&own.a);
+    let b: Vec<Vec<Edge>> = columns
+        .iter()
+        .map(|column| chart_rates(&mut own.graph, &own.blocks, &own.x, column))
+        .collect();
+    let tangents = all_tangents(&mut own.graph, &own.blocks, &own.x, |_| true);
+    let n = multiply(&mut own.graph, &y, &transpose(&tangents));
+    let mut carry = |rows: &[Vec<Edge>]| -> Vec<Vec<Edge>> {
+        rows.iter()
+            .map(|row| rebuild(&own.graph, graph, row))
+            .collect()
+    };
+    Some(Rates {
+        of_velocities: transpose(&carry(&b)),
+        to_velocities: carry(&n),
+    })
+}
+
+/// Whether det B is the same everywhere: d ln det B = tr (N dB) vanishes along all rates.
+pub fn measure_alike(model: &Model, graph: &mut Graph, rates: &Rates) -> bool {
+    let zero = graph.zero();
+    let tangents = all_tangents(graph, &model.blocks, &model.x, |_| true);
+    tangents.into_iter().all(|column| {
+        let seeds = model.x.iter().map(|x| x.node()).zip(column);
+        let mut along = crate::algebra::derivation::Derivation::new(seeds);
+        let mut trace = zero;
+        for (i, row) in rates.of_velocities.iter().enumerate() {
+            for (j, &entry) in row.iter().enumerate() {
+                let slope = along.of(graph, entry);
+                let product = graph.mul(slope, rates.to_velocities[j][i]);
+                trace = graph.add(trace, product);
+            }
+        }
+        trace == zero
+    })
+}
+
+/// The names of the parts with which some of the expressions change.
+pub fn dependence(
+    variation: &Variation,
+    graph: &Graph,
+    parts: &[Part],
+    x: &[Edge],
+    edges: &[Edge],
+) -> Vec<String> {
+    let changing = parts.iter().filter(|part| {
+        variation
+            .changes(graph, edges, part.entries(x))
+            .contains(&true)
+    });
+    changing.map(|part| part.name.clone()).collect()
+}
