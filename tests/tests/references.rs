@@ -5,18 +5,13 @@
 //! order 1.
 
 use hamel::methods::General;
-use hamel::{State, System, integrate, so3};
-use hamel_tests::double_pendulum_angles::DoublePendulum;
+use hamel::{State, System, integrate};
 use hamel_tests::double_pendulum_circles::CircleDoublePendulum;
-use hamel_tests::free_body::FreeBody;
 use hamel_tests::heavy_top::HeavyTop;
 use hamel_tests::heavy_top_axis::AxisTop;
 use hamel_tests::heavy_top_quaternion::QuaternionTop;
-use hamel_tests::heavy_top_world::WorldTop;
 use hamel_tests::principal_axes::PrincipalAxes;
 use hamel_tests::reference::{Reference, distance, relative, run};
-use hamel_tests::satellite::Satellite;
-use hamel_tests::two_bodies::TwoBodies;
 
 /// How far a measured error may be from the expected one.
 const SIZE: f64 = 0.10;
@@ -76,18 +71,6 @@ fn tops_in_body_axes() {
 }
 
 #[test]
-fn free_bodies_in_principal_axes() {
-    for (case, until, n, expected) in [
-        ("free-dzhanibekov-1e-3", 100.0, 2000, 4.27e-7),
-        ("free-elongated-1000", 5.0, 16000, 1.99e-4),
-        ("free-fast-spin-1000", 0.5, 16000, 2.23e-7),
-    ] {
-        let system = principal_axes(&Reference::read(case));
-        assert_size(case, rotation_error(&system, case, until, n), expected);
-    }
-}
-
-#[test]
 fn benchmark_top_with_its_own_start() {
     // The model carries the parameters and the start of the benchmark.
     let case = "heavy-top-benchmark-150";
@@ -119,163 +102,15 @@ fn tops_on_quaternions() {
     }
 }
 
-/// A bob on a rod whose inertia is made isotropic about the joint has ω̇ = n × g / l, n' = ω × n
-/// (all in world axes): the spherical pendulum, without any pole.
-#[test]
-fn spherical_pendulum_through_the_poles() {
-    let case = "spherical-pendulum-through-poles";
-    let reference = Reference::read(case);
-    let ([m], [l]) = (reference.parameter("m"), reference.parameter("l"));
-    let isotropic =
-        std::array::from_fn(|i| std::array::from_fn(|j| if i == j { m * l * l } else { 0.0 }));
-    let system = WorldTop::new(m, reference.gravity(), [0.0, 0.0, l], isotropic).expect("a body");
-
-    let x0: [f64; 3] = reference.initial("x");
-    let v0: [f64; 3] = reference.initial("xdot");
-    let n0 = x0.map(|x| x / l);
-    let tilt = so3::cross([0.0, 0.0, 1.0], n0);
-    let (sin, cos) = (so3::dot(tilt, tilt).sqrt(), n0[2]);
-    let r0 = so3::exp(tilt.map(|t| t / sin * sin.atan2(cos)));
-    let w0 = so3::cross(n0, v0).map(|w| w / l);
-    for (n, expected) in [(1000, 7.38e-7), (2000, 3.21e-8), (4000, 1.57e-9)] {
-        let end = ends(&system, r0, w0, 10.0, n);
-        let x = so3::apply(end.x, [0.0, 0.0, l]);
-        let v = so3::cross(end.xi, x);
-        let error = relative(&x, &reference.sample::<3>(10.0, "x"));
-        let error = error.max(relative(&v, &reference.sample::<3>(10.0, "xdot")));
-        assert_size(case, error, expected);
-    }
-}
-
-#[test]
-fn free_bodies_off_their_centre_and_under_a_wrench() {
-    for (case, expected) in [
-        ("free-body-offset-gravity", [3.26e-7, 2.01e-8, 1.25e-9]),
-        ("quadrotor-constant-wrench", [3.00e-6, 1.88e-7, 1.18e-8]),
-    ] {
-        let reference = Reference::read(case);
-        let [m] = reference.parameter("m");
-        let s = reference.parameter("s");
-        let system = FreeBody::new(m, reference.gravity(), s, reference.matrix("Theta"));
-        let system = system.expect("a body");
-        let wrench = join(
-            reference.parameter::<3>("F"),
-            reference.parameter::<3>("tau"),
-        );
-        let x = join(reference.initial::<3>("r"), reference.initial::<9>("R"));
-        let xi = join(reference.initial::<3>("v"), reference.initial::<3>("omega"));
-        for (n, expected) in [1000, 2000, 4000].into_iter().zip(expected) {
-            let mut end: State<FreeBody<f64>> = State { t: 0.0, x, xi };
-            let step = 10.0 / f64::from(n);
-            let inputs = |_, _: &_, _: &_| wrench;
-            integrate(
-                &system,
-                General::Rkmk4,
-                &mut end,
-                step,
-                10.0,
-                inputs,
-                |_| {},
-            )
-            .expect(case);
-            let error = [
-                relative(&end.x[..3], &reference.sample::<3>(10.0, "r")),
-                relative(&end.x[3..], &reference.sample::<9>(10.0, "R")),
-                relative(&end.xi[..3], &reference.sample::<3>(10.0, "v")),
-                relative(&end.xi[3..], &reference.sample::<3>(10.0, "omega")),
-            ];
-            assert_size(case, error.into_iter().fold(0.0, f64::max), expected);
-        }
-    }
-}
-
 /// Two lists in a row.
 fn join<const A: usize, const B: usize, const C: usize>(a: [f64; A], b: [f64; B]) -> [f64; C] {
     assert_eq!(A + B, C);
     std::array::from_fn(|k| if k < A { a[k] } else { b[k - A] })
 }
 
-#[test]
-fn two_bodies_on_ball_joints() {
-    let case = "two-bodies-ball-joints";
-    let reference = Reference::read(case);
-    let [m1, m2] = reference.parameter("m");
-    let system = TwoBodies::new(
-        m1,
-        m2,
-        reference.gravity(),
-        reference.parameter("s1"),
-        reference.parameter("s2"),
-        reference.parameter("d"),
-        reference.matrix("Theta1"),
-        reference.matrix("Theta2"),
-    )
-    .expect("two bodies");
-    let x = join(reference.initial::<9>("R1"), reference.initial::<9>("R2"));
-    let xi = join(
-        reference.initial::<3>("omega1"),
-        reference.initial::<3>("omega2"),
-    );
-    for (n, expected) in [(1000, 8.84e-6), (2000, 5.62e-7), (4000, 4.12e-8)] {
-        let end = ends(&system, x, xi, 5.0, n);
-        let error = [
-            relative(&end.x[..9], &reference.sample::<9>(5.0, "R1")),
-            relative(&end.x[9..], &reference.sample::<9>(5.0, "R2")),
-            relative(&end.xi[..3], &reference.sample::<3>(5.0, "omega1")),
-            relative(&end.xi[3..], &reference.sample::<3>(5.0, "omega2")),
-        ];
-        assert_size(case, error.into_iter().fold(0.0, f64::max), expected);
-    }
-}
-
-#[test]
-fn satellite_under_gravity_gradient() {
-    let case = "satellite-gravity-gradient";
-    let reference = Reference::read(case);
-    let [rate] = reference.parameter("orbit_rate_n");
-    let [[j1, ..], [_, j2, _], [.., j3]] = reference.matrix("J");
-    let system = Satellite::new(j1, j2, j3, rate).expect("a body");
-    let until = 20000.0;
-    for (n, expected) in [(1000, 1.77e-6), (2000, 1.81e-7), (4000, 1.36e-8)] {
-        let (x, xi) = (reference.initial("R"), reference.initial("omega"));
-        let mut end: State<Satellite<f64>> = State { t: 0.0, x, xi };
-        let outward = |t: f64, _: &_, _: &_| [(rate * t).cos(), (rate * t).sin(), 0.0];
-        let step = until / f64::from(n);
-        integrate(
-            &system,
-            General::Rkmk4,
-            &mut end,
-            step,
-            until,
-            outward,
-            |_| {},
-        )
-        .expect(case);
-        let error = relative(&end.x, &reference.sample::<9>(until, "R"));
-        let error = error.max(relative(&end.xi, &reference.sample::<3>(until, "omega")));
-        assert_size(case, error, expected);
-    }
-}
-
 /// Errors of the chaotic double pendulum: the coarse run has lost the motion, the fine one nearly so,
 /// and both do it in the same way as the independent implementation.
 const CHAOTIC: [(u32, f64); 2] = [(2000, 4.61), (4000, 0.366)];
-
-#[test]
-fn chaotic_double_pendulum_in_angles() {
-    let reference = Reference::read("double-pendulum-planar-chaotic");
-    let ([m1, m2], [l1, l2]) = (reference.parameter("m"), reference.parameter("l"));
-    let system = DoublePendulum::new(m1, m2, l1, l2, reference.gravity()).expect("a pendulum");
-    let (x, xi) = (reference.initial("theta"), reference.initial("thetadot"));
-    for (n, expected) in CHAOTIC {
-        let end = ends(&system, x, xi, 10.0, n);
-        assert_size(
-            "in angles",
-            planar_error(&reference, &end.x, &end.xi),
-            expected,
-        );
-    }
-}
 
 #[test]
 fn chaotic_double_pendulum_on_circles() {

@@ -1,7 +1,9 @@
 //! One case: a system that can be run, and how far a state is from the truth.
 
 use crate::reference::{Reference, distance, relative};
-use hamel::{Method, State, StepError, System, integrate};
+use hamel::methods::{Scheme, Splitting};
+use hamel::{Method, Split, State, StepError, System, integrate};
+use std::cell::Cell;
 
 /// A part of the state that the reference lists.
 #[derive(Clone, Debug)]
@@ -63,18 +65,56 @@ impl<Sys: System<Scalar = f64>> Case<Sys> {
         until: f64,
         n: u32,
     ) -> Result<State<Sys>, StepError> {
+        self.counted(method, until, n).map(|(state, _)| state)
+    }
+
+    /// The same, with the number of evaluations: u is asked for once in each.
+    ///
+    /// # Errors
+    /// Those of [`integrate()`].
+    pub fn counted<M: Method<Sys>>(
+        &self,
+        method: M,
+        until: f64,
+        n: u32,
+    ) -> Result<(State<Sys>, u64), StepError> {
         let mut state = self.start.clone();
-        let step = until / f64::from(n);
+        let count = Cell::new(0);
+        let inputs = |t: f64, x: &_, xi: &_| {
+            count.set(count.get() + 1);
+            (self.inputs)(t, x, xi)
+        };
+        let length = until / f64::from(n);
         integrate(
             &self.system,
             method,
             &mut state,
-            step,
+            length,
             until,
-            &self.inputs,
+            inputs,
             |_| {},
         )?;
-        Ok(state)
+        Ok((state, count.get()))
+    }
+
+    /// The same by splitting, with forces at the ends of steps used twice.
+    ///
+    /// # Errors
+    /// Those of [`Splitting::run`].
+    pub fn split(&self, scheme: Scheme, until: f64, n: u32) -> Result<(State<Sys>, u64), StepError>
+    where
+        Sys: Split,
+    {
+        let mut state = self.start.clone();
+        let count = Cell::new(0);
+        let inputs = |t: f64, x: &_, xi: &_| {
+            count.set(count.get() + 1);
+            (self.inputs)(t, x, xi)
+        };
+        let length = until / f64::from(n);
+        let method = Splitting::new(&self.system, scheme);
+        method.run(&self.system, &mut state, length, n.into(), &inputs, |_| {})?;
+        Ok((state, count.get()))
     }
 
     /// The error at the end of the case, [`error_at`](Self::error_at).
