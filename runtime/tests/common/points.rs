@@ -2,9 +2,12 @@
 
 use hamel::{Block, Singular, System};
 
+/// ξ̇ of (x, ξ)
+pub type Accel<const N: usize> = fn(&[f64; N], &[f64; N]) -> Result<[f64; N], Singular>;
+
 pub struct Points<const N: usize> {
     pub start: ([f64; N], [f64; N]),
-    pub accel: fn(&[f64; N], &[f64; N]) -> Result<[f64; N], Singular>,
+    pub accel: Accel<N>,
 }
 
 impl<const N: usize> System for Points<N> {
