@@ -21,10 +21,11 @@ fn a_zero_step_changes_nothing() {
     let system = kovalevskaya();
     let start = State::start(&system);
     for method in General::ALL {
+        let name = method.name();
         let mut state = start.clone();
-        hamel::step(&system, method, &mut state, 0.0, &none).expect(method.name());
+        hamel::step(&system, method, &mut state, 0.0, &none).expect(name);
         // Bringing x back onto its manifold may touch the last place.
-        assert!(distance(state.x, start.x) < 1e-15, "{}", method.name());
+        assert!(distance(state.x, start.x) < 1e-15, "{}", name);
         assert_eq!(
             (state.t, state.xi),
             (start.t, start.xi),
@@ -39,10 +40,11 @@ fn a_step_back_undoes_a_step_to_one_order_more_than_the_step() {
     let system = kovalevskaya();
     let start = State::start(&system);
     for method in General::ALL {
+        let name = method.name();
         let undone = |h: f64| {
             let mut state = start.clone();
-            hamel::step(&system, method, &mut state, h, &none).expect(method.name());
-            hamel::step(&system, method, &mut state, -h, &none).expect(method.name());
+            hamel::step(&system, method, &mut state, h, &none).expect(name);
+            hamel::step(&system, method, &mut state, -h, &none).expect(name);
             assert_eq!(state.t, 0.0);
             distance(state.x, start.x) + distance(state.xi, start.xi)
         };
@@ -53,7 +55,7 @@ fn a_step_back_undoes_a_step_to_one_order_more_than_the_step() {
         };
         let errors = [undone(h), undone(h / 2.0), undone(h / 4.0)];
         let slopes = slopes(&errors);
-        println!("{}: {errors:?} {slopes:?}", method.name());
+        println!("{}: {errors:?} {slopes:?}", name);
         // Each of the two steps errs by h^(p+1).
         let order = f64::from(Method::<Top<f64>>::order(method));
         assert!(
@@ -71,16 +73,17 @@ fn bodies_at_rest_or_hardly_moving_stay() {
         body.w0 = [velocity; 3];
         let (matrix, unit) = (Top(body.clone()), QuaternionTop(body.clone()));
         for method in General::ALL {
+            let name = method.name();
             let (mut by_matrix, mut by_unit) = (State::start(&matrix), State::start(&unit));
             let first = by_unit.x;
             for _ in 0..10 {
-                hamel::step(&matrix, method, &mut by_matrix, 1e3, &none).expect(method.name());
-                hamel::step(&unit, method, &mut by_unit, 1e3, &|_, _, _| []).expect(method.name());
+                hamel::step(&matrix, method, &mut by_matrix, 1e3, &none).expect(name);
+                hamel::step(&unit, method, &mut by_unit, 1e3, &|_, _, _| []).expect(name);
             }
-            assert!(distance(by_matrix.x, body.r0) < 1e-15, "{}", method.name());
-            assert!(distance(by_unit.x, first) < 1e-15, "{}", method.name());
+            assert!(distance(by_matrix.x, body.r0) < 1e-15, "{}", name);
+            assert!(distance(by_unit.x, first) < 1e-15, "{}", name);
             // A product of velocities is zero here: nothing changes them.
-            assert_eq!(by_matrix.xi, body.w0, "{}", method.name());
+            assert_eq!(by_matrix.xi, body.w0, "{}", name);
         }
     }
 }
@@ -90,6 +93,7 @@ fn a_step_far_too_long_ends_in_a_state_or_a_typed_error() {
     let system = Top(Reference::read("heavy-top-benchmark-150").body());
     let mut refused = 0;
     for method in General::ALL {
+        let name = method.name();
         for h in [1.0, 1e3, 1e80, 1e160, 1e300, f64::INFINITY, f64::NAN] {
             let start = State::start(&system);
             let mut state = start.clone();
@@ -97,7 +101,7 @@ fn a_step_far_too_long_ends_in_a_state_or_a_typed_error() {
             for _ in 0..200 {
                 outcome = hamel::step(&system, method, &mut state, h, &none);
                 // A step is taken whole or not at all.
-                assert!(state.is_finite(), "{}, h = {h}", method.name());
+                assert!(state.is_finite(), "{}, h = {h}", name);
                 if outcome.is_err() {
                     break;
                 }
@@ -105,7 +109,7 @@ fn a_step_far_too_long_ends_in_a_state_or_a_typed_error() {
             match outcome {
                 Ok(()) => assert!(system.constraint_norm(&state.x).is_finite()),
                 Err(StepError::NonFinite { .. } | StepError::NotConverged { .. }) => refused += 1,
-                Err(other) => panic!("{}, h = {h}: {other}", method.name()),
+                Err(other) => panic!("{}, h = {h}: {other}", name),
             }
         }
     }
@@ -121,13 +125,14 @@ fn rotations_stay_orthonormal_at_six_radians_a_step() {
     body.w0 = [1.0, 2.0, 2.0].map(|w| 2.0 * w);
     let (matrix, unit) = (Top(body.clone()), QuaternionTop(body));
     for method in General::ALL {
+        let name = method.name();
         if let General::Rk4 { .. } | General::Rk4Projected = method {
             continue; // not on the manifold within a step: useless at such steps
         }
         let (mut by_matrix, mut by_unit) = (State::start(&matrix), State::start(&unit));
         for _ in 0..5_000 {
-            hamel::step(&matrix, method, &mut by_matrix, 1.0, &none).expect(method.name());
-            hamel::step(&unit, method, &mut by_unit, 1.0, &|_, _, _| []).expect(method.name());
+            hamel::step(&matrix, method, &mut by_matrix, 1.0, &none).expect(name);
+            hamel::step(&unit, method, &mut by_unit, 1.0, &|_, _, _| []).expect(name);
             assert!(
                 matrix.constraint_norm(&by_matrix.x) <= 1e-14,
                 "{}",
