@@ -65,6 +65,7 @@
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
+pub mod adapter;
 pub mod adaptive;
 pub mod canonical;
 #[cfg(feature = "nalgebra")]

@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::points::Points;
 use common::{Body, FreeBody, Reference, Top, distance, run};
 use hamel::adaptive::{Adaptive, Report, Statistics, Tolerance};
 use hamel::methods::General;
@@ -237,79 +238,27 @@ fn a_fixed_wrench_moves_a_body_as_the_reference_says() {
 }
 
 /// ξ̇ = ξ²: infinite at t = 1.
-struct Explosion;
+const EXPLOSION: Points<1> = Points {
+    start: ([0.0], [1.0]),
+    accel: |_, xi| Ok([xi[0] * xi[0]]),
+};
 
-/// The pendulum's equation with an acceleration that has no value above x = 1.
-struct Wall;
-
-macro_rules! line {
-    ($system:ident, $accel:expr) => {
-        impl System for $system {
-            type Scalar = f64;
-            type Coordinates = [f64; 1];
-            type Velocities = [f64; 1];
-            type Chart = [f64; 1];
-            type Inputs = [f64; 0];
-            fn blocks(&self) -> &[Block] {
-                &[Block::Flat(1)]
-            }
-            fn zero_coordinates(&self) -> [f64; 1] {
-                [0.0]
-            }
-            fn zero_velocities(&self) -> [f64; 1] {
-                [0.0]
-            }
-            fn zero_chart(&self) -> [f64; 1] {
-                [0.0]
-            }
-            fn zero_inputs(&self) -> [f64; 0] {
-                []
-            }
-            fn start(&self) -> ([f64; 1], [f64; 1]) {
-                ([0.0], [1.0])
-            }
-            fn rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] {
-                *xi
-            }
-            fn chart_rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] {
-                *xi
-            }
-            fn accel(
-                &self,
-                x: &[f64; 1],
-                xi: &[f64; 1],
-                _: &[f64; 0],
-            ) -> Result<[f64; 1], Singular> {
-                let accel: fn(f64, f64) -> Result<f64, Singular> = $accel;
-                accel(x[0], xi[0]).map(|a| [a])
-            }
-            fn correction(&self, _: &[f64; 1]) -> [f64; 1] {
-                [0.0]
-            }
-            fn constraint_norm(&self, _: &[f64; 1]) -> f64 {
-                0.0
-            }
-            fn kinetic_energy(&self, _: &[f64; 1], xi: &[f64; 1]) -> f64 {
-                0.5 * xi[0] * xi[0]
-            }
-            fn potential_energy(&self, _: &[f64; 1]) -> f64 {
-                0.0
-            }
+/// Uniform motion that has no acceleration from x = 1 on.
+const WALL: Points<1> = Points {
+    start: ([0.0], [1.0]),
+    accel: |x, _| {
+        if x[0] < 1.0 {
+            Ok([0.0])
+        } else {
+            Err(Singular { pivot: 0 })
         }
-    };
-}
-
-line!(Explosion, |_, xi| Ok(xi * xi));
-line!(Wall, |x, _| if x < 1.0 {
-    Ok(0.0)
-} else {
-    Err(Singular { pivot: 0 })
-});
+    },
+};
 
 #[test]
 fn a_singularity_ahead_is_a_typed_error() {
-    let mut state = State::start(&Explosion);
-    let end = Adaptive::rkmk54(1e-9).run(&Explosion, &mut state, 2.0, none::<Explosion>);
+    let mut state = State::start(&EXPLOSION);
+    let end = Adaptive::rkmk54(1e-9).run(&EXPLOSION, &mut state, 2.0, none::<Points<1>>);
     println!("{end:?} at {}", state.t);
     assert!(matches!(
         end,
@@ -318,8 +267,8 @@ fn a_singularity_ahead_is_a_typed_error() {
     // ξ = 1/(1 − t) as long as it exists.
     assert!(state.t < 1.0 && state.t > 0.999 && state.is_finite());
 
-    let mut state = State::start(&Wall);
-    let end = Adaptive::rkmk54(1e-9).run(&Wall, &mut state, 2.0, none::<Wall>);
+    let mut state = State::start(&WALL);
+    let end = Adaptive::rkmk54(1e-9).run(&WALL, &mut state, 2.0, none::<Points<1>>);
     assert!(matches!(end, Err(StepError::Singular { .. })), "{end:?}");
     assert!(
         (state.t - 1.0).abs() < 1e-9,

@@ -5,8 +5,9 @@
 mod common;
 
 use common::Pendulum;
+use common::points::Points;
 use hamel::adaptive::{Adaptive, Event, Report};
-use hamel::{Block, Singular, State, StepError, System};
+use hamel::{State, StepError};
 
 /// T = 4 K(sin(θ₀/2)) √(l/g) = 2π √(l/g) / M(1, cos(θ₀/2)), M the arithmetic-geometric mean.
 fn period(g: f64, l: f64, amplitude: f64) -> f64 {
@@ -121,56 +122,14 @@ fn events_are_found_backwards_too() {
 }
 
 /// A ball in free fall, z = x.
-struct Ball;
+type Ball = Points<1>;
 
 const GRAVITY: f64 = 9.81;
 
-impl System for Ball {
-    type Scalar = f64;
-    type Coordinates = [f64; 1];
-    type Velocities = [f64; 1];
-    type Chart = [f64; 1];
-    type Inputs = [f64; 0];
-    fn blocks(&self) -> &[Block] {
-        &[Block::Flat(1)]
-    }
-    fn zero_coordinates(&self) -> [f64; 1] {
-        [0.0]
-    }
-    fn zero_velocities(&self) -> [f64; 1] {
-        [0.0]
-    }
-    fn zero_chart(&self) -> [f64; 1] {
-        [0.0]
-    }
-    fn zero_inputs(&self) -> [f64; 0] {
-        []
-    }
-    fn start(&self) -> ([f64; 1], [f64; 1]) {
-        ([1.0], [0.0])
-    }
-    fn rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] {
-        *xi
-    }
-    fn chart_rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] {
-        *xi
-    }
-    fn accel(&self, _: &[f64; 1], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
-        Ok([-GRAVITY])
-    }
-    fn correction(&self, _: &[f64; 1]) -> [f64; 1] {
-        [0.0]
-    }
-    fn constraint_norm(&self, _: &[f64; 1]) -> f64 {
-        0.0
-    }
-    fn kinetic_energy(&self, _: &[f64; 1], xi: &[f64; 1]) -> f64 {
-        0.5 * xi[0] * xi[0]
-    }
-    fn potential_energy(&self, x: &[f64; 1]) -> f64 {
-        GRAVITY * x[0]
-    }
-}
+const BALL: Ball = Points {
+    start: ([1.0], [0.0]),
+    accel: |_, _| Ok([-GRAVITY]),
+};
 
 fn free(_: f64, _: &[f64; 1], _: &[f64; 1]) -> [f64; 0] {
     []
@@ -181,12 +140,12 @@ fn a_ball_bounces_when_it_should() -> Result<(), StepError> {
     const RESTITUTION: f64 = 0.8;
     let ground = |state: &State<Ball>| state.x[0];
     let events = [Event::new(&ground).falling().stopping()];
-    let mut state = State::start(&Ball);
+    let mut state = State::start(&BALL);
     let fall = (2.0 / GRAVITY).sqrt();
     let mut expected = fall;
     for bounce in 0..8 {
         let outcome =
-            Adaptive::rkmk54(1e-10).integrate(&Ball, &mut state, 100.0, free, &events, |_| {})?;
+            Adaptive::rkmk54(1e-10).integrate(&BALL, &mut state, 100.0, free, &events, |_| {})?;
         assert_eq!(outcome.stopped_by, Some(0));
         assert!(
             (state.t - expected).abs() < 1e-12,
@@ -218,10 +177,10 @@ fn events_of_one_step_come_in_order_of_time_and_the_stop_ends_it() -> Result<(),
         if !stopping {
             events[2] = Event::new(&heights[2]);
         }
-        let mut state = State::start(&Ball);
+        let mut state = State::start(&BALL);
         let mut seen = Vec::new();
         let mut ends = Vec::new();
-        let outcome = method.integrate(&Ball, &mut state, 1.0, free, &events, |report| {
+        let outcome = method.integrate(&BALL, &mut state, 1.0, free, &events, |report| {
             match report {
                 Report::Event { index, state } => {
                     assert!((state.t - time(at[index])).abs() < 1e-14);
@@ -262,9 +221,9 @@ fn a_coarse_precision_needs_fewer_evaluations_and_is_kept() -> Result<(), StepEr
         let mut method = Adaptive::rkmk54(1e-6);
         method.precision = precision;
         method.first = Some(1.0);
-        let mut state = State::start(&Ball);
+        let mut state = State::start(&BALL);
         count.set(0);
-        method.integrate(&Ball, &mut state, 1.0, free, &events, |_| {})?;
+        method.integrate(&BALL, &mut state, 1.0, free, &events, |_| {})?;
         let late = state.t - (2.0 / GRAVITY).sqrt();
         assert!(late > -1e-14 && late <= precision + 1e-14, "{late:e}");
         spent.push(count.get());
@@ -279,9 +238,9 @@ fn a_coarse_precision_needs_fewer_evaluations_and_is_kept() -> Result<(), StepEr
 #[test]
 fn an_event_that_is_not_a_number_is_a_typed_error() {
     let nothing = |_: &State<Ball>| f64::NAN;
-    let mut state = State::start(&Ball);
+    let mut state = State::start(&BALL);
     let end = Adaptive::rkmk54(1e-6).integrate(
-        &Ball,
+        &BALL,
         &mut state,
         1.0,
         free,

@@ -89,6 +89,9 @@ impl<Sys: System + ?Sized, const N: usize> Method<Sys> for Rkmk<N> {
 }
 
 /// kᵢ and fᵢ of the stages of one step.
+///
+/// Its functions are inlined by force: called, they pass stages through memory, which costs a third of
+/// a step of a small system.
 pub(crate) struct Stages<Sys: System + ?Sized, const N: usize> {
     pub(crate) k: [Sys::Chart; N],
     pub(crate) f: [Sys::Velocities; N],
@@ -102,7 +105,7 @@ pub(crate) struct Sums<Sys: System + ?Sized> {
 
 impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
     /// The first stage, at u = 0, where dexpinv is the identity.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn start<U>(system: &Sys, state: &State<Sys>, inputs: &U) -> Result<Self, StepError>
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
@@ -117,7 +120,7 @@ impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
     }
 
     /// Stage `index`, from those before it.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn evaluate<U>(
         &mut self,
         system: &Sys,
@@ -139,14 +142,14 @@ impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
         Ok(sums)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn set(&mut self, index: usize, k: Sys::Chart, f: Sys::Velocities) {
         if let (Some(k_slot), Some(f_slot)) = (self.k.get_mut(index), self.f.get_mut(index)) {
             (*k_slot, *f_slot) = (k, f);
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn sums(&self, system: &Sys, h: f64, weights: Weights) -> Sums<Sys> {
         let mut sums = Sums::<Sys> {
             u: system.zero_chart(),
@@ -165,7 +168,7 @@ impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
 
 impl<Sys: System + ?Sized> Sums<Sys> {
     /// x moved along u, ξ + Δξ.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn point(
         &self,
         system: &Sys,
@@ -179,7 +182,7 @@ impl<Sys: System + ?Sized> Sums<Sys> {
     }
 
     /// The state at the end of a step, on its manifold.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn end(
         &self,
         system: &Sys,

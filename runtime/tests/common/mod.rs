@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // each test file uses a part
 
+pub mod points;
+
 #[cfg(feature = "std")]
 use hamel::s1;
 use hamel::{Block, Scalar, Singular, State, System, s3, so3};

@@ -1,0 +1,182 @@
+//! Systems as plain ordinary differential equations, for the solvers of other crates.
+//!
+//! Stiff solvers are not rewritten here. The unknowns are y = (x, ξ), ν + n numbers in slices;
+//! [`Equations`] gives their rates, the product of the Jacobian with a vector, and states of what comes
+//! back. It depends on no solver. The one recommended is `diffsol` (MIT; BDF of variable order, ESDIRK
+//! and TR-BDF2 with dense output and events, released every few weeks, described in J. Open Source
+//! Softw. 11 (2026) 9384): `tests/diffsol` of the repository runs a heavy top and a stiff system by it.
+//!
+//! A solver does not know the manifold of x. The stabilising term of KR18 (8), ẋ = A ξ − λ Ψ φ, leads
+//! back to it, and [`Equations::state`] projects what comes out. With λ far above the rates of the
+//! motion the equations are stiff, which such solvers bear.
+
+use core::cell::Cell;
+
+use crate::adaptive::control::power;
+use crate::error::StepError;
+use crate::integrate::{acceleration, projected};
+use crate::manifold;
+use crate::scalar::Scalar;
+use crate::state::State;
+use crate::store::add_scaled;
+use crate::system::System;
+
+/// ẏ = f(t, y): ẋ = A(x) ξ − λ Ψ φ, ξ̇ = M⁻¹ (f − c), for y = (x, ξ).
+///
+/// Where a point has no ξ̇, the rates are NaN: the solver shortens its step or gives up, and
+/// [`failure`](Self::failure) tells the cause.
+#[derive(Debug)]
+pub struct Equations<'s, Sys: ?Sized, U> {
+    system: &'s Sys,
+    inputs: U,
+    lambda: f64,
+    failure: Cell<Option<StepError>>,
+}
+
+impl<'s, Sys, U> Equations<'s, Sys, U>
+where
+    Sys: System + ?Sized,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    /// The equations of a system with u = `inputs(t, x, ξ)`, and with λ in 1/time: some 10/s, or 0;
+    /// negative for runs backwards in time.
+    pub fn new(system: &'s Sys, inputs: U, lambda: f64) -> Self {
+        Self {
+            system,
+            inputs,
+            lambda,
+            failure: Cell::new(None),
+        }
+    }
+
+    /// ν + n
+    pub fn unknowns(&self) -> usize {
+        let x = self.system.zero_coordinates();
+        let xi = self.system.zero_velocities();
+        x.as_ref().len() + xi.as_ref().len()
+    }
+
+    /// Writes (x, ξ) to y, as far as it reaches.
+    pub fn write(&self, state: &State<Sys>, y: &mut [Sys::Scalar]) {
+        put(y, state.x.as_ref().iter().chain(state.xi.as_ref()).copied());
+    }
+
+    /// The state of y, with x on its manifold and on the constraints that multipliers keep.
+    ///
+    /// # Errors
+    /// [`StepError::Shape`] for a list of another length, [`StepError::NonFinite`] for one that is not
+    /// finite, [`StepError::Singular`] where constraints cannot be projected on.
+    pub fn state(&self, t: f64, y: &[Sys::Scalar]) -> Result<State<Sys>, StepError> {
+        let (mut x, xi) = self.read(y.iter().copied())?;
+        manifold::normalise(self.system.blocks(), x.as_mut());
+        let state = State { t, x, xi };
+        if state.is_finite() {
+            Ok(projected(self.system, state)?.0)
+        } else {
+            Err(StepError::NonFinite { time: t })
+        }
+    }
+
+    /// Writes ẏ = f(t, y).
+    pub fn rates(&self, t: f64, y: &[Sys::Scalar], y_dot: &mut [Sys::Scalar]) {
+        let rates = self
+            .read(y.iter().copied())
+            .and_then(|(x, xi)| self.evaluate(t, &x, &xi));
+        match rates {
+            Ok((x, xi)) => put(y_dot, x.as_ref().iter().chain(xi.as_ref()).copied()),
+            Err(cause) => self.fail(cause, y_dot),
+        }
+    }
+
+    /// Writes ∂f/∂y v by a central difference, (f(t, y + δ v) − f(t, y − δ v)) / 2δ with
+    /// δ |v| = ∛ε (1 + |y|): accurate to some 1e-10 of the rates, at two evaluations.
+    pub fn jacobian_product(
+        &self,
+        t: f64,
+        y: &[Sys::Scalar],
+        v: &[Sys::Scalar],
+        product: &mut [Sys::Scalar],
+    ) {
+        let number = Sys::Scalar::from_f64;
+        let size = |list: &[Sys::Scalar]| {
+            let largest = |most, entry: &Sys::Scalar| Scalar::max(most, entry.abs());
+            list.iter().fold(Sys::Scalar::default(), largest)
+        };
+        let reach = number(power(Sys::Scalar::EPSILON, 1.0 / 3.0));
+        let length = size(v);
+        let zero = Sys::Scalar::default();
+        // Of a direction of length zero nothing is asked.
+        let delta = reach * (number(1.0) + size(y)) / zero.select_lt(length, length, number(1.0));
+        let side = |delta: Sys::Scalar| {
+            let entries = y.iter().zip(v).map(|(y, v)| delta.mul_add(*v, *y));
+            let (x, xi) = self.read(entries)?;
+            self.evaluate(t, &x, &xi)
+        };
+        match (side(delta), side(-delta)) {
+            (Ok((x, xi)), Ok((x_below, xi_below))) => {
+                let above = x.as_ref().iter().chain(xi.as_ref());
+                let below = x_below.as_ref().iter().chain(xi_below.as_ref());
+                let twice = number(2.0) * delta;
+                put(product, above.zip(below).map(|(a, b)| (*a - *b) / twice));
+            }
+            (Err(cause), _) | (_, Err(cause)) => self.fail(cause, product),
+        }
+    }
+
+    /// Why a point had no ξ̇: the last singular one, if there was any.
+    pub fn failure(&self) -> Option<StepError> {
+        self.failure.get()
+    }
+
+    /// NaN for the solver. What follows from such NaN does not hide the cause.
+    fn fail(&self, cause: StepError, rates: &mut [Sys::Scalar]) {
+        let known = matches!(self.failure.get(), Some(StepError::Singular { .. }));
+        if !known || matches!(cause, StepError::Singular { .. }) {
+            self.failure.set(Some(cause));
+        }
+        rates.fill(Sys::Scalar::from_f64(f64::NAN));
+    }
+
+    /// (x, ξ) of y.
+    fn read(
+        &self,
+        mut y: impl ExactSizeIterator<Item = Sys::Scalar>,
+    ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
+        let (found, expected) = (y.len(), self.unknowns());
+        if found != expected {
+            return Err(StepError::Shape {
+                part: "coordinates and velocities",
+                expected,
+                found,
+            });
+        }
+        let mut x = self.system.zero_coordinates();
+        let mut xi = self.system.zero_velocities();
+        put(x.as_mut(), y.by_ref());
+        put(xi.as_mut(), y);
+        Ok((x, xi))
+    }
+
+    /// (ẋ, ξ̇)
+    fn evaluate(
+        &self,
+        t: f64,
+        x: &Sys::Coordinates,
+        xi: &Sys::Velocities,
+    ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
+        let mut rate = self.system.rate(x, xi);
+        if self.lambda != 0.0 {
+            let lambda = Sys::Scalar::from_f64(self.lambda);
+            add_scaled(rate.as_mut(), lambda, self.system.correction(x).as_ref());
+        }
+        let accel = acceleration(self.system, t, 0.0, x, xi, &self.inputs)?;
+        Ok((rate, accel))
+    }
+}
+
+/// As many entries as there is room for.
+fn put<S>(list: &mut [S], entries: impl Iterator<Item = S>) {
+    for (slot, entry) in list.iter_mut().zip(entries) {
+        *slot = entry;
+    }
+}
