@@ -27,7 +27,22 @@ pub fn axial<S: Scalar, A: Attitude<S>>(
 ) -> A {
     let (equal, own) = (moments[others(axis).0], moments[axis]);
     let turned = spherical(attitude, *p, equal, h);
-    about(turned, p, axis, h * (equal - own) / (equal * own))
+    let before = across(*p, axis);
+    let turned = about(turned, p, axis, h * (equal - own) / (equal * own));
+    // The same angle comes again at every step, and with it the same rounding of sin² + cos².
+    let factor = S::from_f64(0.5) * (before - across(*p, axis)) / before;
+    let factor = S::default().select_lt(before, factor, S::default());
+    let (b, c) = others(axis);
+    p[b] = factor.mul_add(p[b], p[b]);
+    p[c] = factor.mul_add(p[c], p[c]);
+    turned
+}
+
+/// The square of the part of P across an axis.
+#[inline]
+fn across<S: Scalar>(p: Vector<S>, axis: usize) -> S {
+    let (b, c) = others(axis);
+    p[b].mul_add(p[b], p[c] * p[c])
 }
 
 /// Any moments: turns by h Pᵢ/Jᵢ about the axes 1, 2, 3, 2, 1 for h/2, h/2, h, h/2, h/2. Order 2,
@@ -97,4 +112,3 @@ fn odd_one_out<S: Scalar>(moments: Vector<S>) -> usize {
         2
     }
 }
-

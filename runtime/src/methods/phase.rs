@@ -112,16 +112,20 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
                     }
                 }
                 Block::Quaternion => {
-                    if let (Some(q), Some(p), Some(rotor)) =
-                        (here.first_chunk_mut(), along.first_chunk_mut(), rotors.next())
-                    {
+                    if let (Some(q), Some(p), Some(rotor)) = (
+                        here.first_chunk_mut(),
+                        along.first_chunk_mut(),
+                        rotors.next(),
+                    ) {
                         *q = drift.turn::<_, [Sys::Scalar; 4]>(rotor, *q, p, time)?;
                     }
                 }
                 Block::Rotation => {
-                    if let (Some(r), Some(p), Some(rotor)) =
-                        (here.first_chunk_mut(), along.first_chunk_mut(), rotors.next())
-                    {
+                    if let (Some(r), Some(p), Some(rotor)) = (
+                        here.first_chunk_mut(),
+                        along.first_chunk_mut(),
+                        rotors.next(),
+                    ) {
                         *r = drift.turn::<_, [Sys::Scalar; 9]>(rotor, *r, p, time)?;
                     }
                 }

@@ -11,7 +11,7 @@ use so3::{Matrix, Vector};
 mod split;
 pub use split::Spin;
 
-/// Solves M a = b by Cholesky's factorisation.
+/// Solves M a = b by M = L D Lᵀ; without roots, so that a diagonal M is divided by exactly.
 pub fn solve<S: Scalar, const N: usize>(
     mut m: [[S; N]; N],
     mut b: [S; N],
@@ -19,17 +19,14 @@ pub fn solve<S: Scalar, const N: usize>(
     for i in 0..N {
         for j in 0..=i {
             for k in 0..j {
-                let product = m[i][k] * m[j][k];
+                let product = m[i][k] * m[j][k] * m[k][k];
                 m[i][j] -= product;
             }
-            if i == j {
-                if !m[i][i].is_positive() {
-                    return Err(Singular { pivot: i });
-                }
-                m[i][i] = m[i][i].sqrt();
-            } else {
+            if i != j {
                 let pivot = m[j][j];
                 m[i][j] /= pivot;
+            } else if !m[i][i].is_positive() {
+                return Err(Singular { pivot: i });
             }
         }
     }
@@ -38,6 +35,8 @@ pub fn solve<S: Scalar, const N: usize>(
             let product = m[i][k] * b[k];
             b[i] -= product;
         }
+    }
+    for i in 0..N {
         b[i] /= m[i][i];
     }
     for i in (0..N).rev() {
@@ -45,7 +44,6 @@ pub fn solve<S: Scalar, const N: usize>(
             let product = m[k][i] * b[k];
             b[i] -= product;
         }
-        b[i] /= m[i][i];
     }
     Ok(b)
 }
@@ -370,11 +368,16 @@ pub struct Reference(Value);
 
 impl Reference {
     pub fn read(name: &str) -> Self {
-        let path = format!(
-            "{}/../tests/reference/{name}.json",
-            env!("CARGO_MANIFEST_DIR")
-        );
-        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        // Beside the crates, or one of them.
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let folders = ["../tests/reference", "../reference"].map(|folder| root.join(folder));
+        let folder = folders.iter().find(|folder| folder.is_dir());
+        let path = folder
+            .expect("the reference solutions")
+            .join(format!("{name}.json"));
+        let path = path.display();
+        let text = std::fs::read_to_string(path.to_string())
+            .unwrap_or_else(|error| panic!("{path}: {error}"));
         Self(serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}")))
     }
 

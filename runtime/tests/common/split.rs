@@ -148,8 +148,12 @@ macro_rules! split {
 
 split!(Top<S>, false, [S; 9], |this| this.0, |x| *x);
 split!(Spin<Top<S>>, true, [S; 9], |this| this.0.0, |x| *x);
-split!(QuaternionTop<S>, false, [S; 4], |this| this.0, |x| s3::to_matrix(*x));
-split!(Spin<QuaternionTop<S>>, true, [S; 4], |this| this.0.0, |x| s3::to_matrix(*x));
+split!(QuaternionTop<S>, false, [S; 4], |this| this.0, |x| {
+    s3::to_matrix(*x)
+});
+split!(Spin<QuaternionTop<S>>, true, [S; 4], |this| this.0.0, |x| {
+    s3::to_matrix(*x)
+});
 
 /// y = (r + R s, R), p = (ẏ, P about the centre of mass).
 impl Split for FreeBody {
