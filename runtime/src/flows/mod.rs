@@ -22,9 +22,11 @@ pub use attitude::Attitude;
 pub use exact::{exact, half_period};
 pub use turns::{axes, axial, pair, spherical};
 
+use core::array::from_fn;
+
 use crate::rotor::{Rotor, Symmetry};
 use crate::scalar::Scalar;
-use crate::so3::Vector;
+use crate::so3::{self, Vector};
 
 /// Which torque-free flow a method uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,12 +65,16 @@ impl Flow {
         let Some(axes) = rotor.axes else {
             return self.principal(rotor, attitude, p, h);
         };
-        // The increment is found as a quaternion, whose axis then goes over to body axes.
+        // The increment is found as a quaternion, whose axis then goes over to body axes. P is turned
+        // back by it rather than taken over: axes orthonormal to rounding would scale it each time.
         let mut own = rotor.to_principal(*p);
-        let [w, x, y, z] = self.principal(rotor, <[S; 4]>::identity(), &mut own, h);
-        *p = crate::so3::apply(axes, own);
-        let [x, y, z] = crate::so3::apply(axes, [x, y, z]);
-        attitude.turned_by([w, x, y, z])
+        let [w, v @ ..] = self.principal(rotor, <[S; 4]>::identity(), &mut own, h);
+        let v = so3::apply(axes, v);
+        let twice = |a: Vector<S>| so3::cross(v, a).map(|component| component + component);
+        let once = twice(*p);
+        let again = so3::cross(v, once);
+        *p = from_fn(|i| p[i] + (again[i] - w * once[i]));
+        attitude.turned_by([w, v[0], v[1], v[2]])
     }
 
     #[inline]

@@ -9,6 +9,7 @@ use serde_json::Value;
 use so3::{Matrix, Vector};
 
 mod split;
+#[allow(unused_imports)]
 pub use split::Spin;
 
 /// Solves M a = b by M = L D Lᵀ; without roots, so that a diagonal M is divided by exactly.
