@@ -1,8 +1,8 @@
 //! The methods, one per file: what each is good for, its order, its cost.
 //!
 //! All of them are types that implement [`Method`]: a step from one
-//! [`State`](crate::State) to the next. What a method needs beyond
-//! [`System`](crate::System) it names as a bound, so that a system that cannot be run by it is an
+//! [`State`] to the next. What a method needs beyond
+//! [`System`] it names as a bound, so that a system that cannot be run by it is an
 //! error of the compiler.
 //!
 //! | method | order | for |
