@@ -54,7 +54,7 @@ impl Flow {
     }
 
     /// Moves the attitude and P, both of body axes, by `h` without torque.
-    #[inline]
+    #[inline(always)]
     pub fn turn<S: Scalar, A: Attitude<S>>(
         self,
         rotor: &Rotor<S>,
@@ -77,7 +77,7 @@ impl Flow {
         attitude.turned_by([w, v[0], v[1], v[2]])
     }
 
-    #[inline]
+    #[inline(always)]
     fn principal<S: Scalar, A: Attitude<S>>(
         self,
         rotor: &Rotor<S>,
@@ -89,7 +89,10 @@ impl Flow {
         match (self, rotor.symmetry) {
             (Self::Axes, _) | (Self::Turns, Symmetry::None) => axes(attitude, p, moments, h),
             (_, Symmetry::Spherical) => spherical(attitude, *p, moments[0], h),
-            (_, Symmetry::Axial(axis)) => axial(attitude, p, moments, axis, h),
+            // Written out, so that each is compiled for its axis.
+            (_, Symmetry::Axial(0)) => axial(attitude, p, moments, 0, h),
+            (_, Symmetry::Axial(1)) => axial(attitude, p, moments, 1, h),
+            (_, Symmetry::Axial(_)) => axial(attitude, p, moments, 2, h),
             (Self::Pair, Symmetry::None) => pair(attitude, p, moments, h),
             (Self::Exact, Symmetry::None) => exact(attitude, p, moments, h),
         }

@@ -239,3 +239,19 @@ fn orders_of_baselines() -> Result<(), StepError> {
     }
     Ok(())
 }
+
+#[test]
+fn stepped_splitting_passes_the_flips() {
+    // The separatrix at a distance of 1e-6 magnifies the rounding of every step: 1e-7 is asked.
+    let (case, until, n) = SPINS[0];
+    for (scheme, flow) in [
+        (Scheme::KahanLi6, Flow::Axes),
+        (Scheme::KahanLi6, Flow::Pair),
+        (Scheme::Strang, Flow::Exact),
+    ] {
+        let method = |top: &Spin<Top<f64>>| Splitting::with_flow(top, scheme, flow);
+        let error = spin_error(case, until, n, method);
+        println!("{scheme:?}, {flow:?}: {error:e}");
+        assert!(error <= 1e-7, "{scheme:?}, {flow:?}: {error:e}");
+    }
+}
