@@ -109,6 +109,19 @@ fn an_offset_body_under_a_wrench_of_time() {
             "{scheme:?} {errors:?}"
         );
     }
+    for (order, coarsest, run) in [
+        (
+            4.0,
+            100,
+            &(|n| flown(|_| Gauss4, n)) as &dyn Fn(u32) -> State<FreeBody>,
+        ),
+        (6.0, 25, &|n| flown(|_| Gauss6, n)),
+    ] {
+        let errors = [1, 2, 4].map(|f| distance(run(f * coarsest).x, fine.x));
+        println!("Gauss {order} {errors:?} {:?}", slopes(&errors));
+        let last = slopes(&errors)[1];
+        assert!((last - order).abs() < 0.1, "Gauss {order} {errors:?}");
+    }
 }
 
 #[test]

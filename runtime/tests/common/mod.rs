@@ -216,6 +216,27 @@ fn pose(r: Vector<f64>, rotation: Matrix<f64>) -> [f64; 12] {
 }
 
 impl FreeBody {
+    /// [m I, −m ŝ; m ŝ, Θ]
+    fn mass(&self) -> [[f64; 6]; 6] {
+        let Body { m, s, inertia, .. } = self.body;
+        let coupling = rows(so3::hat(s.map(|s| m * s)));
+        let inertia = rows(inertia);
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| match (i < 3, j < 3) {
+                (true, true) => {
+                    if i == j {
+                        m
+                    } else {
+                        0.0
+                    }
+                }
+                (true, false) => -coupling[i][j - 3],
+                (false, true) => coupling[i - 3][j],
+                (false, false) => inertia[i - 3][j - 3],
+            })
+        })
+    }
+
     /// p = m (v + ω × s), L = m s × v + Θ ω
     fn momentum(&self, v: Vector<f64>, w: Vector<f64>) -> (Vector<f64>, Vector<f64>) {
         let Body { m, s, inertia, .. } = self.body;
@@ -251,9 +272,7 @@ impl System for FreeBody {
         [a, b, c, d, e, f]
     }
     fn accel(&self, x: &[f64; 12], xi: &[f64; 6], u: &[f64; 6]) -> Result<[f64; 6], Singular> {
-        let Body {
-            m, s, inertia, g, ..
-        } = self.body;
+        let Body { m, s, g, .. } = self.body;
         let (v, w) = twist(xi);
         let (force, torque) = twist(u);
         let (p, l) = self.momentum(v, w);
@@ -262,24 +281,8 @@ impl System for FreeBody {
         let gyroscopic = add(so3::cross(w, l), so3::cross(v, p));
         let angular = add(sub(so3::cross(s, weight), gyroscopic), torque);
 
-        let coupling = rows(so3::hat(s.map(|s| m * s)));
-        let inertia = rows(inertia);
-        let mass = std::array::from_fn(|i| {
-            std::array::from_fn(|j| match (i < 3, j < 3) {
-                (true, true) => {
-                    if i == j {
-                        m
-                    } else {
-                        0.0
-                    }
-                }
-                (true, false) => -coupling[i][j - 3],
-                (false, true) => coupling[i - 3][j],
-                (false, false) => inertia[i - 3][j - 3],
-            })
-        });
         let ([a, b, c], [d, e, f]) = (linear, angular);
-        solve(mass, [a, b, c, d, e, f])
+        solve(self.mass(), [a, b, c, d, e, f])
     }
     fn correction(&self, x: &[f64; 12]) -> [f64; 12] {
         pose([0.0; 3], so3::correction(rotation(x)))

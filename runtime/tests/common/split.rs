@@ -255,3 +255,25 @@ impl Canonical for Pendulum {
         solve([[self.l * self.l]], [p[0]]).map(|xi| xi.to_vec())
     }
 }
+
+/// Kirchhoff's equations: p in body axes, ṗ = p × ω + F, L̇ = L × ω + p × v + τ.
+impl Canonical for FreeBody {
+    fn momentum(&self, _: &[f64; 12], xi: &[f64; 6]) -> [f64; 6] {
+        let (v, w) = twist(xi);
+        let ([a, b, c], [d, e, f]) = self.momentum(v, w);
+        [a, b, c, d, e, f]
+    }
+    fn momentum_rate(&self, x: &[f64; 12], xi: &[f64; 6], u: &[f64; 6]) -> [f64; 6] {
+        let Body { m, s, g, .. } = self.body;
+        let ((v, w), (force, torque)) = (twist(xi), twist(u));
+        let (p, l) = self.momentum(v, w);
+        let weight = so3::apply_transpose(rotation(x), g).map(|g| m * g);
+        let [a, b, c] = add(so3::cross(p, w), add(weight, force));
+        let turning = add(so3::cross(l, w), so3::cross(p, v));
+        let [d, e, f] = add(turning, add(so3::cross(s, weight), torque));
+        [a, b, c, d, e, f]
+    }
+    fn velocity_of_momentum(&self, _: &[f64; 12], p: &[f64; 6]) -> Result<[f64; 6], Singular> {
+        solve(self.mass(), *p)
+    }
+}

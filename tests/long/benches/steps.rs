@@ -8,7 +8,7 @@ use divan::{Bencher, black_box};
 use hamel::flows::Flow;
 use hamel::methods::{Buss, Free, Gauss4, Gauss6, Lgvi, Rkmk4, Scheme, Slide, Splitting};
 use hamel::{Method, State, System, so3};
-use hamel_tests_long::common::{Body, QuaternionTop, Spin, Top};
+use hamel_tests_long::common::{Body, QuaternionTop, Reference, Spin, Top};
 
 /// Steps of one measurement: the state moves on, so that nothing is computed once for all.
 const STEPS: usize = 64;
@@ -99,6 +99,38 @@ fn free_at_100(bencher: Bencher) {
     let spin = Spin(top(ASYMMETRIC));
     let start = State::start(&spin);
     bencher.bench_local(|| hamel::methods::free::at(&spin, black_box(&start), 100.0).is_ok());
+}
+
+/// Whole runs that end with an error of R below 1e-9; the runtime's tests of bodies assert the errors.
+fn to_nine_digits(bencher: Bencher, case: &str, until: f64, n: u32) {
+    let top = Top(Reference::read(case).body());
+    let method = Splitting::new(&top, Scheme::Nystrom6);
+    let h = until / f64::from(n);
+    bencher.bench_local(|| {
+        let mut state = State::start(&top);
+        let count = black_box(u64::from(n));
+        let outcome = method.run(&top, &mut state, h, count, &|_, _, _| [], |_| {});
+        black_box(outcome.is_ok());
+        state
+    });
+}
+
+/// 199 evaluations of the torque.
+#[divan::bench(sample_count = SAMPLES)]
+fn heavy_top_benchmark_to_1e_9(bencher: Bencher) {
+    to_nine_digits(bencher, "heavy-top-benchmark-150", 1.0, 18);
+}
+
+/// 1541 evaluations.
+#[divan::bench(sample_count = SAMPLES)]
+fn fast_top_to_1e_9(bencher: Bencher) {
+    to_nine_digits(bencher, "lagrange-fast-top", 5.0, 140);
+}
+
+/// 1321 evaluations.
+#[divan::bench(sample_count = SAMPLES)]
+fn kovalevskaya_top_to_1e_9(bencher: Bencher) {
+    to_nine_digits(bencher, "kovalevskaya-top", 20.0, 120);
 }
 
 /// What a step of `Rkmk4` cannot do without.
