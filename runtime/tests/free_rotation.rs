@@ -22,7 +22,6 @@ const CASES: [(&str, f64); 5] = [
     ("free-near-symmetric", 100.0),
 ];
 
-
 #[test]
 fn closed_form_at_the_last_sample() -> Result<(), StepError> {
     for (case, t) in CASES {
@@ -80,10 +79,16 @@ fn keeps_its_laws(top: &Spin<Top<f64>>, t: f64) -> Result<(), StepError> {
     let momentum = |state: &State<_>| so3::apply(state.x, top.0.0.momentum(state.xi));
     let scale = so3::dot(momentum(&start), momentum(&start)).sqrt();
     let drift = distance(momentum(&end), momentum(&start));
-    assert!(drift <= 1e-14 * scale, "{top:?} {t}: {drift:e} of {scale:e}");
+    assert!(
+        drift <= 1e-14 * scale,
+        "{top:?} {t}: {drift:e} of {scale:e}"
+    );
     let energy = |state: &State<_>| top.kinetic_energy(&state.x, &state.xi);
     let drift = (energy(&end) - energy(&start)).abs();
-    assert!(drift <= 2e-15 * energy(&start), "{top:?} {t}: energy {drift:e}");
+    assert!(
+        drift <= 2e-15 * energy(&start),
+        "{top:?} {t}: energy {drift:e}"
+    );
     assert!(top.constraint_norm(&end.x) <= 2e-15);
 
     let back = free::at(top, &end, start.t)?;
@@ -91,8 +96,16 @@ fn keeps_its_laws(top: &Spin<Top<f64>>, t: f64) -> Result<(), StepError> {
     // The phase about R P is known to rounding of its size; on the way it may be magnified.
     let rate = so3::dot(top.0.0.w0, top.0.0.w0).sqrt();
     let phase = 4e-15 * (1.0 + rate * t.abs());
-    assert!(distance(back.x, start.x) <= phase, "{top:?} {t}: {:e}", distance(back.x, start.x));
-    assert!(distance(via.x, end.x) <= phase, "{top:?} {t}: {:e}", distance(via.x, end.x));
+    assert!(
+        distance(back.x, start.x) <= phase,
+        "{top:?} {t}: {:e}",
+        distance(back.x, start.x)
+    );
+    assert!(
+        distance(via.x, end.x) <= phase,
+        "{top:?} {t}: {:e}",
+        distance(via.x, end.x)
+    );
     Ok(())
 }
 
@@ -141,7 +154,10 @@ fn a_steady_turn_stays_steady() -> Result<(), StepError> {
                     let end = free::at(&top, &State::start(&top), t)?;
                     assert!(distance(end.xi, w) <= 1e-15 * rate.abs(), "{end:?}");
                     let r = so3::retract(top.0.0.r0, w.map(|w| w * t));
-                    assert!(distance(end.x, r) <= 1e-15 * (2.0 + rate.abs() * t), "{end:?}");
+                    assert!(
+                        distance(end.x, r) <= 1e-15 * (2.0 + rate.abs() * t),
+                        "{end:?}"
+                    );
                 }
             }
         }
@@ -179,7 +195,14 @@ fn forces_are_refused() {
 #[test]
 fn principal_axes_of_a_full_inertia() {
     let moments = [0.3, 1.2, 1.4];
-    for axes in [[0.0; 3], [0.3, -1.1, 0.6], [1e-9, 0.0, 0.0], [0.0, 0.0, 3.0]].map(so3::exp) {
+    for axes in [
+        [0.0; 3],
+        [0.3, -1.1, 0.6],
+        [1e-9, 0.0, 0.0],
+        [0.0, 0.0, 3.0],
+    ]
+    .map(so3::exp)
+    {
         for moments in [moments, [1.0, 1.0, 1.7], [1.7, 1.0, 1.0], [1.0; 3]] {
             let scaled: [f64; 9] = std::array::from_fn(|k| axes[k] * moments[k % 3]);
             let transposed: [f64; 9] = std::array::from_fn(|k| axes[3 * (k % 3) + k / 3]);
@@ -189,7 +212,10 @@ fn principal_axes_of_a_full_inertia() {
             let scaled: [f64; 9] = std::array::from_fn(|k| found[k] * rotor.moments[k % 3]);
             let transposed: [f64; 9] = std::array::from_fn(|k| found[3 * (k % 3) + k / 3]);
             assert!(distance(so3::product(scaled, transposed), inertia) < 4e-15);
-            let turned = so3::cross([found[0], found[3], found[6]], [found[1], found[4], found[7]]);
+            let turned = so3::cross(
+                [found[0], found[3], found[6]],
+                [found[1], found[4], found[7]],
+            );
             assert!(distance(turned, [found[2], found[5], found[8]]) < 1e-15);
             let equal = moments.iter().filter(|m| **m == 1.0).count();
             let symmetry = match rotor.symmetry {

@@ -4,9 +4,10 @@ mod common;
 
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use common::{Body, QuaternionTop, Reference, Top, run};
+use common::{Body, QuaternionTop, Reference, Spin, Top, distance, run};
 use hamel::adaptive::Adaptive;
-use hamel::methods::General;
+use hamel::flows::Flow;
+use hamel::methods::{Free, Gauss6, General, Lgvi, Scheme, Splitting};
 use hamel::{Monitor, Scalar, State, StepError, s3, so3};
 
 /// Two lanes.
@@ -193,4 +194,75 @@ fn one_bad_lane_is_an_error() {
     assert_eq!(outcome, Err(StepError::NonFinite { time: 0.0 }));
     let outcome = Adaptive::rkmk54(1e-6).run(&top, &mut state, 1.0, |_, _, _| []);
     assert_eq!(outcome, Err(StepError::NonFinite { time: 0.0 }));
+}
+
+#[test]
+fn methods_of_bodies_agree_with_single_runs() -> Result<(), StepError> {
+    let (single, both) = bodies();
+    let top = Top(both);
+    for (flow, scheme) in [
+        (Flow::Turns, Scheme::Nystrom4),
+        (Flow::Axes, Scheme::Suzuki4),
+    ] {
+        let method = Splitting::with_flow(&top, scheme, flow);
+        let state = run(&top, method, 1.0, 100)?;
+        for (index, body) in single.iter().enumerate() {
+            let alone = Top(body.clone());
+            let alone = run(&alone, Splitting::with_flow(&alone, scheme, flow), 1.0, 100)?;
+            assert_eq!(lane(state.x, index), alone.x);
+            assert_eq!(lane(state.xi, index), alone.xi);
+        }
+    }
+    // Iterations go on until all lanes are content: equal to rounding.
+    let (lgvi, gauss) = (run(&top, Lgvi, 0.1, 100)?, run(&top, Gauss6, 0.1, 100)?);
+    for (index, body) in single.into_iter().enumerate() {
+        let alone = Top(body);
+        let error = distance(lane(lgvi.x, index), run(&alone, Lgvi, 0.1, 100)?.x);
+        assert!(error < 1e-12, "{error:e}");
+        let error = distance(lane(gauss.x, index), run(&alone, Gauss6, 0.1, 100)?.x);
+        assert!(error < 1e-12, "{error:e}");
+    }
+    Ok(())
+}
+
+#[test]
+fn free_rotors_of_different_symmetry_share_a_step() -> Result<(), StepError> {
+    let diagonal = |[a, b, c]: [f64; 3]| [a, 0.0, 0.0, 0.0, b, 0.0, 0.0, 0.0, c];
+    let body = |moments: [f64; 3], w0: [f64; 3]| Body {
+        inertia: diagonal(moments),
+        m: 0.0,
+        s: [0.0; 3],
+        g: [0.0; 3],
+        r0: so3::identity(),
+        w0,
+    };
+    let asymmetric = body([1.0, 2.0, 2.9], [0.4, -0.7, 1.1]);
+    for other in [
+        body([1.0, 1.0, 1.7], [0.1, 0.2, -3.0]),
+        body([0.4, 1.0, 1.0], [0.1, 0.2, -3.0]),
+        body([1.0; 3], [0.1, 0.2, -3.0]),
+        body([2.9, 2.0, 1.0], [0.0, 0.3, 0.0]),
+        body([2.9, 2.0, 1.0], [0.0; 3]),
+        body([1e-3, 1.0, 1.0005], [20.0, 0.5, -0.3]),
+    ] {
+        let both = Spin(Top(Body {
+            inertia: pair(asymmetric.inertia, other.inertia),
+            m: Pair([0.0; 2]),
+            s: pair([0.0; 3], [0.0; 3]),
+            g: pair([0.0; 3], [0.0; 3]),
+            r0: pair(asymmetric.r0, other.r0),
+            w0: pair(asymmetric.w0, other.w0),
+        }));
+        for t in [0.05, 0.3, 10.0] {
+            let state = run(&both, Free, t, 1)?;
+            for (index, body) in [&asymmetric, &other].into_iter().enumerate() {
+                let alone = run(&Spin(Top(body.clone())), Free, t, 1)?;
+                let error = distance(lane(state.x, index), alone.x);
+                // Rounding of the angle about the angular momentum, up to 200 rad.
+                assert!(error < 2e-13, "{body:?} {t}: {error:e}");
+                assert!(distance(lane(state.xi, index), alone.xi) < 2e-13);
+            }
+        }
+    }
+    Ok(())
 }

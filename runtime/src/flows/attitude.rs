@@ -35,7 +35,7 @@ pub struct SineCosine<S> {
 
 impl<S: Scalar> SineCosine<S> {
     /// Of an angle in rad: by series below half a radian.
-    #[inline]
+    #[inline(always)]
     pub fn of(angle: S) -> Self {
         let t2 = angle * angle;
         let one = S::from_f64(1.0);
@@ -50,7 +50,7 @@ impl<S: Scalar> SineCosine<S> {
     }
 
     /// Of twice the angle.
-    #[inline]
+    #[inline(always)]
     pub fn doubled(self) -> Self {
         let twice = S::from_f64(2.0) * self.sine;
         Self {
@@ -60,7 +60,7 @@ impl<S: Scalar> SineCosine<S> {
     }
 
     /// The vector p of body axes, at rest in the world, after the body turned by this angle about `axis`.
-    #[inline]
+    #[inline(always)]
     pub fn turn_back(self, axis: usize, p: &mut Vector<S>) {
         let (b, c) = others(axis);
         let (along, across) = (p[b], p[c]);
@@ -70,7 +70,7 @@ impl<S: Scalar> SineCosine<S> {
 }
 
 /// The axes after `axis`, in cyclic order.
-#[inline]
+#[inline(always)]
 pub(crate) const fn others(axis: usize) -> (usize, usize) {
     match axis {
         0 => (1, 2),
@@ -80,27 +80,27 @@ pub(crate) const fn others(axis: usize) -> (usize, usize) {
 }
 
 impl<S: Scalar> Attitude<S> for Matrix<S> {
-    #[inline]
+    #[inline(always)]
     fn identity() -> Self {
         so3::identity()
     }
 
-    #[inline]
+    #[inline(always)]
     fn turned(self, u: Vector<S>) -> Self {
         so3::retract(self, u)
     }
 
-    #[inline]
+    #[inline(always)]
     fn turned_by(self, f: s3::Quaternion<S>) -> Self {
         so3::product(self, s3::to_matrix(f))
     }
 
-    #[inline]
+    #[inline(always)]
     fn turned_by_matrix(self, f: Matrix<S>) -> Self {
         so3::product(self, f)
     }
 
-    #[inline]
+    #[inline(always)]
     fn turned_about(self, axis: usize, half: SineCosine<S>) -> Self {
         let angle = half.doubled();
         let mut r = self;
@@ -116,28 +116,28 @@ impl<S: Scalar> Attitude<S> for Matrix<S> {
 }
 
 impl<S: Scalar> Attitude<S> for s3::Quaternion<S> {
-    #[inline]
+    #[inline(always)]
     fn identity() -> Self {
         let zero = S::default();
         [S::from_f64(1.0), zero, zero, zero]
     }
 
-    #[inline]
+    #[inline(always)]
     fn turned(self, u: Vector<S>) -> Self {
         s3::retract(self, u)
     }
 
-    #[inline]
+    #[inline(always)]
     fn turned_by(self, f: s3::Quaternion<S>) -> Self {
         s3::product(self, f)
     }
 
-    #[inline]
+    #[inline(always)]
     fn turned_by_matrix(self, f: Matrix<S>) -> Self {
         s3::product(self, s3::from_matrix(f))
     }
 
-    #[inline]
+    #[inline(always)]
     fn turned_about(self, axis: usize, half: SineCosine<S>) -> Self {
         let (b, c) = others(axis);
         let (along, beside, across) = (1 + axis, 1 + b, 1 + c);

@@ -171,9 +171,8 @@ impl<S: Scalar> Motion<S> {
         let by_third = self.inverses[0] * time - part;
         let angle = zero.select_lt(self.by_first, by_first, by_third);
         let angle = zero.select_lt(self.moving, angle, self.steady_rate * time);
-        let reference: Vector<S> = from_fn(|i| {
-            zero.select_lt(self.by_first, self.names[0][i], self.names[2][i])
-        });
+        let reference: Vector<S> =
+            from_fn(|i| zero.select_lt(self.by_first, self.names[0][i], self.names[2][i]));
         let (before, after) = (frame(reference, self.unit), frame(reference, unit));
         let turned = before.turned_about(2, SineCosine::of(S::from_f64(0.5) * angle));
         let transposed: Matrix<S> = from_fn(|k| after[3 * (k % 3) + k / 3]);

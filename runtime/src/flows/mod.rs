@@ -22,9 +22,11 @@ pub use attitude::Attitude;
 pub use exact::{exact, half_period};
 pub use turns::{axes, axial, pair, spherical};
 
+use core::array::from_fn;
+
 use crate::rotor::{Rotor, Symmetry};
 use crate::scalar::Scalar;
-use crate::so3::Vector;
+use crate::so3::{self, Vector};
 
 /// Which torque-free flow a method uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,7 +54,7 @@ impl Flow {
     }
 
     /// Moves the attitude and P, both of body axes, by `h` without torque.
-    #[inline]
+    #[inline(always)]
     pub fn turn<S: Scalar, A: Attitude<S>>(
         self,
         rotor: &Rotor<S>,
@@ -63,15 +65,19 @@ impl Flow {
         let Some(axes) = rotor.axes else {
             return self.principal(rotor, attitude, p, h);
         };
-        // The increment is found as a quaternion, whose axis then goes over to body axes.
+        // The increment is found as a quaternion, whose axis then goes over to body axes. P is turned
+        // back by it rather than taken over: axes orthonormal to rounding would scale it each time.
         let mut own = rotor.to_principal(*p);
-        let [w, x, y, z] = self.principal(rotor, <[S; 4]>::identity(), &mut own, h);
-        *p = crate::so3::apply(axes, own);
-        let [x, y, z] = crate::so3::apply(axes, [x, y, z]);
-        attitude.turned_by([w, x, y, z])
+        let [w, v @ ..] = self.principal(rotor, <[S; 4]>::identity(), &mut own, h);
+        let v = so3::apply(axes, v);
+        let twice = |a: Vector<S>| so3::cross(v, a).map(|component| component + component);
+        let once = twice(*p);
+        let again = so3::cross(v, once);
+        *p = from_fn(|i| p[i] + (again[i] - w * once[i]));
+        attitude.turned_by([w, v[0], v[1], v[2]])
     }
 
-    #[inline]
+    #[inline(always)]
     fn principal<S: Scalar, A: Attitude<S>>(
         self,
         rotor: &Rotor<S>,
@@ -83,7 +89,10 @@ impl Flow {
         match (self, rotor.symmetry) {
             (Self::Axes, _) | (Self::Turns, Symmetry::None) => axes(attitude, p, moments, h),
             (_, Symmetry::Spherical) => spherical(attitude, *p, moments[0], h),
-            (_, Symmetry::Axial(axis)) => axial(attitude, p, moments, axis, h),
+            // Written out, so that each is compiled for its axis.
+            (_, Symmetry::Axial(0)) => axial(attitude, p, moments, 0, h),
+            (_, Symmetry::Axial(1)) => axial(attitude, p, moments, 1, h),
+            (_, Symmetry::Axial(_)) => axial(attitude, p, moments, 2, h),
             (Self::Pair, Symmetry::None) => pair(attitude, p, moments, h),
             (Self::Exact, Symmetry::None) => exact(attitude, p, moments, h),
         }

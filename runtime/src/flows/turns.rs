@@ -9,7 +9,7 @@ use crate::scalar::Scalar;
 use crate::so3::Vector;
 
 /// Three equal moments J: R exp(h P/J). Exact.
-#[inline]
+#[inline(always)]
 pub fn spherical<S: Scalar, A: Attitude<S>>(attitude: A, p: Vector<S>, j: S, h: S) -> A {
     let factor = h / j;
     attitude.turned(p.map(|p| factor * p))
@@ -17,7 +17,7 @@ pub fn spherical<S: Scalar, A: Attitude<S>>(attitude: A, p: Vector<S>, j: S, h: 
 
 /// Two equal moments beside `axis`: R exp(h P/Jₐ), then a turn by h P_c (1/J_c − 1/Jₐ) about the axis
 /// c, in which P turns back. Exact.
-#[inline]
+#[inline(always)]
 pub fn axial<S: Scalar, A: Attitude<S>>(
     attitude: A,
     p: &mut Vector<S>,
@@ -27,12 +27,27 @@ pub fn axial<S: Scalar, A: Attitude<S>>(
 ) -> A {
     let (equal, own) = (moments[others(axis).0], moments[axis]);
     let turned = spherical(attitude, *p, equal, h);
-    about(turned, p, axis, h * (equal - own) / (equal * own))
+    let before = across(*p, axis);
+    let turned = about(turned, p, axis, h * (equal - own) / (equal * own));
+    // The same angle comes again at every step, and with it the same rounding of sin² + cos².
+    let factor = S::from_f64(0.5) * (before - across(*p, axis)) / before;
+    let factor = S::default().select_lt(before, factor, S::default());
+    let (b, c) = others(axis);
+    p[b] = factor.mul_add(p[b], p[b]);
+    p[c] = factor.mul_add(p[c], p[c]);
+    turned
+}
+
+/// The square of the part of P across an axis.
+#[inline(always)]
+fn across<S: Scalar>(p: Vector<S>, axis: usize) -> S {
+    let (b, c) = others(axis);
+    p[b].mul_add(p[b], p[c] * p[c])
 }
 
 /// Any moments: turns by h Pᵢ/Jᵢ about the axes 1, 2, 3, 2, 1 for h/2, h/2, h, h/2, h/2. Order 2,
 /// symmetric, symplectic.
-#[inline]
+#[inline(always)]
 pub fn axes<S: Scalar, A: Attitude<S>>(
     attitude: A,
     p: &mut Vector<S>,
@@ -40,18 +55,19 @@ pub fn axes<S: Scalar, A: Attitude<S>>(
     h: S,
 ) -> A {
     let half = S::from_f64(0.5) * h;
-    let mut turned = attitude;
-    for (axis, time) in [(0, half), (1, half), (2, h), (1, half), (0, half)] {
-        turned = about(turned, p, axis, time / moments[axis]);
-    }
-    turned
+    let rates = [half / moments[0], half / moments[1], h / moments[2]];
+    let turned = about(attitude, p, 0, rates[0]);
+    let turned = about(turned, p, 1, rates[1]);
+    let turned = about(turned, p, 2, rates[2]);
+    let turned = about(turned, p, 1, rates[1]);
+    about(turned, p, 0, rates[0])
 }
 
 /// Nearly equal moments Jₐ, J_b: the flow for two moments Jₐ between half turns by
 /// (h/2) P_b (1/J_b − 1/Jₐ) about b. Order 2 with an error proportional to that difference.
 ///
 /// The pair are those of the closest 1/J.
-#[inline]
+#[inline(always)]
 pub fn pair<S: Scalar, A: Attitude<S>>(
     attitude: A,
     p: &mut Vector<S>,
@@ -70,7 +86,7 @@ pub fn pair<S: Scalar, A: Attitude<S>>(
 }
 
 /// A turn by `rate` P_axis about a principal axis.
-#[inline]
+#[inline(always)]
 fn about<S: Scalar, A: Attitude<S>>(attitude: A, p: &mut Vector<S>, axis: usize, rate: S) -> A {
     let half = SineCosine::of(S::from_f64(0.5) * rate * p[axis]);
     half.doubled().turn_back(axis, p);
@@ -78,7 +94,7 @@ fn about<S: Scalar, A: Attitude<S>>(attitude: A, p: &mut Vector<S>, axis: usize,
 }
 
 /// The axis beside the two moments whose inverses are closest, in all lanes; the third otherwise.
-#[inline]
+#[inline(always)]
 fn odd_one_out<S: Scalar>(moments: Vector<S>) -> usize {
     let gap = |axis: usize| {
         let (a, b) = others(axis);
@@ -97,4 +113,3 @@ fn odd_one_out<S: Scalar>(moments: Vector<S>) -> usize {
         2
     }
 }
-

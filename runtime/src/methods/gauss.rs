@@ -42,10 +42,7 @@ const ROOTS: (f64, f64) = (1.732_050_807_568_877_3, 3.872_983_346_207_417);
 
 const TWO_STAGES: Tableau<2> = Tableau {
     c: [0.5 - ROOTS.0 / 6.0, 0.5 + ROOTS.0 / 6.0],
-    a: [
-        [0.25, 0.25 - ROOTS.0 / 6.0],
-        [0.25 + ROOTS.0 / 6.0, 0.25],
-    ],
+    a: [[0.25, 0.25 - ROOTS.0 / 6.0], [0.25 + ROOTS.0 / 6.0, 0.25]],
     b: [0.5, 0.5],
 };
 
@@ -195,9 +192,7 @@ where
     next.t += h;
     compose(blocks, next.x.as_mut(), z.as_ref());
     manifold::normalise(blocks, next.x.as_mut());
-    next.xi = system
-        .velocity_of_momentum(&next.x, &p)
-        .map_err(singular)?;
+    next.xi = system.velocity_of_momentum(&next.x, &p).map_err(singular)?;
     if next.is_finite() {
         Ok(next)
     } else {

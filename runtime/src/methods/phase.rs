@@ -25,7 +25,7 @@ pub(crate) trait Drift {
 }
 
 impl Drift for Flow {
-    #[inline]
+    #[inline(always)]
     fn turn<S: Scalar, A: Attitude<S>>(
         &self,
         rotor: &Rotor<S>,
@@ -50,7 +50,7 @@ pub(crate) struct Phase<'s, Sys: Split + ?Sized> {
 }
 
 impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(system: &'s Sys, state: &State<Sys>) -> Result<Self, StepError> {
         state.check_shape(system)?;
         Ok(Self {
@@ -64,7 +64,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     }
 
     /// ṗ by the forces, with the inputs of this moment.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn force<U>(&self, inputs: &U) -> Sys::Chart
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
@@ -76,7 +76,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     }
 
     /// p ← p + h ṗ
-    #[inline]
+    #[inline(always)]
     pub(crate) fn kick<U>(&mut self, h: f64, inputs: &U)
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
@@ -86,13 +86,13 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     }
 
     /// p ← p + h ṗ for a force that is known.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn push(&mut self, h: f64, force: &Sys::Chart) {
         add_scaled(self.p.as_mut(), Sys::Scalar::from_f64(h), force.as_ref());
     }
 
     /// Free motion for the time `h`; `None` where an iteration does not converge.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn drift<D: Drift>(&mut self, h: f64, drift: &D) -> Option<()> {
         let time = Sys::Scalar::from_f64(h);
         let mut rotors = self.rotors.as_ref().iter();
@@ -112,16 +112,20 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
                     }
                 }
                 Block::Quaternion => {
-                    if let (Some(q), Some(p), Some(rotor)) =
-                        (here.first_chunk_mut(), along.first_chunk_mut(), rotors.next())
-                    {
+                    if let (Some(q), Some(p), Some(rotor)) = (
+                        here.first_chunk_mut(),
+                        along.first_chunk_mut(),
+                        rotors.next(),
+                    ) {
                         *q = drift.turn::<_, [Sys::Scalar; 4]>(rotor, *q, p, time)?;
                     }
                 }
                 Block::Rotation => {
-                    if let (Some(r), Some(p), Some(rotor)) =
-                        (here.first_chunk_mut(), along.first_chunk_mut(), rotors.next())
-                    {
+                    if let (Some(r), Some(p), Some(rotor)) = (
+                        here.first_chunk_mut(),
+                        along.first_chunk_mut(),
+                        rotors.next(),
+                    ) {
                         *r = drift.turn::<_, [Sys::Scalar; 9]>(rotor, *r, p, time)?;
                     }
                 }
@@ -133,7 +137,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     }
 
     /// The state after a step of length `h`, back on the manifold.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn state(&self, h: f64) -> Result<State<Sys>, StepError> {
         let mut y = self.y.clone();
         manifold::normalise(self.system.blocks(), y.as_mut());
@@ -150,7 +154,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
 }
 
 /// A kick of h/2, free motion, a kick of h/2: order 2, symmetric, and symplectic with the flow.
-#[inline]
+#[inline(always)]
 pub(crate) fn strang<Sys, D, U>(
     system: &Sys,
     state: &State<Sys>,

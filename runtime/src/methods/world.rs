@@ -26,8 +26,8 @@ pub struct Slide;
 /// Buss' methods: baselines. With forces the turn is taken between two half kicks, which limits the
 /// order to 2.
 ///
-/// In world derivatives at the start of the turn, θ = h ω [first] + h²/2 ω̇ [second] + h³/12 ω̇ × ω
-/// [augmented second] + h³/6 ω̈ + h⁴/24 (ω⃛ + ω̈ × ω) [fourth].
+/// In world derivatives at the start of the turn, θ is the sum of h ω (first), h²/2 ω̇ (second),
+/// h³/12 ω̇ × ω (augmented second), and h³/6 ω̈ + h⁴/24 (ω⃛ + ω̈ × ω) (fourth), up to the method's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Buss {

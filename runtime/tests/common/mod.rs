@@ -11,9 +11,10 @@ use serde_json::Value;
 use so3::{Matrix, Vector};
 
 mod split;
+#[allow(unused_imports)]
 pub use split::Spin;
 
-/// Solves M a = b by Cholesky's factorisation.
+/// Solves M a = b by M = L D Lᵀ; without roots, so that a diagonal M is divided by exactly.
 pub fn solve<S: Scalar, const N: usize>(
     mut m: [[S; N]; N],
     mut b: [S; N],
@@ -21,17 +22,14 @@ pub fn solve<S: Scalar, const N: usize>(
     for i in 0..N {
         for j in 0..=i {
             for k in 0..j {
-                let product = m[i][k] * m[j][k];
+                let product = m[i][k] * m[j][k] * m[k][k];
                 m[i][j] -= product;
             }
-            if i == j {
-                if !m[i][i].is_positive() {
-                    return Err(Singular { pivot: i });
-                }
-                m[i][i] = m[i][i].sqrt();
-            } else {
+            if i != j {
                 let pivot = m[j][j];
                 m[i][j] /= pivot;
+            } else if !m[i][i].is_positive() {
+                return Err(Singular { pivot: i });
             }
         }
     }
@@ -40,6 +38,8 @@ pub fn solve<S: Scalar, const N: usize>(
             let product = m[i][k] * b[k];
             b[i] -= product;
         }
+    }
+    for i in 0..N {
         b[i] /= m[i][i];
     }
     for i in (0..N).rev() {
@@ -47,7 +47,6 @@ pub fn solve<S: Scalar, const N: usize>(
             let product = m[k][i] * b[k];
             b[i] -= product;
         }
-        b[i] /= m[i][i];
     }
     Ok(b)
 }
@@ -219,6 +218,27 @@ fn pose(r: Vector<f64>, rotation: Matrix<f64>) -> [f64; 12] {
 }
 
 impl FreeBody {
+    /// [m I, −m ŝ; m ŝ, Θ]
+    fn mass(&self) -> [[f64; 6]; 6] {
+        let Body { m, s, inertia, .. } = self.body;
+        let coupling = rows(so3::hat(s.map(|s| m * s)));
+        let inertia = rows(inertia);
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| match (i < 3, j < 3) {
+                (true, true) => {
+                    if i == j {
+                        m
+                    } else {
+                        0.0
+                    }
+                }
+                (true, false) => -coupling[i][j - 3],
+                (false, true) => coupling[i - 3][j],
+                (false, false) => inertia[i - 3][j - 3],
+            })
+        })
+    }
+
     /// p = m (v + ω × s), L = m s × v + Θ ω
     fn momentum(&self, v: Vector<f64>, w: Vector<f64>) -> (Vector<f64>, Vector<f64>) {
         let Body { m, s, inertia, .. } = self.body;
@@ -254,9 +274,7 @@ impl System for FreeBody {
         [a, b, c, d, e, f]
     }
     fn accel(&self, x: &[f64; 12], xi: &[f64; 6], u: &[f64; 6]) -> Result<[f64; 6], Singular> {
-        let Body {
-            m, s, inertia, g, ..
-        } = self.body;
+        let Body { m, s, g, .. } = self.body;
         let (v, w) = twist(xi);
         let (force, torque) = twist(u);
         let (p, l) = self.momentum(v, w);
@@ -265,24 +283,8 @@ impl System for FreeBody {
         let gyroscopic = add(so3::cross(w, l), so3::cross(v, p));
         let angular = add(sub(so3::cross(s, weight), gyroscopic), torque);
 
-        let coupling = rows(so3::hat(s.map(|s| m * s)));
-        let inertia = rows(inertia);
-        let mass = std::array::from_fn(|i| {
-            std::array::from_fn(|j| match (i < 3, j < 3) {
-                (true, true) => {
-                    if i == j {
-                        m
-                    } else {
-                        0.0
-                    }
-                }
-                (true, false) => -coupling[i][j - 3],
-                (false, true) => coupling[i - 3][j],
-                (false, false) => inertia[i - 3][j - 3],
-            })
-        });
         let ([a, b, c], [d, e, f]) = (linear, angular);
-        solve(mass, [a, b, c, d, e, f])
+        solve(self.mass(), [a, b, c, d, e, f])
     }
     fn correction(&self, x: &[f64; 12]) -> [f64; 12] {
         pose([0.0; 3], so3::correction(rotation(x)))
@@ -372,11 +374,16 @@ pub struct Reference(Value);
 
 impl Reference {
     pub fn read(name: &str) -> Self {
-        let path = format!(
-            "{}/../tests/reference/{name}.json",
-            env!("CARGO_MANIFEST_DIR")
-        );
-        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        // Beside the crates, or one of them.
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let folders = ["../tests/reference", "../reference"].map(|folder| root.join(folder));
+        let folder = folders.iter().find(|folder| folder.is_dir());
+        let path = folder
+            .expect("the reference solutions")
+            .join(format!("{name}.json"));
+        let path = path.display();
+        let text = std::fs::read_to_string(path.to_string())
+            .unwrap_or_else(|error| panic!("{path}: {error}"));
         Self(serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}")))
     }
 

@@ -3,6 +3,8 @@
 use hamel::{Block, Canonical, Rotor, Scalar, Singular, Split, System, s3, so3};
 use so3::{Matrix, Vector};
 
+#[cfg(feature = "std")]
+use super::Pendulum;
 use super::{
     Body, FreeBody, QuaternionTop, Top, add, pose, position, rotation, rows, solve, sub, twist,
 };
@@ -18,8 +20,18 @@ impl<S: Scalar> Body<S> {
         so3::apply(self.inertia, w)
     }
 
-    pub fn velocity(&self, p: Vector<S>) -> Result<Vector<S>, Singular> {
-        solve(rows(self.inertia), p)
+    /// J⁻¹ p by J = L D Lᵀ, for a positive definite J.
+    pub fn velocity(&self, p: Vector<S>) -> Vector<S> {
+        let [d, _, _, a, e, _, b, c, f] = self.inertia;
+        let (l10, l20) = (a / d, b / d);
+        let d1 = e - l10 * a;
+        let l21 = (c - l20 * a) / d1;
+        let d2 = f - l20 * b - l21 * (c - l20 * a);
+        let y1 = p[1] - l10 * p[0];
+        let y2 = p[2] - l20 * p[0] - l21 * y1;
+        let w2 = y2 / d2;
+        let w1 = y1 / d1 - l21 * w2;
+        [p[0] / d - l10 * w1 - l20 * w2, w1, w2]
     }
 }
 
@@ -110,7 +122,7 @@ macro_rules! split {
             }
             fn velocities(&self, _: &$coordinates, p: &[S; 3]) -> [S; 3] {
                 let $this = self;
-                $body.velocity(*p).expect("an inertia")
+                $body.velocity(*p)
             }
             fn kick(&self, $x: &$coordinates, _: &[S; 0]) -> [S; 3] {
                 let $this = self;
@@ -140,7 +152,7 @@ macro_rules! split {
                 p: &[S; 3],
             ) -> Result<[S; 3], Singular> {
                 let $this = self;
-                $body.velocity(*p)
+                Ok($body.velocity(*p))
             }
         }
     };
@@ -148,8 +160,12 @@ macro_rules! split {
 
 split!(Top<S>, false, [S; 9], |this| this.0, |x| *x);
 split!(Spin<Top<S>>, true, [S; 9], |this| this.0.0, |x| *x);
-split!(QuaternionTop<S>, false, [S; 4], |this| this.0, |x| s3::to_matrix(*x));
-split!(Spin<QuaternionTop<S>>, true, [S; 4], |this| this.0.0, |x| s3::to_matrix(*x));
+split!(QuaternionTop<S>, false, [S; 4], |this| this.0, |x| {
+    s3::to_matrix(*x)
+});
+split!(Spin<QuaternionTop<S>>, true, [S; 4], |this| this.0.0, |x| {
+    s3::to_matrix(*x)
+});
 
 /// y = (r + R s, R), p = (ẏ, P about the centre of mass).
 impl Split for FreeBody {
@@ -198,5 +214,66 @@ impl FreeBody {
             let unit = if i == j { so3::dot(s, s) } else { 0.0 };
             inertia[k] - m * (unit - s[i] * s[j])
         })
+    }
+}
+
+/// A body about its pivot: the circle moves uniformly between kicks.
+#[cfg(feature = "std")]
+impl Split for Pendulum {
+    type Rotors = [Rotor<f64>; 0];
+    const FREE: bool = false;
+
+    fn rotors(&self) -> [Rotor<f64>; 0] {
+        []
+    }
+    fn centre(&self, x: &Vec<f64>) -> Vec<f64> {
+        x.clone()
+    }
+    fn uncentre(&self, y: &Vec<f64>) -> Vec<f64> {
+        y.clone()
+    }
+    fn momenta(&self, _: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+        xi.clone()
+    }
+    fn velocities(&self, _: &Vec<f64>, p: &Vec<f64>) -> Vec<f64> {
+        p.clone()
+    }
+    fn kick(&self, x: &Vec<f64>, u: &Vec<f64>) -> Vec<f64> {
+        vec![(u[0] / self.l - self.g * x[1]) / self.l]
+    }
+}
+
+#[cfg(feature = "std")]
+impl Canonical for Pendulum {
+    fn momentum(&self, _: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+        vec![self.l * self.l * xi[0]]
+    }
+    fn momentum_rate(&self, x: &Vec<f64>, _: &Vec<f64>, u: &Vec<f64>) -> Vec<f64> {
+        vec![u[0] - self.g * self.l * x[1]]
+    }
+    fn velocity_of_momentum(&self, _: &Vec<f64>, p: &Vec<f64>) -> Result<Vec<f64>, Singular> {
+        solve([[self.l * self.l]], [p[0]]).map(|xi| xi.to_vec())
+    }
+}
+
+/// Kirchhoff's equations: p in body axes, ṗ = p × ω + F, L̇ = L × ω + p × v + τ.
+impl Canonical for FreeBody {
+    fn momentum(&self, _: &[f64; 12], xi: &[f64; 6]) -> [f64; 6] {
+        let (v, w) = twist(xi);
+        let ([a, b, c], [d, e, f]) = self.momentum(v, w);
+        [a, b, c, d, e, f]
+    }
+    fn momentum_rate(&self, x: &[f64; 12], xi: &[f64; 6], u: &[f64; 6]) -> [f64; 6] {
+        let Body { m, s, g, .. } = self.body;
+        let ((v, w), (force, torque)) = (twist(xi), twist(u));
+        let (p, l) = self.momentum(v, w);
+        let weight = so3::apply_transpose(rotation(x), g).map(|g| m * g);
+        let [a, b, c] = add(so3::cross(p, w), add(weight, force));
+        let turning = add(so3::cross(l, w), so3::cross(p, v));
+        let [d, e, f] = add(turning, add(so3::cross(s, weight), torque));
+        [a, b, c, d, e, f]
+    }
+    fn velocity_of_momentum(&self, _: &[f64; 12], p: &[f64; 6]) -> Result<[f64; 6], Singular> {
+        solve(self.mass(), *p)
     }
 }

@@ -1,0 +1,153 @@
+//! The time of one step of every method for bodies, on a heavy top written by hand.
+//!
+//! Ratios between rows are what counts; the step of `Rkmk4` stands beside the four accelerations and four
+//! exponentials that no method of its kind can do without. Run with
+//! `RUSTFLAGS="-C target-cpu=native" cargo bench -p hamel-tests-long --bench steps`.
+
+use divan::{Bencher, black_box};
+use hamel::flows::Flow;
+use hamel::methods::{Buss, Free, Gauss4, Gauss6, Lgvi, Rkmk4, Scheme, Slide, Splitting};
+use hamel::{Method, State, System, so3};
+use hamel_tests_long::common::{Body, QuaternionTop, Reference, Spin, Top};
+
+/// Steps of one measurement: the state moves on, so that nothing is computed once for all.
+const STEPS: usize = 64;
+const SAMPLES: u32 = 500;
+
+fn main() {
+    divan::main();
+}
+
+/// A top without symmetry, spinning at 1 rad/s about each axis.
+fn body(moments: [f64; 3]) -> Body<f64> {
+    let [a, b, c] = moments;
+    Body {
+        inertia: [a, 0.0, 0.0, 0.0, b, 0.0, 0.0, 0.0, c],
+        m: 1.0,
+        s: [0.1, 0.2, 0.5],
+        g: [0.0, 0.0, -9.81],
+        r0: so3::exp([0.3, -1.1, 0.6]),
+        w0: [1.0, -1.0, 1.0],
+    }
+}
+
+const ASYMMETRIC: [f64; 3] = [1.0, 1.7, 2.4];
+const SYMMETRIC: [f64; 3] = [1.0, 1.0, 0.5];
+
+fn top(moments: [f64; 3]) -> Top<f64> {
+    Top(body(moments))
+}
+
+/// Steps of a run at h = 5 ms.
+fn steps<Sys: System<Inputs = [f64; 0]>>(bencher: Bencher, system: &Sys, method: impl Method<Sys>) {
+    bencher
+        .counter(STEPS)
+        .with_inputs(|| State::start(system))
+        .bench_local_values(|mut state| {
+            for _ in 0..STEPS {
+                let stepped = hamel::step(system, &method, &mut state, black_box(5e-3), &none);
+                black_box(stepped.is_ok());
+            }
+            state
+        });
+
+    fn none<X, V>(_: f64, _: &X, _: &V) -> [f64; 0] {
+        []
+    }
+}
+
+macro_rules! benches {
+    ($($name:ident: $system:expr, |$top:ident| $method:expr;)*) => {$(
+        #[divan::bench(sample_count = SAMPLES)]
+        fn $name(bencher: Bencher) {
+            let system = $system;
+            let $top = &system;
+            let _ = $top;
+            let method = $method;
+            steps(bencher, &system, method);
+        }
+    )*};
+}
+
+benches! {
+    rkmk4: top(ASYMMETRIC), |top| Rkmk4;
+    rkmk4_on_quaternions: QuaternionTop(body(ASYMMETRIC)), |top| Rkmk4;
+    strang_by_axes: top(ASYMMETRIC), |top| Splitting::with_flow(top, Scheme::Strang, Flow::Axes);
+    strang_by_pair: top(ASYMMETRIC), |top| Splitting::with_flow(top, Scheme::Strang, Flow::Pair);
+    strang_by_jacobi: top(ASYMMETRIC), |top| Splitting::with_flow(top, Scheme::Strang, Flow::Exact);
+    nystrom4_by_jacobi: top(ASYMMETRIC), |top| Splitting::new(top, Scheme::Nystrom4);
+    nystrom6_by_jacobi: top(ASYMMETRIC), |top| Splitting::new(top, Scheme::Nystrom6);
+    strang_symmetric: top(SYMMETRIC), |top| Splitting::new(top, Scheme::Strang);
+    strang_symmetric_quaternion: QuaternionTop(body(SYMMETRIC)),
+        |top| Splitting::new(top, Scheme::Strang);
+    suzuki4_symmetric: top(SYMMETRIC), |top| Splitting::new(top, Scheme::Suzuki4);
+    kahan_li6_symmetric: top(SYMMETRIC), |top| Splitting::new(top, Scheme::KahanLi6);
+    nystrom4_symmetric: top(SYMMETRIC), |top| Splitting::new(top, Scheme::Nystrom4);
+    nystrom6_symmetric: top(SYMMETRIC), |top| Splitting::new(top, Scheme::Nystrom6);
+    lgvi: top(ASYMMETRIC), |top| Lgvi;
+    gauss4: top(ASYMMETRIC), |top| Gauss4;
+    gauss6: top(ASYMMETRIC), |top| Gauss6;
+    slide: top(ASYMMETRIC), |top| Slide;
+    buss_augmented: top(ASYMMETRIC), |top| Buss::AugmentedSecond;
+    buss4: top(ASYMMETRIC), |top| Buss::Fourth;
+    free_one_step: Spin(top(ASYMMETRIC)), |top| Free;
+}
+
+/// The closed form over 100 s.
+#[divan::bench(sample_count = SAMPLES)]
+fn free_at_100(bencher: Bencher) {
+    let spin = Spin(top(ASYMMETRIC));
+    let start = State::start(&spin);
+    bencher.bench_local(|| hamel::methods::free::at(&spin, black_box(&start), 100.0).is_ok());
+}
+
+/// Whole runs that end with an error of R below 1e-9; the runtime's tests of bodies assert the errors.
+fn to_nine_digits(bencher: Bencher, case: &str, until: f64, n: u32) {
+    let top = Top(Reference::read(case).body());
+    let method = Splitting::new(&top, Scheme::Nystrom6);
+    let h = until / f64::from(n);
+    bencher.bench_local(|| {
+        let mut state = State::start(&top);
+        let count = black_box(u64::from(n));
+        let outcome = method.run(&top, &mut state, h, count, &|_, _, _| [], |_| {});
+        black_box(outcome.is_ok());
+        state
+    });
+}
+
+/// 199 evaluations of the torque.
+#[divan::bench(sample_count = SAMPLES)]
+fn heavy_top_benchmark_to_1e_9(bencher: Bencher) {
+    to_nine_digits(bencher, "heavy-top-benchmark-150", 1.0, 18);
+}
+
+/// 1541 evaluations.
+#[divan::bench(sample_count = SAMPLES)]
+fn fast_top_to_1e_9(bencher: Bencher) {
+    to_nine_digits(bencher, "lagrange-fast-top", 5.0, 140);
+}
+
+/// 1321 evaluations.
+#[divan::bench(sample_count = SAMPLES)]
+fn kovalevskaya_top_to_1e_9(bencher: Bencher) {
+    to_nine_digits(bencher, "kovalevskaya-top", 20.0, 120);
+}
+
+/// What a step of `Rkmk4` cannot do without.
+#[divan::bench(sample_count = SAMPLES)]
+fn four_accelerations_and_exponentials(bencher: Bencher) {
+    let top = top(ASYMMETRIC);
+    bencher
+        .counter(STEPS)
+        .with_inputs(|| State::start(&top))
+        .bench_local_values(|state| {
+            let (mut x, mut xi) = (state.x, state.xi);
+            for _ in 0..4 * STEPS {
+                if let Ok(rate) = top.accel(black_box(&x), black_box(&xi), &[]) {
+                    xi = std::array::from_fn(|i| xi[i] + 1e-3 * rate[i]);
+                    x = so3::retract(x, xi.map(|w| 1e-3 * w));
+                }
+            }
+            (x, xi)
+        });
+}
