@@ -7,8 +7,7 @@
 //! | `source` | reading and deriving a description |
 //! | `state` | reading the numbers of a state |
 //! | `interpreted` | a described system that the integrators can run |
-//! | `plot` | SVG |
-//! | `json`, `number`, `names` | how results are written |
+//! | `json`, `names` | how results are written; pictures and numbers are those of `hamel-report` |
 //! | `failure` | errors and exit statuses |
 
 mod check;
@@ -20,9 +19,7 @@ mod interpreted;
 mod json;
 mod linearize;
 mod names;
-mod number;
 mod ops;
-mod plot;
 mod simulate;
 mod source;
 mod state;
@@ -30,6 +27,7 @@ mod tables;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
+use hamel_report::number;
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
