@@ -145,24 +145,18 @@ where
         )
     }
 
-    fn watched<M>(&self, method: &M, steps: u64, until: f64, watch: Watch) -> Outcome
-    where
-        M: Method<Counted<'a, Sys>>,
-    {
-        let start = self.start();
-        let kinetic = self.system.kinetic_energy(&start.x, &start.xi);
-        let energy = kinetic + self.system.potential_energy(&start.x);
+    /// How far a state (x, ξ) is from what is constant, compared with the start.
+    pub fn deviation(&self) -> impl Fn(&Sys::Coordinates, &Sys::Velocities) -> Deviation + '_ {
+        let kinetic = self.system.kinetic_energy(&self.x, &self.xi);
+        let energy = kinetic + self.system.potential_energy(&self.x);
         let scale = or_one(energy.abs().max(kinetic));
-        let momenta = (self.momenta)(start.x.as_ref(), start.xi.as_ref());
+        let momenta = (self.momenta)(self.x.as_ref(), self.xi.as_ref());
         let size = or_one(norm(momenta.iter().copied()));
-        self.system.reset();
-        let mut state = start;
-        let result = self.steps(method, &mut state, steps, until, |state| {
-            let now = (self.momenta)(state.x.as_ref(), state.xi.as_ref());
+        move |x, xi| {
+            let now = (self.momenta)(x.as_ref(), xi.as_ref());
             let change = norm(now.iter().zip(&momenta).map(|(now, then)| now - then));
-            let here = self.system.kinetic_energy(&state.x, &state.xi)
-                + self.system.potential_energy(&state.x);
-            watch(Deviation {
+            let here = self.system.kinetic_energy(x, xi) + self.system.potential_energy(x);
+            Deviation {
                 energy: if self.conservative {
                     (here - energy).abs() / scale
                 } else {
@@ -173,8 +167,20 @@ where
                 } else {
                     change / size
                 },
-                defect: self.system.constraint_norm(&state.x),
-            });
+                defect: self.system.constraint_norm(x),
+            }
+        }
+    }
+
+    fn watched<M>(&self, method: &M, steps: u64, until: f64, watch: Watch) -> Outcome
+    where
+        M: Method<Counted<'a, Sys>>,
+    {
+        let deviation = self.deviation();
+        let mut state = self.start();
+        self.system.reset();
+        let result = self.steps(method, &mut state, steps, until, |state| {
+            watch(deviation(&state.x, &state.xi));
         });
         Outcome {
             evaluations: Some(self.system.evaluations()),

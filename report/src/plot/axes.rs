@@ -171,7 +171,7 @@ impl Axes {
         );
         let text = letters(12.0, theme::SOFT.0, Anchor::Start, false);
         let lines = (
-            (width / 90.0).clamp(2.0, 8.0) as usize,
+            (width / 62.0).clamp(2.0, 8.0) as usize,
             (height / 34.0).clamp(2.0, 9.0) as usize,
         );
         let (across, up) = (self.across, self.up);

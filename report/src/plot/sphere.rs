@@ -17,8 +17,10 @@ const EYE: (f64, f64) = (0.6, 0.36);
 const PIECES: usize = 60;
 /// Points of a circle of the mesh.
 const CIRCLE: u32 = 72;
-/// The ellipsoid reaches at most so far beyond the place for a sphere.
-const REACH: f64 = 1.18;
+/// Where the names of axes stand, over the radius of the sphere.
+const NAMES: f64 = 0.22;
+/// The ellipsoid with its names reaches no farther, over the radius of the place.
+const REACH: f64 = 1.27;
 
 type Vector = [f64; 3];
 
@@ -126,7 +128,7 @@ pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64)
     let view = View {
         x: at.0,
         y: at.1,
-        radius: radius * (REACH / most).min(1.0),
+        radius: radius * (REACH / (most + NAMES)).min(1.0),
     };
     let ends = |i: usize| reach(&unit(i)).max(1.0);
     let names = ["1", "2", "3"];
@@ -143,9 +145,9 @@ pub fn poinsot(area: &Area, poinsot: &Poinsot, end: f64, at: Point, radius: f64)
     })?;
     axes(area, &view, names, ends, true)?;
     let note = letters(12.0, theme::SOFT.0, Anchor::Middle, false);
-    let below = at.1 + radius * REACH + 14.0;
+    let below = at.1 + radius + 24.0;
     let text = "sphere |P|, ellipsoid P·J⁻¹P = 2T, polhode";
-    write(area, text, (at.0, below + 16.0), &note)?;
+    write(area, text, (at.0, below + 14.0), &note)?;
     scale(area, end, (at.0, below + 34.0))
 }
 
@@ -231,7 +233,7 @@ fn axes(
     for (axis, name) in names.into_iter().enumerate() {
         let out = reach(axis);
         let at = |length: f64| view.project(unit(axis).map(|v| v * (out + length)));
-        let ((from, depth), (to, _), (label, _)) = (at(0.0), at(0.13), at(0.22));
+        let ((from, depth), (to, _), (label, _)) = (at(0.0), at(0.13), at(NAMES));
         if (depth >= 0.0) == front {
             line(area, &[from, to], stroke(theme::SOFT.0, 1.4))?;
             write(area, name, label, &style)?;
