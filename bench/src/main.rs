@@ -20,7 +20,7 @@ struct Arguments {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     cases: Vec<String>,
     /// How often each run is timed.
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 7)]
     repeats: u32,
     /// Leave out the runs of a million steps.
     #[arg(long)]

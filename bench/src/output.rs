@@ -4,6 +4,7 @@ use crate::cases::ALL;
 use crate::pictures::motions;
 use crate::runner::BenchError;
 use hamel_report::data::{Case, Drift, Report};
+use hamel_report::number::grouped;
 use hamel_report::page::{self, Picture};
 use hamel_report::plot::{Figure, PlotError, drifts, precision};
 use hamel_report::{json, markdown, readme};
@@ -34,8 +35,13 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, BenchError>
             .filter(|drift| drift.case == case.name)
             .collect();
         if let Some(first) = runs.first() {
-            let title = format!("Drift: {}", case.title);
-            let subtitle = format!("{} steps of {}", first.steps, first.step);
+            let title = "Drift of the energy".to_string();
+            let subtitle = format!(
+                "{}, {} steps of {}",
+                case.name,
+                grouped(first.steps),
+                first.step
+            );
             let figure = drifts(&title, &subtitle, &runs).map_err(said)?;
             further.push((format!("drift-{}", case.name), Picture { title, figure }));
         }

@@ -101,6 +101,7 @@ pub fn free<'p, Sys, U>(
 ) -> Result<Vec<Entry<'p>>, BenchError>
 where
     Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    U: Fn(f64, &[f64; 9], &[f64; 3]) -> [f64; 0],
 {
     peers(runner, problem, false)
 }
@@ -115,6 +116,7 @@ pub fn tops<'p, Sys, U>(
 ) -> Result<Vec<Entry<'p>>, BenchError>
 where
     Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    U: Fn(f64, &[f64; 9], &[f64; 3]) -> [f64; 0],
 {
     peers(runner, problem, true)
 }
@@ -126,6 +128,7 @@ fn peers<'p, Sys, U>(
 ) -> Result<Vec<Entry<'p>>, BenchError>
 where
     Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+    U: Fn(f64, &[f64; 9], &[f64; 3]) -> [f64; 0],
 {
     #[allow(unused_mut)]
     let mut entries: Vec<Entry<'p>> = Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate` | one subcommand each |
+//! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `compare` | one subcommand each |
 //! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
 //! | `state` | reading the numbers of a state |
@@ -11,6 +11,7 @@
 //! | `failure` | errors and exit statuses |
 
 mod check;
+mod compare;
 mod eigenvalues;
 mod emit;
 mod eval;
@@ -36,6 +37,7 @@ Examples:
   hamel tables heavy_top.eom --of gamma,M       what stands in the paper
   hamel linearize heavy_top.eom                 the motion nearby, with eigenvalues
   hamel simulate heavy_top.eom --until 10       a first run
+  hamel compare heavy_top.eom --until 10        error of methods against what they cost
   hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
 
 FILE may be `-`: the description is then read from standard input.
@@ -58,6 +60,7 @@ enum Command {
     Eval(eval::Arguments),
     Linearize(linearize::Arguments),
     Simulate(simulate::Arguments),
+    Compare(compare::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -69,6 +72,7 @@ fn main() -> ExitCode {
         Command::Eval(arguments) => eval::run(&arguments),
         Command::Linearize(arguments) => linearize::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
     };
     result.map_or_else(Failure::report, |()| ExitCode::SUCCESS)
 }

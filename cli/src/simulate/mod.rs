@@ -167,7 +167,8 @@ fn method(arguments: &Arguments) -> Result<General, Failure> {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A number greater than zero.
+pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("a number greater than zero is needed".into()),
