@@ -6,6 +6,7 @@ use hamel_bench::output;
 use hamel_bench::peers::{Peers, mujoco};
 use hamel_bench::runner::{BenchError, Effort};
 use hamel_report::data::{Machine, Report};
+use hamel_report::json;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -25,6 +26,9 @@ struct Arguments {
     /// Leave out the runs of a million steps.
     #[arg(long)]
     short: bool,
+    /// Measure nothing: write the files anew from the report.json of the folder.
+    #[arg(long)]
+    rewrite: bool,
     /// Python that has the wheel `mujoco`.
     #[arg(long, value_name = "PYTHON", default_value = mujoco::PYTHON)]
     mujoco: PathBuf,
@@ -53,6 +57,13 @@ fn run(arguments: &Arguments) -> Result<(), BenchError> {
             names.join(", ")
         )));
     }
+    if arguments.rewrite {
+        let path = arguments.out.join("report.json");
+        let said = |error: String| BenchError(format!("{}: {error}", path.display()));
+        let text = std::fs::read_to_string(&path).map_err(|error| said(error.to_string()))?;
+        let report = json::read(&text).map_err(|error| said(error.to_string()))?;
+        return written(&report, arguments, &root);
+    }
     let peers = Peers::find(&arguments.mujoco);
     let effort = Effort {
         repeats: arguments.repeats,
@@ -76,11 +87,15 @@ fn run(arguments: &Arguments) -> Result<(), BenchError> {
         report.cases.push(case);
         report.drifts.extend(drifts);
     }
-    for path in output::write(&report, &arguments.out)? {
+    written(&report, arguments, &root)
+}
+
+fn written(report: &Report, arguments: &Arguments, root: &Path) -> Result<(), BenchError> {
+    for path in output::write(report, &arguments.out)? {
         anstream::println!("wrote {}", path.display());
     }
     if arguments.cases.is_empty() {
-        output::rewrite(&report, &root.join("README.md"))?;
+        output::rewrite(report, &root.join("README.md"))?;
     }
     Ok(())
 }

@@ -58,7 +58,7 @@ mod tests {
                 failure: None,
             }
         };
-        let entry = Entry::new("m", Kind::Method, None, run, |_| None);
+        let entry = Entry::new("m", Kind::Method, None, run, |_, _| None);
         let drift = drift("c", &entry, 0.1, 200);
         assert_eq!(drift.energy.len(), 100);
         assert_eq!(drift.energy[..2], [2.0, 4.0]);

@@ -43,10 +43,10 @@ pub fn how(report: &Report) -> String {
     let machine = &report.machine;
     let mut text = String::new();
     if machine.repeats > 0 {
-        let _ = writeln!(
+        let _ = write!(
             text,
-            "Times are medians of {} interleaved repeats on one core of a {} ({}); the code is {}. Compare ratios, \
-             not times of other machines.",
+            "Times are medians of {} interleaved repeats on one core ({}; {}); the equations are {}. Compare ratios: \
+             times of other machines differ.\n\n",
             machine.repeats, machine.processor, machine.system, machine.code
         );
     }
@@ -54,7 +54,7 @@ pub fn how(report: &Report) -> String {
         text,
         "Work to reach an error is interpolated between runs with doubled numbers of steps; `≤` marks a first run that \
          is already better than asked, `-` an error that no run reached. Drifts are the largest of a run, relative; the \
-         defect is max |φ(x)|.\n\nTo make this again: `{}`\n",
+         defect is max |φ(x)|.\n\nTo make this again: `{}`",
         report.command
     );
     text

@@ -3,7 +3,8 @@
 //! Errors, drifts and evaluations are exact: one watched run gives them. Times are not: machines are
 //! noisy, in phases longer than a run. Every method is therefore timed once at every step before any
 //! is timed again, and the median of the repeats is kept; ratios of such medians are steadier than
-//! the times themselves.
+//! the times themselves. What is timed is the first steps of a run, at most [`PART`] of them, and the
+//! time of the run is that in proportion: a long run would be interrupted too often to be timed.
 
 use crate::data::{Case, MethodRun, MethodRuns, kept};
 use crate::problem::{Entry, Worst};
@@ -28,6 +29,9 @@ impl Plan {
         (0..count).map(|index| from << index).collect()
     }
 }
+
+/// No more steps are timed at once.
+pub const PART: u64 = 1000;
 
 /// Fewer than this times the last error is a reduction.
 const REDUCED: f64 = 0.7;
@@ -106,18 +110,19 @@ fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
     runs
 }
 
-/// The mean time of as many runs as fill the least time.
+/// The mean time of as many runs as fill the least time, from that of their first steps.
 fn time(entry: &Entry, steps: u64, least: f64) -> Option<f64> {
+    let part = steps.min(PART);
     let (mut sum, mut count) = (0.0, 0.0);
     while sum < least {
-        sum += entry.clock(steps)?;
+        sum += entry.clock(steps, part)?;
         count += 1.0;
         // A clock that does not advance must not hold up the rest.
         if count > 1e5 {
             break;
         }
     }
-    (count > 0.0).then_some(sum / count)
+    (count > 0.0).then_some(sum / count * (steps as f64 / part as f64))
 }
 
 /// The middle value, or the mean of the two in the middle.
@@ -159,7 +164,7 @@ mod tests {
                     failure: (steps == 1).then(|| "too long".to_string()),
                 }
             },
-            |steps| Some(steps as f64 * 1e-6),
+            |_, part| Some(part as f64 * 1e-6),
         )
     }
 

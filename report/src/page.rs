@@ -2,7 +2,7 @@
 
 use crate::data::{Case, MethodRun, Report};
 use crate::markdown::{how, name, worked};
-use crate::number::{error, grouped, short};
+use crate::number::short;
 use crate::plot::{Figure, sheet};
 use crate::work::{TARGETS, work};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -99,10 +99,6 @@ fn section(case: &Case, figure: Option<&Figure>) -> Markup {
             }
             @if let Some(figure) = figure { (PreEscaped(figure.inline())) }
             (summary(case))
-            details {
-                summary { "all runs" }
-                (runs(case))
-            }
             @for missing in &case.missing {
                 p.soft { code { (missing.method) } " was not run: " (missing.why) "." }
             }
@@ -130,42 +126,6 @@ fn summary(case: &Case) -> Markup {
                         td { (name(method)) }
                         @for target in TARGETS { td { (worked(work(&method.runs, target, evaluations))) } }
                         @for target in TARGETS { td { (worked(work(&method.runs, target, micros))) } }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Every run, with its drifts or its failure.
-fn runs(case: &Case) -> Markup {
-    let value = |value: Option<f64>| value.map_or_else(|| "-".to_string(), error);
-    html! {
-        table {
-            thead {
-                tr {
-                    @for name in ["method", "steps", "evaluations", "error", "energy", "momentum", "defect", "ns a step"] {
-                        th scope="col" { (name) }
-                    }
-                }
-            }
-            tbody {
-                @for method in &case.methods {
-                    @for run in &method.runs {
-                        tr {
-                            td { (method.method) }
-                            td { (grouped(run.steps)) }
-                            td { (run.evaluations.map_or_else(|| "-".to_string(), grouped)) }
-                            @if let Some(why) = &run.failure {
-                                td colspan="5" { (why) }
-                            } @else {
-                                td { (value(run.error)) }
-                                td { (value(run.energy)) }
-                                td { (value(run.momentum)) }
-                                td { (value(run.defect)) }
-                                td { (run.seconds_per_step().map_or_else(|| "-".to_string(), |s| crate::number::digits(1e9 * s, 3))) }
-                            }
-                        }
                     }
                 }
             }

@@ -64,8 +64,9 @@ pub type Watch<'w> = &'w mut dyn FnMut(Deviation);
 /// A run of so many steps up to a time, watched.
 type Run<'a> = Box<dyn Fn(u64, f64, Watch) -> Outcome + 'a>;
 
-/// The wall time of a run of so many steps, unwatched, in s; `None` where it fails.
-type Clock<'a> = Box<dyn Fn(u64) -> Option<f64> + 'a>;
+/// The wall time of the first ones (second argument) of so many steps (first argument), unwatched, in
+/// s; `None` where it fails.
+type Clock<'a> = Box<dyn Fn(u64, u64) -> Option<f64> + 'a>;
 
 /// One method on one problem.
 pub struct Entry<'a> {
@@ -86,7 +87,7 @@ impl<'a> Entry<'a> {
         kind: Kind,
         order: Option<u32>,
         run: impl Fn(u64, f64, Watch) -> Outcome + 'a,
-        clock: impl Fn(u64) -> Option<f64> + 'a,
+        clock: impl Fn(u64, u64) -> Option<f64> + 'a,
     ) -> Self {
         Entry {
             method: method.to_string(),
@@ -102,9 +103,9 @@ impl<'a> Entry<'a> {
         (self.run)(steps, until, watch)
     }
 
-    /// The wall time of the whole run in so many steps, in s.
-    pub fn clock(&self, steps: u64) -> Option<f64> {
-        (self.clock)(steps)
+    /// The wall time of the first `part` of so many steps, in s.
+    pub fn clock(&self, steps: u64, part: u64) -> Option<f64> {
+        (self.clock)(steps, part)
     }
 }
 
@@ -134,11 +135,11 @@ where
             kind,
             order,
             move |steps, until, watch| self.watched(&method, steps, until, watch),
-            move |steps| {
+            move |steps, part| {
+                let until = self.until * (part as f64 / steps as f64);
                 let begin = Instant::now();
                 let mut state = black_box(self.start());
-                self.steps(&other, &mut state, steps, self.until, |_| {})
-                    .ok()?;
+                self.steps(&other, &mut state, part, until, |_| {}).ok()?;
                 black_box(&state);
                 Some(begin.elapsed().as_secs_f64())
             },

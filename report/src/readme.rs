@@ -25,7 +25,7 @@ pub fn block(report: &Report) -> String {
             let _ = writeln!(
                 text,
                 "| {} | `{}` | {} | {} | {} |",
-                case.title,
+                case.title.replace('|', "\\|"),
                 method.method,
                 worked(work(&method.runs, TARGET, evaluations)),
                 micros(Some(time)),
@@ -44,12 +44,15 @@ fn timed(method: &MethodRuns) -> Work {
 
 fn micros(time: Option<Work>) -> String {
     match time {
+        Some(Work::Reached(value)) if value >= 1e4 => {
+            format!("{} ms", worked(Work::Reached(1e-3 * value)))
+        }
         Some(time @ (Work::Reached(_) | Work::AtMost(_))) => format!("{} µs", worked(time)),
         _ => "not reached".into(),
     }
 }
 
-/// The method of ours that takes the least time.
+/// The method, no baseline, that takes the least time.
 fn fastest(case: &Case) -> Option<(&MethodRuns, Work)> {
     let ours = case
         .methods

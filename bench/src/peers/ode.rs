@@ -80,9 +80,10 @@ where
                 failure: result.err(),
             }
         },
-        move |steps| {
+        move |steps, part| {
+            let until = problem.until * (part as f64 / steps as f64);
             let begin = Instant::now();
-            black_box(solve(problem, steps, problem.until).ok()?);
+            black_box(solve(problem, part, until).ok()?);
             Some(begin.elapsed().as_secs_f64())
         },
     )

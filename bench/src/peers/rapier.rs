@@ -71,10 +71,10 @@ where
                 failure: (!error.is_finite()).then(|| "not finite".to_string()),
             }
         },
-        move |steps| {
+        move |steps, part| {
             let (mut world, handle) = other.world(problem, problem.until / steps as f64);
             let begin = Instant::now();
-            for _ in 0..steps {
+            for _ in 0..part {
                 world.step();
             }
             let seconds = begin.elapsed().as_secs_f64();

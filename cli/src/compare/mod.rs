@@ -89,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         title: "Speed against error".into(),
         command: command(arguments),
         machine: Machine {
-            processor: "this machine".into(),
+            processor: "the machine of the command".into(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
             code: "interpreted".into(),
             repeats: REPEATS,
@@ -248,15 +248,37 @@ fn read(path: &Path) -> Result<Solution, Failure> {
 
 /// The command line that was given, by names of files alone.
 fn command(arguments: &Arguments) -> String {
+    let name = |path: Option<&Path>| -> String {
+        let name = path.and_then(Path::file_name);
+        name.map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    };
     let files: Vec<String> = arguments
         .files
         .iter()
-        .map(|file| {
-            file.file_name()
-                .map_or_else(|| "-".into(), |name| name.to_string_lossy().into_owned())
-        })
+        .map(|file| name(Some(file)))
         .collect();
-    format!("hamel compare {}", files.join(" "))
+    let mut text = format!("hamel compare {}", files.join(" "));
+    let list = |values: &[u64]| {
+        let values: Vec<String> = values.iter().map(u64::to_string).collect();
+        values.join(",")
+    };
+    for (option, value) in [
+        ("methods", arguments.methods.join(",")),
+        ("steps", list(&arguments.steps)),
+        (
+            "until",
+            arguments
+                .until
+                .map_or_else(String::new, crate::number::short),
+        ),
+        ("reference", name(arguments.reference.as_deref())),
+        ("at", name(arguments.at.as_deref())),
+    ] {
+        if !value.is_empty() {
+            text.push_str(&format!(" --{option} {value}"));
+        }
+    }
+    text
 }
 
 /// A bar on standard error, where that is a terminal.

@@ -64,16 +64,9 @@ impl Figure {
             draw(&root)?;
             root.present().map_err(failed)?;
         }
-        // The frame is ours; what repeats a default goes, the style sheet has the font.
-        let elements = text
-            .split_once(">\n")
-            .map_or("", |(_, rest)| rest)
-            .trim_end()
-            .trim_end_matches("</svg>")
-            .replace(" opacity=\"1\"", "")
-            .replace(" font-family=\"sans-serif\"", "")
-            .replace(" dy=\"0.5ex\"", " dy=\".5ex\"")
-            .replace(" \"/>", "\"/>");
+        // The frame is ours.
+        let elements = text.split_once(">\n").map_or("", |(_, rest)| rest);
+        let elements = compact(elements.trim_end().trim_end_matches("</svg>"));
         Ok(Figure {
             width,
             height,
@@ -107,6 +100,59 @@ impl Figure {
             height * FINE,
         )
     }
+}
+
+/// The same drawing in less text: without what repeats a default or stands in the style sheet, and with
+/// disks of one kind that follow each other as one path of dots.
+fn compact(elements: &str) -> String {
+    let text = elements
+        .replace(" opacity=\"1\"", "")
+        .replace(" font-family=\"sans-serif\"", "")
+        .replace(" dy=\"0.5ex\"", " dy=\".5ex\"")
+        .replace("0.00000000000001\"", "0\"")
+        .replace(" stroke=\"none\" stroke-width=\"10\"/>", "/>")
+        .replace(" \"/>", "\"/>");
+    let mut short = String::new();
+    let mut open = None;
+    for line in text.lines() {
+        let Some((place, radius, fill)) = disk(line) else {
+            if open.take().is_some() {
+                short.push_str("\"/>\n");
+            }
+            short.push_str(line);
+            short.push('\n');
+            continue;
+        };
+        if open != Some((radius, fill)) {
+            if open.is_some() {
+                short.push_str("\"/>\n");
+            }
+            let width = 2 * radius;
+            short.push_str(&format!(
+                "<path stroke-linecap=\"round\" stroke=\"{fill}\" stroke-width=\"{width}\" d=\""
+            ));
+            open = Some((radius, fill));
+        }
+        short.push_str(&format!("M{place}h0"));
+    }
+    if open.is_some() {
+        short.push_str("\"/>\n");
+    }
+    short
+}
+
+/// Place, radius and colour of a disk.
+fn disk(line: &str) -> Option<(String, u32, &str)> {
+    let rest = line.strip_prefix("<circle cx=\"")?;
+    let (x, rest) = rest.split_once("\" cy=\"")?;
+    let (y, rest) = rest.split_once("\" r=\"")?;
+    let (radius, rest) = rest.split_once("\" fill=\"")?;
+    let fill = rest.strip_suffix("\"/>")?;
+    (fill.starts_with('#') && fill.len() == 7).then_some((
+        format!("{x} {y}"),
+        radius.parse().ok()?,
+        fill,
+    ))
 }
 
 /// Text within XML, attributes included.

@@ -129,14 +129,18 @@ fn style(index: usize, method: &MethodRuns) -> ShapeStyle {
     stroke(theme::series(index), width)
 }
 
-/// A disk for methods, a circle for baselines and peers.
+/// A disk, smaller for baselines and peers.
 fn mark(area: &Area, at: Point, index: usize, method: &MethodRuns) -> Drawn {
-    let colour = theme::series(index);
-    let style = ShapeStyle {
-        filled: method.kind == Kind::Method,
-        ..stroke(colour, 1.0)
+    let radius = if method.kind == Kind::Method {
+        2.7
+    } else {
+        1.7
     };
-    circle(area, at, 2.6, style)
+    let style = ShapeStyle {
+        filled: true,
+        ..stroke(theme::series(index), 1.0)
+    };
+    circle(area, at, radius, style)
 }
 
 #[cfg(test)]
@@ -171,13 +175,13 @@ mod tests {
         };
         let text = precision(&case).expect("a drawing").standalone();
         // Three points in two diagrams, and one mark in the legend.
-        assert_eq!(text.matches("<circle").count(), 7);
+        assert_eq!(text.matches("h0").count(), 7);
         assert!(text.contains("a &lt;top&gt;") && text.contains("time of the run"));
         let mut untimed = case.clone();
         for run in &mut untimed.methods[0].runs {
             run.seconds = None;
         }
         let text = precision(&untimed).expect("a drawing").standalone();
-        assert_eq!(text.matches("<circle").count(), 4);
+        assert_eq!(text.matches("h0").count(), 4);
     }
 }
