@@ -29,7 +29,7 @@ pub fn block(report: &Report) -> String {
                 method.method,
                 worked(work(&method.runs, TARGET, evaluations)),
                 micros(Some(time)),
-                micros(usual.map(|method| timed(method))),
+                micros(usual.map(timed)),
             );
         }
     }
