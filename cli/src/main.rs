@@ -2,17 +2,17 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate` | one subcommand each |
+//! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `compare` | one subcommand each |
 //! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
 //! | `state` | reading the numbers of a state |
 //! | `interpreted` | a described system that the integrators can run |
 //! | `method` | the methods by their names, and which systems they are for |
-//! | `plot` | SVG |
-//! | `json`, `number`, `names` | how results are written |
+//! | `json`, `names` | how results are written; pictures and numbers are those of `hamel-report` |
 //! | `failure` | errors and exit statuses |
 
 mod check;
+mod compare;
 mod eigenvalues;
 mod emit;
 mod eval;
@@ -22,9 +22,7 @@ mod json;
 mod linearize;
 mod method;
 mod names;
-mod number;
 mod ops;
-mod plot;
 mod simulate;
 mod source;
 mod state;
@@ -32,6 +30,7 @@ mod tables;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
+use hamel_report::number;
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
@@ -40,6 +39,7 @@ Examples:
   hamel tables heavy_top.eom --of gamma,M       what stands in the paper
   hamel linearize heavy_top.eom                 the motion nearby, with eigenvalues
   hamel simulate heavy_top.eom --until 10       a first run
+  hamel compare heavy_top.eom --until 10        error of methods against what they cost
   hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
 
 FILE may be `-`: the description is then read from standard input.
@@ -62,6 +62,7 @@ enum Command {
     Eval(eval::Arguments),
     Linearize(linearize::Arguments),
     Simulate(simulate::Arguments),
+    Compare(compare::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -73,6 +74,7 @@ fn main() -> ExitCode {
         Command::Eval(arguments) => eval::run(&arguments),
         Command::Linearize(arguments) => linearize::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
     };
     result.map_or_else(Failure::report, |()| ExitCode::SUCCESS)
 }

@@ -317,7 +317,24 @@ fn the_heavy_top_keeps_its_energy() {
         );
         let drawing = std::fs::read_to_string(&svg).expect("the plot");
         assert!(drawing.starts_with("<svg") && drawing.contains("body axis 3"));
+        // |P| of this top swings by far more than a nearly free body's.
+        assert!(!drawing.contains("Poinsot"));
     }
+}
+
+#[test]
+fn a_free_body_is_drawn_with_poinsots_construction() {
+    let plot = scratch("poinsot.svg").display().to_string();
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/dzhanibekov.eom");
+    let file = file.display().to_string();
+    stdout(&["simulate", &file, "--until", "10", "--plot", &plot]);
+    let drawing = std::fs::read_to_string(&plot).expect("the plot");
+    assert!(drawing.contains("Poinsot") && drawing.contains("polhode"));
+    let plot = scratch("lagrange.svg").display().to_string();
+    let file = model("lagrange_top.eom");
+    stdout(&["simulate", &file, "--until", "1", "--plot", &plot]);
+    let drawing = std::fs::read_to_string(&plot).expect("the plot");
+    assert!(drawing.contains("energy and invariants") && drawing.contains("spin_momentum"));
 }
 
 #[test]

@@ -138,7 +138,14 @@ fn runtime_and_generator_never_meet() {
 
 #[test]
 fn no_file_hides_two_ideas() {
-    for folder in ["codegen/src", "macros/src", "runtime/src", "cli/src"] {
+    for folder in [
+        "codegen/src",
+        "macros/src",
+        "runtime/src",
+        "report/src",
+        "cli/src",
+        "bench/src",
+    ] {
         for (path, text) in sources(folder) {
             let lines = text.lines().count();
             assert!(

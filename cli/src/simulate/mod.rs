@@ -2,13 +2,13 @@
 
 mod picture;
 mod record;
+mod rotor;
 mod summary;
 mod write;
 
 use crate::failure::{Failure, print};
 use crate::interpreted::{Interpreted, constant_singular};
 use crate::method::{self, Chosen, Stepper};
-use crate::plot;
 use crate::source::Source;
 use crate::state::State;
 use clap::Args;
@@ -16,6 +16,7 @@ use clap::builder::PossibleValuesParser;
 use hamel::methods::General;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
+use hamel_report::plot;
 use record::{Plan, Run};
 use std::path::PathBuf;
 use write::Format;
@@ -71,7 +72,8 @@ pub struct Arguments {
     /// A sample every N steps; about 1000 samples where it is left out.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     every: Option<u64>,
-    /// Plot of velocities, energy and attitude over time.
+    /// Plot of velocities, what is conserved, and attitude over time; of a body that is nearly free,
+    /// with Poinsot's construction.
     #[arg(long, value_name = "F.svg")]
     plot: Option<PathBuf>,
 }
@@ -122,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let text = match format {
             Format::Csv => write::csv(&run),
             Format::Json => write::json(&run),
-            Format::Svg => plot::svg(&run.picture()),
+            Format::Svg => drawn(&run.picture(&system))?,
         };
         crate::failure::write(path, &text)?;
         written.push_str(&format!("wrote {}\n", path.display()));
@@ -137,6 +139,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(why) => Err(Failure::failed(why)),
         None => Ok(()),
     }
+}
+
+/// The SVG text of a picture.
+fn drawn(picture: &plot::Picture) -> Result<String, Failure> {
+    let figure = plot::run(picture).map_err(|error| Failure::failed(error.to_string()))?;
+    Ok(figure.standalone())
 }
 
 /// γ, M and Γ of a small system, so that a first run shows what was derived; empty for a large one.
@@ -184,7 +192,8 @@ fn tolerance(arguments: &Arguments, chosen: &Chosen) -> Result<Option<f64>, Fail
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A number greater than zero.
+pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("a number greater than zero is needed".into()),

@@ -1,13 +1,15 @@
 //! What a plot of a run shows.
 
 use super::record::{Run, Sample};
-use crate::plot::{Panel, Path, Picture};
+use super::rotor::poinsot;
+use crate::interpreted::Interpreted;
 use hamel::s3;
 use hamel_codegen::model::layout::Block;
+use hamel_report::plot::{Panel, Path, Picture};
 
 impl Run<'_> {
-    /// What a plot shows: velocities by groups of one unit, the energy, and how a body turns.
-    pub fn picture(&self) -> Picture {
+    /// What a plot shows: velocities by groups of one unit, what is conserved, and how a body turns.
+    pub fn picture(&self, system: &Interpreted) -> Picture {
         let time: Vec<f64> = self.track.iter().map(|sample| sample.t).collect();
         let line = |index: usize| {
             (
@@ -29,17 +31,7 @@ impl Run<'_> {
         if !scalars.lines.is_empty() {
             panels.push(scalars);
         }
-        let first = self.monitor.initial_energy();
-        let scale = self.monitor.energy_deviation() / self.monitor.relative_energy_deviation();
-        let scale = if scale.is_finite() { scale } else { 1.0 };
-        let mut energy = Panel::new("energy, relative change");
-        let change = self
-            .track
-            .iter()
-            .map(|sample| (sample.energy - first) / scale)
-            .collect();
-        energy.lines.push(("E".into(), change));
-        panels.push(energy);
+        panels.push(self.drift());
         let subtitle = self
             .program
             .docs
@@ -51,7 +43,37 @@ impl Run<'_> {
             time,
             panels,
             path: self.attitude(),
+            poinsot: poinsot(system, &self.track),
         }
+    }
+
+    /// Relative changes of the energy and of the invariants that the description claims.
+    fn drift(&self) -> Panel {
+        let first = self.monitor.initial_energy();
+        let scale = self.monitor.energy_deviation() / self.monitor.relative_energy_deviation();
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        let lines = &self.invariant_names;
+        let title = if lines.is_empty() {
+            "energy, relative change"
+        } else {
+            "energy and invariants, relative change"
+        };
+        let mut panel = Panel::new(title);
+        let change = |of: &dyn Fn(&Sample) -> f64, first: f64, scale: f64| -> Vec<f64> {
+            let changes = self.track.iter().map(|sample| (of(sample) - first) / scale);
+            changes.collect()
+        };
+        let energy = change(&|sample| sample.energy, first, scale);
+        panel.lines.push(("E".into(), energy));
+        for (index, name) in lines.iter().enumerate() {
+            let value = |sample: &Sample| sample.invariants.get(index).copied().unwrap_or(f64::NAN);
+            let first = self.track.first().map_or(0.0, value);
+            let scale = if first == 0.0 { 1.0 } else { first.abs() };
+            panel
+                .lines
+                .push((name.clone(), change(&value, first, scale)));
+        }
+        panel
     }
 
     /// The path of a body axis in the world, where exactly one coordinate is an attitude: the axis

@@ -47,30 +47,6 @@ pub fn simplify(points: &[Point], tolerance: f64) -> Vec<Point> {
         .collect()
 }
 
-/// `M1 2L3 4…`
-pub fn path(points: &[Point]) -> String {
-    let mut text = String::new();
-    for (index, (x, y)) in points.iter().enumerate() {
-        text.push_str(&format!(
-            "{}{} {}",
-            if index == 0 { "M" } else { "L" },
-            coordinate(*x),
-            coordinate(*y)
-        ));
-    }
-    text
-}
-
-/// One decimal, none where it is 0.
-pub fn coordinate(value: f64) -> String {
-    let text = format!("{value:.1}");
-    match text.strip_suffix(".0") {
-        Some("-0") => "0".into(),
-        Some(whole) => whole.into(),
-        None => text,
-    }
-}
-
 /// Distance of a point from a segment.
 fn distance(point: Point, a: Point, b: Point) -> f64 {
     let (ux, uy) = (b.0 - a.0, b.1 - a.1);
@@ -86,7 +62,7 @@ fn distance(point: Point, a: Point, b: Point) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{by_column, path, simplify};
+    use super::{by_column, simplify};
 
     #[test]
     fn corners_stay() {
@@ -102,7 +78,10 @@ mod tests {
                 )
             })
             .collect();
-        assert_eq!(path(&simplify(&points, 0.1)), "M0 0L10 10L20 0");
+        assert_eq!(
+            simplify(&points, 0.1),
+            [(0.0, 0.0), (10.0, 10.0), (20.0, 0.0)]
+        );
     }
 
     #[test]

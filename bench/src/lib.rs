@@ -1,0 +1,29 @@
+//! The report of speed against error.
+//!
+//! One command makes it again, from the root of the repository:
+//!
+//! ```sh
+//! cargo run --release -p hamel-bench -- --out docs/report
+//! ```
+//!
+//! | module | owns |
+//! |---|---|
+//! | [`models`] | generated systems |
+//! | [`methods`] | the table of methods: one line each |
+//! | [`cases`] | the hard cases with their reference solutions |
+//! | [`peers`] | other programs, each an optional feature or script |
+//! | [`runner`] | what is measured of a case |
+//! | [`output`] | the files |
+
+pub mod cases;
+pub mod methods;
+pub mod output;
+pub mod peers;
+pub mod pictures;
+pub mod runner;
+
+/// Generated systems.
+#[allow(missing_docs)]
+pub mod models {
+    include!(concat!(env!("OUT_DIR"), "/models.rs"));
+}

@@ -1,0 +1,96 @@
+//! The files of the report.
+
+use crate::cases::ALL;
+use crate::pictures::motions;
+use crate::runner::BenchError;
+use hamel_report::data::{Case, Drift, Report};
+use hamel_report::number::grouped;
+use hamel_report::page::{self, Picture};
+use hamel_report::plot::{Figure, PlotError, drifts, precision};
+use hamel_report::{json, markdown, readme};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Writes `report.json`, `report.md`, `index.html` and the pictures; the names of the files.
+///
+/// # Errors
+/// Where a picture cannot be drawn or a file not be written.
+pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, BenchError> {
+    let said = |error: PlotError| BenchError(error.to_string());
+    fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
+    let figures: Vec<Figure> = report
+        .cases
+        .iter()
+        .map(precision)
+        .collect::<Result<_, _>>()
+        .map_err(said)?;
+    let mut further: Vec<(String, Picture)> = motions()?
+        .into_iter()
+        .map(|(name, picture)| (name.to_string(), picture))
+        .collect();
+    for case in &report.cases {
+        let runs: Vec<&Drift> = report
+            .drifts
+            .iter()
+            .filter(|drift| drift.case == case.name)
+            .collect();
+        if let Some(first) = runs.first() {
+            let title = "Drift of the energy".to_string();
+            let subtitle = format!(
+                "{}, {} steps of {}",
+                case.name,
+                grouped(first.steps),
+                first.step
+            );
+            let figure = drifts(&title, &subtitle, &runs).map_err(said)?;
+            further.push((format!("drift-{}", case.name), Picture { title, figure }));
+        }
+    }
+    let mut files = vec![
+        (
+            "report.json".to_string(),
+            json::write(report).map_err(|error| BenchError(error.to_string()))?,
+        ),
+        ("report.md".to_string(), markdown::write(report, file_of)),
+    ];
+    for (case, figure) in report.cases.iter().zip(&figures) {
+        if let Some(file) = file_of(case) {
+            files.push((file, figure.standalone()));
+        }
+    }
+    for (name, picture) in &further {
+        files.push((format!("{name}.svg"), picture.figure.standalone()));
+    }
+    let inline: Vec<Option<Figure>> = figures.into_iter().map(Some).collect();
+    let further: Vec<Picture> = further.into_iter().map(|(_, picture)| picture).collect();
+    files.push(("index.html".into(), page::write(report, &inline, &further)));
+    files
+        .into_iter()
+        .map(|(name, text)| {
+            let path = folder.join(name);
+            fs::write(&path, text).map_err(|error| unwritten(&path, &error))?;
+            Ok(path)
+        })
+        .collect()
+}
+
+/// The picture of a case beside the page, where it has one.
+fn file_of(case: &Case) -> Option<String> {
+    let job = ALL.iter().find(|job| job.name == case.name)?;
+    job.picture.then(|| format!("{}.svg", case.name))
+}
+
+/// Rewrites the block of a README that is made from the report.
+///
+/// # Errors
+/// Where there is no such file, or it has no block.
+pub fn rewrite(report: &Report, path: &Path) -> Result<(), BenchError> {
+    let text = fs::read_to_string(path).map_err(|error| unwritten(path, &error))?;
+    let new = readme::replaced(&text, &readme::block(report))
+        .ok_or_else(|| BenchError(format!("{}: no block of the report", path.display())))?;
+    fs::write(path, new).map_err(|error| unwritten(path, &error))
+}
+
+fn unwritten(path: &Path, error: &std::io::Error) -> BenchError {
+    BenchError(format!("{}: {error}", path.display()))
+}

@@ -1,0 +1,146 @@
+//! What is measured of a case.
+
+use crate::methods;
+use crate::peers::Peers;
+use hamel::System;
+use hamel_report::data::{Case, Drift, Kind};
+use hamel_report::drift::drift;
+use hamel_report::measure::{Plan, measure};
+use hamel_report::problem::{Entry, Problem};
+use hamel_report::solution::{Solution, SolutionError};
+use std::fmt;
+
+/// A number of steps that is doubled again and again.
+const COARSEST: u64 = 50;
+const DOUBLINGS: u32 = 12;
+/// Every timing takes at least so long, in s.
+const LEAST: f64 = 3e-4;
+/// Errors below this are rounding.
+const FLOOR: f64 = 1e-12;
+/// Steps of a long run.
+const LONG: u64 = 1_000_000;
+
+/// What went wrong before anything was measured.
+#[derive(Debug)]
+pub struct BenchError(pub String);
+
+impl fmt::Display for BenchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for BenchError {}
+
+impl From<SolutionError> for BenchError {
+    fn from(error: SolutionError) -> Self {
+        BenchError(error.to_string())
+    }
+}
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Timings of each run.
+    pub repeats: u32,
+    /// Whether long runs are made.
+    pub long: bool,
+}
+
+/// A case with its reference, and the results as they come.
+pub struct Runner<'a> {
+    /// The reference solution.
+    pub solution: &'a Solution,
+    /// How much is measured.
+    pub effort: Effort,
+    /// Other programs.
+    pub peers: &'a Peers,
+    /// Called with what is done and what there is in all.
+    pub tick: &'a dyn Fn(u64, u64),
+    /// The results.
+    pub case: Case,
+    /// Long runs.
+    pub drifts: Vec<Drift>,
+}
+
+impl Runner<'_> {
+    /// Measures a problem by all methods, and `further` ones.
+    pub fn measure<Sys, U>(
+        &mut self,
+        problem: &Problem<Sys, U>,
+        further: Vec<Entry>,
+        long: Option<f64>,
+    ) where
+        Sys: System<Scalar = f64>,
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let mut entries = methods::general(problem);
+        entries.extend(further);
+        self.entries(&entries, long);
+    }
+
+    /// Measures entries; and, where a step is given, a million of such steps of each of ours.
+    pub fn entries(&mut self, entries: &[Entry], long: Option<f64>) {
+        let plan = Plan {
+            steps: Plan::doublings(COARSEST, DOUBLINGS),
+            repeats: self.effort.repeats,
+            least: LEAST,
+            floor: FLOOR,
+        };
+        let tick = self.tick;
+        measure(&mut self.case, entries, &plan, &mut |done, all| {
+            tick(done, all)
+        });
+        self.peers.add(&mut self.case);
+        if let (Some(step), true) = (long, self.effort.long) {
+            let ours = entries.iter().filter(|entry| entry.kind != Kind::Peer);
+            for entry in ours {
+                self.drifts.push(drift(&self.case.name, entry, step, LONG));
+            }
+        }
+    }
+
+    /// N numbers of a parameter.
+    ///
+    /// # Errors
+    /// Where the reference does not have them.
+    pub fn parameter<const N: usize>(&self, name: &str) -> Result<[f64; N], BenchError> {
+        take(name, self.solution.parameter(name))
+    }
+
+    /// N numbers of the start.
+    ///
+    /// # Errors
+    /// Where the reference does not have them.
+    pub fn initial<const N: usize>(&self, name: &str) -> Result<[f64; N], BenchError> {
+        take(name, self.solution.initial(name))
+    }
+
+    /// N numbers of the end.
+    ///
+    /// # Errors
+    /// Where the reference does not have them.
+    pub fn end<const N: usize>(&self, name: &str) -> Result<[f64; N], BenchError> {
+        take(name, self.solution.sample(self.case.until, name))
+    }
+
+    /// g of a gravity that points down.
+    ///
+    /// # Errors
+    /// Where the reference has none.
+    pub fn gravity(&self) -> Result<f64, BenchError> {
+        self.parameter::<3>("g").map(|[_, _, z]| -z)
+    }
+}
+
+fn take<const N: usize>(name: &str, values: Option<Vec<f64>>) -> Result<[f64; N], BenchError> {
+    values
+        .and_then(|values| values.try_into().ok())
+        .ok_or_else(|| BenchError(format!("the reference has no {N} numbers `{name}`")))
+}
+
+/// Nine entries, row by row, as rows.
+pub fn rows(m: [f64; 9]) -> [[f64; 3]; 3] {
+    let [a, b, c, d, e, f, g, h, i] = m;
+    [[a, b, c], [d, e, f], [g, h, i]]
+}

@@ -1,0 +1,291 @@
+//! `hamel compare`: speed against error, interpreted.
+
+mod methods;
+mod reference;
+mod write;
+
+use crate::failure::{Failure, print};
+use crate::interpreted::{Interpreted, constant_singular};
+use crate::source::Source;
+use crate::state::State;
+use clap::{Args, ValueEnum};
+use hamel_report::counted::Counted;
+use hamel_report::data::{Case, Machine, Report};
+use hamel_report::measure::{Plan, measure};
+use hamel_report::problem::{Entry, Problem};
+use hamel_report::solution::{Solution, relative};
+use indicatif::{ProgressBar, ProgressStyle};
+use reference::Fields;
+use std::path::{Path, PathBuf};
+
+/// Length of a run where neither --until nor --reference says it.
+const UNTIL: f64 = 10.0;
+/// Numbers of steps where --steps is left out.
+const STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
+/// Timings of each run, and how long each takes at least (s).
+const REPEATS: u32 = 3;
+const LEAST: f64 = 1e-3;
+/// Errors below this are rounding.
+const FLOOR: f64 = 1e-13;
+/// The reference run has so many times the steps of the finest run.
+const FINER: u64 = 4;
+
+/// Compares methods: error at the end, evaluations of forces, drift, time.
+///
+/// Errors are measured against a reference solution, or against a much finer run of the best method.
+/// The equations are interpreted: compare times with each other only. T + V is constant without inputs,
+/// dissipation and other loads that do work; `momentum` is the drift of the invariants that the
+/// description claims.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel compare heavy_top.eom --until 5
+  hamel compare heavy_top.eom --methods rkmk4,rk4 --steps 500,1000,2000 -o comparison
+  hamel compare kovalevskaya.eom --reference kovalevskaya-top.json --until 20 --format json
+
+A reference solution is JSON: {\"initial\": {\"R\": [[…]], \"omega\": […]}, \"samples\": [{\"t\": 1, \"R\": …}, …]}.
+Fields are matched with coordinates and velocities by name (omega also with w); the start of those is
+taken from it, everything else from the description or --at.")]
+pub struct Arguments {
+    /// Descriptions.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Methods, all where it is left out.
+    #[arg(long, value_name = "M", value_delimiter = ',')]
+    methods: Vec<String>,
+    /// Length of the run; the last time of the reference, or 10.
+    #[arg(long, value_name = "T", value_parser = super::simulate::positive, allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Numbers of steps.
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    steps: Vec<u64>,
+    /// A reference solution.
+    #[arg(long, value_name = "SOLUTION.json")]
+    reference: Option<PathBuf>,
+    /// Start, parameters and inputs; see `hamel eval --help`.
+    #[arg(long, value_name = "STATE.json")]
+    at: Option<PathBuf>,
+    /// Write report.json, report.md, index.html and a picture for each description.
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// What is printed.
+    #[arg(long, value_enum, default_value = "markdown")]
+    format: Format,
+}
+
+/// What is printed.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Format {
+    /// Tables
+    Markdown,
+    /// One object
+    Json,
+}
+
+/// Runs and reports.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let methods = methods::chosen(&arguments.methods)?;
+    let solution = arguments.reference.as_deref().map(read).transpose()?;
+    let mut report = Report {
+        title: "Speed against error".into(),
+        command: command(arguments),
+        machine: Machine {
+            processor: "the machine of the command".into(),
+            system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
+            code: "interpreted".into(),
+            repeats: REPEATS,
+        },
+        ..Report::default()
+    };
+    for file in &arguments.files {
+        let case = compare(file, arguments, &methods, solution.as_ref())?;
+        let taken = report
+            .cases
+            .iter()
+            .filter(|other| other.title == case.title)
+            .count();
+        let name = match taken {
+            0 => case.name.clone(),
+            more => format!("{}-{}", case.name, more + 1),
+        };
+        report.cases.push(Case { name, ..case });
+    }
+    if let Some(folder) = &arguments.out {
+        write::files(&report, folder)?;
+    }
+    print(&match arguments.format {
+        Format::Markdown => write::markdown(&report, arguments.out.is_some()),
+        Format::Json => write::json(&report)?,
+    })
+}
+
+/// One description by all methods.
+fn compare(
+    file: &Path,
+    arguments: &Arguments,
+    methods: &[methods::Named],
+    solution: Option<&Solution>,
+) -> Result<Case, Failure> {
+    let generated = Source::read(file)?.derive_all()?;
+    let mut state = State::read(&generated.active, arguments.at.as_deref())?;
+    let fields = solution
+        .map(|solution| Fields::of(solution, &generated.program))
+        .transpose()?;
+    let until = until(arguments, solution)?;
+    if let Some(fields) = &fields {
+        fields.start(&mut state)?;
+    }
+    if constant_singular(&generated.program, &state.params) {
+        let message = "the mass matrix is not positive definite with these parameters";
+        return Err(Failure::failed(message));
+    }
+    let system = Interpreted::new(&generated, &state)?;
+    let inputs = |_: f64, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
+    let momenta = |x: &[f64], xi: &[f64]| -> Vec<f64> {
+        let values = system.invariants().iter();
+        values
+            .flat_map(|claim| system.output(claim, x, xi))
+            .collect()
+    };
+    let mut problem = Problem {
+        system: Counted::new(&system),
+        x: state.x.clone(),
+        xi: state.xi.clone(),
+        until,
+        inputs,
+        error: Box::new(|_, _| f64::NAN),
+        momenta: Box::new(momenta),
+        conservative: true,
+    };
+    let mut steps = arguments.steps.clone();
+    if steps.is_empty() {
+        steps.extend(STEPS);
+    }
+    steps.sort_unstable();
+    steps.dedup();
+    let name = generated.program.name.clone();
+    let mut case = Case {
+        title: title(&name, &generated.program.docs),
+        name: name.to_lowercase(),
+        until,
+        error: "largest difference of the state, each field over max(1, its largest entry)".into(),
+        ..Case::default()
+    };
+    match &fields {
+        Some(fields) => {
+            case.reference = format!("the solution given: {}", fields.names());
+            let end = fields.end(until)?;
+            problem.error = Box::new(move |x, xi| end.error(x, xi));
+        }
+        None => {
+            let finest = steps.last().copied().unwrap_or(1) * FINER;
+            let best = methods::best(methods);
+            let failed = |error: hamel::StepError| {
+                Failure::failed(format!(
+                    "the reference run of {} with {finest} steps failed: {error}",
+                    best.name
+                ))
+            };
+            let (x, xi) = problem.end(&best.method, finest).map_err(failed)?;
+            let (x2, xi2) = problem.end(&best.method, finest / 2).map_err(failed)?;
+            // Two runs of a method of order p differ by 2ᵖ − 1 times the error of the finer one.
+            let difference = relative(&x2, &x).max(relative(&xi2, &xi));
+            let order = methods::order(best, &problem.system);
+            case.reference = format!("{} with {finest} steps", best.name);
+            case.reference_error =
+                hamel_report::data::kept(difference / (f64::from(order).exp2() - 1.0));
+            problem.error = Box::new(move |a, b| relative(a, &x).max(relative(b, &xi)));
+        }
+    }
+    let entries: Vec<Entry> = methods
+        .iter()
+        .map(|named| problem.by(named.name, named.kind, named.method))
+        .collect();
+    let plan = Plan {
+        steps,
+        repeats: REPEATS,
+        least: LEAST,
+        floor: FLOOR,
+    };
+    let bar = progress(&name);
+    measure(&mut case, &entries, &plan, &mut |done, all| {
+        bar.set_length(all);
+        bar.set_position(done);
+    });
+    bar.finish_and_clear();
+    Ok(case)
+}
+
+/// The system's name, with the first line of its description.
+fn title(name: &str, docs: &[String]) -> String {
+    match docs.first() {
+        Some(line) if !line.trim().is_empty() => format!("{name}: {}", line.trim()),
+        _ => name.to_string(),
+    }
+}
+
+/// The time of the end, which a reference has to list.
+fn until(arguments: &Arguments, solution: Option<&Solution>) -> Result<f64, Failure> {
+    let Some(solution) = solution else {
+        return Ok(arguments.until.unwrap_or(UNTIL));
+    };
+    let times = solution.times();
+    let until = arguments.until.or(times.last().copied()).unwrap_or(UNTIL);
+    if times.contains(&until) && until > 0.0 {
+        return Ok(until);
+    }
+    let list: Vec<String> = times.iter().map(|&t| crate::number::short(t)).collect();
+    Err(Failure::usage(format!(
+        "the reference has no state at t = {until}; it has {}",
+        list.join(", ")
+    )))
+}
+
+fn read(path: &Path) -> Result<Solution, Failure> {
+    let source = Source::read(path)?;
+    Solution::parse(&source.text)
+        .map_err(|error| Failure::usage(format!("{}: {error}", source.path)))
+}
+
+/// The command line that was given, by names of files alone.
+fn command(arguments: &Arguments) -> String {
+    let name = |path: Option<&Path>| -> String {
+        let name = path.and_then(Path::file_name);
+        name.map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    };
+    let files: Vec<String> = arguments
+        .files
+        .iter()
+        .map(|file| name(Some(file)))
+        .collect();
+    let mut text = format!("hamel compare {}", files.join(" "));
+    let list = |values: &[u64]| {
+        let values: Vec<String> = values.iter().map(u64::to_string).collect();
+        values.join(",")
+    };
+    for (option, value) in [
+        ("methods", arguments.methods.join(",")),
+        ("steps", list(&arguments.steps)),
+        (
+            "until",
+            arguments
+                .until
+                .map_or_else(String::new, crate::number::short),
+        ),
+        ("reference", name(arguments.reference.as_deref())),
+        ("at", name(arguments.at.as_deref())),
+    ] {
+        if !value.is_empty() {
+            text.push_str(&format!(" --{option} {value}"));
+        }
+    }
+    text
+}
+
+/// A bar on standard error, where that is a terminal.
+fn progress(name: &str) -> ProgressBar {
+    let bar = ProgressBar::new(1).with_message(name.to_string());
+    match ProgressStyle::with_template("{msg} {bar:40} {elapsed}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

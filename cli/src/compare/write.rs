@@ -1,0 +1,41 @@
+//! Comparisons as text and as files.
+
+use crate::failure::Failure;
+use hamel_report::data::{Case, Report};
+use hamel_report::plot::{Figure, precision};
+use hamel_report::{json, markdown, page};
+use std::path::Path;
+
+/// The tables, with the files of pictures where they are written.
+pub fn markdown(report: &Report, pictures: bool) -> String {
+    markdown::write(report, |case| pictures.then(|| file(case)))
+}
+
+/// One object.
+pub fn json(report: &Report) -> Result<String, Failure> {
+    json::write(report).map_err(|error| Failure::failed(error.to_string()))
+}
+
+/// All files of a folder, which is made where it is missing.
+pub fn files(report: &Report, folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Failure::usage(format!("cannot make {}: {error}", folder.display())))?;
+    let mut figures: Vec<Option<Figure>> = Vec::new();
+    for case in &report.cases {
+        let figure = precision(case).map_err(|error| Failure::failed(error.to_string()))?;
+        crate::failure::write(&folder.join(file(case)), &figure.standalone())?;
+        figures.push(Some(figure));
+    }
+    for (name, text) in [
+        ("report.json", json(report)?),
+        ("report.md", markdown(report, true)),
+        ("index.html", page::write(report, &figures, &[])),
+    ] {
+        crate::failure::write(&folder.join(name), &text)?;
+    }
+    Ok(())
+}
+
+fn file(case: &Case) -> String {
+    format!("{}.svg", case.name)
+}

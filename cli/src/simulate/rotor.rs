@@ -1,0 +1,85 @@
+//! The angular momentum of a single body, and whether it is nearly free: what Poinsot's construction
+//! needs.
+
+use super::record::Sample;
+use crate::interpreted::Interpreted;
+use hamel::{Block, System};
+use hamel_report::plot::Poinsot;
+use nalgebra::{DMatrix, DVector, Matrix3};
+
+/// |P| of a body that is nearly free changes by no more than this, relative.
+const NEARLY: f64 = 0.05;
+/// Rounding of an inertia, relative.
+const ROUNDING: f64 = 1e-9;
+
+/// Poinsot's construction of a run, where exactly one coordinate is an attitude, T = ½ ωᵀJω + (the rest) with
+/// a constant J in body axes, and |P| of P = J ω nearly constant.
+pub fn poinsot(system: &Interpreted, track: &[Sample]) -> Option<Poinsot> {
+    let row = attitude(system.blocks())?;
+    let (first, last) = (track.first()?, track.last()?);
+    let middle = track.get(track.len() / 2)?;
+    let inertia = inertia(system, first, row)?;
+    for sample in [middle, last] {
+        let other = self::inertia(system, sample, row)?;
+        if (other - inertia).amax() > ROUNDING * inertia.amax() {
+            return None;
+        }
+    }
+    let momenta: Vec<[f64; 3]> = track
+        .iter()
+        .map(|sample| {
+            let rate = DVector::from_vec(system.chart_rate(&sample.x, &sample.xi));
+            (inertia * rate.fixed_rows::<3>(row)).into()
+        })
+        .collect();
+    let size = |p: &[f64; 3]| p.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let first = momenta.first().map(size)?;
+    let kept = momenta
+        .iter()
+        .all(|p| (size(p) - first).abs() <= NEARLY * first);
+    (kept && first > 0.0).then(|| Poinsot {
+        momenta,
+        inertia: inertia.transpose().into(),
+    })
+}
+
+/// Where the only attitude stands in the chart.
+fn attitude(blocks: &[Block]) -> Option<usize> {
+    let (mut row, mut found) = (0, None);
+    for block in blocks {
+        if matches!(block, Block::Quaternion | Block::Rotation) {
+            if found.is_some() {
+                return None;
+            }
+            found = Some(row);
+        }
+        row += block.chart();
+    }
+    found
+}
+
+/// J of T in the rates of the chart, C⁻ᵀ M C⁻¹, where nothing couples the attitude to the rest.
+fn inertia(system: &Interpreted, at: &Sample, row: usize) -> Option<Matrix3<f64>> {
+    let n = at.xi.len();
+    let columns = |of: &dyn Fn(&Vec<f64>) -> Vec<f64>| -> Vec<DVector<f64>> {
+        let basis = |j: usize| (0..n).map(|i| f64::from(u8::from(i == j))).collect();
+        (0..n).map(|j| DVector::from_vec(of(&basis(j)))).collect()
+    };
+    let rates = DMatrix::from_columns(&columns(&|xi| system.chart_rate(&at.x, xi)));
+    let mass = DMatrix::from_columns(&columns(&|xi| system.momentum(&at.x, xi)));
+    if rates.nrows() != n || mass.nrows() != n {
+        return None;
+    }
+    let inverse = rates.try_inverse()?;
+    let mass = inverse.transpose() * mass * inverse;
+    let inertia: Matrix3<f64> = mass.fixed_view::<3, 3>(row, row).into_owned();
+    let within = |i: usize| (row..row + 3).contains(&i);
+    for i in (0..n).filter(|&i| !within(i)) {
+        for j in row..row + 3 {
+            if mass[(i, j)].abs() > ROUNDING * mass.amax() {
+                return None;
+            }
+        }
+    }
+    Some(inertia)
+}

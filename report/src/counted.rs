@@ -1,0 +1,201 @@
+//! A system that counts how often its forces are evaluated.
+
+use hamel::{Block, Canonical, Singular, Split, System};
+use std::cell::Cell;
+
+/// A system, with a count of its evaluations of ξ̇ ([`System::accel`]), of forces alone
+/// ([`Split::kick`]) and of ṗ ([`Canonical::momentum_rate`]): what grows with the loads of a scene.
+///
+/// Everything is forwarded; the count costs well below a nanosecond a call.
+#[derive(Debug)]
+pub struct Counted<'a, Sys: ?Sized> {
+    system: &'a Sys,
+    evaluations: Cell<u64>,
+}
+
+impl<'a, Sys: ?Sized> Counted<'a, Sys> {
+    /// A count of zero.
+    pub fn new(system: &'a Sys) -> Self {
+        Self {
+            system,
+            evaluations: Cell::new(0),
+        }
+    }
+
+    /// The evaluations since the start, or since they were last [reset](Self::reset).
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations.get()
+    }
+
+    /// Counts from zero again.
+    pub fn reset(&self) {
+        self.evaluations.set(0);
+    }
+
+    /// The system itself.
+    pub fn inner(&self) -> &'a Sys {
+        self.system
+    }
+
+    #[inline]
+    fn count(&self) {
+        self.evaluations.set(self.evaluations.get() + 1);
+    }
+}
+
+impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
+    type Scalar = Sys::Scalar;
+    type Coordinates = Sys::Coordinates;
+    type Velocities = Sys::Velocities;
+    type Chart = Sys::Chart;
+    type Inputs = Sys::Inputs;
+
+    #[inline]
+    fn blocks(&self) -> &[Block] {
+        self.system.blocks()
+    }
+
+    #[inline]
+    fn zero_coordinates(&self) -> Self::Coordinates {
+        self.system.zero_coordinates()
+    }
+
+    #[inline]
+    fn zero_velocities(&self) -> Self::Velocities {
+        self.system.zero_velocities()
+    }
+
+    #[inline]
+    fn zero_chart(&self) -> Self::Chart {
+        self.system.zero_chart()
+    }
+
+    #[inline]
+    fn zero_inputs(&self) -> Self::Inputs {
+        self.system.zero_inputs()
+    }
+
+    #[inline]
+    fn start(&self) -> (Self::Coordinates, Self::Velocities) {
+        self.system.start()
+    }
+
+    #[inline]
+    fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates {
+        self.system.rate(x, xi)
+    }
+
+    #[inline]
+    fn chart_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {
+        self.system.chart_rate(x, xi)
+    }
+
+    #[inline]
+    fn accel(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+        u: &Self::Inputs,
+    ) -> Result<Self::Velocities, Singular> {
+        self.count();
+        self.system.accel(x, xi, u)
+    }
+
+    #[inline]
+    fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates {
+        self.system.correction(x)
+    }
+
+    #[inline]
+    fn close(&self, x: &Self::Coordinates) -> Result<Option<Self::Velocities>, Singular> {
+        self.system.close(x)
+    }
+
+    #[inline]
+    fn settle(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+    ) -> Result<Option<Self::Velocities>, Singular> {
+        self.system.settle(x, xi)
+    }
+
+    #[inline]
+    fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar {
+        self.system.constraint_norm(x)
+    }
+
+    #[inline]
+    fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar {
+        self.system.kinetic_energy(x, xi)
+    }
+
+    #[inline]
+    fn potential_energy(&self, x: &Self::Coordinates) -> Self::Scalar {
+        self.system.potential_energy(x)
+    }
+}
+
+impl<Sys: Split + ?Sized> Split for Counted<'_, Sys> {
+    type Rotors = Sys::Rotors;
+
+    const FREE: bool = Sys::FREE;
+
+    #[inline]
+    fn rotors(&self) -> Self::Rotors {
+        self.system.rotors()
+    }
+
+    #[inline]
+    fn centre(&self, x: &Self::Coordinates) -> Self::Coordinates {
+        self.system.centre(x)
+    }
+
+    #[inline]
+    fn uncentre(&self, y: &Self::Coordinates) -> Self::Coordinates {
+        self.system.uncentre(y)
+    }
+
+    #[inline]
+    fn momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {
+        self.system.momenta(x, xi)
+    }
+
+    #[inline]
+    fn velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities {
+        self.system.velocities(x, p)
+    }
+
+    #[inline]
+    fn kick(&self, x: &Self::Coordinates, u: &Self::Inputs) -> Self::Chart {
+        self.count();
+        self.system.kick(x, u)
+    }
+}
+
+impl<Sys: Canonical + ?Sized> Canonical for Counted<'_, Sys> {
+    #[inline]
+    fn momentum(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Velocities {
+        self.system.momentum(x, xi)
+    }
+
+    #[inline]
+    fn momentum_rate(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+        u: &Self::Inputs,
+    ) -> Self::Velocities {
+        self.count();
+        self.system.momentum_rate(x, xi, u)
+    }
+
+    #[inline]
+    fn velocity_of_momentum(
+        &self,
+        x: &Self::Coordinates,
+        p: &Self::Velocities,
+    ) -> Result<Self::Velocities, Singular> {
+        self.system.velocity_of_momentum(x, p)
+    }
+}

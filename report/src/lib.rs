@@ -1,0 +1,34 @@
+//! Speed against error: what a method costs on a system, and how far it ends from the truth.
+//!
+//! | module | owns |
+//! |---|---|
+//! | [`counted`] | a system that counts the evaluations of its forces |
+//! | [`problem`] | one system with its start, its errors and what it conserves; methods as [`Entry`](problem::Entry) |
+//! | [`measure`] | the loop: errors and drifts once, times interleaved and as medians |
+//! | [`drift`] | one long run of one method |
+//! | [`solution`] | reference solutions as files |
+//! | [`data`] | the results, as they stand in JSON |
+//! | [`work`] | work to reach an error, between the runs measured |
+//! | [`markdown`], [`json`], [`page`], [`readme`] | what people and programs read |
+//! | [`plot`] | pictures as SVG |
+//! | [`number`] | numbers as people read them |
+//!
+//! Pictures are drawn by `plotters` (MIT) with its SVG backend alone: axes, ticks and logarithmic
+//! scales are its work. It is in wide use, needs no fonts on the machine (text is measured by its
+//! length), and its text is deterministic. It knows whole pixels and fixed colours only; [`plot`]
+//! draws ten times as large and gives the colours of a dark page by a style sheet. HTML is written by
+//! `maud` (MIT or Apache-2.0), which escapes whatever is inserted.
+
+pub mod counted;
+pub mod data;
+pub mod drift;
+pub mod json;
+pub mod markdown;
+pub mod measure;
+pub mod number;
+pub mod page;
+pub mod plot;
+pub mod problem;
+pub mod readme;
+pub mod solution;
+pub mod work;

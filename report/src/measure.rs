@@ -1,0 +1,212 @@
+//! The measuring loop.
+//!
+//! Errors, drifts and evaluations are exact: one watched run gives them. Times are not: machines are
+//! noisy, in phases longer than a run. Every method is therefore timed once at every step before any
+//! is timed again, and the median of the repeats is kept; ratios of such medians are steadier than
+//! the times themselves. What is timed is the first steps of a run, at most [`PART`] of them, and the
+//! time of the run is that in proportion: a long run would be interrupted too often to be timed.
+
+use crate::data::{Case, MethodRun, MethodRuns, kept};
+use crate::problem::{Entry, Worst};
+
+/// How to measure.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Numbers of steps, ascending.
+    pub steps: Vec<u64>,
+    /// How often each run is timed; 0 for no times at all.
+    pub repeats: u32,
+    /// A run is repeated within one timing until it has taken so long, in s.
+    pub least: f64,
+    /// A method is not run with shorter steps once its error is below this, or is no longer
+    /// reduced: what follows is rounding.
+    pub floor: f64,
+}
+
+impl Plan {
+    /// Doublings of a number of steps.
+    pub fn doublings(from: u64, count: u32) -> Vec<u64> {
+        (0..count).map(|index| from << index).collect()
+    }
+}
+
+/// No more steps are timed at once.
+pub const PART: u64 = 1000;
+
+/// Fewer than this times the last error is a reduction.
+const REDUCED: f64 = 0.7;
+
+/// Measures every entry and adds the results to the case. `tick` is called before each piece of work with
+/// what is done and what there is in all.
+pub fn measure(case: &mut Case, entries: &[Entry], plan: &Plan, tick: &mut dyn FnMut(u64, u64)) {
+    let all = entries.len() as u64 * (1 + u64::from(plan.repeats));
+    let mut done = 0;
+    let mut step = |tick: &mut dyn FnMut(u64, u64)| {
+        tick(done, all);
+        done += 1;
+    };
+    let mut methods: Vec<MethodRuns> = Vec::new();
+    for entry in entries {
+        step(tick);
+        methods.push(MethodRuns {
+            method: entry.method.clone(),
+            kind: entry.kind,
+            order: entry.order,
+            runs: errors(entry, case.until, plan),
+        });
+    }
+    let mut times: Vec<Vec<Vec<f64>>> = methods
+        .iter()
+        .map(|method| vec![Vec::new(); method.runs.len()])
+        .collect();
+    for _ in 0..plan.repeats {
+        for ((entry, method), times) in entries.iter().zip(&methods).zip(&mut times) {
+            step(tick);
+            for (run, times) in method.runs.iter().zip(times) {
+                if run.failure.is_none() {
+                    times.extend(time(entry, run.steps, plan.least));
+                }
+            }
+        }
+    }
+    for (method, times) in methods.iter_mut().zip(times) {
+        for (run, times) in method.runs.iter_mut().zip(times) {
+            run.seconds = median(times).and_then(kept);
+        }
+    }
+    case.methods.extend(methods);
+}
+
+/// One watched run for each number of steps.
+fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
+    let mut runs: Vec<MethodRun> = Vec::new();
+    let mut stalled = 0;
+    let mut last = f64::INFINITY;
+    for &steps in &plan.steps {
+        let mut worst = Worst::default();
+        let outcome = entry.run(steps, until, &mut |deviation| worst.take(deviation));
+        runs.push(MethodRun {
+            steps,
+            evaluations: outcome.evaluations.filter(|_| outcome.failure.is_none()),
+            error: kept(outcome.error),
+            energy: kept(worst.energy),
+            momentum: kept(worst.momentum),
+            defect: kept(worst.defect),
+            seconds: None,
+            failure: outcome.failure,
+        });
+        // Before a method converges its error may stay the same for long.
+        let small = outcome.error < 1e-3;
+        stalled = if small && outcome.error > REDUCED * last {
+            stalled + 1
+        } else {
+            0
+        };
+        if outcome.error < plan.floor || stalled >= 2 {
+            break;
+        }
+        last = outcome.error;
+    }
+    runs
+}
+
+/// The mean time of as many runs as fill the least time, from that of their first steps.
+fn time(entry: &Entry, steps: u64, least: f64) -> Option<f64> {
+    let part = steps.min(PART);
+    let (mut sum, mut count) = (0.0, 0.0);
+    while sum < least {
+        sum += entry.clock(steps, part)?;
+        count += 1.0;
+        // A clock that does not advance must not hold up the rest.
+        if count > 1e5 {
+            break;
+        }
+    }
+    (count > 0.0).then_some(sum / count * (steps as f64 / part as f64))
+}
+
+/// The middle value, or the mean of the two in the middle.
+pub fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = values.get(middle).copied()?;
+    if values.len() % 2 == 1 {
+        return Some(upper);
+    }
+    let lower = values.get(middle.checked_sub(1)?).copied()?;
+    Some(f64::midpoint(lower, upper))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Plan, measure, median};
+    use crate::data::{Case, Kind};
+    use crate::problem::{Deviation, Entry, Outcome};
+
+    /// A method with error = floor + hᵖ, whose clock says 1 µs a step.
+    fn entry<'a>(name: &str, p: i32, floor: f64) -> Entry<'a> {
+        Entry::new(
+            name,
+            Kind::Method,
+            Some(2),
+            move |steps, _, watch| {
+                for energy in [0.5, 2.0, 1.0] {
+                    let (momentum, defect) = (f64::NAN, 0.0);
+                    watch(Deviation {
+                        energy,
+                        momentum,
+                        defect,
+                    });
+                }
+                Outcome {
+                    evaluations: Some(3 * steps),
+                    error: floor + (steps as f64).powi(-p),
+                    failure: (steps == 1).then(|| "too long".to_string()),
+                }
+            },
+            |_, part| Some(part as f64 * 1e-6),
+        )
+    }
+
+    #[test]
+    fn runs_end_at_the_floor_and_times_are_medians() {
+        let entries = [entry("a", 4, 0.0), entry("b", 4, 1e-7)];
+        let plan = Plan {
+            steps: Plan::doublings(1, 12),
+            repeats: 3,
+            least: 1e-3,
+            floor: 1e-9,
+        };
+        let mut case = Case::default();
+        let mut ticks = Vec::new();
+        measure(&mut case, &entries, &plan, &mut |done, all| {
+            ticks.push((done, all))
+        });
+        let [a, b] = &case.methods[..] else {
+            panic!("two methods");
+        };
+        // 256⁻⁴ = 2e-10 is the first error below the floor.
+        assert_eq!(a.runs.last().map(|run| run.steps), Some(256));
+        // 1e-7 is all but reached with 128 steps; two more runs do not reduce it by much.
+        assert_eq!(b.runs.last().map(|run| run.steps), Some(512));
+        let run = &a.runs[4];
+        assert_eq!((run.steps, run.evaluations), (16, Some(48)));
+        assert_eq!(
+            (run.energy, run.momentum, run.defect),
+            (Some(2.0), None, Some(0.0))
+        );
+        assert_eq!(run.seconds, Some(1.6e-5));
+        assert_eq!(a.runs[0].seconds, None);
+        assert_eq!(a.runs[0].evaluations, None);
+        assert_eq!(a.runs[0].failure.as_deref(), Some("too long"));
+        assert_eq!(ticks.len(), 8);
+        assert_eq!(ticks.last(), Some(&(7, 8)));
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), Some(2.5));
+        assert_eq!(median(Vec::new()), None);
+    }
+}

@@ -1,0 +1,134 @@
+//! Reports as one HTML page that needs nothing else: pictures inline, light and dark.
+
+use crate::data::{Case, MethodRun, Report};
+use crate::markdown::{how, name, worked};
+use crate::number::short;
+use crate::plot::{Figure, sheet};
+use crate::work::{TARGETS, work};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// A picture with a name of its own.
+pub struct Picture {
+    /// Heading.
+    pub title: String,
+    /// The drawing.
+    pub figure: Figure,
+}
+
+const STYLE: &str = "\
+:root{color-scheme:light dark;--ink:#1c2128;--soft:#59636e;--rule:#e3e7ec;--ground:#fff}\
+@media(prefers-color-scheme:dark){:root{--ink:#e8edf3;--soft:#9aa5b1;--rule:#2a323c;--ground:#11161d}}\
+body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--ground);max-width:62rem;margin:2rem auto;padding:0 1rem}\
+h2{margin-top:2.5rem;border-top:1px solid var(--rule);padding-top:1rem}\
+table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:1rem 0;display:block;overflow-x:auto}\
+th,td{padding:.2rem .7rem;border-bottom:1px solid var(--rule);text-align:right;white-space:nowrap}\
+th:first-child,td:first-child{text-align:left}caption{text-align:left;color:var(--soft)}\
+.words td{text-align:left;white-space:normal}svg{max-width:100%;height:auto}p.soft{color:var(--soft)}\
+code{font-size:.9em}summary{cursor:pointer}";
+
+/// The page. `figures` holds the picture of every case in turn, `further` pictures that stand at the end.
+pub fn write(report: &Report, figures: &[Option<Figure>], further: &[Picture]) -> String {
+    let figure = |index: usize| figures.get(index).and_then(Option::as_ref);
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (report.title) }
+                style { (PreEscaped(STYLE)) (PreEscaped(sheet())) }
+            }
+            body {
+                main {
+                    h1 { (report.title) }
+                    @for paragraph in how(report).split("\n\n") {
+                        p.soft { (paragraph) }
+                    }
+                    nav aria-label="cases" {
+                        ul {
+                            @for case in &report.cases {
+                                li { a href=(format!("#{}", case.name)) { (case.title) } }
+                            }
+                        }
+                    }
+                    (peers(report))
+                    @for (index, case) in report.cases.iter().enumerate() {
+                        (section(case, figure(index)))
+                    }
+                    @for picture in further {
+                        section {
+                            h2 { (picture.title) }
+                            (PreEscaped(picture.figure.inline()))
+                        }
+                    }
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn peers(report: &Report) -> Markup {
+    html! {
+        @if !report.peers.is_empty() {
+            h2 { "Other programs" }
+            table.words {
+                thead { tr { th scope="col" { "program" } th scope="col" { "measured" } th scope="col" { "what" } th scope="col" { "to have it here" } } }
+                tbody {
+                    @for peer in &report.peers {
+                        tr {
+                            td { (peer.name) }
+                            td { @if peer.available { "yes" } @else { "not available" } }
+                            td { (peer.note) }
+                            td { code { (peer.start) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn section(case: &Case, figure: Option<&Figure>) -> Markup {
+    html! {
+        section id=(case.name) {
+            h2 { (case.title) }
+            p.soft {
+                "t = " (short(case.until)) "; error: " (case.error) ", against " (case.reference)
+                @if let Some(error) = case.reference_error { " (itself off by " (format!("{error:.0e}")) ")" }
+            }
+            @if let Some(figure) = figure { (PreEscaped(figure.inline())) }
+            (summary(case))
+            @for missing in &case.missing {
+                p.soft { code { (missing.method) } " was not run: " (missing.why) "." }
+            }
+        }
+    }
+}
+
+/// Work to reach errors.
+fn summary(case: &Case) -> Markup {
+    let evaluations = |run: &MethodRun| run.evaluations.map(|count| count as f64);
+    let micros = |run: &MethodRun| run.seconds.map(|seconds| 1e6 * seconds);
+    html! {
+        table {
+            caption { "evaluations of forces, and µs, to reach an error" }
+            thead {
+                tr {
+                    th scope="col" { "method" }
+                    @for target in TARGETS { th scope="col" { (format!("{target:.0e}")) } }
+                    @for target in TARGETS { th scope="col" { (format!("µs, {target:.0e}")) } }
+                }
+            }
+            tbody {
+                @for method in &case.methods {
+                    tr {
+                        td { (name(method)) }
+                        @for target in TARGETS { td { (worked(work(&method.runs, target, evaluations))) } }
+                        @for target in TARGETS { td { (worked(work(&method.runs, target, micros))) } }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Lines over time, each named at its end.
+
+use super::axes::{Axes, Axis, Frame};
+use super::figure::{Anchor, Area, Drawn, letters, line, stroke, write};
+use super::line::{Point, by_column, simplify};
+use super::{Panel, theme};
+
+/// Distance of two labels.
+const LABEL: f64 = 15.0;
+
+/// A panel; the last one carries the labels of the time axis.
+pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool) -> Drawn {
+    let (from, to) = match time {
+        [first, .., last] if last > first => (*first, *last),
+        _ => (0.0, 1.0),
+    };
+    let values = panel
+        .lines
+        .iter()
+        .flat_map(|(_, values)| values.iter().copied());
+    let axes = Axes {
+        frame,
+        across: Axis::exact(from, to),
+        up: Axis::around(values),
+    };
+    axes.draw(area, last)?;
+    axes.name(area, &format!("{}{}", panel.title, axes.up.factor()))?;
+    let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
+    if last {
+        let style = letters(12.0, theme::SOFT.0, Anchor::Start, false);
+        let name = format!("t{}", axes.across.factor());
+        write(area, &name, (right + 26.0, bottom + 14.0), &style)?;
+    }
+    let mut ends = Vec::new();
+    for (index, (name, values)) in panel.lines.iter().enumerate() {
+        let points: Vec<Point> = time
+            .iter()
+            .zip(values)
+            .filter(|(_, value)| value.is_finite())
+            .map(|(&t, &value)| axes.place(t, value))
+            .collect();
+        let Some(&(_, end)) = points.last() else {
+            continue;
+        };
+        let shown = simplify(&by_column(&points), 0.15);
+        line(area, &shown, stroke(theme::series(index), 1.8))?;
+        ends.push((index, name.as_str(), end));
+    }
+    names(area, &ends, frame)
+}
+
+/// Names beside the ends of lines, moved apart; each with the index of its colour and the height of
+/// its end.
+pub fn names(area: &Area, ends: &[(usize, &str, f64)], frame: Frame) -> Drawn {
+    let right = frame.x + frame.width;
+    let mut order: Vec<&(usize, &str, f64)> = ends.iter().collect();
+    order.sort_by(|a, b| a.2.total_cmp(&b.2));
+    let gap = LABEL.min((frame.height + LABEL) / ends.len().max(1) as f64);
+    let mut places: Vec<f64> = Vec::new();
+    for (_, _, end) in &order {
+        places.push(places.last().map_or(*end, |above| end.max(above + gap)));
+    }
+    let mut limit = frame.y + frame.height + 4.0;
+    for place in places.iter_mut().rev() {
+        *place = place.min(limit);
+        limit = *place - gap;
+    }
+    for (&(index, name, end), place) in order.into_iter().zip(places) {
+        let colour = theme::series(index);
+        let lead = [(right + 2.0, end), (right + 11.0, place)];
+        line(area, &lead, stroke(colour, 1.0))?;
+        let style = letters(12.0, colour, Anchor::Start, true);
+        write(area, name, (right + 14.0, place), &style)?;
+    }
+    Ok(())
+}

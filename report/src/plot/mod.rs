@@ -1,0 +1,207 @@
+//! Pictures as SVG: lines over time, paths on a sphere, Poinsot's construction, speed against error,
+//! drift.
+//!
+//! The text is deterministic. Colours follow the reader's light or dark scheme.
+
+mod axes;
+mod chart;
+mod figure;
+mod line;
+mod precision;
+mod sphere;
+mod theme;
+mod windows;
+
+pub use figure::{Figure, PlotError, escape};
+pub use precision::{Precision, precision};
+pub use sphere::Poinsot;
+pub use theme::sheet;
+pub use windows::drifts;
+
+use axes::Frame;
+use figure::headed;
+
+/// Lines over time that share a vertical axis.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// What is drawn.
+    pub title: String,
+    /// Names and values, one value for every time of the picture.
+    pub lines: Vec<(String, Vec<f64>)>,
+}
+
+impl Panel {
+    /// A panel without lines.
+    pub fn new(title: &str) -> Self {
+        Panel {
+            title: title.to_string(),
+            lines: Vec::new(),
+        }
+    }
+}
+
+/// A curve of unit vectors over the times of the picture.
+#[derive(Clone, Debug)]
+pub struct Path {
+    /// What is drawn.
+    pub title: String,
+    /// Unit vectors in world axes.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// All that is drawn of a run.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Heading.
+    pub title: String,
+    /// A sentence below it.
+    pub subtitle: String,
+    /// Times of all values, ascending.
+    pub time: Vec<f64>,
+    /// Panels from top to bottom; the last one is lower.
+    pub panels: Vec<Panel>,
+    /// The sphere beside them, if there is one.
+    pub path: Option<Path>,
+    /// Poinsot's construction, if there is one.
+    pub poinsot: Option<Poinsot>,
+}
+
+const HEAD: f64 = 66.0;
+const TITLE: f64 = 26.0;
+const GAP: f64 = 22.0;
+const FOOT: f64 = 50.0;
+const LEFT: f64 = 66.0;
+const LABELS: f64 = 78.0;
+/// Width and height of a sphere with its names.
+const SPHERE: (f64, f64) = (380.0, 410.0);
+const RADIUS: f64 = 140.0;
+
+/// A picture of a run.
+///
+/// # Errors
+/// Those of the library that draws; none are known.
+pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
+    let spheres = usize::from(picture.path.is_some()) + usize::from(picture.poinsot.is_some());
+    let wide = if spheres > 0 { 590.0 } else { 800.0 };
+    let upper = if picture.panels.len() > 2 {
+        140.0
+    } else {
+        200.0
+    };
+    let height_of = |index: usize| {
+        if index + 1 == picture.panels.len() {
+            92.0
+        } else {
+            upper
+        }
+    };
+    let charts: f64 = (0..picture.panels.len())
+        .map(|index| TITLE + height_of(index) + GAP)
+        .sum();
+    let least = HEAD + if spheres > 0 { SPHERE.1 } else { 0.0 };
+    let height = (HEAD + charts - GAP + FOOT).max(least);
+    let width = wide + SPHERE.0 * spheres as f64;
+    Figure::draw(width, height, &picture.title, |area| {
+        headed(area, &picture.title, &picture.subtitle)?;
+        let mut top = HEAD;
+        for (index, panel) in picture.panels.iter().enumerate() {
+            top += TITLE;
+            let frame = Frame {
+                x: LEFT,
+                y: top,
+                width: wide - LEFT - LABELS,
+                height: height_of(index),
+            };
+            let last = index + 1 == picture.panels.len();
+            chart::panel(area, panel, &picture.time, frame, last)?;
+            top += frame.height + GAP;
+        }
+        let end = picture.time.last().copied().unwrap_or(0.0);
+        let middle = (HEAD + height) / 2.0 - 8.0;
+        let mut x = wide + 0.5 * SPHERE.0 - 10.0;
+        if let Some(path) = &picture.path {
+            sphere::path(area, path, end, (x, middle), RADIUS)?;
+            x += SPHERE.0;
+        }
+        if let Some(poinsot) = &picture.poinsot {
+            sphere::poinsot(area, poinsot, end, (x, middle), RADIUS)?;
+        }
+        Ok(())
+    })
+}
+
+/// Poinsot's construction alone.
+///
+/// # Errors
+/// Those of the library that draws; none are known.
+pub fn construction(
+    title: &str,
+    subtitle: &str,
+    poinsot: &Poinsot,
+    end: f64,
+) -> Result<Figure, PlotError> {
+    Figure::draw(480.0, 540.0, title, |area| {
+        headed(area, title, subtitle)?;
+        sphere::poinsot(area, poinsot, end, (240.0, 296.0), 160.0)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Panel, Path, Picture, Poinsot, run};
+
+    fn picture() -> Picture {
+        let time: Vec<f64> = (0..=100).map(|i| f64::from(i) * 0.1).collect();
+        let mut panel = Panel::new("a < b");
+        panel
+            .lines
+            .push(("w[1]".into(), time.iter().map(|t| t.sin()).collect()));
+        let mut flat = Panel::new("energy");
+        flat.lines.push(("E".into(), vec![0.0; time.len()]));
+        let points = time.iter().map(|t| [t.cos(), t.sin(), 0.0]).collect();
+        let momenta = time.iter().map(|t| [t.cos(), 0.0, t.sin()]).collect();
+        Picture {
+            title: "T & V".into(),
+            subtitle: "a picture".into(),
+            time,
+            panels: vec![panel, flat],
+            path: Some(Path {
+                title: "axis".into(),
+                points,
+            }),
+            poinsot: Some(Poinsot {
+                momenta,
+                inertia: [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]],
+            }),
+        }
+    }
+
+    #[test]
+    fn the_same_picture_is_the_same_text() {
+        let picture = picture();
+        let text = run(&picture).expect("a drawing").standalone();
+        assert_eq!(text, run(&picture).expect("a drawing").standalone());
+        for part in [
+            "T &amp; V",
+            "a &lt; b",
+            "w[1]",
+            "axis",
+            "polhode",
+            "prefers-color-scheme",
+        ] {
+            assert!(text.contains(part), "{part}");
+        }
+        assert!(!text.contains("NaN") && !text.contains("inf"));
+        assert!(text.starts_with("<svg") && text.ends_with("</svg>\n"));
+    }
+
+    #[test]
+    fn what_is_not_finite_is_left_out() {
+        let mut picture = picture();
+        picture.panels[0].lines[0].1 = vec![f64::NAN, f64::INFINITY];
+        picture.path = None;
+        picture.poinsot = None;
+        let text = run(&picture).expect("a drawing").standalone();
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    }
+}

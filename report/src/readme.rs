@@ -1,0 +1,78 @@
+//! The block of a text that is written from a report, between two comments.
+
+use crate::data::{Case, Kind, MethodRun, MethodRuns, Report};
+use crate::markdown::worked;
+use crate::work::{Work, work};
+use std::fmt::Write;
+
+/// What stands before the block.
+pub const BEGIN: &str = "<!-- report: begin -->";
+/// What stands after it.
+pub const END: &str = "<!-- report: end -->";
+
+/// The error asked for.
+const TARGET: f64 = 1e-9;
+
+/// A table of the fastest method of every case and what it costs to reach 1e-9, with rkmk4 beside it.
+pub fn block(report: &Report) -> String {
+    let mut text = String::from(
+        "| motion | fastest method to 1e-9 | evaluations of forces | time | `rkmk4` to 1e-9 |\n|---|---|---:|---:|---:|\n",
+    );
+    for case in &report.cases {
+        if let Some((method, time)) = fastest(case) {
+            let evaluations = |run: &MethodRun| run.evaluations.map(|count| count as f64);
+            let usual = case.methods.iter().find(|other| other.method == "rkmk4");
+            let _ = writeln!(
+                text,
+                "| {} | `{}` | {} | {} | {} |",
+                case.title.replace('|', "\\|"),
+                method.method,
+                worked(work(&method.runs, TARGET, evaluations)),
+                micros(Some(time)),
+                micros(usual.map(timed)),
+            );
+        }
+    }
+    text
+}
+
+fn timed(method: &MethodRuns) -> Work {
+    work(&method.runs, TARGET, |run| {
+        run.seconds.map(|seconds| 1e6 * seconds)
+    })
+}
+
+fn micros(time: Option<Work>) -> String {
+    match time {
+        Some(Work::Reached(value)) if value >= 1e4 => {
+            format!("{} ms", worked(Work::Reached(1e-3 * value)))
+        }
+        Some(time @ (Work::Reached(_) | Work::AtMost(_))) => format!("{} µs", worked(time)),
+        _ => "not reached".into(),
+    }
+}
+
+/// The method, no baseline, that takes the least time.
+fn fastest(case: &Case) -> Option<(&MethodRuns, Work)> {
+    let ours = case
+        .methods
+        .iter()
+        .filter(|method| method.kind == Kind::Method);
+    ours.filter_map(|method| Some((method, timed(method), timed(method).value()?)))
+        .min_by(|a, b| a.2.total_cmp(&b.2))
+        .map(|(method, work, _)| (method, work))
+}
+
+/// The text with its block replaced; `None` where the comments are missing.
+pub fn replaced(text: &str, block: &str) -> Option<String> {
+    let (before, rest) = text.split_once(BEGIN)?;
+    let (_, after) = rest.split_once(END)?;
+    Some(format!("{before}{BEGIN}\n{block}{END}{after}"))
+}
+
+/// The block of a text; `None` where the comments are missing.
+pub fn present(text: &str) -> Option<&str> {
+    let (_, rest) = text.split_once(BEGIN)?;
+    let (block, _) = rest.split_once(END)?;
+    Some(block.strip_prefix('\n').unwrap_or(block))
+}

@@ -1,0 +1,172 @@
+//! Counts are exact, and the wrapper changes nothing.
+
+use hamel::methods::{General, Rkmk4};
+use hamel::{Block, Canonical, Singular, Split, State, System, integrate, s1};
+use hamel_report::counted::Counted;
+use hamel_report::data::Kind;
+use hamel_report::problem::{Problem, Worst};
+
+/// A pendulum, l θ̈ = −g sin θ, on the circle.
+struct Pendulum {
+    g: f64,
+    l: f64,
+}
+
+impl System for Pendulum {
+    type Scalar = f64;
+    type Coordinates = [f64; 2];
+    type Velocities = [f64; 1];
+    type Chart = [f64; 1];
+    type Inputs = [f64; 0];
+
+    fn blocks(&self) -> &[Block] {
+        &[Block::Circle]
+    }
+    fn zero_coordinates(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+    fn zero_velocities(&self) -> [f64; 1] {
+        [0.0]
+    }
+    fn zero_chart(&self) -> [f64; 1] {
+        [0.0]
+    }
+    fn zero_inputs(&self) -> [f64; 0] {
+        []
+    }
+    fn start(&self) -> ([f64; 2], [f64; 1]) {
+        (s1::exp(1.0), [0.5])
+    }
+    fn rate(&self, x: &[f64; 2], xi: &[f64; 1]) -> [f64; 2] {
+        s1::rate(*x, xi[0])
+    }
+    fn chart_rate(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] {
+        *xi
+    }
+    fn accel(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> Result<[f64; 1], Singular> {
+        Ok([-self.g / self.l * x[1]])
+    }
+    fn correction(&self, x: &[f64; 2]) -> [f64; 2] {
+        s1::correction(*x)
+    }
+    fn constraint_norm(&self, x: &[f64; 2]) -> f64 {
+        s1::defect(*x)
+    }
+    fn kinetic_energy(&self, _: &[f64; 2], xi: &[f64; 1]) -> f64 {
+        0.5 * (self.l * xi[0]).powi(2)
+    }
+    fn potential_energy(&self, x: &[f64; 2]) -> f64 {
+        -self.g * self.l * x[0]
+    }
+}
+
+impl Split for Pendulum {
+    type Rotors = [hamel::Rotor<f64>; 0];
+    const FREE: bool = false;
+    fn rotors(&self) -> Self::Rotors {
+        []
+    }
+    fn centre(&self, x: &[f64; 2]) -> [f64; 2] {
+        *x
+    }
+    fn uncentre(&self, y: &[f64; 2]) -> [f64; 2] {
+        *y
+    }
+    fn momenta(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] {
+        *xi
+    }
+    fn velocities(&self, _: &[f64; 2], p: &[f64; 1]) -> [f64; 1] {
+        *p
+    }
+    fn kick(&self, x: &[f64; 2], _: &[f64; 0]) -> [f64; 1] {
+        [-self.g / self.l * x[1]]
+    }
+}
+
+impl Canonical for Pendulum {
+    fn momentum(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] {
+        [self.l * self.l * xi[0]]
+    }
+    fn momentum_rate(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> [f64; 1] {
+        [-self.g * self.l * x[1]]
+    }
+    fn velocity_of_momentum(&self, _: &[f64; 2], p: &[f64; 1]) -> Result<[f64; 1], Singular> {
+        Ok([p[0] / (self.l * self.l)])
+    }
+}
+
+const PENDULUM: Pendulum = Pendulum { g: 9.81, l: 0.5 };
+
+#[test]
+fn each_kind_of_force_counts_once() {
+    let counted = Counted::new(&PENDULUM);
+    let (x, xi) = counted.start();
+    assert_eq!(counted.evaluations(), 0);
+    assert_eq!(counted.accel(&x, &xi, &[]), PENDULUM.accel(&x, &xi, &[]));
+    assert_eq!(counted.kick(&x, &[]), PENDULUM.kick(&x, &[]));
+    let rate = counted.momentum_rate(&x, &xi, &[]);
+    assert_eq!(rate, PENDULUM.momentum_rate(&x, &xi, &[]));
+    assert_eq!(counted.evaluations(), 3);
+    // Nothing else is an evaluation of forces.
+    let p = counted.momentum(&x, &xi);
+    assert_eq!(counted.velocity_of_momentum(&x, &p), Ok(xi));
+    assert_eq!(counted.uncentre(&counted.centre(&x)), x);
+    assert_eq!(counted.velocities(&x, &counted.momenta(&x, &xi)), xi);
+    assert_eq!(counted.rate(&x, &xi), PENDULUM.rate(&x, &xi));
+    assert_eq!(
+        counted.kinetic_energy(&x, &xi),
+        PENDULUM.kinetic_energy(&x, &xi)
+    );
+    assert_eq!(counted.evaluations(), 3);
+    counted.reset();
+    assert_eq!(counted.evaluations(), 0);
+}
+
+#[test]
+fn runs_are_those_of_the_system_itself() {
+    let mut state = State::start(&PENDULUM);
+    integrate(
+        &PENDULUM,
+        Rkmk4,
+        &mut state,
+        0.02,
+        2.0,
+        |_, _, _| [],
+        |_| {},
+    )
+    .expect("a run");
+    let counted = Counted::new(&PENDULUM);
+    let mut other = State::start(&counted);
+    integrate(&counted, Rkmk4, &mut other, 0.02, 2.0, |_, _, _| [], |_| {}).expect("a run");
+    assert_eq!((state.x, state.xi), (other.x, other.xi));
+    assert_eq!(counted.evaluations(), 400);
+}
+
+#[test]
+fn a_problem_gives_error_drift_and_count() {
+    let (x, xi) = PENDULUM.start();
+    let problem = Problem {
+        system: Counted::new(&PENDULUM),
+        x,
+        xi,
+        until: 1.0,
+        inputs: |_, _: &_, _: &_| [],
+        error: Box::new(|_, xi| (xi[0] - 7.0).abs()),
+        momenta: Box::new(|_, _| Vec::new()),
+        conservative: true,
+    };
+    let entry = problem.by("rkmk4", Kind::Method, General::Rkmk4);
+    let (_, end) = problem.end(&Rkmk4, 50).expect("a run");
+    let mut worst = Worst::default();
+    let mut states = 0;
+    let outcome = entry.run(50, 1.0, &mut |deviation| {
+        worst.take(deviation);
+        states += 1;
+    });
+    assert_eq!((outcome.evaluations, states), (Some(200), 51));
+    assert_eq!(outcome.error, (end[0] - 7.0).abs());
+    // The energy of RKMK4 at h = 0.02 changes by some 1e-6; there are no momenta.
+    assert!(worst.energy > 0.0 && worst.energy < 1e-5, "{worst:?}");
+    assert!(worst.momentum.is_nan() && worst.defect < 1e-15, "{worst:?}");
+    assert_eq!(entry.order, Some(4));
+}
