@@ -209,7 +209,9 @@ impl Functions {
             ),
             (
                 "rotor_inertia",
-                &["Inertia J of the rotors: J₁, J₂, J₃ where body axes are principal, else J by rows."],
+                &[
+                    "Inertia J of the rotors: J₁, J₂, J₃ where body axes are principal, else J by rows.",
+                ],
                 &[],
                 Shape::Vector(self.inertia.len()),
                 (!self.rotors.is_empty()).then_some(&self.inertia),
