@@ -212,7 +212,7 @@ fn kinetic_energy_falls_apart(case: &mut Case, splitting: &Splitting) {
     });
     for _ in 0..STATES {
         let (x, p) = (case.x(), case.numbers(n));
-        let mut expected = 0.0;
+        let mut expected: f64 = 0.0;
         for (rates, j) in turning.iter().zip(&rotors) {
             let own = DVector::from_column_slice(&p[rates.clone()]);
             let inverse = j.clone().try_inverse().expect("a rotor has inertia");
