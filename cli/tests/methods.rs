@@ -43,14 +43,18 @@ fn end(name: &str, tag: &str, arguments: &[&str]) -> Vec<f64> {
     assert!(output.status.success(), "{name}: {}", text(&output.stderr));
     let written = std::fs::read_to_string(&path).expect("samples");
     let last = written.lines().last().expect("a line");
-    let numbers = last.split(',').map(|entry| entry.parse().expect("a number"));
+    let numbers = last
+        .split(',')
+        .map(|entry| entry.parse().expect("a number"));
     numbers.collect()
 }
 
 /// The relative deviation of the energy that the summary gives.
 fn deviation(output: &Output) -> f64 {
     let out = text(&output.stdout);
-    let line = out.lines().find(|line| line.trim_start().starts_with("energy"));
+    let line = out
+        .lines()
+        .find(|line| line.trim_start().starts_with("energy"));
     let line = line.expect("the energy");
     let word = line.split_whitespace().rev().nth(1).expect("a number");
     word.parse().expect("a number")
@@ -124,9 +128,15 @@ fn methods_that_do_not_fit_are_refused_with_the_reason() {
         assert_eq!(output.status.code(), Some(2), "{name} by {method}");
         assert!(output.stdout.is_empty(), "{name}: nothing runs");
         let error = text(&output.stderr);
-        assert!(error.contains(&format!("--method {method} does not fit")), "{error}");
+        assert!(
+            error.contains(&format!("--method {method} does not fit")),
+            "{error}"
+        );
         for reason in reasons {
-            assert!(error.contains(reason), "{name} by {method}: {reason}: {error}");
+            assert!(
+                error.contains(reason),
+                "{name} by {method}: {reason}: {error}"
+            );
         }
     }
 }
@@ -136,7 +146,14 @@ fn an_unknown_method_lists_the_names() {
     let output = simulate("heavy_top", &["--method", "runge"]);
     assert_eq!(output.status.code(), Some(2));
     let error = text(&output.stderr);
-    for name in ["auto", "rkmk4", "splitting6", "gauss6", "buss-augmented2", "slide"] {
+    for name in [
+        "auto",
+        "rkmk4",
+        "splitting6",
+        "gauss6",
+        "buss-augmented2",
+        "slide",
+    ] {
         assert!(error.contains(name), "{name}: {error}");
     }
 }
@@ -153,18 +170,33 @@ fn tolerances_are_for_methods_that_choose_their_steps() {
         &["--method", "rkmk8", "--tol", "1e-9", "--step", "0.1"],
         &["--method", "rkmk8", "--tol", "0"],
     ] {
-        assert_eq!(simulate("heavy_top", arguments).status.code(), Some(2), "{arguments:?}");
+        assert_eq!(
+            simulate("heavy_top", arguments).status.code(),
+            Some(2),
+            "{arguments:?}"
+        );
     }
 }
 
 /// Every method of order 4 or more comes to the end of the run that rkmk8 comes to.
 #[test]
 fn every_method_runs_and_the_good_ones_agree() {
-    let expected = end("lagrange_top", "rkmk8", &["--method", "rkmk8", "--step", "0.002"]);
+    let expected = end(
+        "lagrange_top",
+        "rkmk8",
+        &["--method", "rkmk8", "--step", "0.002"],
+    );
     for method in ["splitting6", "kahan-li", "gauss6", "rkmk54"] {
-        let found = end("lagrange_top", method, &["--method", method, "--step", "0.002"]);
+        let found = end(
+            "lagrange_top",
+            method,
+            &["--method", method, "--step", "0.002"],
+        );
         for (a, b) in found.iter().zip(&expected) {
-            assert!((a - b).abs() <= SAME * b.abs().max(1.0), "{method}: {a} {b}");
+            assert!(
+                (a - b).abs() <= SAME * b.abs().max(1.0),
+                "{method}: {a} {b}"
+            );
         }
     }
     for method in ["rkmk4", "cf4", "splitting", "suzuki", "gauss4"] {
@@ -186,15 +218,27 @@ fn every_method_runs_and_the_good_ones_agree() {
         "buss4",
     ] {
         let output = simulate("lagrange_top", &["--method", method, "--step", "0.001"]);
-        assert!(output.status.success(), "{method}: {}", text(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{method}: {}",
+            text(&output.stderr)
+        );
     }
 }
 
 /// The closed form is evaluated from the start: a run in one step ends where one in a thousand does.
 #[test]
 fn closed_forms_do_not_depend_on_steps() {
-    let one = end("principal_axes", "one", &["--method", "free", "--step", "1"]);
-    let many = end("principal_axes", "many", &["--method", "free", "--step", "0.001"]);
+    let one = end(
+        "principal_axes",
+        "one",
+        &["--method", "free", "--step", "1"],
+    );
+    let many = end(
+        "principal_axes",
+        "many",
+        &["--method", "free", "--step", "0.001"],
+    );
     for (a, b) in one.iter().zip(&many) {
         assert!((a - b).abs() <= 1e-14 * b.abs().max(1.0), "{a} {b}");
     }

@@ -112,7 +112,9 @@ impl Case {
             return self.generated.program.start_x.clone();
         }
         let all = self.generated.program.blocks.clone();
-        all.into_iter().flat_map(|block| self.point(block)).collect()
+        all.into_iter()
+            .flat_map(|block| self.point(block))
+            .collect()
     }
 
     /// Names of the blocks, with their places in x and among the rates.
@@ -146,7 +148,9 @@ impl Case {
                 self.call("chart_rate", x, &unit, &[], &[])
             })
             .collect();
-        let inverse = DMatrix::from_columns(&columns).try_inverse().expect("rates");
+        let inverse = DMatrix::from_columns(&columns)
+            .try_inverse()
+            .expect("rates");
         let mass = self.call("mass_matrix", x, &[], &[], &[]);
         let mass = DMatrix::from_row_slice(n, n, mass.as_slice());
         inverse.transpose() * mass * inverse
@@ -175,7 +179,10 @@ impl Case {
 fn close(a: &DVector<f64>, b: &DVector<f64>, tolerance: f64, what: &str) {
     let scale = a.amax().max(b.amax()).max(1.0);
     let distance = (a - b).amax();
-    assert!(distance <= tolerance * scale, "{what}: {distance:e} of {scale:e}");
+    assert!(
+        distance <= tolerance * scale,
+        "{what}: {distance:e} of {scale:e}"
+    );
 }
 
 fn differ(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
@@ -238,7 +245,12 @@ fn inverses(case: &mut Case) {
         let y = case.moved("centre", &x);
         let back = case.moved("uncentre", y.as_slice());
         let x_vector = DVector::from_column_slice(&x);
-        close(&back, &x_vector, ROUNDING, &format!("{}: x of y", case.name));
+        close(
+            &back,
+            &x_vector,
+            ROUNDING,
+            &format!("{}: x of y", case.name),
+        );
         let p = case.call("momenta", &x, &xi, &[], &[]);
         let back = case.call("velocities", &x, &[], &[], p.as_slice());
         let xi = DVector::from_vec(xi);
@@ -275,7 +287,12 @@ fn motion_is_free_motion_and_kicks(case: &mut Case, splitting: &Splitting) {
             match block {
                 Block::Flat(_) => {
                     let moved = y_dot.rows(entries.start, entries.len()).into_owned();
-                    close(&moved, &own, DIFFERENCE, &format!("{}: ẏ of {name}", case.name));
+                    close(
+                        &moved,
+                        &own,
+                        DIFFERENCE,
+                        &format!("{}: ẏ of {name}", case.name),
+                    );
                 }
                 Block::Circle => {}
                 _ => {
@@ -360,7 +377,9 @@ fn inertia_changes(case: &mut Case, on: &[String]) -> bool {
     });
     let elsewhere = case.x();
     let there = case.inertia(&elsewhere).determinant();
-    let plain = parts.iter().all(|(_, block, ..)| matches!(block, Block::Flat(_)));
+    let plain = parts
+        .iter()
+        .all(|(_, block, ..)| matches!(block, Block::Flat(_)));
     all && (plain || (there / here.determinant() - 1.0).abs() > APART)
 }
 
@@ -369,10 +388,14 @@ fn coupled(case: &mut Case, rotor: &str, other: &str) -> bool {
     let x = case.x();
     let inertia = case.inertia(&x);
     let parts = case.parts();
-    let flat = parts.iter().filter(|(_, block, ..)| matches!(block, Block::Flat(_)));
+    let flat = parts
+        .iter()
+        .filter(|(_, block, ..)| matches!(block, Block::Flat(_)));
     let plain: Vec<usize> = flat.flat_map(|(.., rates)| rates.clone()).collect();
     let block = |rows: &[usize], columns: &[usize]| {
-        DMatrix::from_fn(rows.len(), columns.len(), |i, j| inertia[(rows[i], columns[j])])
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+            inertia[(rows[i], columns[j])]
+        })
     };
     let rates = |name: &str| -> Vec<usize> {
         let found = parts.iter().find(|(known, ..)| known == name);
@@ -414,7 +437,9 @@ fn what_stands_in_the_way_is_there() {
             kinds[kind] += 1;
             assert!(holds, "{}: {reason}", case.name);
         }
-        let named = reasons.iter().any(|reason| matches!(reason, Reason::Velocities { .. }));
+        let named = reasons
+            .iter()
+            .any(|reason| matches!(reason, Reason::Velocities { .. }));
         assert_eq!(named, forces_change(&mut case), "{}: forces", case.name);
     }
     assert!(kinds.iter().all(|&count| count > 0), "{kinds:?}");
@@ -453,7 +478,10 @@ fn verdicts() {
             let _ = writeln!(text, "  {line}");
         }
         let _ = writeln!(text, "  {}", choose(structure, None));
-        let (short, long) = (choose(structure, Some(1000)), choose(structure, Some(1_000_000)));
+        let (short, long) = (
+            choose(structure, Some(1000)),
+            choose(structure, Some(1_000_000)),
+        );
         if short != long {
             let _ = writeln!(text, "  a million steps: {long}");
         }
