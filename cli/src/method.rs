@@ -4,9 +4,7 @@ use crate::failure::Failure;
 use crate::interpreted::Interpreted;
 use crate::number::short;
 use hamel::flows::Flow;
-use hamel::methods::{
-    Buss, Gauss4, Gauss6, General, Lgvi, Method, Scheme, Slide, Splitting,
-};
+use hamel::methods::{Buss, Gauss4, Gauss6, General, Lgvi, Method, Scheme, Slide, Splitting};
 use hamel::{State, StepError, System};
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::program::structure::Structure;

@@ -5,9 +5,9 @@ use super::Interpreted;
 use crate::failure::Failure;
 use hamel::rotor::{Rotor, Symmetry};
 use hamel::{Canonical, Singular, Split};
+use hamel_codegen::program::Program;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::structure::{self, Inertia, Structure};
-use hamel_codegen::program::Program;
 
 /// The functions of a system that splits, and those of generalised momenta.
 #[derive(Default)]

@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::interpreted::{Interpreted, Output};
+use crate::method::{Chosen, Stepper};
 use crate::names;
 use crate::number::short;
-use crate::method::{Chosen, Stepper};
 use hamel::adaptive::{Adaptive, Report};
 use hamel::methods::General;
 use hamel::{Monitor, State, StepError, System, integrate};
@@ -208,7 +208,9 @@ fn advance(
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
         let method = &plan.method.stepper;
-        return integrate(system, method, state, plan.step, plan.until, inputs, observe);
+        return integrate(
+            system, method, state, plan.step, plan.until, inputs, observe,
+        );
     };
     observe(state);
     let until = plan.until;

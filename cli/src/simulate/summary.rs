@@ -53,7 +53,11 @@ pub fn text(run: &Run, default_step: bool) -> String {
     };
     let default = if default_step { " (default)" } else { "" };
     let steps = match run.plan.tolerance {
-        Some(tolerance) => format!("{} by tolerance {}", plural(run.steps, "step"), short(tolerance)),
+        Some(tolerance) => format!(
+            "{} by tolerance {}",
+            plural(run.steps, "step"),
+            short(tolerance)
+        ),
         None => format!(
             "{} of {}{default}",
             plural(run.steps, "step"),

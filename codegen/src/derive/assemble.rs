@@ -389,7 +389,9 @@ impl<'a> Builder<'a> {
                 model.span,
                 format!("the equations do not split: {}", reasons.join("; ")),
             )
-            .help("leave `splitting` out of `generate`; `accel` serves the methods for any system"));
+            .help(
+                "leave `splitting` out of `generate`; `accel` serves the methods for any system",
+            ));
         }
         if let (Some(functions), true) = (&found.functions, model.wants("splitting")) {
             let pivots = functions.add(self);
@@ -407,8 +409,7 @@ impl<'a> Builder<'a> {
         let names = names(model, &mut self.graph);
         self.functions.retain(|function| {
             let name = function.name.as_str();
-            model.wants(name)
-                || (structure::FUNCTIONS.contains(&name) && model.wants("splitting"))
+            model.wants(name) || (structure::FUNCTIONS.contains(&name) && model.wants("splitting"))
         });
         let constants = &model.completion.constants;
         self.kinematic_guards

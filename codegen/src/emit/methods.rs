@@ -94,7 +94,11 @@ fn canonical(emitter: &Emitter) -> Option<String> {
     ];
     let fallible = program.function("velocity_of_momentum")?.fallible;
     let call = format!("self.{velocity}(x, p)");
-    let call = if fallible { call } else { format!("Ok({call})") };
+    let call = if fallible {
+        call
+    } else {
+        format!("Ok({call})")
+    };
     let body = format!(
         "fn momentum(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Velocities {{\nself.{momentum}(x, xi)\n}}\n\n\
          fn momentum_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities, u: &Self::Inputs) -> Self::Velocities {{\nself.{rate}(x, xi, u)\n}}\n\n\

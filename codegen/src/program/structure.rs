@@ -162,7 +162,9 @@ impl Structure {
                 };
                 lines.push(what.to_string());
                 let rotors = splitting.rotors.iter();
-                lines.extend(rotors.map(|rotor| format!("rotor `{}`: {}", rotor.name, rotor.inertia)));
+                lines.extend(
+                    rotors.map(|rotor| format!("rotor `{}`: {}", rotor.name, rotor.inertia)),
+                );
             }
             Err(reasons) => lines.extend(
                 reasons

@@ -39,9 +39,21 @@ fn tetrahedron() -> Vec<[i64; 4]> {
 /// The rotation matrix of half of a quaternion, which for those above has entries 0, 1, −1.
 fn matrix([w, x, y, z]: [i64; 4]) -> [[i64; 3]; 3] {
     let rows = [
-        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+        [
+            w * w + x * x - y * y - z * z,
+            2 * (x * y - w * z),
+            2 * (x * z + w * y),
+        ],
+        [
+            2 * (x * y + w * z),
+            w * w - x * x + y * y - z * z,
+            2 * (y * z - w * x),
+        ],
+        [
+            2 * (x * z - w * y),
+            2 * (y * z + w * x),
+            w * w - x * x - y * y + z * z,
+        ],
     ];
     rows.map(|row| row.map(|entry| entry / 4))
 }

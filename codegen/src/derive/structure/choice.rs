@@ -1,6 +1,6 @@
 //! The method that fits a system, with the reason in one sentence.
 
-use crate::program::structure::{Inertia, Structure, Symmetry};
+use crate::program::structure::{Inertia, Reason, Structure, Symmetry};
 use std::fmt;
 
 /// A run of more steps than this is long: errors that grow with time then matter more than the cost
@@ -56,23 +56,31 @@ pub fn choose(structure: &Structure, steps: Option<u64>) -> Choice {
         }
         Err(_) if !structure.damped.is_empty() => (
             "rkmk54",
-            "forces depend on velocities, so that nothing is conserved and the step should follow the motion",
+            "forces depend on velocities, so that the step should follow the motion as it dies out",
         ),
         Err(_) if structure.multipliers => (
             "rkmk8",
-            "multipliers keep constraints, which a method of high order disturbs least between projections",
+            "multipliers keep constraints, from which a method of high order strays least between projections",
         ),
         Err(_) if structure.canonical.is_err() => (
             "rkmk8",
-            "velocities are constrained, so that there are no momenta to split or to conserve",
+            "velocities are constrained, so that there are no momenta to kick or to conserve",
         ),
         Err(_) if structure.conservative && steps.is_some_and(|steps| steps > LONG) => (
             "gauss6",
-            "inertia depends on the configuration and the run is long: energy must not drift",
+            "free motion has no closed form and the run is long: energy must not drift",
         ),
-        Err(_) => (
+        Err(reasons) => (
             "rkmk8",
-            "inertia depends on the configuration, which leaves nothing to split",
+            match reasons.first() {
+                Some(Reason::Coupled { .. }) => {
+                    "rotors exchange momentum with other coordinates without any force, so that free motion has no closed form"
+                }
+                Some(Reason::Tied { .. }) => {
+                    "coordinates are tied to one another, so that free motion has no closed form"
+                }
+                _ => "inertia depends on the configuration, so that free motion has no closed form",
+            },
         ),
     };
     Choice { method, reason }

@@ -23,11 +23,7 @@ pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> 
     let mut set = Substitution::new();
     for part in parts {
         let flat = !part.turns() && part.block.len() == part.block.dimension();
-        for (&entry, value) in part
-            .entries(&model.x)
-            .iter()
-            .zip(identity(part.block))
-        {
+        for (&entry, value) in part.entries(&model.x).iter().zip(identity(part.block)) {
             let value = if flat { plain } else { value as i64 };
             let number = graph.ratio(value, 1);
             set.extend(symbol(graph, entry).map(|index| (index, number)));
@@ -55,7 +51,12 @@ pub fn settle(
     let mut settled = edges.to_vec();
     for plain in [0, 1] {
         let mut set = resting(model, graph, parts, plain);
-        set.extend(model.xi.iter().filter_map(|&xi| Some((symbol(graph, xi)?, zero))));
+        set.extend(
+            model
+                .xi
+                .iter()
+                .filter_map(|&xi| Some((symbol(graph, xi)?, zero))),
+        );
         let images = substitute(graph, edges, &set);
         for (index, image) in images.into_iter().enumerate() {
             let same = graph.value(image) == graph.value(edges[index]);

@@ -14,10 +14,7 @@ pub fn damped(
     variation: &Variation,
     force: &[Edge],
 ) -> Vec<Reason> {
-    if !variation
-        .changes(graph, force, &model.xi)
-        .contains(&true)
-    {
+    if !variation.changes(graph, force, &model.xi).contains(&true) {
         return Vec::new();
     }
     let mut found: Vec<String> = Vec::new();
@@ -56,7 +53,10 @@ pub fn damped(
         .collect();
     frames.dedup();
     for frame in frames {
-        let name = full.frames.get(frame).map_or("", |frame| frame.name.as_str());
+        let name = full
+            .frames
+            .get(frame)
+            .map_or("", |frame| frame.name.as_str());
         found.push(format!("a load on frame `{name}`"));
     }
     if elements.pushes.iter().any(|push| moves(&push.force)) {

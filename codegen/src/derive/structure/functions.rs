@@ -165,7 +165,7 @@ impl Functions {
         let n = self.momenta.len();
         let vector = Shape::Vector(n);
         let nu = Shape::Vector(self.centre.as_ref().map_or(0, Vec::len));
-        let table: [(&str, &[&str], &[Argument], Shape, Option<&Vec<Edge>>); 6] = [
+        let table: [Row; 6] = [
             (
                 "centre",
                 &["Coordinates with plain ones moved to centres of mass, y = r + R s."],
@@ -209,7 +209,9 @@ impl Functions {
             ),
             (
                 "rotor_inertia",
-                &["Inertia J of the rotors: J₁, J₂, J₃ where body axes are principal, else J by rows."],
+                &[
+                    "Inertia J of the rotors: J₁, J₂, J₃ where body axes are principal, else J by rows.",
+                ],
                 &[],
                 Shape::Vector(self.inertia.len()),
                 (!self.rotors.is_empty()).then_some(&self.inertia),
@@ -223,6 +225,15 @@ impl Functions {
         rebuild(&self.graph, &mut builder.graph, &self.pivots)
     }
 }
+
+/// A function: name, documentation, arguments, shape, value; none where it is not needed.
+type Row<'a> = (
+    &'a str,
+    &'a [&'a str],
+    &'a [Argument],
+    Shape,
+    Option<&'a Vec<Edge>>,
+);
 
 /// Of two ways to write the same, the one with fewer operations.
 fn cheaper(graph: &Graph, a: Vec<Edge>, b: Vec<Edge>) -> Vec<Edge> {

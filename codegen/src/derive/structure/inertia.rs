@@ -140,10 +140,7 @@ fn coupled(parts: &[Part], linked: impl Fn(usize, usize) -> bool) -> Vec<Reason>
             if index == place || (other.turns() && index < place) {
                 continue;
             }
-            if rotor
-                .rates()
-                .any(|i| other.rates().any(|j| linked(i, j)))
-            {
+            if rotor.rates().any(|i| other.rates().any(|j| linked(i, j))) {
                 found.push(Reason::Coupled {
                     rotor: rotor.name.clone(),
                     other: other.name.clone(),

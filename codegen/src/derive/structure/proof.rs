@@ -102,7 +102,11 @@ impl Proof {
             let entries = part.first..part.first + part.block.len();
             if !part.turns() {
                 let plain = part.block.len() == part.block.dimension();
-                let rate = if plain { &y_dot[entries] } else { &spin[here.clone()] };
+                let rate = if plain {
+                    &y_dot[entries]
+                } else {
+                    &spin[here.clone()]
+                };
                 if rate != &p[here.clone()] || p_dot[here.clone()] != kick[here] {
                     return Some(Err("ẏ = p, ṗ = kick, for the emitted splitting"));
                 }
