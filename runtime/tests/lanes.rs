@@ -144,7 +144,7 @@ fn lanes_take_the_steps_that_the_worst_needs() -> Result<(), StepError> {
             together.accepted + 2 >= cost.accepted,
             "{together:?} {cost:?}"
         );
-        let error = |x: [f64; 9]| common::distance(x, exact.x);
+        let error = |x: [f64; 9]| distance(x, exact.x);
         let (together, alone) = (error(lane(state.x, index)), error(single.x));
         // Steps that suit both are not longer than those of one alone.
         assert!(together < 1.5 * alone, "{together:e} {alone:e}");
@@ -159,7 +159,7 @@ fn implicit_steps_converge_in_every_lane() -> Result<(), StepError> {
     for (index, body) in single.into_iter().enumerate() {
         let alone = run(&Top(body), General::BackwardEuler, 0.1, 1000)?;
         // What ends the iteration, a thousand times.
-        assert!(common::distance(lane(state.x, index), alone.x) < 1e-8);
+        assert!(distance(lane(state.x, index), alone.x) < 1e-8);
     }
     Ok(())
 }

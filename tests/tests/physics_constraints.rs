@@ -14,7 +14,6 @@ use hamel_tests::snakeboard::Snakeboard;
 use hamel_tests::spherical_pendulum_frame::SphericalPendulum;
 use hamel_tests::squeezer::Squeezer;
 
-
 fn energy<Sys: System<Scalar = f64>>(system: &Sys, state: &State<Sys>) -> f64 {
     system.kinetic_energy(&state.x, &state.xi) + system.potential_energy(&state.x)
 }
