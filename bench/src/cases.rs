@@ -1,84 +1,179 @@
-//! The hard cases: systems, starts and errors, one line each in [`ALL`].
+//! The hard cases, one line each in [`ALL`]: which tables of methods run them, and what is constant in
+//! each.
 
-mod bodies;
-mod rolling;
-mod tops;
-
-use crate::peers::Peers;
+use crate::methods;
+use crate::peers::{self, Peers};
 use crate::runner::{BenchError, Effort, Runner};
-use hamel_report::data::{Case, Drift};
+use hamel::{Canonical, Split, State, System, so3};
+use hamel_cases::case::Inputs;
+use hamel_cases::models::CHOICES;
+use hamel_cases::{Case, Measure, bodies, mechanisms};
+use hamel_report::counted::Counted;
+use hamel_report::data::{self, Choice, Drift};
+use hamel_report::problem::{Problem, Quantities};
 use hamel_report::solution::Solution;
 use std::path::Path;
 
-/// A case: its name, which is that of the reference, the length of the run, and what runs it.
+/// A case: its name, which is that of the reference, its model, and what runs it.
 pub struct Job {
     /// Name of the reference solution.
     pub name: &'static str,
-    /// Length of the run.
-    pub until: f64,
+    /// Name of the description.
+    pub model: &'static str,
     /// Whether it has a picture of its own beside the report.
     pub picture: bool,
     run: fn(&mut Runner) -> Result<(), BenchError>,
 }
 
-const fn job(
-    name: &'static str,
-    until: f64,
-    run: fn(&mut Runner) -> Result<(), BenchError>,
-) -> Job {
-    Job {
-        name,
-        until,
-        picture: false,
-        run,
-    }
+/// Lines `name model picture run`.
+macro_rules! jobs {
+    ($($name:literal $model:literal $picture:literal $run:expr;)*) => {
+        &[$(Job { name: $name, model: $model, picture: $picture, run: $run }),*]
+    };
 }
 
-const fn shown(
-    name: &'static str,
-    until: f64,
-    run: fn(&mut Runner) -> Result<(), BenchError>,
-) -> Job {
-    Job {
-        picture: true,
-        ..job(name, until, run)
-    }
-}
+/// Steps of long runs: 0.075 rad each on the benchmark, as much as on Kovalevskaya's top, and 0.1 rad.
+const BENCHMARK: Option<f64> = Some(5e-4);
+const KOVALEVSKAYA: Option<f64> = Some(0.02);
+const DZHANIBEKOV: Option<f64> = Some(0.1);
 
 /// All cases, in the order of the report.
-pub const ALL: [Job; 18] = [
-    shown("heavy-top-benchmark-150", 1.0, tops::benchmark),
-    shown("kovalevskaya-top", 20.0, tops::kovalevskaya),
-    shown("lagrange-fast-top", 5.0, tops::lagrange),
-    job("lagrange-sleeping-top-stable", 20.0, tops::lagrange),
-    job("lagrange-top-through-vertical", 10.0, tops::lagrange),
-    job("spherical-pendulum-through-poles", 10.0, tops::pendulum),
-    shown("free-dzhanibekov-1e-3", 100.0, bodies::free),
-    job("free-dzhanibekov-1e-8", 300.0, bodies::free),
-    job("free-elongated-1000", 5.0, bodies::free),
-    job("free-fast-spin-1000", 0.5, bodies::free),
-    job("free-near-symmetric", 100.0, bodies::free),
-    job("free-body-offset-gravity", 10.0, bodies::six),
-    job("quadrotor-constant-wrench", 10.0, bodies::six),
-    job("satellite-gravity-gradient", 20000.0, bodies::satellite),
-    shown("two-bodies-ball-joints", 5.0, bodies::two),
-    job(
-        "double-pendulum-planar-chaotic",
-        10.0,
-        bodies::double_pendulum,
-    ),
-    job("chaplygin-sleigh", 20.0, rolling::sleigh),
-    shown("rolling-disk", 5.0, rolling::disk),
-];
+pub const ALL: &[Job] = jobs! {
+    "heavy-top-benchmark-150" "benchmark_top" true |r| top(r, &bodies::benchmark_top(), BENCHMARK);
+    "kovalevskaya-top" "kovalevskaya_top" true |r| top(r, &bodies::kovalevskaya(), KOVALEVSKAYA);
+    "lagrange-fast-top" "lagrange_top" true |r| top(r, &bodies::fast_top(), None);
+    "lagrange-sleeping-top-stable" "lagrange_top" false |r| top(r, &bodies::sleeping_top(), None);
+    "lagrange-top-through-vertical" "lagrange_top" false |r| top(r, &bodies::vertical_top(), None);
+    "spherical-pendulum-through-poles" "spherical_bob" false |r| flight(r, &bodies::spherical_pendulum(), true);
+    "free-dzhanibekov-1e-3" "principal_axes" true |r| free(r, &bodies::dzhanibekov(), DZHANIBEKOV);
+    "free-dzhanibekov-1e-8" "principal_axes" false |r| free(r, &bodies::dzhanibekov_near(), None);
+    "free-elongated-1000" "principal_axes" false |r| free(r, &bodies::elongated(), None);
+    "free-fast-spin-1000" "principal_axes" false |r| free(r, &bodies::fast_spin(), None);
+    "free-near-symmetric" "principal_axes" false |r| free(r, &bodies::nearly_symmetric(), None);
+    "free-body-offset-gravity" "free_body" false |r| flight(r, &bodies::offset_body(), true);
+    "quadrotor-constant-wrench" "free_body" false |r| flight(r, &bodies::constant_wrench(), false);
+    "satellite-gravity-gradient" "satellite" false |r| flight(r, &bodies::gravity_gradient(), false);
+    "two-bodies-ball-joints" "two_bodies" true |r| chain(r, &mechanisms::two_bodies());
+    "double-pendulum-planar-chaotic" "double_pendulum_angles" false |r| chain(r, &mechanisms::double_pendulum());
+    "chaplygin-sleigh" "sleigh" false |r| rolling(r, &mechanisms::sleigh());
+    "rolling-disk" "rolling_disk" true |r| rolling(r, &mechanisms::rolling_disk());
+};
 
-/// The error of cases whose state is an attitude and its rate.
-pub const ATTITUDE: &str = "‖R − R*‖, Frobenius";
-/// The error of all others.
-pub const RELATIVE: &str =
-    "largest difference of the state, each field over max(1, its largest entry)";
+/// A case as a problem, with its constants beside the energy.
+fn problem<'a, Sys: System<Scalar = f64>>(
+    runner: &mut Runner,
+    case: &'a Case<Sys>,
+    momenta: Quantities<'a>,
+    conservative: bool,
+) -> Problem<'a, Sys, &'a Inputs<Sys>> {
+    runner.case.until = case.until;
+    runner.case.error = match case.measure {
+        Measure::Attitude => "‖R − R*‖, Frobenius",
+        Measure::Largest => {
+            "largest difference of the state, each field over max(1, its largest entry)"
+        }
+    }
+    .into();
+    let error = |x: &[f64], xi: &[f64]| {
+        let mut state: State<Sys> = case.start.clone();
+        state.x.as_mut().copy_from_slice(x);
+        state.xi.as_mut().copy_from_slice(xi);
+        case.error(&state)
+    };
+    Problem {
+        system: Counted::new(&case.system),
+        x: case.start.x.clone(),
+        xi: case.start.xi.clone(),
+        until: case.until,
+        inputs: &case.inputs,
+        error: Box::new(error),
+        momenta,
+        conservative,
+    }
+}
+
+/// R J ω in world axes, for x = R, ξ = ω.
+fn angular<'a, Sys: System<Scalar = f64>>(
+    case: &Case<Sys>,
+) -> impl Fn(&[f64], &[f64]) -> [f64; 3] + use<'a, Sys> {
+    let inertia: [f64; 9] = case.reference.parameter("J");
+    move |x, xi| match (x.first_chunk(), xi.first_chunk()) {
+        (Some(r), Some(w)) => so3::apply(*r, so3::apply(inertia, *w)),
+        _ => [f64::NAN; 3],
+    }
+}
+
+/// A top: its vertical momentum is constant.
+fn top<Sys>(runner: &mut Runner, case: &Case<Sys>, long: Option<f64>) -> Result<(), BenchError>
+where
+    Sys: Split<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>
+        + Canonical,
+{
+    let momentum = angular(case);
+    let vertical = Box::new(move |x: &[f64], xi: &[f64]| vec![momentum(x, xi)[2]]);
+    let problem = problem(runner, case, vertical, true);
+    let mut entries = methods::general(&problem);
+    entries.extend(methods::split(&problem));
+    entries.extend(methods::canonical(&problem));
+    entries.extend(peers::tops(runner, &problem)?);
+    runner.entries(&entries, long);
+    Ok(())
+}
+
+/// A free body: its angular momentum is constant.
+fn free<Sys>(runner: &mut Runner, case: &Case<Sys>, long: Option<f64>) -> Result<(), BenchError>
+where
+    Sys: Split<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>
+        + Canonical,
+{
+    let momentum = angular(case);
+    let all = Box::new(move |x: &[f64], xi: &[f64]| momentum(x, xi).to_vec());
+    let problem = problem(runner, case, all, true);
+    let mut entries = methods::general(&problem);
+    entries.extend(methods::split(&problem));
+    entries.extend(methods::canonical(&problem));
+    entries.extend(peers::free(runner, &problem)?);
+    runner.entries(&entries, long);
+    Ok(())
+}
+
+/// Other bodies in potentials, or under loads that are given.
+fn flight<Sys>(runner: &mut Runner, case: &Case<Sys>, conservative: bool) -> Result<(), BenchError>
+where
+    Sys: Split<Scalar = f64> + Canonical,
+{
+    let problem = problem(runner, case, Box::new(|_, _| Vec::new()), conservative);
+    let mut entries = methods::general(&problem);
+    entries.extend(methods::split(&problem));
+    entries.extend(methods::canonical(&problem));
+    runner.entries(&entries, None);
+    Ok(())
+}
+
+/// Several bodies, whose M depends on x.
+fn chain<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
+where
+    Sys: Canonical<Scalar = f64>,
+{
+    let problem = problem(runner, case, Box::new(|_, _| Vec::new()), true);
+    let mut entries = methods::general(&problem);
+    entries.extend(methods::canonical(&problem));
+    runner.entries(&entries, None);
+    Ok(())
+}
+
+/// Bodies whose velocities are constrained.
+fn rolling<Sys>(runner: &mut Runner, case: &Case<Sys>) -> Result<(), BenchError>
+where
+    Sys: System<Scalar = f64>,
+{
+    let problem = problem(runner, case, Box::new(|_, _| Vec::new()), true);
+    runner.entries(&methods::general(&problem), None);
+    Ok(())
+}
 
 impl Job {
-    /// Runs the case with the reference of a folder.
+    /// Runs the case; peers read the reference of a folder.
     ///
     /// # Errors
     /// Where the reference is missing or not what the case takes it for.
@@ -88,17 +183,21 @@ impl Job {
         effort: Effort,
         peers: &Peers,
         tick: &dyn Fn(u64, u64),
-    ) -> Result<(Case, Vec<Drift>), BenchError> {
+    ) -> Result<(data::Case, Vec<Drift>), BenchError> {
         let path = references.join(format!("{}.json", self.name));
         let named = |error: String| BenchError(format!("{}: {error}", path.display()));
         let text = std::fs::read_to_string(&path).map_err(|error| named(error.to_string()))?;
         let solution = Solution::parse(&text).map_err(|error| named(error.to_string()))?;
-        let case = Case {
+        let choice = CHOICES.iter().find(|(model, ..)| *model == self.model);
+        let case = data::Case {
             name: self.name.into(),
             title: solution.text("title").to_string(),
-            until: self.until,
             reference: "a solution in 240-bit arithmetic".into(),
-            ..Case::default()
+            auto: choice.map(|(_, method, reason)| Choice {
+                method: (*method).into(),
+                reason: (*reason).into(),
+            }),
+            ..data::Case::default()
         };
         let mut runner = Runner {
             solution: &solution,

@@ -8,9 +8,8 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | [`models`] | generated systems |
 //! | [`methods`] | the table of methods: one line each |
-//! | [`cases`] | the hard cases with their reference solutions |
+//! | [`cases`] | the hard cases of `hamel-cases`, and what is constant in each |
 //! | [`peers`] | other programs, each an optional feature or script |
 //! | [`runner`] | what is measured of a case |
 //! | [`output`] | the files |
@@ -21,9 +20,3 @@ pub mod output;
 pub mod peers;
 pub mod pictures;
 pub mod runner;
-
-/// Generated systems.
-#[allow(missing_docs)]
-pub mod models {
-    include!(concat!(env!("OUT_DIR"), "/models.rs"));
-}

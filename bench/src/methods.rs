@@ -1,9 +1,15 @@
 //! The table of methods: one line each, in tables by what they need of a system.
 
-use hamel::System;
-use hamel::methods::{Rk4, Rk4Projected, Rkmk4};
+use hamel::methods::{
+    BackwardEuler, Buss, Cf4, ForwardEuler, Gauss4, Gauss6, Lgvi, Rk4, Rk4Added, Rk4Projected,
+    Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Slide, Splitting, free,
+};
+use hamel::{Canonical, Split, State, System};
+use hamel_report::counted::Counted;
 use hamel_report::data::Kind;
-use hamel_report::problem::{Entry, Problem};
+use hamel_report::problem::{Entry, Outcome, Problem, Watch};
+use std::hint::black_box;
+use std::time::Instant;
 
 /// Lines `name kind method` as entries of a problem.
 macro_rules! table {
@@ -20,8 +26,131 @@ where
 {
     table! { problem;
         "rkmk4" Method Rkmk4;
+        "cf4" Method Cf4;
+        "rkmk54" Method Rkmk54;
+        "rkmk8" Method Rkmk8;
         "rk4" Baseline Rk4 { lambda: 0.0 };
         "rk4, λ = 10/s" Baseline Rk4 { lambda: 10.0 };
         "rk4-projected" Baseline Rk4Projected;
+        "rk4-added" Baseline Rk4Added;
+        "euler" Baseline ForwardEuler;
+        "semi-implicit-euler" Baseline SemiImplicitEuler;
+        "backward-euler" Baseline BackwardEuler;
     }
+}
+
+/// Methods that step momenta.
+pub fn canonical<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Vec<Entry<'p>>
+where
+    Sys: Canonical<Scalar = f64>,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    table! { problem;
+        "gauss4" Method Gauss4;
+        "gauss6" Method Gauss6;
+    }
+}
+
+/// Methods for bodies in potentials.
+pub fn split<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Vec<Entry<'p>>
+where
+    Sys: Split<Scalar = f64>,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    let mut entries = vec![
+        kicked(problem, "splitting2", Scheme::Strang),
+        kicked(problem, "splitting", Scheme::Nystrom4),
+        kicked(problem, "splitting6", Scheme::Nystrom6),
+        kicked(problem, "suzuki", Scheme::Suzuki4),
+        kicked(problem, "kahan-li", Scheme::KahanLi6),
+    ];
+    if Sys::FREE {
+        entries.push(closed(problem));
+    }
+    entries.extend(table! { problem;
+        "lgvi" Method Lgvi;
+        "slide" Baseline Slide;
+        "buss1" Baseline Buss::First;
+        "buss2" Baseline Buss::Second;
+        "buss-augmented2" Baseline Buss::AugmentedSecond;
+        "buss4" Baseline Buss::Fourth;
+    });
+    entries
+}
+
+/// Splitting, with the force at the end of a step used for the start of the next.
+fn kicked<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>, name: &str, scheme: Scheme) -> Entry<'p>
+where
+    Sys: Split<Scalar = f64>,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    let method = Splitting::new(&problem.system, scheme);
+    let run = move |steps: u64, until: f64, part: u64, watch: &mut dyn FnMut(&State<_>)| {
+        let mut state = problem.start();
+        let h = until / steps as f64;
+        method
+            .run(&problem.system, &mut state, h, part, &problem.inputs, watch)
+            .map(|()| state)
+    };
+    Entry::new(
+        name,
+        Kind::Method,
+        Some(scheme.order()),
+        move |steps, until, watch: Watch| {
+            problem.system.reset();
+            let deviation = problem.deviation();
+            let state = run(steps, until, steps, &mut |state: &State<
+                Counted<'a, Sys>,
+            >| {
+                watch(deviation(&state.x, &state.xi));
+            });
+            Outcome {
+                evaluations: Some(problem.system.evaluations()),
+                error: state.as_ref().map_or(f64::NAN, |end| problem.judge(end)),
+                failure: state.err().map(|error| error.to_string()),
+            }
+        },
+        move |steps, part| {
+            let begin = Instant::now();
+            black_box(run(steps, problem.until, part, &mut |_| {}).ok()?);
+            Some(begin.elapsed().as_secs_f64())
+        },
+    )
+}
+
+/// The closed form: one evaluation, whatever the number of steps.
+fn closed<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>) -> Entry<'p>
+where
+    Sys: Split<Scalar = f64>,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    Entry::new(
+        "free",
+        Kind::Method,
+        None,
+        move |steps, until, watch: Watch| {
+            let deviation = problem.deviation();
+            let start = problem.start();
+            let mut end = Ok(start.clone());
+            for index in 1..=steps {
+                let t = until * (index as f64 / steps as f64);
+                end = free::at(&problem.system, &start, t);
+                if let Ok(state) = &end {
+                    watch(deviation(&state.x, &state.xi));
+                }
+            }
+            Outcome {
+                evaluations: Some(0),
+                error: end.as_ref().map_or(f64::NAN, |end| problem.judge(end)),
+                failure: end.err().map(|error| error.to_string()),
+            }
+        },
+        move |steps, part| {
+            let begin = Instant::now();
+            let start = black_box(problem.start());
+            black_box(free::at(&problem.system, &start, problem.until).ok()?);
+            // A run needs one evaluation; the caller scales from a part of the steps to all.
+            Some(begin.elapsed().as_secs_f64() * part as f64 / steps as f64)
+        },
+    )
 }

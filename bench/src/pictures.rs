@@ -1,9 +1,9 @@
 //! Pictures of the report that show motions: the flip of a free body, and Poinsot's construction.
 
-use crate::models::principal_axes::PrincipalAxes;
 use crate::runner::BenchError;
 use hamel::methods::Rkmk4;
 use hamel::{State, integrate};
+use hamel_cases::models::principal_axes::PrincipalAxes;
 use hamel_report::page::Picture;
 use hamel_report::plot::{self, Panel, Path, PlotError, Poinsot};
 

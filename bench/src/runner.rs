@@ -1,18 +1,16 @@
 //! What is measured of a case.
 
-use crate::methods;
 use crate::peers::Peers;
-use hamel::System;
 use hamel_report::data::{Case, Drift, Kind};
 use hamel_report::drift::drift;
 use hamel_report::measure::{Plan, measure};
-use hamel_report::problem::{Entry, Problem};
+use hamel_report::problem::Entry;
 use hamel_report::solution::{Solution, SolutionError};
 use std::fmt;
 
 /// A number of steps that is doubled again and again.
-const COARSEST: u64 = 50;
-const DOUBLINGS: u32 = 12;
+const COARSEST: u64 = 10;
+const DOUBLINGS: u32 = 14;
 /// Every timing takes at least so long, in s.
 const LEAST: f64 = 3e-4;
 /// Errors below this are rounding.
@@ -64,21 +62,6 @@ pub struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    /// Measures a problem by all methods, and `further` ones.
-    pub fn measure<Sys, U>(
-        &mut self,
-        problem: &Problem<Sys, U>,
-        further: Vec<Entry>,
-        long: Option<f64>,
-    ) where
-        Sys: System<Scalar = f64>,
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
-        let mut entries = methods::general(problem);
-        entries.extend(further);
-        self.entries(&entries, long);
-    }
-
     /// Measures entries; and, where a step is given, a million of such steps of each of ours.
     pub fn entries(&mut self, entries: &[Entry], long: Option<f64>) {
         let plan = Plan {

@@ -5,9 +5,10 @@ use crate::interpreted::Interpreted;
 use crate::number::short;
 use hamel::flows::Flow;
 use hamel::methods::{Buss, Gauss4, Gauss6, General, Lgvi, Method, Scheme, Slide, Splitting};
-use hamel::{State, StepError, System};
+use hamel::{Canonical, Split, State, StepError, System};
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::program::structure::Structure;
+use hamel_report::data::{Kind, Missing};
 
 /// The name that leaves the choice to the structure of the system.
 pub const AUTO: &str = "auto";
@@ -28,14 +29,15 @@ enum Needs {
 /// One method.
 struct Entry {
     name: &'static str,
+    kind: Kind,
     about: &'static str,
     needs: Needs,
     make: fn(&Interpreted) -> Stepper,
 }
 
 macro_rules! entries {
-    ($($name:literal $needs:ident $make:expr, $about:literal;)*) => {
-        &[$(Entry { name: $name, about: $about, needs: Needs::$needs, make: $make }),*]
+    ($($name:literal $kind:ident $needs:ident $make:expr, $about:literal;)*) => {
+        &[$(Entry { name: $name, kind: Kind::$kind, about: $about, needs: Needs::$needs, make: $make }),*]
     };
 }
 
@@ -45,29 +47,29 @@ fn split(system: &Interpreted, scheme: Scheme) -> Stepper {
 
 /// A line for every method.
 const METHODS: &[Entry] = entries! {
-    "rkmk4" Any |_| Stepper::General(General::Rkmk4), "any system; order 4, on the manifold";
-    "cf4" Any |_| Stepper::General(General::Cf4), "any system; order 4, without commutators";
-    "rkmk54" Any |_| Stepper::General(General::Rkmk54), "any system; order 5, or steps by --tol";
-    "rkmk8" Any |_| Stepper::General(General::Rkmk8), "any system; order 8, or steps by --tol";
-    "splitting" Split |s| split(s, Scheme::Nystrom4), "bodies in potentials; order 4, no drift";
-    "splitting2" Split |s| split(s, Scheme::Strang), "the same; order 2";
-    "splitting6" Split |s| split(s, Scheme::Nystrom6), "the same; order 6";
-    "suzuki" Split |s| split(s, Scheme::Suzuki4), "the same; order 4, of steps of order 2";
-    "kahan-li" Split |s| split(s, Scheme::KahanLi6), "the same; order 6, of steps of order 2";
-    "free" Free Stepper::closed_form, "bodies without forces; exact at any time";
-    "lgvi" Split |_| Stepper::Lgvi, "bodies in potentials; variational, order 2";
-    "gauss4" Momenta |_| Stepper::Gauss4, "long runs with M(x); implicit, order 4, no drift";
-    "gauss6" Momenta |_| Stepper::Gauss6, "the same; order 6";
-    "euler" Any |_| Stepper::General(General::ForwardEuler), "baseline; order 1";
-    "backward-euler" Any |_| Stepper::General(General::BackwardEuler), "baseline; implicit, order 1";
-    "semi-implicit-euler" Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as game engines step";
-    "rk4" Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, led back at the rate --lambda";
-    "rk4-projected" Any |_| Stepper::General(General::Rk4Projected), "baseline; the same, projected after each step";
-    "slide" Split |_| Stepper::Slide, "baseline; order 1, keeps angular momentum";
-    "buss1" Split |_| Stepper::Buss(Buss::First), "baseline; order 1, keeps angular momentum";
-    "buss2" Split |_| Stepper::Buss(Buss::Second), "baseline; the same, order 2";
-    "buss-augmented2" Split |_| Stepper::Buss(Buss::AugmentedSecond), "baseline; the same, order 2";
-    "buss4" Split |_| Stepper::Buss(Buss::Fourth), "baseline; the same, order 4 without torques";
+    "rkmk4" Method Any |_| Stepper::General(General::Rkmk4), "any system; order 4, on the manifold";
+    "cf4" Method Any |_| Stepper::General(General::Cf4), "any system; order 4, without commutators";
+    "rkmk54" Method Any |_| Stepper::General(General::Rkmk54), "any system; order 5, or steps by --tol";
+    "rkmk8" Method Any |_| Stepper::General(General::Rkmk8), "any system; order 8, or steps by --tol";
+    "splitting" Method Split |s| split(s, Scheme::Nystrom4), "bodies in potentials; order 4, no drift";
+    "splitting2" Method Split |s| split(s, Scheme::Strang), "the same; order 2";
+    "splitting6" Method Split |s| split(s, Scheme::Nystrom6), "the same; order 6";
+    "suzuki" Method Split |s| split(s, Scheme::Suzuki4), "the same; order 4, of steps of order 2";
+    "kahan-li" Method Split |s| split(s, Scheme::KahanLi6), "the same; order 6, of steps of order 2";
+    "free" Method Free Stepper::closed_form, "bodies without forces; exact at any time";
+    "lgvi" Method Split |_| Stepper::Lgvi, "bodies in potentials; variational, order 2";
+    "gauss4" Method Momenta |_| Stepper::Gauss4, "long runs with M(x); implicit, order 4, no drift";
+    "gauss6" Method Momenta |_| Stepper::Gauss6, "the same; order 6";
+    "euler" Baseline Any |_| Stepper::General(General::ForwardEuler), "baseline; order 1";
+    "backward-euler" Baseline Any |_| Stepper::General(General::BackwardEuler), "baseline; implicit, order 1";
+    "semi-implicit-euler" Baseline Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as game engines step";
+    "rk4" Baseline Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, led back at the rate --lambda";
+    "rk4-projected" Baseline Any |_| Stepper::General(General::Rk4Projected), "baseline; the same, projected after each step";
+    "slide" Baseline Split |_| Stepper::Slide, "baseline; order 1, keeps angular momentum";
+    "buss1" Baseline Split |_| Stepper::Buss(Buss::First), "baseline; order 1, keeps angular momentum";
+    "buss2" Baseline Split |_| Stepper::Buss(Buss::Second), "baseline; the same, order 2";
+    "buss-augmented2" Baseline Split |_| Stepper::Buss(Buss::AugmentedSecond), "baseline; the same, order 2";
+    "buss4" Baseline Split |_| Stepper::Buss(Buss::Fourth), "baseline; the same, order 4 without torques";
 };
 
 /// Every name that `--method` takes.
@@ -115,10 +117,7 @@ impl Chosen {
             name => (name, None),
         };
         let Some(entry) = METHODS.iter().find(|entry| entry.name == name) else {
-            return Err(Failure::usage(format!(
-                "no method is called `{name}`; there are {}",
-                names().join(", ")
-            )));
+            return Err(no_method(name));
         };
         let obstacles = entry.needs.obstacles(structure);
         if !obstacles.is_empty() {
@@ -133,6 +132,63 @@ impl Chosen {
             reason,
         })
     }
+}
+
+/// A method of a comparison.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is in a comparison.
+    pub kind: Kind,
+    /// The method.
+    pub stepper: Stepper,
+}
+
+/// The methods with these names, or all, as far as they fit a system; and those that do not, with the
+/// reasons.
+pub fn fitting(
+    names: &[String],
+    system: &Interpreted,
+    structure: &Structure,
+) -> (Vec<Named>, Vec<Missing>) {
+    let (mut fit, mut missing) = (Vec::new(), Vec::new());
+    for entry in METHODS {
+        let asked = names.iter().any(|name| name.trim() == entry.name);
+        if !names.is_empty() && !asked {
+            continue;
+        }
+        let obstacles = entry.needs.obstacles(structure);
+        if obstacles.is_empty() {
+            fit.push(Named {
+                name: entry.name,
+                kind: entry.kind,
+                stepper: (entry.make)(system),
+            });
+        } else if asked {
+            missing.push(Missing {
+                method: entry.name.into(),
+                why: obstacles.join("; "),
+            });
+        }
+    }
+    (fit, missing)
+}
+
+/// Whether all names are those of methods.
+pub fn known(names: &[String]) -> Result<(), Failure> {
+    let unknown = |name: &&String| METHODS.iter().all(|entry| entry.name != name.trim());
+    match names.iter().find(unknown) {
+        Some(name) => Err(no_method(name.trim())),
+        None => Ok(()),
+    }
+}
+
+fn no_method(name: &str) -> Failure {
+    Failure::usage(format!(
+        "no method is called `{name}`; there are {}",
+        names().join(", ")
+    ))
 }
 
 impl Needs {
@@ -207,36 +263,39 @@ impl Stepper {
     }
 }
 
-impl Method<Interpreted> for Stepper {
+impl<Sys> Method<Sys> for Stepper
+where
+    Sys: Split<Scalar = f64, Coordinates = Vec<f64>, Velocities = Vec<f64>> + Canonical,
+{
     fn order(&self) -> u32 {
         match self {
-            Stepper::General(method) => Method::<Interpreted>::order(method),
-            Stepper::Splitting(method) => Method::<Interpreted>::order(method),
+            Stepper::General(method) => Method::<Sys>::order(method),
+            Stepper::Splitting(method) => Method::<Sys>::order(method),
             Stepper::Closed { .. } => 0,
-            Stepper::Lgvi => Method::<Interpreted>::order(&Lgvi),
-            Stepper::Gauss4 => Method::<Interpreted>::order(&Gauss4),
-            Stepper::Gauss6 => Method::<Interpreted>::order(&Gauss6),
-            Stepper::Slide => Method::<Interpreted>::order(&Slide),
-            Stepper::Buss(method) => Method::<Interpreted>::order(method),
+            Stepper::Lgvi => Method::<Sys>::order(&Lgvi),
+            Stepper::Gauss4 => Method::<Sys>::order(&Gauss4),
+            Stepper::Gauss6 => Method::<Sys>::order(&Gauss6),
+            Stepper::Slide => Method::<Sys>::order(&Slide),
+            Stepper::Buss(method) => Method::<Sys>::order(method),
         }
     }
 
     fn step<U>(
         &self,
-        system: &Interpreted,
-        state: &State<Interpreted>,
+        system: &Sys,
+        state: &State<Sys>,
         h: f64,
         inputs: &U,
-    ) -> Result<State<Interpreted>, StepError>
+    ) -> Result<State<Sys>, StepError>
     where
-        U: Fn(f64, &Vec<f64>, &Vec<f64>) -> Vec<f64>,
+        U: Fn(f64, &Vec<f64>, &Vec<f64>) -> Sys::Inputs,
     {
         match self {
             Stepper::General(method) => method.step(system, state, h, inputs),
             Stepper::Splitting(method) => method.step(system, state, h, inputs),
             Stepper::Closed { start, motion } => {
                 let (x, xi) = start.clone();
-                let start = State { t: 0.0, x, xi };
+                let start: State<Sys> = State { t: 0.0, x, xi };
                 motion.step(system, &start, state.t + h, inputs)
             }
             Stepper::Lgvi => Lgvi.step(system, state, h, inputs),

@@ -121,7 +121,7 @@ fn mistakes_are_named() {
     for (arguments, words) in [
         (
             vec![top.as_str(), "--methods", "euler9"],
-            "no method `euler9`; there are rkmk4",
+            "no method is called `euler9`; there are auto, rkmk4",
         ),
         (
             vec![&top, "--reference", &benchmark, "--until", "0.123"],

@@ -48,11 +48,23 @@ pub struct Case {
     /// How far the reference itself is believed to be off.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference_error: Option<f64>,
+    /// What `--method auto` takes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub auto: Option<Choice>,
     /// The methods.
     pub methods: Vec<MethodRuns>,
     /// Methods that were asked for and cannot run this case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub missing: Vec<Missing>,
+}
+
+/// A method that was chosen by the structure of a system.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Choice {
+    /// Its name.
+    pub method: String,
+    /// Why, in a sentence.
+    pub reason: String,
 }
 
 /// A method that was not measured.

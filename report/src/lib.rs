@@ -2,6 +2,7 @@
 //!
 //! | module | owns |
 //! |---|---|
+//! | [`auto`] | how good the chosen method is |
 //! | [`counted`] | a system that counts the evaluations of its forces |
 //! | [`problem`] | one system with its start, its errors and what it conserves; methods as [`Entry`](problem::Entry) |
 //! | [`measure`] | the loop: errors and drifts once, times interleaved and as medians |
@@ -19,6 +20,7 @@
 //! draws ten times as large and gives the colours of a dark page by a style sheet. HTML is written by
 //! `maud` (MIT or Apache-2.0), which escapes whatever is inserted.
 
+pub mod auto;
 pub mod counted;
 pub mod data;
 pub mod drift;

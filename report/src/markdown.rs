@@ -1,5 +1,6 @@
 //! Reports as Markdown tables.
 
+use crate::auto;
 use crate::data::{Case, Kind, MethodRun, MethodRuns, Report};
 use crate::number::{digits, error, grouped, short};
 use crate::work::{TARGETS, Work, work};
@@ -71,6 +72,19 @@ pub fn case(case: &Case) -> String {
             " (itself off by {error:.0e})"
         ))
     );
+    if let Some(choice) = &case.auto {
+        let _ = write!(text, "`auto` takes `{}`: {}", choice.method, choice.reason);
+        match auto::ratio(case) {
+            Some(ratio) => {
+                let _ = write!(
+                    text,
+                    "; to {:.0e} it needs {ratio:.1} times the time of the fastest method.\n\n",
+                    auto::TARGET
+                );
+            }
+            None => text.push_str(".\n\n"),
+        }
+    }
     let timed = case
         .methods
         .iter()

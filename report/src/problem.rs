@@ -123,6 +123,11 @@ where
         }
     }
 
+    /// The error of a state at the end.
+    pub fn judge(&self, end: &State<Counted<'a, Sys>>) -> f64 {
+        (self.error)(end.x.as_ref(), end.xi.as_ref())
+    }
+
     /// This problem by a method.
     pub fn by<'p, M>(&'p self, name: &str, kind: Kind, method: M) -> Entry<'p>
     where

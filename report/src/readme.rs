@@ -1,6 +1,7 @@
 //! The block of a text that is written from a report, between two comments.
 
-use crate::data::{Case, Kind, MethodRun, MethodRuns, Report};
+use crate::auto::{self, TARGET, fastest};
+use crate::data::{MethodRun, Report};
 use crate::markdown::worked;
 use crate::work::{Work, work};
 use std::fmt::Write;
@@ -10,13 +11,11 @@ pub const BEGIN: &str = "<!-- report: begin -->";
 /// What stands after it.
 pub const END: &str = "<!-- report: end -->";
 
-/// The error asked for.
-const TARGET: f64 = 1e-9;
-
-/// A table of the fastest method of every case and what it costs to reach 1e-9, with rkmk4 beside it.
+/// A table of the fastest method of every case and what it costs to reach 1e-9, with rkmk4 and what `auto` takes
+/// beside it.
 pub fn block(report: &Report) -> String {
     let mut text = String::from(
-        "| motion | fastest method to 1e-9 | evaluations of forces | time | `rkmk4` to 1e-9 |\n|---|---|---:|---:|---:|\n",
+        "| motion | fastest method to 1e-9 | evaluations of forces | time | `rkmk4` to 1e-9 | `auto` takes | over the fastest |\n|---|---|---:|---:|---:|---|---:|\n",
     );
     for case in &report.cases {
         if let Some((method, time)) = fastest(case) {
@@ -24,22 +23,20 @@ pub fn block(report: &Report) -> String {
             let usual = case.methods.iter().find(|other| other.method == "rkmk4");
             let _ = writeln!(
                 text,
-                "| {} | `{}` | {} | {} | {} |",
+                "| {} | `{}` | {} | {} | {} | {} | {} |",
                 case.title.replace('|', "\\|"),
                 method.method,
                 worked(work(&method.runs, TARGET, evaluations)),
                 micros(Some(time)),
-                micros(usual.map(timed)),
+                micros(usual.map(auto::micros)),
+                case.auto
+                    .as_ref()
+                    .map_or("-".into(), |choice| format!("`{}`", choice.method)),
+                auto::ratio(case).map_or("-".into(), |ratio| format!("{ratio:.1}")),
             );
         }
     }
     text
-}
-
-fn timed(method: &MethodRuns) -> Work {
-    work(&method.runs, TARGET, |run| {
-        run.seconds.map(|seconds| 1e6 * seconds)
-    })
 }
 
 fn micros(time: Option<Work>) -> String {
@@ -50,17 +47,6 @@ fn micros(time: Option<Work>) -> String {
         Some(time @ (Work::Reached(_) | Work::AtMost(_))) => format!("{} µs", worked(time)),
         _ => "not reached".into(),
     }
-}
-
-/// The method, no baseline, that takes the least time.
-fn fastest(case: &Case) -> Option<(&MethodRuns, Work)> {
-    let ours = case
-        .methods
-        .iter()
-        .filter(|method| method.kind == Kind::Method);
-    ours.filter_map(|method| Some((method, timed(method), timed(method).value()?)))
-        .min_by(|a, b| a.2.total_cmp(&b.2))
-        .map(|(method, work, _)| (method, work))
 }
 
 /// The text with its block replaced; `None` where the comments are missing.

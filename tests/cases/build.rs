@@ -1,19 +1,20 @@
 //! Generates the systems of the hard cases from `tests/models/`.
 
+use hamel_codegen::derive::structure::choice::choose;
 use std::path::PathBuf;
 
 /// The models that the cases use.
 const MODELS: [&str; 11] = [
+    "benchmark_top",
     "double_pendulum_angles",
     "free_body",
-    "heavy_top_axis",
-    "heavy_top_world",
     "kovalevskaya_top",
     "lagrange_top",
     "principal_axes",
     "rolling_disk",
     "satellite",
     "sleigh",
+    "spherical_bob",
     "two_bodies",
 ];
 
@@ -27,7 +28,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         builder = builder.file(format!("../models/{stem}.eom"));
     }
     builder.generate()?;
+    modules.push_str(&choices()?);
     let out_dir = std::env::var("OUT_DIR")?;
     std::fs::write(PathBuf::from(out_dir).join("models.rs"), modules)?;
     Ok(())
+}
+
+/// What `--method auto` takes for each model, and why.
+fn choices() -> Result<String, Box<dyn std::error::Error>> {
+    let mut rows = String::new();
+    for stem in MODELS {
+        let text = std::fs::read_to_string(format!("../models/{stem}.eom"))?;
+        let generated =
+            hamel_codegen::generate::from_text(&text).map_err(|errors| format!("{errors:?}"))?;
+        let choice = choose(&generated.program.structure, None);
+        rows.push_str(&format!(
+            "({stem:?}, {:?}, {:?}),\n",
+            choice.method, choice.reason
+        ));
+    }
+    Ok(format!(
+        "/// For every model the method that fits its structure, and why.\npub const CHOICES: &[(&str, &str, &str)] = &[\n{rows}];\n"
+    ))
 }

@@ -1,16 +1,19 @@
 //! `hamel compare`: speed against error, interpreted.
 
-mod methods;
 mod reference;
 mod write;
 
 use crate::failure::{Failure, print};
 use crate::interpreted::{Interpreted, constant_singular};
+use crate::method::{self, Named};
 use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
+use hamel::Method;
+use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::program::structure::Structure;
 use hamel_report::counted::Counted;
-use hamel_report::data::{Case, Machine, Report};
+use hamel_report::data::{Case, Choice, Kind, Machine, Report};
 use hamel_report::measure::{Plan, measure};
 use hamel_report::problem::{Entry, Problem};
 use hamel_report::solution::{Solution, relative};
@@ -49,7 +52,7 @@ pub struct Arguments {
     /// Descriptions.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Methods, all where it is left out.
+    /// Methods, see `hamel simulate --help`; all that fit where it is left out.
     #[arg(long, value_name = "M", value_delimiter = ',')]
     methods: Vec<String>,
     /// Length of the run; the last time of the reference, or 10.
@@ -83,7 +86,7 @@ enum Format {
 
 /// Runs and reports.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let methods = methods::chosen(&arguments.methods)?;
+    method::known(&arguments.methods)?;
     let solution = arguments.reference.as_deref().map(read).transpose()?;
     let mut report = Report {
         title: "Speed against error".into(),
@@ -97,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ..Report::default()
     };
     for file in &arguments.files {
-        let case = compare(file, arguments, &methods, solution.as_ref())?;
+        let case = compare(file, arguments, solution.as_ref())?;
         let taken = report
             .cases
             .iter()
@@ -122,7 +125,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn compare(
     file: &Path,
     arguments: &Arguments,
-    methods: &[methods::Named],
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
     let generated = Source::read(file)?.derive_all()?;
@@ -139,6 +141,8 @@ fn compare(
         return Err(Failure::failed(message));
     }
     let system = Interpreted::new(&generated, &state)?;
+    let structure = &generated.program.structure;
+    let (methods, missing) = method::fitting(&arguments.methods, &system, structure);
     let inputs = |_: f64, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
     let momenta = |x: &[f64], xi: &[f64]| -> Vec<f64> {
         let values = system.invariants().iter();
@@ -168,8 +172,13 @@ fn compare(
         name: name.to_lowercase(),
         until,
         error: "largest difference of the state, each field over max(1, its largest entry)".into(),
+        auto: Some(choice(structure)),
+        missing,
         ..Case::default()
     };
+    if methods.is_empty() {
+        return Ok(case);
+    }
     match &fields {
         Some(fields) => {
             case.reference = format!("the solution given: {}", fields.names());
@@ -178,18 +187,18 @@ fn compare(
         }
         None => {
             let finest = steps.last().copied().unwrap_or(1) * FINER;
-            let best = methods::best(methods);
+            let best = best(&methods);
             let failed = |error: hamel::StepError| {
                 Failure::failed(format!(
                     "the reference run of {} with {finest} steps failed: {error}",
                     best.name
                 ))
             };
-            let (x, xi) = problem.end(&best.method, finest).map_err(failed)?;
-            let (x2, xi2) = problem.end(&best.method, finest / 2).map_err(failed)?;
+            let (x, xi) = problem.end(&best.stepper, finest).map_err(failed)?;
+            let (x2, xi2) = problem.end(&best.stepper, finest / 2).map_err(failed)?;
             // Two runs of a method of order p differ by 2ᵖ − 1 times the error of the finer one.
             let difference = relative(&x2, &x).max(relative(&xi2, &xi));
-            let order = methods::order(best, &problem.system);
+            let order = Method::<Interpreted>::order(&best.stepper);
             case.reference = format!("{} with {finest} steps", best.name);
             case.reference_error =
                 hamel_report::data::kept(difference / (f64::from(order).exp2() - 1.0));
@@ -198,7 +207,7 @@ fn compare(
     }
     let entries: Vec<Entry> = methods
         .iter()
-        .map(|named| problem.by(named.name, named.kind, named.method))
+        .map(|named| problem.by(named.name, named.kind, named.stepper.clone()))
         .collect();
     let plan = Plan {
         steps,
@@ -213,6 +222,31 @@ fn compare(
     });
     bar.finish_and_clear();
     Ok(case)
+}
+
+/// The method of the highest order, baselines last; the first of them in the table.
+fn best(methods: &[Named]) -> &Named {
+    let rank = |named: &Named| {
+        let order = Method::<Interpreted>::order(&named.stepper);
+        (named.kind == Kind::Method, order)
+    };
+    let better = |best, named| {
+        if rank(named) > rank(best) {
+            named
+        } else {
+            best
+        }
+    };
+    methods.iter().skip(1).fold(&methods[0], better)
+}
+
+/// What `--method auto` takes.
+fn choice(structure: &Structure) -> Choice {
+    let choice = choose(structure, None);
+    Choice {
+        method: choice.method.into(),
+        reason: choice.reason.into(),
+    }
 }
 
 /// The system's name, with the first line of its description.

@@ -1,13 +1,13 @@
 //! Cases of one rigid body: free, on a fixed point, in flight.
 
 use crate::case::{Case, Field, Measure};
+use crate::models::benchmark_top::BenchmarkTop;
 use crate::models::free_body::FreeBody;
-use crate::models::heavy_top_axis::AxisTop;
-use crate::models::heavy_top_world::WorldTop;
 use crate::models::kovalevskaya_top::KovalevskayaTop;
 use crate::models::lagrange_top::LagrangeTop;
 use crate::models::principal_axes::PrincipalAxes;
 use crate::models::satellite::Satellite;
+use crate::models::spherical_bob::SphericalBob;
 use crate::reference::Reference;
 use hamel::{State, System, so3};
 
@@ -83,12 +83,13 @@ pub fn fast_spin() -> Case<PrincipalAxes<f64>> {
 }
 
 /// The heavy top benchmark, 150 rad/s.
-pub fn benchmark_top() -> Case<AxisTop<f64>> {
+pub fn benchmark_top() -> Case<BenchmarkTop<f64>> {
     let system = |reference: &Reference| {
         let [x, l, z] = reference.parameter("s");
         assert_eq!([x, z], [0.0; 2], "the centre of mass is on axis 2");
         let ([m], [j1, j2, j3]) = (reference.parameter("m"), moments(reference));
-        AxisTop::new(m, reference.gravity(), l, j1, j2, j3).expect("a body")
+        assert_eq!(j1, j3, "a symmetric top");
+        BenchmarkTop::new(m, reference.gravity(), l, j1, j2).expect("a body")
     };
     let none = Box::new(|_, _: &_, _: &_| []);
     rotation("heavy-top-benchmark-150", 1.0, system, none)
@@ -195,21 +196,18 @@ pub fn constant_wrench() -> Case<FreeBody<f64>> {
     flight("quadrotor-constant-wrench")
 }
 
-/// A spherical pendulum that passes both poles. A bob on a rod whose inertia is made isotropic about
-/// the joint has ω̇ = n × g / l, ṅ = ω × n (all in world axes): the pendulum, without any pole.
-pub fn spherical_pendulum() -> Case<WorldTop<f64>> {
+/// A spherical pendulum that passes both poles: a bob on a rod that turns with the inertia of a sphere,
+/// ω̇ = n × g / l, ṅ = ω × n (all in world axes).
+pub fn spherical_pendulum() -> Case<SphericalBob<f64>> {
     let reference = Reference::read("spherical-pendulum-through-poles");
     let ([m], [l]) = (reference.parameter("m"), reference.parameter("l"));
-    let inertia =
-        std::array::from_fn(|i| std::array::from_fn(|j| if i == j { m * l * l } else { 0.0 }));
-    let bob = [0.0, 0.0, l];
     let n: [f64; 3] = reference.initial::<3>("x").map(|x| x / l);
     let tilt = so3::cross([0.0, 0.0, 1.0], n);
     let (sin, cos) = (so3::dot(tilt, tilt).sqrt(), n[2]);
     let angle = sin.atan2(cos);
     Case {
         name: "spherical-pendulum-through-poles",
-        system: WorldTop::new(m, reference.gravity(), bob, inertia).expect("a body"),
+        system: SphericalBob::new(m, reference.gravity(), l).expect("a body"),
         start: State {
             t: 0.0,
             x: so3::exp(tilt.map(|t| t / sin * angle)),
@@ -218,10 +216,10 @@ pub fn spherical_pendulum() -> Case<WorldTop<f64>> {
         until: 10.0,
         inputs: Box::new(|_, _, _| []),
         fields: |system, state| {
-            let x = so3::apply(state.x, system.s());
+            let (x, xi) = (&state.x, &state.xi);
             vec![
-                Field::Numbers("x", x.to_vec()),
-                Field::Numbers("xdot", so3::cross(state.xi, x).to_vec()),
+                Field::Numbers("x", system.bob(x, xi, &[]).to_vec()),
+                Field::Numbers("xdot", system.speed(x, xi, &[]).to_vec()),
             ]
         },
         measure: Measure::Largest,

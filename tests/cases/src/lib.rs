@@ -11,7 +11,7 @@ pub mod reference;
 
 pub use case::{Case, Field, Measure};
 
-/// Generated systems.
+/// Generated systems, and what the generator says of them.
 pub mod models {
     include!(concat!(env!("OUT_DIR"), "/models.rs"));
 }

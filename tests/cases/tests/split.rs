@@ -167,7 +167,7 @@ fn the_vertical_top_passes_upright() {
 fn loads_that_are_no_potentials_are_kicks() {
     let satellite = bodies::gravity_gradient();
     let (end, _) = satellite
-        .split(Scheme::Nystrom6, satellite.until, 200)
+        .split(Scheme::Nystrom6, satellite.until, 400)
         .expect("a run");
     assert!(satellite.error(&end) <= 1e-9, "{:e}", satellite.error(&end));
     for case in [bodies::offset_body(), bodies::constant_wrench()] {
