@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The crates that the command line is made of.
-const CRATES: [&str; 4] = ["codegen", "macros", "runtime", "cli"];
+const CRATES: [&str; 5] = ["codegen", "macros", "runtime", "report", "cli"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

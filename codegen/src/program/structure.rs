@@ -37,6 +37,8 @@ pub struct RotorForm {
     pub name: String,
     /// Its inertia J in body axes, about the centre of mass or the fixed point.
     pub inertia: Inertia,
+    /// Whether the torque on it, about that point, changes with the configuration.
+    pub steered: bool,
 }
 
 /// The form of an inertia.

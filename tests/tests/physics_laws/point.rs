@@ -252,6 +252,7 @@ macro_rules! models {
 
 models! {
     actuated_pendulum::ActuatedPendulum,
+    benchmark_top::BenchmarkTop,
     body_with_rotor::BodyWithRotor,
     cart_pole::CartPole,
     double_pendulum_angles::DoublePendulum,
@@ -291,6 +292,7 @@ models! {
     six_particles::SixParticles,
     slider_crank::SliderCrank,
     spherical_angles::SphericalAngles,
+    spherical_bob::SphericalBob,
     spherical_orthonormal::SphericalOrthonormal,
     spherical_pendulum::SphericalPendulum,
     spinning_particles::SpinningParticles,

@@ -11,6 +11,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, multiply, solve_symmetric, transpose};
 use crate::algebra::transplant::rebuild;
 use crate::derive::assemble::Builder;
+use crate::model::class;
 use crate::program::count::count;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
 use crate::program::{Argument, Shape};
@@ -130,6 +131,9 @@ impl Functions {
             .map(|(part, inertia)| RotorForm {
                 name: part.name.clone(),
                 inertia: form(graph, inertia),
+                steered: kick[part.rates()]
+                    .iter()
+                    .any(|edge| graph.class(edge.node()) & class::COORD != 0),
             })
             .collect();
         let inertia = forms
