@@ -59,6 +59,8 @@ impl Axis {
     /// All positive finite values on a logarithmic scale, with a margin.
     pub fn logarithmic(values: impl Iterator<Item = f64>) -> Self {
         let (low, high) = extent(values.filter(|&value| value > 0.0)).unwrap_or((0.1, 1.0));
+        // A range that is no number would have no end of ticks.
+        let (low, high) = (low.max(1e-100), high.min(1e100));
         let margin = (high / low).powf(0.04).max(1.5);
         Axis {
             low: low / margin,

@@ -7,6 +7,9 @@ use super::line::Point;
 use super::theme;
 use crate::data::Drift;
 
+/// Deviations above are a blow-up, however large, and are drawn at the upper edge.
+const LARGEST: f64 = 1e3;
+
 /// Long runs of one case, on a logarithmic scale.
 ///
 /// # Errors
@@ -15,7 +18,8 @@ pub fn drifts(title: &str, subtitle: &str, runs: &[&Drift]) -> Result<Figure, Pl
     Figure::draw(800.0, 430.0, title, |area| {
         headed(area, title, subtitle)?;
         let steps = runs.iter().map(|run| run.steps).max().unwrap_or(1) as f64;
-        let energies = runs.iter().flat_map(|run| run.energy.iter().copied());
+        let energies = runs.iter().flat_map(|run| run.energy.iter());
+        let energies = energies.map(|&energy| f64::min(energy, LARGEST));
         let axes = Axes {
             frame: Frame {
                 x: 70.0,
@@ -41,7 +45,7 @@ pub fn drifts(title: &str, subtitle: &str, runs: &[&Drift]) -> Result<Figure, Pl
                 .enumerate()
                 .map(|(number, &energy)| {
                     let middle = (number as f64 + 0.5) * window;
-                    axes.place(middle, energy.max(axes.up.low()))
+                    axes.place(middle, energy.min(LARGEST).max(axes.up.low()))
                 })
                 .collect();
             let Some(&(_, end)) = points.last() else {
