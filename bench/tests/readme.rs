@@ -31,7 +31,7 @@ fn the_report_holds_every_case_and_reads_back() {
     let text = read("docs/report/report.json");
     let report = json::read(&text).expect("a report");
     let names: Vec<&str> = report.cases.iter().map(|case| case.name.as_str()).collect();
-    assert_eq!(names, ALL.map(|job| job.name));
+    assert_eq!(names, ALL.iter().map(|job| job.name).collect::<Vec<_>>());
     assert_eq!(json::write(&report).expect("JSON"), text);
     // Every other program is named, measured or not.
     for name in ["Rapier", "ode_solvers", "MuJoCo"] {
@@ -43,14 +43,15 @@ fn the_report_holds_every_case_and_reads_back() {
 }
 
 #[test]
-fn every_case_has_its_reference() {
-    for job in &ALL {
-        let path = format!("tests/reference/{}.json", job.name);
+fn every_case_ends_at_a_time_of_its_reference() {
+    let report = json::read(&read("docs/report/report.json")).expect("a report");
+    for case in &report.cases {
+        let path = format!("tests/reference/{}.json", case.name);
         let solution = hamel_report::solution::Solution::parse(&read(&path)).expect("a solution");
         assert!(
-            solution.times().contains(&job.until),
+            solution.times().contains(&case.until),
             "{path}: {}",
-            job.until
+            case.until
         );
     }
 }
