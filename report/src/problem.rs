@@ -225,7 +225,7 @@ where
     /// The states at the end of so many steps of a method, as numbers (x, ξ).
     ///
     /// # Errors
-    /// Those of [`integrate`].
+    /// Those of [`integrate()`].
     pub fn end<M>(&self, method: &M, steps: u64) -> Result<(Vec<f64>, Vec<f64>), StepError>
     where
         M: Method<Counted<'a, Sys>>,
