@@ -6,7 +6,7 @@ use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
 use crate::algebra::graph::Graph;
-use crate::algebra::linear::{add3, apply3, identity3, multiply3, sub3, transpose3};
+use crate::algebra::linear::{add3, apply3, identity3, multiply3, transpose3};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{Declaration, Expr, Ident, Span};
 
@@ -56,15 +56,15 @@ pub fn ahead(graph: &mut Graph, parent: &Value, pose: &Value) -> Value {
     }
 }
 
-/// The world pose of g from that of f: g = f P⁻¹.
-pub fn behind(graph: &mut Graph, child: &Value, pose: &Value) -> Value {
-    match (child, pose) {
-        (Value::Pose(r, p), Value::Pose(rotation, position)) => {
-            let rotation = multiply3(graph, r, &transpose3(rotation));
+/// P⁻¹, the pose of g in f.
+pub fn inverse(graph: &mut Graph, pose: &Value) -> Value {
+    match pose {
+        Value::Pose(rotation, position) => {
+            let rotation = transpose3(rotation);
             let moved = apply3(graph, &rotation, *position);
-            Value::Pose(rotation, sub3(graph, *p, moved)).unsigned_zeros(graph)
+            Value::Pose(rotation, moved.map(|entry| -entry)).unsigned_zeros(graph)
         }
-        _ => child.clone(),
+        _ => pose.clone(),
     }
 }
 

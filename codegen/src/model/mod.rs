@@ -98,11 +98,15 @@ pub struct Coordinate {
     pub span: Span,
 }
 
-/// A frame: its pose in the world.
+/// A frame: its pose in the world, and in the frame that it was placed on.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Name as written.
     pub name: String,
+    /// Index of the frame that it was placed on, which stands before it; the world where absent.
+    pub parent: Option<usize>,
+    /// Its pose in that frame: axes by columns, origin (m).
+    pub relative: (Mat3, Vec3),
     /// Frame axes in world axes, by columns.
     pub rotation: Mat3,
     /// Origin in world axes (m).

@@ -218,31 +218,36 @@ impl<'a> Names<'a> {
         }
         let known = kind.is_some();
         let open = relation.on.filter(|on| !self.is_known(Some(on), scope));
-        let (name, value) = match open {
+        let (name, on, relative) = match open {
             Some(on) if known => {
                 let pose = relative_pose(&relation, graph, scope, report);
-                let value = scope.get(&relation.name.name).and_then(|e| e.value.clone());
-                (
-                    on,
-                    pose.zip(value).map(|(p, f)| frames::behind(graph, &f, &p)),
-                )
+                let back = pose.map(|pose| frames::inverse(graph, &pose));
+                (on, Some(relation.name), back)
             }
             _ if known && self.closes(&relation, scope, report) => return,
             _ => {
-                let parent = relation.on.map(|on| parent_pose(on, graph, scope, report));
                 let pose = relative_pose(&relation, graph, scope, report);
-                let value = match parent {
-                    Some(parent) => parent.zip(pose).map(|(g, p)| frames::ahead(graph, &g, &p)),
-                    None => pose,
-                };
-                (relation.name, value)
+                (relation.name, relation.on, pose)
             }
+        };
+        let parent = on.map(|on| parent_pose(on, graph, scope, report));
+        let value = match parent {
+            Some(parent) => parent
+                .zip(relative.clone())
+                .map(|(parent, pose)| frames::ahead(graph, &parent, &pose)),
+            None => relative.clone(),
         };
         let free = scope.define(name, NameKind::Frame, value.clone(), report);
         self.placed.push(relation);
-        if let (Some(Value::Pose(rotation, position)), true) = (value, free) {
+        let poses = value.zip(relative);
+        if let (Some((Value::Pose(rotation, position), Value::Pose(turn, shift))), true) =
+            (poses, free)
+        {
+            let parent = on.and_then(|on| self.frames.iter().position(|f| f.name == on.name));
             self.frames.push(Frame {
                 name: name.name.clone(),
+                parent,
+                relative: (turn, shift),
                 rotation,
                 position,
             });
