@@ -1,7 +1,9 @@
-//! The prime field F_p, p = 2^61 − 1 (a Mersenne prime, p ≡ 3 mod 4).
+//! The prime field F_p, p = 2^61 − 1 (a Mersenne prime, p ≡ 3 mod 4), and its square roots.
 //!
 //! Values of expressions at points of the constraint variety live here: equality is exact, and
 //! two different rational functions of degree D agree at a random point with probability ≤ D/p.
+//! As −1 is no square, every element of F_p has its roots in F_p(i), i² = −1: so an element is
+//! a + b i, where b is 0 unless a root made it otherwise.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -12,19 +14,21 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// The modulus 2^61 − 1.
 pub const P: u64 = (1 << 61) - 1;
 
-/// An element of F_p, always reduced.
+/// An element a + b i of F_p(i), always reduced.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord, Default)]
-pub struct Fp(u64);
+pub struct Fp(u64, u64);
 
 impl Fp {
     /// 0.
-    pub const ZERO: Fp = Fp(0);
+    pub const ZERO: Fp = Fp(0, 0);
     /// 1.
-    pub const ONE: Fp = Fp(1);
+    pub const ONE: Fp = Fp(1, 0);
+    /// i.
+    pub const I: Fp = Fp(0, 1);
 
     /// The class of a non-negative integer.
     pub fn new(value: u64) -> Self {
-        Fp(value % P)
+        Fp(value % P, 0)
     }
 
     /// The class of an integer.
@@ -36,7 +40,7 @@ impl Fp {
     /// The class of an integer of any size.
     pub fn from_integer(value: &BigInt) -> Self {
         // `mod_floor` by a positive modulus is in 0..p, so it fits.
-        Fp(value.mod_floor(&BigInt::from(P)).to_u64().unwrap_or(0))
+        Fp(value.mod_floor(&BigInt::from(P)).to_u64().unwrap_or(0), 0)
     }
 
     /// The class of a rational; `None` where p divides the denominator.
@@ -44,14 +48,25 @@ impl Fp {
         Some(Fp::from_integer(value.numer()) * Fp::from_integer(value.denom()).inv()?)
     }
 
-    /// The representative in 0..p.
+    /// The representative in 0..p of a.
     pub fn value(self) -> u64 {
         self.0
     }
 
+    /// 64 bits that depend on a and b, for random streams.
+    pub fn bits(self) -> u64 {
+        self.0 ^ self.1.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+
+    /// Which of ±self stands for both: whether it is the other one.
+    pub fn is_negative(self) -> bool {
+        let leading = if self.0 == 0 { self.1 } else { self.0 };
+        leading > P / 2
+    }
+
     /// Whether this is 0.
     pub fn is_zero(self) -> bool {
-        self.0 == 0
+        self.0 == 0 && self.1 == 0
     }
 
     /// self^exponent by squaring.
@@ -73,6 +88,10 @@ impl Fp {
         if self.is_zero() {
             return None;
         }
+        if self.1 != 0 {
+            let conjugate = Fp(self.0, negated(self.1));
+            return Some(conjugate * (self * conjugate).inv()?);
+        }
         // Extended Euclid on (p, a); the cofactors stay within ±p.
         let (mut r0, mut r1) = (P as i64, self.0 as i64);
         let (mut t0, mut t1) = (0i64, 1i64);
@@ -81,17 +100,36 @@ impl Fp {
             (r0, r1) = (r1, r0 - q * r1);
             (t0, t1) = (t1, t0 - q * t1);
         }
-        Some(Fp(t0.rem_euclid(P as i64) as u64))
+        Some(Fp(t0.rem_euclid(P as i64) as u64, 0))
     }
 
-    /// A square root a^((p+1)/4); `None` where self is no square.
+    /// A square root: of a in F_p it is ±a^((p+1)/4) or i times that of −a; of the rest of F_p(i)
+    /// half the elements have one (Adj and Rodríguez-Henríquez, algorithm 9), `None` for the others.
     pub fn sqrt(self) -> Option<Self> {
-        let root = self.pow(P.div_ceil(4));
+        if self.1 == 0 {
+            let root = self.pow(P.div_ceil(4));
+            return Some(if root * root == self {
+                root
+            } else {
+                Fp::I * (-self).pow(P.div_ceil(4))
+            });
+        }
+        let power = self.pow((P - 3) / 4);
+        let root = power * self;
+        let alpha = power * root;
+        let root = if alpha == -Fp::ONE {
+            Fp::I * root
+        } else {
+            (Fp::ONE + alpha).pow((P - 1) / 2) * root
+        };
         (root * root == self).then_some(root)
     }
 
     /// The rational n/d with |n|, d < 2^bits (bits ≤ 29) that this is the class of, if there is one.
     pub fn to_small_rational(self, bits: u32) -> Option<(i64, i64)> {
+        if self.1 != 0 {
+            return None;
+        }
         let bound = 1i64 << bits.min(29);
         let (mut r0, mut r1) = (P as i64, self.0 as i64);
         let (mut t0, mut t1) = (0i64, 1i64);
@@ -108,18 +146,31 @@ impl Fp {
     }
 }
 
+fn plus(a: u64, b: u64) -> u64 {
+    let sum = a + b;
+    if sum >= P { sum - P } else { sum }
+}
+
+fn negated(a: u64) -> u64 {
+    if a == 0 { 0 } else { P - a }
+}
+
+fn times(a: u64, b: u64) -> u64 {
+    let product = a as u128 * b as u128;
+    plus(product as u64 & P, (product >> 61) as u64)
+}
+
 impl Add for Fp {
     type Output = Fp;
     fn add(self, other: Fp) -> Fp {
-        let sum = self.0 + other.0;
-        Fp(if sum >= P { sum - P } else { sum })
+        Fp(plus(self.0, other.0), plus(self.1, other.1))
     }
 }
 
 impl Neg for Fp {
     type Output = Fp;
     fn neg(self) -> Fp {
-        Fp(if self.0 == 0 { 0 } else { P - self.0 })
+        Fp(negated(self.0), negated(self.1))
     }
 }
 
@@ -133,9 +184,14 @@ impl Sub for Fp {
 impl Mul for Fp {
     type Output = Fp;
     fn mul(self, other: Fp) -> Fp {
-        let product = self.0 as u128 * other.0 as u128;
-        let folded = (product as u64 & P) + (product >> 61) as u64;
-        Fp(if folded >= P { folded - P } else { folded })
+        let (Fp(a, b), Fp(c, d)) = (self, other);
+        if b | d == 0 {
+            return Fp(times(a, c), 0);
+        }
+        Fp(
+            plus(times(a, c), negated(times(b, d))),
+            plus(times(a, d), times(b, c)),
+        )
     }
 }
 
@@ -186,8 +242,26 @@ mod tests {
             assert!(root == Some(a) || root == Some(-a));
         }
         assert_eq!(Fp::ZERO.inv(), None);
+    }
+
+    #[test]
+    fn roots_of_all_elements_of_the_prime_field_exist() {
+        let mut random = Random::new(2);
+        let mut roots = 0;
+        for _ in 0..100 {
+            let a = random.element();
+            let root = a.sqrt().expect("it has one in F_p(i)");
+            assert_eq!(root * root, a);
+            let b = root + random.element();
+            assert_eq!(b.inv().map(|inverse| inverse * b), Some(Fp::ONE));
+            let square = (b * b).sqrt();
+            assert!(square == Some(b) || square == Some(-b));
+            roots += usize::from(b.sqrt().is_some_and(|root| root * root == b));
+        }
+        assert!(roots > 40 && roots < 100);
         // −1 is no square, because p ≡ 3 mod 4.
-        assert_eq!((-Fp::ONE).sqrt(), None);
+        assert!(matches!((-Fp::ONE).sqrt(), Some(root) if root == Fp::I || root == -Fp::I));
+        assert!(Fp::I.is_negative() != (-Fp::I).is_negative());
     }
 
     #[test]

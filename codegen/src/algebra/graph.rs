@@ -5,7 +5,7 @@
 //! An edge is a node with a sign, so negation costs nothing and a − b, b − a are one node.
 //! Children stand before parents.
 
-use super::fp::{Fp, P};
+use super::fp::Fp;
 use super::lane::Lane;
 pub use super::node::{Edge, Function, Node, NodeId, Symbol};
 use num_bigint::BigInt;
@@ -436,7 +436,7 @@ fn canonical(value: [Fp; LANES]) -> ([Fp; LANES], bool) {
     let negative = value
         .iter()
         .find(|v| !v.is_zero())
-        .is_some_and(|v| v.value() > P / 2);
+        .is_some_and(|v| v.is_negative());
     (if negative { value.map(|v| -v) } else { value }, negative)
 }
 

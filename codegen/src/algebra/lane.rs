@@ -84,7 +84,7 @@ impl Lane {
     /// A random stream that belongs to a tag and two values.
     fn draw(&self, tag: u64, a: Fp, b: Fp) -> Random {
         let mut seed = self.seed;
-        for part in [tag, a.value(), b.value()] {
+        for part in [tag, a.bits(), b.bits()] {
             seed = Random::new(seed ^ part.wrapping_mul(0x2545_f491_4f6c_dd1d)).bits();
         }
         Random::new(seed)
@@ -132,7 +132,7 @@ fn split(atom: Fp, coefficient: &BigRational) -> (Fp, i64, u64) {
             0,
         ),
     };
-    if base.value() > P / 2 {
+    if base.is_negative() {
         (-base, -count, parts)
     } else {
         (base, count, parts)

@@ -1,7 +1,6 @@
 //! Sums, products, quotients and powers of shaped values.
 
 use super::expression::Evaluator;
-use super::functions::root;
 use super::value::Value;
 use crate::algebra::graph::{Edge, Function};
 use crate::algebra::linear::{add3, apply3, multiply, multiply3};
@@ -217,7 +216,7 @@ impl Evaluator<'_> {
             }
             self.graph.powi(base, n)
         } else if let Some(n) = whole(&twice) {
-            let root = root(self.graph, base);
+            let root = self.graph.apply(Function::Sqrt, base);
             self.graph.powi(root, n)
         } else if number.is_some_and(|n| n.is_one()) {
             Some(base)

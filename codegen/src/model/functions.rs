@@ -5,14 +5,12 @@ use super::motion::FUNCTIONS;
 use super::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use super::scope::{NameKind, RESERVED};
 use super::value::Value;
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{apply3, cross, multiply3, transpose, transpose3};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
 use crate::syntax::suggest::closest;
-use num_rational::BigRational;
-use num_traits::{Signed, ToPrimitive};
+use num_traits::Signed;
 
 /// Largest number of rows that a function makes.
 const MOST_ROWS: usize = 64;
@@ -307,22 +305,7 @@ fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {
             "check the argument: it is this number for every configuration",
         ));
     }
-    Ok(root(graph, square))
-}
-
-/// The square root. A number whose root does not exist modulo p, such as 3, has the one that
-/// floating point gives.
-pub fn root(graph: &mut Graph, square: Edge) -> Edge {
-    if let Some(number) = graph.as_rational(square)
-        && Fp::from_rational(&number).is_none_or(|image| image.sqrt().is_none())
-        && let Some(root) = number
-            .to_f64()
-            .map(f64::sqrt)
-            .and_then(BigRational::from_float)
-    {
-        return graph.rational(&root);
-    }
-    graph.apply(Function::Sqrt, square)
+    Ok(graph.apply(Function::Sqrt, square))
 }
 
 fn diagonal(graph: &Graph, entries: &[Edge]) -> Value {

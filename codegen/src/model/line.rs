@@ -5,7 +5,6 @@
 
 use super::Wrench;
 use super::dynamics::Reader;
-use super::functions::root;
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::linear::{Vec3, add3, apply3, scale3, sub3, zero3};
 use crate::algebra::numeric::evaluate;
@@ -141,7 +140,7 @@ impl Reader<'_, '_> {
             return None;
         }
         let square = graph.dot(&ratios, &ratios);
-        let factor = root(graph, square);
+        let factor = graph.apply(Function::Sqrt, square);
         Some(graph.mul(first, factor))
     }
 

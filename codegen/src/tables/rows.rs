@@ -3,7 +3,7 @@
 use super::expression::Term;
 use super::listing::{Cell, Group};
 use super::polish::sorted;
-use crate::algebra::fp::P;
+use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::poly::polynomial::Poly;
 use num_rational::BigRational;
@@ -60,22 +60,23 @@ impl Row {
 /// where they agree at the graph's points; the expression without coordinates is kept.
 pub fn rows(cells: &[Cell], graph: &Graph) -> (Vec<Row>, Vec<Option<(usize, bool)>>) {
     let mut rows: Vec<Row> = Vec::new();
-    let mut known: FxHashMap<Vec<u64>, (usize, bool)> = FxHashMap::default();
+    let mut known: FxHashMap<Vec<Fp>, (usize, bool)> = FxHashMap::default();
     let mut places = Vec::new();
     for cell in cells {
         if cell.edge == graph.zero() || cell.edge == -graph.zero() {
             places.push(None);
             continue;
         }
-        let values = graph.value(cell.edge).map(|v| v.value());
-        let negative = values.iter().find(|v| **v != 0).is_some_and(|v| *v > P / 2);
-        let mut key: Vec<u64> = values
+        let values = graph.value(cell.edge);
+        let leading = values.iter().find(|v| !v.is_zero());
+        let negative = leading.is_some_and(|v| v.is_negative());
+        let mut key: Vec<Fp> = values
             .iter()
-            .map(|v| if negative { (P - v) % P } else { *v })
+            .map(|&v| if negative { -v } else { v })
             .collect();
         // Nodes that the graph does not merge carry no values: they are their own key.
-        if key.iter().all(|v| *v == 0) {
-            key = vec![u64::from(cell.edge.node())];
+        if key.iter().all(|v| v.is_zero()) {
+            key = vec![Fp::new(u64::from(cell.edge.node()))];
         }
         let negative = if key.len() == 1 {
             cell.edge.is_negative()
