@@ -77,11 +77,14 @@ impl Calculus {
     /// The columns of the body angular velocity, vee(Rᵀ ∂ᵢR), for all i.
     pub fn spin_jacobian(&mut self, graph: &mut Graph, rotation: &Mat3) -> Vec<Vec3> {
         (0..self.n())
-            .map(|i| {
-                let change = rotation.map(|row| row.map(|entry| self.along(graph, i, entry)));
-                spin(graph, rotation, &change)
-            })
+            .map(|i| self.spin_along(graph, i, rotation))
             .collect()
+    }
+
+    /// vee(Rᵀ ∂ᵢR).
+    pub fn spin_along(&mut self, graph: &mut Graph, i: usize, rotation: &Mat3) -> Vec3 {
+        let change = rotation.map(|row| row.map(|entry| self.along(graph, i, entry)));
+        spin(graph, rotation, &change)
     }
 
     /// The body angular velocity vee(Rᵀ Ṙ).

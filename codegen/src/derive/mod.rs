@@ -59,5 +59,6 @@ mod reference;
 mod slopes;
 pub mod structure;
 pub mod tables;
+pub mod tree;
 pub mod validate;
 pub mod virtual_power;

@@ -1,0 +1,183 @@
+//! Inverse dynamics by recursion: velocities and accelerations outwards, forces inwards
+//! (Luh, Walker and Paul 1980), with U = α̂ + ω̂ ω̂ and second moments S:
+//! force m a + U h, torque vee(U S − (U S)ᵀ) + h × a about the origin of each link.
+
+use super::mass::Mass;
+use super::{Link, Tree};
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::{Mat3, Vec3, add3, apply3, cross, scale3, zero3};
+
+/// Force and torque about the origin of a link, in its axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Wrench {
+    /// Force (N).
+    pub force: Vec3,
+    /// Torque (N m).
+    pub torque: Vec3,
+}
+
+/// A link's motion in its axes.
+#[derive(Clone, Copy)]
+struct Motion {
+    omega: Vec3,
+    alpha: Vec3,
+    /// Acceleration of the origin, less gravity.
+    a: Vec3,
+    /// α̂ + ω̂ ω̂.
+    u: Mat3,
+}
+
+/// What the motion of every link needs, at rates ξ and ξ̇ and under gravity (world axes).
+pub fn wrenches(
+    graph: &mut Graph,
+    tree: &Tree,
+    xi: &[Edge],
+    xi_dot: &[Edge],
+    gravity: Vec3,
+) -> Vec<Wrench> {
+    let zero = zero3(graph);
+    let ground = Motion {
+        omega: zero,
+        alpha: zero,
+        a: gravity.map(|entry| -entry),
+        u: [zero; 3],
+    };
+    let mut motions: Vec<Motion> = Vec::with_capacity(tree.links.len());
+    let mut wrenches = Vec::with_capacity(tree.links.len());
+    for link in &tree.links {
+        let before = link.parent.map_or(ground, |parent| motions[parent]);
+        let motion = outward(graph, link, &before, xi, xi_dot);
+        wrenches.push(wrench(graph, &link.mass, &motion));
+        motions.push(motion);
+    }
+    wrenches
+}
+
+fn outward(graph: &mut Graph, link: &Link, before: &Motion, xi: &[Edge], xi_dot: &[Edge]) -> Motion {
+    let zero = zero3(graph);
+    let mut relative = (zero, zero);
+    let mut change = link.drift;
+    for freedom in &link.freedoms {
+        let rate = freedom.rate_of(graph, xi);
+        let growth = freedom.rate_of(graph, xi_dot);
+        let (w, v) = (
+            scale3(graph, rate, freedom.angular),
+            scale3(graph, rate, freedom.linear),
+        );
+        relative = (add3(graph, relative.0, w), add3(graph, relative.1, v));
+        let (w, v) = (
+            scale3(graph, growth, freedom.angular),
+            scale3(graph, growth, freedom.linear),
+        );
+        change = (add3(graph, change.0, w), add3(graph, change.1, v));
+    }
+    let carried = link.back(graph, before.omega);
+    let omega = add3(graph, carried, relative.0);
+    let gyro = cross(graph, carried, relative.0);
+    let alpha = link.back(graph, before.alpha);
+    let alpha = add3(graph, alpha, gyro);
+    let alpha = add3(graph, alpha, change.0);
+    let swing = apply3(graph, &before.u, link.position);
+    let a = add3(graph, before.a, swing);
+    let mut a = link.back(graph, a);
+    if relative.1 != zero {
+        let twice = add3(graph, carried, omega);
+        let coriolis = cross(graph, twice, relative.1);
+        a = add3(graph, a, coriolis);
+    }
+    let a = add3(graph, a, change.1);
+    Motion {
+        omega,
+        alpha,
+        a,
+        u: tensor(graph, omega, alpha),
+    }
+}
+
+/// α̂ + ω̂ ω̂ = α̂ + ω ωᵀ − |ω|² I.
+fn tensor(graph: &mut Graph, omega: Vec3, alpha: Vec3) -> Mat3 {
+    let square = omega.map(|w| graph.mul(w, w));
+    let mut u = [zero3(graph); 3];
+    for i in 0..3 {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        u[i][i] = -graph.add(square[j], square[k]);
+        let product = graph.mul(omega[j], omega[k]);
+        u[j][k] = graph.sub(product, alpha[i]);
+        u[k][j] = graph.add(product, alpha[i]);
+    }
+    u
+}
+
+fn wrench(graph: &mut Graph, mass: &Mass, motion: &Motion) -> Wrench {
+    let Motion { a, u, .. } = motion;
+    let s = &mass.second;
+    let push = scale3(graph, mass.mass, *a);
+    let swing = apply3(graph, u, mass.first);
+    let lever = cross(graph, mass.first, *a);
+    let spin: Vec3 = std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let difference = graph.sub(u[k][k], u[j][j]);
+        let terms = [
+            graph.mul(u[k][j], s[j][j]),
+            -graph.mul(u[j][k], s[k][k]),
+            graph.mul(difference, s[j][k]),
+            graph.mul(u[k][i], s[i][j]),
+            -graph.mul(u[j][i], s[i][k]),
+        ];
+        graph.sum(&terms)
+    });
+    Wrench {
+        force: add3(graph, push, swing),
+        torque: add3(graph, spin, lever),
+    }
+}
+
+/// The generalised force of wrenches on links: Σ over what hangs on each joint.
+pub fn collect(graph: &mut Graph, tree: &Tree, wrenches: &[Wrench], n: usize) -> Vec<Edge> {
+    let mut totals = wrenches.to_vec();
+    let mut forces = vec![graph.zero(); n];
+    for (index, link) in tree.links.iter().enumerate().rev() {
+        let total = totals[index];
+        for freedom in &link.freedoms {
+            let (turn, push) = (
+                graph.dot(&freedom.angular, &total.torque),
+                graph.dot(&freedom.linear, &total.force),
+            );
+            let force = graph.add(turn, push);
+            for &(i, k) in &freedom.rate {
+                let share = graph.mul(k, force);
+                forces[i] = graph.add(forces[i], share);
+            }
+        }
+        if let Some(parent) = link.parent {
+            let carried = carried(graph, link, &total);
+            let sum = &mut totals[parent];
+            sum.force = add3(graph, sum.force, carried.force);
+            sum.torque = add3(graph, sum.torque, carried.torque);
+        }
+    }
+    forces
+}
+
+/// A wrench on a link as one on the link before.
+pub fn carried(graph: &mut Graph, link: &Link, wrench: &Wrench) -> Wrench {
+    let force = link.out(graph, wrench.force);
+    let torque = link.out(graph, wrench.torque);
+    let lever = cross(graph, link.position, force);
+    Wrench {
+        force,
+        torque: add3(graph, torque, lever),
+    }
+}
+
+/// M ξ̇ + Γ ξ ξ + ∂V of gravity.
+pub fn inverse(
+    graph: &mut Graph,
+    tree: &Tree,
+    xi: &[Edge],
+    xi_dot: &[Edge],
+    gravity: Vec3,
+) -> Vec<Edge> {
+    let wrenches = wrenches(graph, tree, xi, xi_dot, gravity);
+    collect(graph, tree, &wrenches, xi.len())
+}

@@ -1,0 +1,106 @@
+//! Trees of links: inverse dynamics, M and forward dynamics by recursion.
+//!
+//! Links are what moves rigidly together; their frames are the generator's choice, whatever frames
+//! the description has. A link's inertia is kept as m, h, S, and what a joint cannot feel of it is
+//! moved to the link before. Sources: Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapters
+//! 5-7; Khalil and Kleinfinger (1987) for customised recursions and base inertial parameters.
+
+pub mod articulated;
+pub mod composite;
+mod draft;
+pub mod inverse;
+pub mod mass;
+mod reframe;
+mod regroup;
+mod revolute;
+#[cfg(test)]
+mod tests;
+pub mod turn;
+
+use super::calculus::Calculus;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::Vec3;
+use crate::model::Model;
+use mass::Mass;
+use turn::Turn;
+
+/// One freedom of a joint: the twist of a link against the one before, for one unit of its rate.
+#[derive(Clone, Debug)]
+pub struct Freedom {
+    /// Angular velocity, axes of the link.
+    pub angular: Vec3,
+    /// Velocity of the link's origin, axes of the link.
+    pub linear: Vec3,
+    /// Its rate is Σ k ξⁱ, k constant: pairs (i, k).
+    pub rate: Vec<(usize, Edge)>,
+}
+
+impl Freedom {
+    /// Σ k vⁱ.
+    pub fn rate_of(&self, graph: &mut Graph, v: &[Edge]) -> Edge {
+        let terms: Vec<Edge> = self
+            .rate
+            .iter()
+            .map(|&(i, k)| graph.mul(k, v[i]))
+            .collect();
+        graph.sum(&terms)
+    }
+}
+
+/// A link: what moves against the link before by a joint.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// The link before, which has a smaller index; the world where absent.
+    pub parent: Option<usize>,
+    /// The axes of this link in those of the one before: the product of these turns.
+    pub turns: Vec<Turn>,
+    /// The origin of this link, axes of the one before.
+    pub position: Vec3,
+    /// The freedoms of its joint.
+    pub freedoms: Vec<Freedom>,
+    /// Rates of the freedoms' twists at constant rates: angular, linear.
+    pub drift: (Vec3, Vec3),
+    /// Its inertia about its origin.
+    pub mass: Mass,
+}
+
+impl Link {
+    /// A vector of this link in axes of the one before.
+    pub fn out(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        self.turns.iter().rev().fold(v, |v, turn| turn.out(graph, v))
+    }
+
+    /// A vector of the link before in axes of this one.
+    pub fn back(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        self.turns.iter().fold(v, |v, turn| turn.back(graph, v))
+    }
+}
+
+/// The links, each after the one that it hangs on.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    /// The links.
+    pub links: Vec<Link>,
+}
+
+impl Tree {
+    /// The tree of a model; `None` where not all of its inertia is that of bodies on frames, or where
+    /// a joint's rates are no constant combinations of ξ.
+    pub fn of(model: &mut Model, calculus: &mut Calculus) -> Option<Tree> {
+        let mut draft = draft::draft(model, calculus)?;
+        reframe::reframe(&mut model.graph, &mut draft);
+        regroup::regroup(&mut model.graph, &mut draft);
+        let links = draft.into_iter().map(|link| link.finish(&mut model.graph));
+        Some(Tree {
+            links: links.collect(),
+        })
+    }
+
+    /// Whether every ξⁱ is the rate of one freedom of its own.
+    pub fn is_plain(&self, graph: &Graph, n: usize) -> bool {
+        let mut seen = vec![false; n];
+        self.links.iter().flat_map(|link| &link.freedoms).all(|freedom| {
+            matches!(freedom.rate.as_slice(), &[(i, k)] if k == graph.one() && !std::mem::replace(&mut seen[i], true))
+        })
+    }
+}

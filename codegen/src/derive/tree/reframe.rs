@@ -1,0 +1,201 @@
+//! Frames of hinged links after Denavit and Hartenberg: the third axis along the hinge, the first
+//! along the common normal to the hinge of the next link, so that two plane rotations and two
+//! distances lead from link to link.
+
+use super::draft::{Draft, Motion};
+use super::turn::Turn;
+use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::linear::{Vec3, add3, scale3};
+
+/// Moves and turns the frames of all hinged links.
+pub fn reframe(graph: &mut Graph, links: &mut [Draft]) {
+    let weights = weights(links);
+    for i in 0..=links.len() {
+        // The world first, then every link.
+        let parent = i.checked_sub(1);
+        let children: Vec<usize> = (0..links.len())
+            .filter(|&j| links[j].parent == parent && is_hinge(&links[j]))
+            .collect();
+        let hinged = parent.is_some_and(|link| is_hinge(&links[link]));
+        for &j in &children {
+            if let Some(distance) = foot(graph, &links[j], hinged) {
+                slide(graph, links, j, distance);
+            }
+        }
+        if let (Some(link), true) = (parent, hinged) {
+            let mut children = children.clone();
+            children.sort_by_key(|&j| std::cmp::Reverse(weights[j]));
+            if let Some(angle) = normal(graph, links, &children) {
+                spin(graph, links, link, angle);
+            }
+        }
+        for j in children {
+            factor(graph, &mut links[j]);
+        }
+    }
+}
+
+fn is_hinge(link: &Draft) -> bool {
+    matches!(link.motion, Motion::Hinge { .. })
+}
+
+/// The number of links that hang on each, itself included.
+fn weights(links: &[Draft]) -> Vec<usize> {
+    let mut weights = vec![1; links.len()];
+    for j in (0..links.len()).rev() {
+        if let Some(parent) = links[j].parent {
+            weights[parent] += weights[j];
+        }
+    }
+    weights
+}
+
+/// The axis of a link's hinge in axes of the link before.
+fn axis(link: &Draft) -> Vec3 {
+    std::array::from_fn(|row| link.base[row][2])
+}
+
+/// Numbers, not parameters: what is decided by them holds for all parameters.
+fn numeric(graph: &Graph, edges: &[Edge]) -> bool {
+    edges.iter().all(|edge| graph.class(edge.node()) == 0)
+}
+
+/// How far along its hinge the origin of a link is best moved: to the foot of the common normal
+/// with the hinge before, or to where a coordinate vanishes.
+fn foot(graph: &mut Graph, link: &Draft, hinged: bool) -> Option<Edge> {
+    let (z, p) = (axis(link), link.position);
+    let zero = graph.zero();
+    if !numeric(graph, &z) {
+        return None;
+    }
+    let along: Vec<usize> = (0..3).filter(|&k| z[k] != zero).collect();
+    if let [k] = along[..] {
+        return (!hinged || k == 2 || p[k] != zero).then(|| -graph.mul(p[k], z[k]));
+    }
+    if !hinged {
+        return None;
+    }
+    let (x, y) = (graph.mul(z[0], z[0]), graph.mul(z[1], z[1]));
+    let square = graph.add(x, y);
+    let forward = graph.dot(&p[..2], &z[..2]);
+    Some(-graph.div(forward, square)?)
+}
+
+/// Cosine and sine of the angle by which a link's axes are best turned about its hinge.
+fn normal(graph: &mut Graph, links: &[Draft], children: &[usize]) -> Option<(Edge, Edge)> {
+    let zero = graph.zero();
+    let directions: Vec<(Edge, Edge)> = children
+        .iter()
+        .map(|&j| axis(&links[j]))
+        .filter(|z| numeric(graph, z))
+        .map(|z| (-z[1], z[0]))
+        .collect();
+    let oblique = |&(x, y): &(Edge, Edge)| x.abs() != zero || y.abs() != zero;
+    if let Some((x, y)) = directions.into_iter().find(oblique) {
+        return direction(graph, x, y);
+    }
+    let arm = children.iter().map(|&j| links[j].position);
+    let arm = arm
+        .into_iter()
+        .find(|p| numeric(graph, &p[..2]) && p[0] != zero && p[1] != zero)?;
+    direction(graph, arm[0], arm[1])
+}
+
+/// (x, y) / √(x² + y²); `None` where that is no turn at all.
+fn direction(graph: &mut Graph, x: Edge, y: Edge) -> Option<(Edge, Edge)> {
+    let zero = graph.zero();
+    if y.abs() == zero {
+        return None;
+    }
+    if x.abs() == zero {
+        return Some((zero, graph.one()));
+    }
+    let (a, b) = (graph.mul(x, x), graph.mul(y, y));
+    let square = graph.add(a, b);
+    let length = graph.apply(Function::Sqrt, square);
+    Some((graph.div(x, length)?, graph.div(y, length)?))
+}
+
+/// Moves the origin of a link along its hinge.
+fn slide(graph: &mut Graph, links: &mut [Draft], j: usize, distance: Edge) {
+    if distance.abs() == graph.zero() {
+        return;
+    }
+    let step = scale3(graph, distance, axis(&links[j]));
+    links[j].position = add3(graph, links[j].position, step);
+    let zero = graph.zero();
+    let back = [zero, zero, -distance];
+    links[j].mass = links[j].mass.shifted(graph, back);
+    for link in links.iter_mut().filter(|link| link.parent == Some(j)) {
+        link.position = add3(graph, link.position, back);
+    }
+}
+
+/// Turns the axes of a link about its hinge.
+fn spin(graph: &mut Graph, links: &mut [Draft], i: usize, (c, s): (Edge, Edge)) {
+    let back = Turn::About {
+        axis: 2,
+        cos: c,
+        sin: -s,
+    };
+    links[i].mass = links[i].mass.turned(graph, &back);
+    advance(graph, &mut links[i], (c, s));
+    for link in links.iter_mut().filter(|link| link.parent == Some(i)) {
+        link.position = back.out(graph, link.position);
+        turn_base(graph, link, &back);
+    }
+}
+
+/// base := R base.
+fn turn_base(graph: &mut Graph, link: &mut Draft, turn: &Turn) {
+    for column in 0..3 {
+        let v = turn.out(graph, std::array::from_fn(|row| link.base[row][column]));
+        for (row, entry) in link.base.iter_mut().zip(v) {
+            row[column] = entry;
+        }
+    }
+}
+
+/// Adds a constant to the angle of a link's hinge.
+fn advance(graph: &mut Graph, link: &mut Draft, (c, s): (Edge, Edge)) {
+    if let Motion::Hinge { phase, .. } = &mut link.motion {
+        let (cc, ss) = (graph.mul(phase.0, c), graph.mul(phase.1, s));
+        let (sc, cs) = (graph.mul(phase.1, c), graph.mul(phase.0, s));
+        *phase = (graph.sub(cc, ss), graph.add(sc, cs));
+    }
+}
+
+/// base = Rz(β) Rx(α) Rz(γ): the first two are kept, the last goes into the angle.
+fn factor(graph: &mut Graph, link: &mut Draft) {
+    let z = axis(link);
+    let zero = graph.zero();
+    let [x, y, cos] = z;
+    let (c, s, sin) = if x.abs() == zero {
+        (graph.one(), zero, -y)
+    } else if y.abs() == zero {
+        (zero, graph.one(), x)
+    } else {
+        let (a, b) = (graph.mul(x, x), graph.mul(y, y));
+        let square = graph.add(a, b);
+        let length = graph.apply(Function::Sqrt, square);
+        let quotients = (graph.div(y, length), graph.div(x, length));
+        match quotients {
+            (Some(c), Some(s)) => (-c, s, length),
+            _ => return,
+        }
+    };
+    let first = [(2, c, s), (0, cos, sin)].map(|(axis, cos, sin)| Turn::About { axis, cos, sin });
+    let mut rest = link.base;
+    for turn in &first {
+        for column in 0..3 {
+            let v = turn.back(graph, std::array::from_fn(|row| rest[row][column]));
+            for (row, entry) in rest.iter_mut().zip(v) {
+                row[column] = entry;
+            }
+        }
+    }
+    advance(graph, link, (rest[0][0], rest[1][0]));
+    if let Motion::Hinge { turns, .. } = &mut link.motion {
+        turns.extend(first);
+    }
+}
