@@ -139,7 +139,7 @@ impl<'a> Builder<'a> {
 
     fn dynamics(&mut self, reference: &Graph, potential: Edge) {
         let n = self.model.n();
-        let (xi, xi_dot) = (self.model.xi.clone(), self.model.xi_dot.clone());
+        let xi = self.model.xi.clone();
         let guards = self.guards();
         self.functions.push(Function {
             name: "accel".into(),
@@ -158,14 +158,11 @@ impl<'a> Builder<'a> {
         let bias: Vec<Edge> = self.parts.inertia.iter().map(|&edge| -edge).collect();
         let slope: Vec<Edge> = self.parts.conservative.iter().map(|&edge| -edge).collect();
         let applied = self.parts.applied.clone();
-        let momentum: Vec<Edge> = mass.iter().map(|row| graph.dot(row, &xi)).collect();
-        let inverse: Vec<Edge> = (0..n)
-            .map(|i| {
-                let inertial = graph.dot(&mass[i], &xi_dot);
-                let sum = graph.add(inertial, bias[i]);
-                graph.add(sum, slope[i])
-            })
-            .collect();
+        let momentum: Vec<Edge> = match &self.parts.momentum {
+            Some(momentum) => momentum.clone(),
+            None => mass.iter().map(|row| graph.dot(row, &xi)).collect(),
+        };
+        let inverse = self.parts.whole(graph, self.model);
         let twice = graph.dot(&momentum, &xi);
         let half = graph.ratio(1, 2);
         let kinetic = graph.mul(half, twice);

@@ -82,6 +82,7 @@ pub fn velocity(graph: &mut Graph, parts: &Parts, p: &[Edge]) -> Option<Solution
         inertia: Vec::new(),
         conservative: Vec::new(),
         applied: Vec::new(),
+        ..Parts::default()
     };
     let mut best: Option<(usize, Graph, Solution)> = None;
     for plan in all_plans(graph, &parts) {

@@ -6,6 +6,7 @@
 
 pub mod parts;
 pub mod polynomial;
+pub mod recursive;
 pub mod saddle;
 pub mod setting;
 pub mod solve;
@@ -15,6 +16,7 @@ use crate::algebra::resubstitute::resubstitute;
 use crate::model::Model;
 use crate::program::count::{Count, count, depth};
 use parts::{Axes, Parts, Reference, Variant, parts};
+use recursive::Recursion;
 use saddle::Projections;
 use setting::Setting;
 use solve::{Plan, solve};
@@ -53,6 +55,15 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     if !model.constraints.is_empty() {
         return constrained(&given);
     }
+    let recursion = Recursion::of(&given);
+    if let Some(recursion) = &recursion {
+        recursion.search(&mut best);
+        if model.n() > SMALL {
+            let mut best = best?;
+            let parts = recursion.parts(&mut best.graph);
+            return Some((best, parts));
+        }
+    }
     let variant = search(&given, &mut best)?;
     if model.n() <= SMALL && model.spans {
         if let Some(twist) = Setting::twist(model) {
@@ -66,6 +77,13 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     let mut best = polished(best?, model);
     let (traced, parts) = trace(&given, variant);
     let parts = parts.rebuilt(&traced.graph, &mut best.graph);
+    let parts = match recursion {
+        Some(recursion) => {
+            let other = recursion.parts(&mut best.graph);
+            parts.cheapest(other, &mut best.graph, model)
+        }
+        None => parts,
+    };
     Some((best, parts))
 }
 

@@ -13,6 +13,7 @@ use crate::derive::inertia::{accumulate, kinetic_mass, symmetric};
 use crate::derive::normal::without_coordinates;
 use crate::derive::{kinematics, loads};
 use crate::model::{Body, Model};
+use crate::program::count::count;
 
 /// The axes in which linear motion is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +50,8 @@ impl Parts {
             inertia: vector(&self.inertia),
             conservative: vector(&self.conservative),
             applied: vector(&self.applied),
+            inverse_dynamics: self.inverse_dynamics.as_deref().map(&mut vector),
+            momentum: self.momentum.as_deref().map(&mut vector),
         }
     }
 }
@@ -65,7 +68,7 @@ pub struct Variant {
 }
 
 /// M ξ̇ = Σ groups.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Parts {
     /// M.
     pub mass: Vec<Vec<Edge>>,
@@ -77,6 +80,52 @@ pub struct Parts {
     pub conservative: Vec<Edge>,
     /// fᴱ, all applied loads.
     pub applied: Vec<Edge>,
+    /// M ξ̇ + Γ ξ ξ + ∂V, where it was traced as a whole.
+    pub inverse_dynamics: Option<Vec<Edge>>,
+    /// M ξ, where it was traced by itself.
+    pub momentum: Option<Vec<Edge>>,
+}
+
+impl Parts {
+    /// Of each function the cheaper computation; both are in one graph.
+    pub fn cheapest(self, other: Parts, graph: &mut Graph, model: &Model) -> Parts {
+        let whole = self.whole(graph, model);
+        let momentum: Vec<Edge> = self
+            .mass
+            .iter()
+            .map(|row| graph.dot(row, &model.xi))
+            .collect();
+        let n = self.inertia.len().max(1);
+        let pick = |a: Vec<Edge>, b: Option<Vec<Edge>>| match b {
+            Some(b) if count(graph, &b).weight() < count(graph, &a).weight() => b,
+            _ => a,
+        };
+        Parts {
+            inverse_dynamics: Some(pick(whole, other.inverse_dynamics)),
+            momentum: Some(pick(momentum, other.momentum)),
+            mass: pick(self.mass.concat(), Some(other.mass.concat()))
+                .chunks(n)
+                .map(<[Edge]>::to_vec)
+                .collect(),
+            inertia: pick(self.inertia, Some(other.inertia)),
+            conservative: pick(self.conservative, Some(other.conservative)),
+            ..self
+        }
+    }
+
+    /// M ξ̇ + Γ ξ ξ + ∂V.
+    pub fn whole(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
+        if let Some(whole) = &self.inverse_dynamics {
+            return whole.clone();
+        }
+        (0..self.inertia.len())
+            .map(|i| {
+                let inertial = graph.dot(&self.mass[i], &model.xi_dot);
+                let force = graph.sub(inertial, self.inertia[i]);
+                graph.sub(force, self.conservative[i])
+            })
+            .collect()
+    }
 }
 
 /// Traces a model.
@@ -157,6 +206,7 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
         inertia,
         conservative,
         applied,
+        ..Parts::default()
     }
 }
 

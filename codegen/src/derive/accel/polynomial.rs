@@ -182,6 +182,7 @@ impl System {
             inertia: Vec::new(),
             conservative: Vec::new(),
             applied: Vec::new(),
+            ..Parts::default()
         };
         let plan = Plan {
             order: (0..n).collect(),
@@ -220,6 +221,7 @@ impl System {
             inertia: Vec::new(),
             conservative: Vec::new(),
             applied: Vec::new(),
+            ..Parts::default()
         };
         all_plans(&graph, &parts)
             .into_iter()

@@ -47,8 +47,7 @@ pub fn forward(
     let mut guards = Vec::new();
     for (index, link) in tree.links.iter().enumerate().rev() {
         for freedom in &link.freedoms {
-            let (torque, force) =
-                inertia[index].wrench(graph, freedom.angular, freedom.linear);
+            let (torque, force) = inertia[index].wrench(graph, freedom.angular, freedom.linear);
             let pivot = {
                 let (a, b) = (
                     graph.dot(&freedom.angular, &torque),

@@ -22,8 +22,7 @@ pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     let mut matrix = vec![vec![graph.zero(); n]; n];
     for (index, link) in tree.links.iter().enumerate() {
         for (place, freedom) in link.freedoms.iter().enumerate() {
-            let (force, torque) =
-                composite[index].wrench(graph, freedom.angular, freedom.linear);
+            let (force, torque) = composite[index].wrench(graph, freedom.angular, freedom.linear);
             let mut wrench = Wrench { force, torque };
             let mut at = Some(index);
             while let Some(here) = at {

@@ -6,7 +6,7 @@ use super::turn::Turn;
 use super::{Freedom, Link};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{
-    Mat3, Vec3, add3, apply3, apply_transposed, identity3, multiply3, zero3,
+    Mat3, Vec3, add3, apply_transposed, apply3, identity3, multiply3, zero3,
 };
 use crate::derive::calculus::Calculus;
 use crate::model::{Body, Model};
@@ -125,10 +125,13 @@ pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
             rotation: identity3(&model.graph),
             position: zero3(&model.graph),
         };
-        let on = frame.parent.map_or(Some(world), |parent| places.get(parent).copied())?;
+        let on = frame
+            .parent
+            .map_or(Some(world), |parent| places.get(parent).copied())?;
         let (turn, shift) = frame.relative;
         let graph = &mut model.graph;
-        let constant = |graph: &Graph, edges: &[Edge]| edges.iter().all(|e| graph.is_free(e.node()));
+        let constant =
+            |graph: &Graph, edges: &[Edge]| edges.iter().all(|e| graph.is_free(e.node()));
         let moved = apply3(graph, &on.rotation, shift);
         let position = add3(graph, on.position, moved);
         if constant(graph, &turn.concat()) && constant(graph, &shift) {

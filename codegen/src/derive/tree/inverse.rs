@@ -53,7 +53,13 @@ pub fn wrenches(
     wrenches
 }
 
-fn outward(graph: &mut Graph, link: &Link, before: &Motion, xi: &[Edge], xi_dot: &[Edge]) -> Motion {
+fn outward(
+    graph: &mut Graph,
+    link: &Link,
+    before: &Motion,
+    xi: &[Edge],
+    xi_dot: &[Edge],
+) -> Motion {
     let zero = zero3(graph);
     let mut relative = (zero, zero);
     let mut change = link.drift;

@@ -38,11 +38,7 @@ pub struct Freedom {
 impl Freedom {
     /// Σ k vⁱ.
     pub fn rate_of(&self, graph: &mut Graph, v: &[Edge]) -> Edge {
-        let terms: Vec<Edge> = self
-            .rate
-            .iter()
-            .map(|&(i, k)| graph.mul(k, v[i]))
-            .collect();
+        let terms: Vec<Edge> = self.rate.iter().map(|&(i, k)| graph.mul(k, v[i])).collect();
         graph.sum(&terms)
     }
 }
@@ -67,7 +63,10 @@ pub struct Link {
 impl Link {
     /// A vector of this link in axes of the one before.
     pub fn out(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
-        self.turns.iter().rev().fold(v, |v, turn| turn.out(graph, v))
+        self.turns
+            .iter()
+            .rev()
+            .fold(v, |v, turn| turn.out(graph, v))
     }
 
     /// A vector of the link before in axes of this one.

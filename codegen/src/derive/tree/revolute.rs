@@ -27,7 +27,10 @@ pub fn hinge(model: &mut Model, turn: &Mat3, columns: &[(usize, Vec3, Vec3)]) ->
     let zero = graph.zero();
     let mut rate = Vec::new();
     for &(i, angular, _) in columns {
-        if cross(graph, angular, axis).iter().any(|&entry| entry != zero) {
+        if cross(graph, angular, axis)
+            .iter()
+            .any(|&entry| entry != zero)
+        {
             return None;
         }
         rate.push((i, graph.dot(&angular, &axis)));
@@ -96,7 +99,9 @@ pub fn axes(graph: &mut Graph, v: Vec3) -> Option<Mat3> {
 /// Whether a constant is a negative number.
 fn sign(graph: &Graph, edge: Edge) -> bool {
     use num_traits::Signed;
-    graph.as_rational(edge).is_some_and(|number| number.is_negative())
+    graph
+        .as_rational(edge)
+        .is_some_and(|number| number.is_negative())
 }
 
 /// v / |v|.
@@ -123,7 +128,10 @@ fn angles(model: &mut Model, turn: &Mat3) -> Vec<(Edge, Edge)> {
     arguments.sort_unstable();
     arguments.dedup();
     for angle in arguments {
-        let (cos, sin) = (graph.apply(Function::Cos, angle), graph.apply(Function::Sin, angle));
+        let (cos, sin) = (
+            graph.apply(Function::Cos, angle),
+            graph.apply(Function::Sin, angle),
+        );
         pairs.extend([(cos, sin), (cos, -sin)]);
     }
     let mut place = 0;

@@ -12,7 +12,11 @@ use crate::program::count::count;
 fn chain(n: usize, placement: &str) -> Model {
     let mut text = String::from("system Chain { gravity [0, 0, -9.81];\n");
     for i in 1..=n {
-        let on = if i > 1 { format!("on f{}", i - 1) } else { String::new() };
+        let on = if i > 1 {
+            format!("on f{}", i - 1)
+        } else {
+            String::new()
+        };
         let place = placement.replace('#', &i.to_string());
         text += &format!(
             "coord q{i}; velocity u{i}; rate q{i} = u{i}; frame b{i} {on} = {place}; frame f{i} on b{i} = pose(rotz(q{i}), [0, 0, 0]);
@@ -30,7 +34,11 @@ fn flops(model: &Model, roots: &[Edge]) -> usize {
 
 fn agree(mut model: Model, name: &str) {
     let mut calculus = Calculus::new(&model);
-    let variant = Variant { axes: Axes::Body, reference: Reference::Com, shift: None };
+    let variant = Variant {
+        axes: Axes::Body,
+        reference: Reference::Com,
+        shift: None,
+    };
     let mut plain = model.clone();
     let parts = parts(&mut plain, &mut calculus.clone(), variant);
     let tree = Tree::of(&mut model, &mut calculus).expect("is a tree");
@@ -43,14 +51,22 @@ fn agree(mut model: Model, name: &str) {
         let inertial = plain.graph.dot(&parts.mass[i], &xi_dot);
         let right = plain.graph.add(parts.inertia[i], parts.conservative[i]);
         let expected = plain.graph.sub(inertial, right);
-        assert_eq!(plain.graph.value(expected), model.graph.value(id[i]), "row {i} of inverse dynamics");
+        assert_eq!(
+            plain.graph.value(expected),
+            model.graph.value(id[i]),
+            "row {i} of inverse dynamics"
+        );
     }
     let id_count = flops(&model, &id);
     let mut other = model.clone();
     let mass = composite::mass_matrix(&mut other.graph, &tree, n);
     for i in 0..n {
         for j in 0..n {
-            assert_eq!(plain.graph.value(parts.mass[i][j]), other.graph.value(mass[i][j]), "M {i} {j}");
+            assert_eq!(
+                plain.graph.value(parts.mass[i][j]),
+                other.graph.value(mass[i][j]),
+                "M {i} {j}"
+            );
         }
     }
     let mass_count = flops(&other, &mass.concat());
@@ -58,32 +74,60 @@ fn agree(mut model: Model, name: &str) {
     let bias_count = flops(&other, &bias);
     let mut best = Vec::new();
     for order in [(0..n).collect::<Vec<_>>(), (0..n).rev().collect()] {
-        let plan = Plan { order, apart: 0, scale: false, inverse: false };
+        let plan = Plan {
+            order,
+            apart: 0,
+            scale: false,
+            inverse: false,
+        };
         let mut graph = other.graph.clone();
         let right = bias.iter().map(|&b| -b).collect();
-        let given = super::super::accel::parts::Parts { mass: mass.clone(), groups: vec![right], inertia: vec![], conservative: vec![], applied: vec![] };
+        let given = super::super::accel::parts::Parts {
+            mass: mass.clone(),
+            groups: vec![right],
+            inertia: vec![],
+            conservative: vec![],
+            applied: vec![],
+        };
         let solution = solve(&mut graph, &given, &plan).expect("solves");
         best.push(count(&graph, &solution.xi_dot).flops());
-        if n < 8 { other.graph = graph; }
+        if n < 8 {
+            other.graph = graph;
+        }
     }
     let mut graph = model.graph.clone();
     let forces = wrenches(&mut graph, &tree, &xi, &vec![zero; n], gravity);
-    let solution = articulated::forward(&mut graph, &tree, &forces, &vec![zero; n]).expect("solves");
+    let solution =
+        articulated::forward(&mut graph, &tree, &forces, &vec![zero; n]).expect("solves");
     let product: Vec<Edge> = {
         let mut sum = Vec::new();
-        let m: Vec<Vec<Edge>> = (0..n).map(|i| crate::algebra::transplant::rebuild(&other.graph, &mut graph, &mass[i])).collect();
+        let m: Vec<Vec<Edge>> = (0..n)
+            .map(|i| crate::algebra::transplant::rebuild(&other.graph, &mut graph, &mass[i]))
+            .collect();
         let b = collect(&mut graph, &tree, &forces, n);
-        for i in 0..n { let p = graph.dot(&m[i], &solution.xi_dot); sum.push(graph.add(p, b[i])); }
+        for i in 0..n {
+            let p = graph.dot(&m[i], &solution.xi_dot);
+            sum.push(graph.add(p, b[i]));
+        }
         sum
     };
     assert!(product.iter().all(|&edge| edge == zero), "forward dynamics");
-    println!("{name}: ID {id_count} bias {bias_count} M {mass_count} LDL {best:?} ABA {}", count(&graph, &solution.xi_dot).flops());
+    println!(
+        "{name}: ID {id_count} bias {bias_count} M {mass_count} LDL {best:?} ABA {}",
+        count(&graph, &solution.xi_dot).flops()
+    );
 }
 
 #[test]
 fn counts() {
     for n in [2, 4, 6] {
-        agree(chain(n, "pose(rotx(pi/2), [0.1, 0.3, 0.5])"), &format!("right-angled {n}"));
-        agree(chain(n, "pose(rpy(0.3, 0.#, 1.2), [0.1, 0.3, 0.5])"), &format!("oblique {n}"));
+        agree(
+            chain(n, "pose(rotx(pi/2), [0.1, 0.3, 0.5])"),
+            &format!("right-angled {n}"),
+        );
+        agree(
+            chain(n, "pose(rpy(0.3, 0.#, 1.2), [0.1, 0.3, 0.5])"),
+            &format!("oblique {n}"),
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! Rotations as products of plane ones: what is zero or one in them costs nothing.
 
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{Mat3, Vec3, apply3, apply_transposed, multiply3, transpose3};
+use crate::algebra::linear::{Mat3, Vec3, apply_transposed, apply3, multiply3, transpose3};
 
 /// One factor of a rotation.
 #[derive(Clone, Copy, Debug)]

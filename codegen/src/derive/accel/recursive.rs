@@ -1,0 +1,160 @@
+//! Trees: ξ̇, M and forces by recursion over links.
+
+use super::parts::Parts;
+use super::setting::Setting;
+use super::solve::{Plan, solve};
+use super::{Acceleration, keep};
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::zero3;
+use crate::derive::loads;
+use crate::derive::tree::inverse::{inverse, wrenches};
+use crate::derive::tree::{Tree, articulated, composite};
+use crate::model::Model;
+use crate::program::count::{count, depth};
+
+/// A model whose inertia is that of links.
+pub struct Recursion {
+    /// The model, its graph holding constants and loads.
+    model: Model,
+    tree: Tree,
+    /// −∂V of what is not gravity.
+    elastic: Vec<Edge>,
+    /// fᴱ.
+    applied: Vec<Edge>,
+}
+
+impl Recursion {
+    /// The recursion over a model's links, where they are a tree.
+    pub fn of(setting: &Setting) -> Option<Self> {
+        let mut model = setting.model.clone();
+        let mut calculus = setting.calculus.clone();
+        if !model.constraints.is_empty() || setting.back.is_some() {
+            return None;
+        }
+        let tree = Tree::of(&mut model, &mut calculus)?;
+        let elastic = loads::elastic(&mut model, &mut calculus);
+        let loads = loads::applied(&mut model, &mut calculus);
+        let applied = (0..model.n())
+            .map(|i| {
+                let column: Vec<Edge> = loads.iter().map(|load| load[i]).collect();
+                model.graph.sum(&column)
+            })
+            .collect();
+        Some(Recursion {
+            model,
+            tree,
+            elastic,
+            applied,
+        })
+    }
+
+    /// What acts beside gravity.
+    fn load(&self, graph: &mut Graph) -> Vec<Edge> {
+        let both = self.elastic.iter().zip(&self.applied);
+        both.map(|(&a, &b)| graph.add(a, b)).collect()
+    }
+
+    /// Counts articulated bodies, and M with elimination from the leaves and from the root.
+    pub fn search(&self, best: &mut Option<Acceleration>) {
+        let n = self.model.n();
+        let rest = vec![self.model.graph.zero(); n];
+        let (xi, gravity) = (&self.model.xi, self.model.gravity);
+        if self.tree.is_plain(&self.model.graph, n) {
+            let mut graph = self.model.graph.clone();
+            let load = self.load(&mut graph);
+            let forces = wrenches(&mut graph, &self.tree, xi, &rest, gravity);
+            if let Some(solution) = articulated::forward(&mut graph, &self.tree, &forces, &load) {
+                let route = "links traced, articulated bodies".to_string();
+                keep(
+                    best,
+                    candidate(graph, solution.xi_dot, solution.pivots, route),
+                );
+            }
+        }
+        let mut graph = self.model.graph.clone();
+        let load = self.load(&mut graph);
+        let bias = inverse(&mut graph, &self.tree, xi, &rest, gravity);
+        let mass = composite::mass_matrix(&mut graph, &self.tree, n);
+        let right = load
+            .iter()
+            .zip(&bias)
+            .map(|(&load, &bias)| graph.sub(load, bias))
+            .collect();
+        let given = Parts {
+            mass,
+            groups: vec![right],
+            ..Parts::default()
+        };
+        for order in [(0..n).rev().collect::<Vec<_>>(), (0..n).collect()] {
+            let way = if order.first() == Some(&0) {
+                "from the first velocity to the last"
+            } else {
+                "from the last velocity to the first"
+            };
+            let plan = Plan {
+                order,
+                apart: 0,
+                scale: false,
+                inverse: false,
+            };
+            let mut graph = graph.clone();
+            if let Some(solution) = solve(&mut graph, &given, &plan) {
+                let route = format!("links traced, composite bodies, M eliminated {way}");
+                keep(
+                    best,
+                    candidate(graph, solution.xi_dot, solution.pivots, route),
+                );
+            }
+        }
+    }
+
+    /// M and forces, in another graph with the same symbols.
+    pub fn parts(&self, into: &mut Graph) -> Parts {
+        let mut graph = self.model.graph.clone();
+        let n = self.model.n();
+        let (xi, gravity) = (&self.model.xi, self.model.gravity);
+        let (still, weightless) = (vec![graph.zero(); n], zero3(&graph));
+        let whole = inverse(&mut graph, &self.tree, xi, &self.model.xi_dot, gravity);
+        let inverse_dynamics = whole
+            .iter()
+            .zip(&self.elastic)
+            .map(|(&whole, &elastic)| graph.sub(whole, elastic))
+            .collect();
+        let bias = inverse(&mut graph, &self.tree, xi, &still, weightless);
+        let weight = inverse(&mut graph, &self.tree, &still, &still, gravity);
+        let momentum = inverse(&mut graph, &self.tree, &still, xi, weightless);
+        let mass = composite::mass_matrix(&mut graph, &self.tree, n);
+        let conservative = self
+            .elastic
+            .iter()
+            .zip(&weight)
+            .map(|(&elastic, &weight)| graph.sub(elastic, weight))
+            .collect();
+        let parts = Parts {
+            mass,
+            groups: Vec::new(),
+            inertia: bias.into_iter().map(|edge| -edge).collect(),
+            conservative,
+            applied: self.applied.clone(),
+            inverse_dynamics: Some(inverse_dynamics),
+            momentum: Some(momentum),
+        };
+        parts.rebuilt(&graph, into)
+    }
+}
+
+/// A candidate, counted.
+fn candidate(graph: Graph, xi_dot: Vec<Edge>, pivots: Vec<Edge>, route: String) -> Acceleration {
+    let mut roots = xi_dot.clone();
+    roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
+    Acceleration {
+        count: count(&graph, &roots),
+        depth: depth(&graph, &roots),
+        graph,
+        xi_dot,
+        pivots,
+        multipliers: Vec::new(),
+        projections: None,
+        route,
+    }
+}
