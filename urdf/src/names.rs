@@ -111,9 +111,8 @@ fn identifier(name: &str) -> String {
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
         .collect();
-    if plain.starts_with(|c: char| c.is_ascii_digit()) {
-        format!("n{plain}")
-    } else if plain.chars().all(|c| c == '_') {
+    let digit = plain.starts_with(|c: char| c.is_ascii_digit());
+    if digit || plain.chars().all(|c| c == '_') {
         format!("n{plain}")
     } else {
         plain

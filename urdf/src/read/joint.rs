@@ -26,10 +26,9 @@ impl<'a> Reader<'a, '_, '_> {
             self.name(&element, "link")
         });
         let origin = self.origin(node);
-        let axis = match self.child(node, "axis") {
-            Some(element) => Some(self.axis(&element, kind)),
-            None => None,
-        };
+        let axis = self
+            .child(node, "axis")
+            .map(|element| self.axis(&element, kind));
         let dynamics = self.child(node, "dynamics");
         let [damping, friction] = ["damping", "friction"]
             .map(|name| dynamics.and_then(|element| self.coefficient(&element, name)));

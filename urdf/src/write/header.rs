@@ -65,7 +65,7 @@ impl Writer<'_> {
             command.push_str(&format!(" --name {}", plain(name)));
         }
         if options.tolerance != crate::TOLERANCE {
-            command.push_str(&format!(" --tolerance {:e}", options.tolerance));
+            command.push_str(&format!(" --rounding {:e}", options.tolerance));
         }
         self.page.top(&format!("/// Written by `{command}`."));
         if !cleaned.is_empty() {
