@@ -6,7 +6,9 @@ use super::motion::Motion;
 use super::names::Names;
 use super::scope::Scope;
 use super::variety::Variety;
-use super::{Model, class, closure, defaults, dynamics, invariants, kinematics, pfaffian, start};
+use super::{
+    Model, class, closure, defaults, dynamics, invariants, joints, kinematics, pfaffian, start,
+};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -21,6 +23,7 @@ const SEED: u64 = 0x4a6d_656c;
 /// Reads a description; all its independent errors are reported together.
 pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
     let mut first = Report::new();
+    let system = &joints::expand(system, &mut first);
     let mut variety = Variety::read(system, SEED, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     for seed in SEED..SEED + ATTEMPTS {

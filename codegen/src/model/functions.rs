@@ -1,5 +1,6 @@
 //! The functions of the language.
 
+use super::axes;
 use super::expression::Evaluator;
 use super::motion::FUNCTIONS;
 use super::rotations::{axis_angle, hat, quaternion_matrix, turn};
@@ -20,6 +21,13 @@ impl Evaluator<'_> {
     pub fn call(&mut self, function: &Ident, arguments: &[Expr], span: Span) -> Option<Value> {
         if function.name == "rate" {
             return self.rate(arguments, span);
+        }
+        if let (true, [argument]) = (axes::CALLS.contains(&function.name.as_str()), arguments) {
+            let value = self.value(argument)?;
+            return match axes::call(self.graph, &function.name, &value) {
+                Ok(value) => Some(value),
+                Err(refused) => self.error(refused.at(argument.span)),
+            };
         }
         let values: Vec<Option<Value>> = arguments
             .iter()
@@ -134,7 +142,9 @@ fn usage(name: &str) -> Option<&'static str> {
         "roty" => "`roty(angle)`, `roty(c, s)` or `roty(q)` with an S1 coordinate q",
         "rotz" => "`rotz(angle)`, `rotz(c, s)` or `rotz(q)` with an S1 coordinate q",
         "rpy" => "`rpy(roll, pitch, yaw)` of scalars",
-        "axis_angle" => "`axis_angle(axis, angle)` of a unit vector of 3 and a scalar",
+        "axis_angle" => {
+            "`axis_angle(axis, angle)` of a unit vector of 3 and a scalar, `axis_angle(axis, c, s)` or `axis_angle(axis, q)` with an S1 coordinate q"
+        }
         "rot" => "`rot(q)` of a unit quaternion, scalar first",
         "qmul" => "`qmul(p, q)` of vectors of 4, scalar first",
         "pose" => "`pose(R, p)` of a rotation matrix and a vector of 3",
@@ -215,15 +225,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             diagonal(graph, &vec![graph.one(); size])
         }
         ("rotx" | "roty" | "rotz", _) => {
-            let (c, s) = match values {
-                [Scalar(a)] => (
-                    graph.apply(Function::Cos, *a),
-                    graph.apply(Function::Sin, *a),
-                ),
-                [Scalar(c), Scalar(s)] => (*c, *s),
-                [Vector(v)] if v.len() == 2 => (v[0], v[1]),
-                _ => return Err(Fault::Usage),
-            };
+            let (c, s) = cosine_sine(graph, values).ok_or(Fault::Usage)?;
             let axis = match name {
                 "rotx" => 0,
                 "roty" => 1,
@@ -242,15 +244,16 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             let last = multiply3(graph, &turns[2], &turns[1]);
             Value::from_mat3(&multiply3(graph, &last, &turns[0]))
         }
-        ("axis_angle", [axis, Scalar(angle)]) => {
+        ("axis_angle", [axis, turn @ ..]) => {
             let axis = axis.as_vec3().ok_or(Fault::Usage)?;
+            let (c, s) = cosine_sine(graph, turn).ok_or(Fault::Usage)?;
             if !free && graph.dot(&axis, &axis) != graph.one() {
                 return Err(Fault::Why(
                     "the axis of `axis_angle` is no unit vector",
                     "divide it by its length: `axis_angle(a / norm(a), angle)`",
                 ));
             }
-            axis_angle(graph, axis, *angle)
+            axis_angle(graph, axis, c, s)
         }
         ("rot", [Vector(q)]) if q.len() == 4 => {
             Value::from_mat3(&quaternion_matrix(graph, [q[0], q[1], q[2], q[3]]))
@@ -296,6 +299,19 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
         _ => return Err(Fault::Usage),
     };
     Ok(value)
+}
+
+/// Cosine and sine of an angle, of themselves, or of an S1 coordinate.
+fn cosine_sine(graph: &mut Graph, values: &[Value]) -> Option<(Edge, Edge)> {
+    match values {
+        [Value::Scalar(a)] => Some((
+            graph.apply(Function::Cos, *a),
+            graph.apply(Function::Sin, *a),
+        )),
+        [Value::Scalar(c), Value::Scalar(s)] => Some((*c, *s)),
+        [Value::Vector(v)] if v.len() == 2 => Some((v[0], v[1])),
+        _ => None,
+    }
 }
 
 fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {

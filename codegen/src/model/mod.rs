@@ -5,6 +5,7 @@
 
 mod agreement;
 mod arithmetic;
+mod axes;
 mod bodies;
 mod build;
 pub mod charts;
@@ -20,6 +21,7 @@ mod frames;
 mod functions;
 mod independent;
 pub mod invariants;
+mod joints;
 mod kinematics;
 pub mod layout;
 mod line;

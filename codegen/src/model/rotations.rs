@@ -1,7 +1,7 @@
 //! Rotation matrices.
 
 use super::value::Value;
-use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3, identity3, multiply3};
 
 /// ŵ, with ŵ a = w × a.
@@ -21,12 +21,8 @@ pub fn turn(graph: &Graph, axis: usize, c: Edge, s: Edge) -> Mat3 {
     m
 }
 
-/// I + sin a n̂ + (1 − cos a) n̂² for a unit vector n.
-pub fn axis_angle(graph: &mut Graph, axis: Vec3, angle: Edge) -> Value {
-    let (c, s) = (
-        graph.apply(Function::Cos, angle),
-        graph.apply(Function::Sin, angle),
-    );
+/// I + s n̂ + (1 − c) n̂² for a unit vector n, c and s being the cosine and sine of the angle.
+pub fn axis_angle(graph: &mut Graph, axis: Vec3, c: Edge, s: Edge) -> Value {
     let versine = graph.sub(graph.one(), c);
     let n = hat(graph, axis);
     let square = multiply3(graph, &n, &n);

@@ -12,7 +12,7 @@
 //! | `tokens` | the flat list of tokens, and its canonical spelling |
 //! | `cursor` | the place in that list, and how an unexpected token is reported |
 //! | `parse` | the system, statement after statement, and recovery |
-//! | `statement`, `declaration`, `body`, `load` | the statements |
+//! | `statement`, `declaration`, `body`, `joint`, `load` | the statements |
 //! | `expression`, `number` | values |
 //! | `words` | the words of the language |
 //! | `suggest` | the word that was probably meant |
@@ -28,6 +28,7 @@ mod declaration;
 mod element;
 mod expression;
 mod invariant;
+mod joint;
 mod load;
 mod number;
 mod parse;

@@ -6,8 +6,8 @@ use super::expression::expression;
 use super::parse::since;
 use super::suggest::closest;
 use super::tokens::Kind;
-use super::words::{LATER, statements};
-use super::{body, declaration, element, invariant, load};
+use super::words::statements;
+use super::{body, declaration, element, invariant, joint, load};
 use crate::diagnostics::Diagnostic;
 
 /// Parses one statement with its `;`.
@@ -100,6 +100,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
                 span: since(start, cursor),
             });
         }
+        "joint" => ItemKind::Joint(Box::new(joint::joint(cursor)?)),
         "particle" => body::particle(cursor)?,
         "kinetic" => ItemKind::Kinetic(expression(cursor)?),
         "potential" => ItemKind::Potential(expression(cursor)?),
@@ -132,6 +133,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
             | "wrench"
             | "spring"
             | "damper"
+            | "joint"
             | "generate"
     );
     cursor.end(!names)?;
@@ -204,13 +206,6 @@ fn no_statement(cursor: &Cursor<'_>) -> Diagnostic {
 
 fn unknown(cursor: &Cursor<'_>, word: &Ident) -> Diagnostic {
     let name = shown(&word.name);
-    if LATER.contains(&word.name.as_str()) {
-        return Diagnostic::new(
-            word.span,
-            format!("this version does not have the statement `{name}`"),
-        )
-        .help(known());
-    }
     if let Some(close) = closest(&word.name, statements()) {
         return Diagnostic::new(word.span, format!("unknown statement `{name}`"))
             .help(format!("did you mean `{close}`?"));

@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 28] = [
+const STATEMENTS: [(&str, &str); 29] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -30,6 +30,10 @@ const STATEMENTS: [(&str, &str); 28] = [
     (
         "frame",
         "a frame is written `frame f = pose(R, p);` or `frame f on g = pose(R, p);`",
+    ),
+    (
+        "joint",
+        "a joint is written `joint j: revolute [0, 0, 1] on f at pose(R, p) moves g;`, or with `{ damping d; }` before its `;`",
     ),
     (
         "body",
@@ -89,9 +93,6 @@ const STATEMENTS: [(&str, &str); 28] = [
     ),
 ];
 
-/// Statements of later versions.
-pub(super) const LATER: [&str; 1] = ["joint"];
-
 /// Words that end an expression, and can name nothing.
 pub(super) const CONNECTIVES: [&str; 5] = ["at", "on", "in", "about", "stabilized"];
 
@@ -109,9 +110,9 @@ pub(super) fn statements() -> impl Iterator<Item = &'static str> {
     STATEMENTS.iter().map(|(word, _)| *word)
 }
 
-/// Whether a word starts statements, of this version or of later ones.
+/// Whether a word starts statements.
 pub(super) fn is_statement(word: &str) -> bool {
-    form(word).is_some() || LATER.contains(&word)
+    form(word).is_some()
 }
 
 /// The sentence that shows how a statement is written.

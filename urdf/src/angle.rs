@@ -1,0 +1,151 @@
+//! Angles: multiples of a right angle are exact, whatever decimals were written for them.
+
+use crate::decimal::Decimal;
+use std::f64::consts::FRAC_PI_2;
+
+/// An angle in radians.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Angle {
+    /// So many right angles, −1 to 2.
+    Right(i8),
+    /// A decimal.
+    Decimal(Decimal),
+}
+
+impl Angle {
+    /// The multiple of a right angle that lies within the tolerance (rad), else the decimal.
+    pub(crate) fn read(number: &Decimal, tolerance: f64) -> Self {
+        let quarters = (number.value / FRAC_PI_2).round();
+        let near = (number.value - quarters * FRAC_PI_2).abs() <= tolerance;
+        // Beyond some turns nobody means a right angle.
+        if !near || quarters.abs() > 8.0 {
+            return Angle::Decimal(number.clone());
+        }
+        match (quarters as i8).rem_euclid(4) {
+            3 => Angle::Right(-1),
+            quarters => Angle::Right(quarters),
+        }
+    }
+
+    /// Whether it turns nothing.
+    pub(crate) fn is_zero(&self) -> bool {
+        match self {
+            Angle::Right(quarters) => *quarters == 0,
+            Angle::Decimal(number) => number.is_zero(),
+        }
+    }
+
+    /// As a description writes it.
+    pub(crate) fn text(&self) -> String {
+        match self {
+            Angle::Right(0) => "0".into(),
+            Angle::Right(1) => "pi / 2".into(),
+            Angle::Right(2) => "pi".into(),
+            Angle::Right(_) => "-pi / 2".into(),
+            Angle::Decimal(number) => number.text.clone(),
+        }
+    }
+}
+
+/// Rotation by roll, pitch and yaw about fixed axes, R = R_z(yaw) R_y(pitch) R_x(roll).
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rotation(pub(crate) [Angle; 3]);
+
+impl Rotation {
+    /// No rotation.
+    pub(crate) fn identity() -> Self {
+        Rotation(std::array::from_fn(|_| Angle::Right(0)))
+    }
+
+    /// As a description writes it; `None` for the identity.
+    pub(crate) fn text(&self) -> Option<String> {
+        let turns: Vec<(&str, &Angle)> = ["rotx", "roty", "rotz"]
+            .into_iter()
+            .zip(&self.0)
+            .filter(|(_, angle)| !angle.is_zero())
+            .collect();
+        match turns.as_slice() {
+            [] => None,
+            [(function, angle)] => Some(format!("{function}({})", angle.text())),
+            _ => {
+                let angles: Vec<String> = self.0.iter().map(Angle::text).collect();
+                Some(format!("rpy({})", angles.join(", ")))
+            }
+        }
+    }
+
+    /// The matrix, where all angles are multiples of a right angle: entries −1, 0, 1.
+    pub(crate) fn exact(&self) -> Option<[[i8; 3]; 3]> {
+        let mut product = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+        for (axis, angle) in self.0.iter().enumerate() {
+            let (c, s) = match angle {
+                Angle::Right(0) => (1, 0),
+                Angle::Right(1) => (0, 1),
+                Angle::Right(2) => (-1, 0),
+                Angle::Right(_) => (0, -1),
+                Angle::Decimal(number) if number.is_zero() => (1, 0),
+                Angle::Decimal(_) => return None,
+            };
+            let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+            let mut turn = [[0; 3]; 3];
+            turn[axis][axis] = 1;
+            turn[j][j] = c;
+            turn[k][k] = c;
+            turn[j][k] = -s;
+            turn[k][j] = s;
+            // Roll comes first, so later turns multiply from the left.
+            let mut next = [[0; 3]; 3];
+            for row in 0..3 {
+                for column in 0..3 {
+                    next[row][column] = (0..3).map(|i| turn[row][i] * product[i][column]).sum();
+                }
+            }
+            product = next;
+        }
+        Some(product)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Angle, Rotation};
+    use crate::decimal::Decimal;
+
+    fn angle(text: &str) -> Angle {
+        Angle::read(&Decimal::parse(text).expect("a number"), 1e-9)
+    }
+
+    #[test]
+    fn right_angles_are_found() {
+        for (written, text) in [
+            ("1.57079632679", "pi / 2"),
+            ("-1.5707963267948966", "-pi / 2"),
+            ("3.14159265359", "pi"),
+            ("-3.14159265359", "pi"),
+            ("4.71238898038469", "-pi / 2"),
+            ("6.28318530718", "0"),
+            ("1e-17", "0"),
+            ("1.57079", "1.57079"),
+            ("0.3", "0.3"),
+        ] {
+            assert_eq!(angle(written).text(), text);
+        }
+    }
+
+    /// URDF: a point that is turned by roll about x first, then by yaw about the fixed z.
+    #[test]
+    fn roll_comes_before_yaw() {
+        let turned = Rotation([
+            angle("1.570796326794897"),
+            angle("0"),
+            angle("1.570796326794897"),
+        ]);
+        // e_y goes to e_z by roll, and stays there; e_x goes to e_y by yaw.
+        assert_eq!(turned.exact(), Some([[0, 0, 1], [1, 0, 0], [0, 1, 0]]));
+        assert_eq!(turned.text().as_deref(), Some("rpy(pi / 2, 0, pi / 2)"));
+        assert_eq!(
+            Rotation([angle("0.1"), angle("0"), angle("0")]).exact(),
+            None
+        );
+    }
+}

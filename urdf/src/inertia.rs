@@ -1,0 +1,152 @@
+//! Which links have to have mass, and which inertias are those of a body.
+
+use crate::plan::{Motion, Plan};
+use crate::problem::Problems;
+use crate::read::{Inertial, Kind, Robot};
+use crate::tree::Tree;
+
+/// Principal moments below this part of the largest are roundings of 0: printed inertias have a few digits.
+const ROUNDING: f64 = 1e-9;
+
+/// Refuses what moves without mass, and warns of inertias that no body has.
+pub(crate) fn check(
+    robot: &Robot,
+    tree: &Tree,
+    plan: &Plan,
+    floating: bool,
+    errors: &mut Problems<'_>,
+    warnings: &mut Problems<'_>,
+) {
+    // What a link carries, itself with it: children come after their parents.
+    let mut carries: Vec<bool> = robot
+        .links
+        .iter()
+        .map(|link| {
+            link.inertial
+                .as_ref()
+                .is_some_and(|inertial| !inertial.is_zero())
+        })
+        .collect();
+    let mut moves = vec![floating; robot.links.len()];
+    for edge in &tree.joints {
+        let still = matches!(plan.motions[edge.joint], Motion::Fixed | Motion::Locked(_));
+        moves[edge.child] = moves[edge.parent] || !still;
+    }
+    for edge in tree.joints.iter().rev() {
+        carries[edge.parent] |= carries[edge.child];
+        let joint = &robot.joints[edge.joint];
+        if !carries[edge.child] && plan.motions[edge.joint] == Motion::Free {
+            let link = &robot.links[edge.child].name;
+            let name = &joint.name.name;
+            let lock = match joint.kind {
+                Kind::Planar | Kind::Floating => String::new(),
+                _ => format!(", lock the joint with `--lock {name}=0`"),
+            };
+            errors.push(
+                &link.range,
+                format!(
+                    "`{name}` moves `{}`, and neither it nor what it carries has mass: the mass matrix would be singular",
+                    link.name
+                ),
+                format!("give it an `<inertial>`{lock}, or make the joint fixed"),
+            );
+        }
+    }
+    if floating && !carries[tree.root] {
+        errors.push(
+            &robot.links[tree.root].name.range,
+            "the base floats, and nothing of the robot has mass",
+            "give the links their `<inertial>`",
+        );
+    }
+    for (link, moves) in robot.links.iter().zip(moves) {
+        if let Some(inertial) = link
+            .inertial
+            .as_ref()
+            .filter(|inertial| moves && !inertial.is_zero())
+        {
+            physical(&link.name.name, inertial, warnings);
+        }
+    }
+}
+
+/// The moments of a body are positive, and none is larger than the two others together.
+fn physical(name: &str, inertial: &Inertial, warnings: &mut Problems<'_>) {
+    if inertial.mass.is_zero() {
+        let help = "a body with inertia has mass; check the units";
+        let message = format!("`{name}` has inertia and no mass");
+        warnings.push(&inertial.range, message, help);
+    }
+    let entries = inertial.inertia.each_ref().map(|entry| entry.value);
+    if entries.iter().all(|&entry| entry == 0.0) {
+        let help = "it is taken for a particle at its centre of mass";
+        let message = format!("`{name}` has mass and no inertia");
+        warnings.push(&inertial.inertia_range, message, help);
+        return;
+    }
+    let [least, middle, most] = moments(entries);
+    let rounding = ROUNDING * most.abs().max(least.abs());
+    if least < -rounding {
+        warnings.push(
+            &inertial.inertia_range,
+            format!("the inertia of `{name}` is not positive: a principal moment is {least:.3e}"),
+            "check its products of inertia and their signs",
+        );
+    } else if most > least + middle + rounding {
+        warnings.push(
+            &inertial.inertia_range,
+            format!(
+                "the inertia of `{name}` is that of no body: its principal moments are {least:.3e}, {middle:.3e}, {most:.3e}, and no moment is larger than the sum of the two others"
+            ),
+            "check its entries; the axes may be exchanged",
+        );
+    }
+}
+
+/// Principal moments, the least first: roots of the characteristic polynomial by Viète's cosines.
+fn moments([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> [f64; 3] {
+    let mean = (xx + yy + zz) / 3.0;
+    let (a, b, c) = (xx - mean, yy - mean, zz - mean);
+    let off = xy * xy + xz * xz + yz * yz;
+    let spread = ((a * a + b * b + c * c + 2.0 * off) / 6.0).sqrt();
+    if spread == 0.0 {
+        return [mean; 3];
+    }
+    let determinant = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+    let cosine = (determinant / (2.0 * spread * spread * spread)).clamp(-1.0, 1.0);
+    let angle = cosine.acos() / 3.0;
+    let third = std::f64::consts::TAU / 3.0;
+    let most = mean + 2.0 * spread * angle.cos();
+    let least = mean + 2.0 * spread * (angle + third).cos();
+    [least, 3.0 * mean - most - least, most]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::moments;
+
+    /// diag(1, 2, 3), turned by 0.3 about z and then by 0.4 about x.
+    #[test]
+    fn principal_moments_do_not_know_axes() {
+        let (c, s) = (0.3_f64.cos(), 0.3_f64.sin());
+        let (d, t) = (0.4_f64.cos(), 0.4_f64.sin());
+        let rows = [[c, -s, 0.0], [d * s, d * c, -t], [t * s, t * c, d]];
+        let entry = |i: usize, j: usize| -> f64 {
+            (0..3)
+                .map(|k| rows[i][k] * (k as f64 + 1.0) * rows[j][k])
+                .sum()
+        };
+        let found = moments([
+            entry(0, 0),
+            entry(0, 1),
+            entry(0, 2),
+            entry(1, 1),
+            entry(1, 2),
+            entry(2, 2),
+        ]);
+        for (moment, expected) in found.into_iter().zip([1.0, 2.0, 3.0]) {
+            // A few roundings of numbers near 1.
+            assert!((moment - expected).abs() < 1e-14, "{found:?}");
+        }
+    }
+}

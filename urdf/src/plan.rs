@@ -1,0 +1,195 @@
+//! How each joint moves: by itself, not at all, or as another one.
+
+use crate::decimal::Decimal;
+use crate::options::{Mimic, Options};
+use crate::problem::Problems;
+use crate::read::{Joint, Kind, Robot};
+use crate::tree::{near, unknown};
+use std::collections::BTreeMap;
+
+/// How a joint moves.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Motion {
+    /// It has coordinates of its own.
+    Free,
+    /// It is fixed by its type.
+    Fixed,
+    /// It stands at an angle or a length.
+    Locked(Linear),
+    /// Its angle or length is that of the joint with this index, times a number plus a number, and
+    /// so on: joints may mimic joints that mimic.
+    Follows(usize, Vec<(Decimal, Decimal)>),
+}
+
+/// A number as an expression: a decimal, then multiplied and added to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Linear {
+    pub(crate) value: Decimal,
+    pub(crate) steps: Vec<(Decimal, Decimal)>,
+}
+
+/// The motions of all joints, by index.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub(crate) motions: Vec<Motion>,
+    /// Whether another joint follows this one: its angle has to be a coordinate then.
+    pub(crate) followed: Vec<bool>,
+}
+
+/// Decides, after the options.
+pub(crate) fn plan(
+    robot: &Robot,
+    options: &Options,
+    errors: &mut Problems<'_>,
+    warnings: &mut Problems<'_>,
+) -> Plan {
+    let index: BTreeMap<&str, usize> = robot
+        .joints
+        .iter()
+        .enumerate()
+        .map(|(index, joint)| (joint.name.name.as_str(), index))
+        .collect();
+    let locks = locks(robot, options, &index, errors);
+    let mut motions = Vec::new();
+    for (number, joint) in robot.joints.iter().enumerate() {
+        motions.push(match (joint.kind, locks.get(&number), &joint.mimic) {
+            (Kind::Fixed, ..) => Motion::Fixed,
+            (_, Some(value), _) => Motion::Locked(Linear {
+                value: value.clone(),
+                steps: Vec::new(),
+            }),
+            (_, None, Some(_)) if options.mimic == Mimic::Follow => {
+                follow(robot, number, &index, &locks, errors)
+            }
+            _ => Motion::Free,
+        });
+    }
+    let mut followed = vec![false; motions.len()];
+    for motion in &motions {
+        if let Motion::Follows(source, _) = motion {
+            followed[*source] = true;
+        }
+    }
+    if options.mimic == Mimic::Free {
+        for joint in &robot.joints {
+            if let Some(mimic) = &joint.mimic
+                && !index.contains_key(mimic.source.name.as_str())
+            {
+                unknown("joint", &mimic.source, index.keys().copied(), warnings);
+            }
+        }
+    }
+    Plan { motions, followed }
+}
+
+/// Locked joints with their values.
+fn locks(
+    robot: &Robot,
+    options: &Options,
+    index: &BTreeMap<&str, usize>,
+    errors: &mut Problems<'_>,
+) -> BTreeMap<usize, Decimal> {
+    let mut locks = BTreeMap::new();
+    for (name, value) in &options.locks {
+        let Some(&number) = index.get(name.as_str()) else {
+            let movable = robot
+                .joints
+                .iter()
+                .filter(|joint| joint.kind != Kind::Fixed);
+            let names: Vec<&str> = movable.map(|joint| joint.name.name.as_str()).collect();
+            let help = match near(name, names.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None if names.is_empty() => "this robot has no joint that moves".into(),
+                None => format!("joints that move are {}", names.join(", ")),
+            };
+            errors.push(
+                &robot.range,
+                format!("there is no joint `{name}` to lock"),
+                help,
+            );
+            continue;
+        };
+        let joint = &robot.joints[number];
+        let one = matches!(
+            joint.kind,
+            Kind::Revolute | Kind::Continuous | Kind::Prismatic
+        );
+        match Decimal::parse(value.trim()) {
+            _ if !one => errors.push(
+                &joint.name.range,
+                format!("`{name}` is locked, and has no single angle or length"),
+                "lock revolute, continuous and prismatic joints",
+            ),
+            None => errors.push(
+                &joint.name.range,
+                format!("`{name}` is locked at `{value}`, which is not a number"),
+                "write an angle in rad or a length in m, as in `0.25`",
+            ),
+            Some(value) => {
+                if locks.insert(number, value).is_some() {
+                    errors.push(
+                        &joint.name.range,
+                        format!("`{name}` is locked twice"),
+                        "lock it once",
+                    );
+                }
+            }
+        }
+    }
+    locks
+}
+
+/// The joint that a chain of mimics ends in.
+fn follow(
+    robot: &Robot,
+    number: usize,
+    index: &BTreeMap<&str, usize>,
+    locks: &BTreeMap<usize, Decimal>,
+    errors: &mut Problems<'_>,
+) -> Motion {
+    let mut steps = Vec::new();
+    let mut at = number;
+    loop {
+        let joint: &Joint = &robot.joints[at];
+        if let Some(value) = locks.get(&at) {
+            steps.reverse();
+            let value = value.clone();
+            return Motion::Locked(Linear { value, steps });
+        }
+        let Some(mimic) = &joint.mimic else {
+            steps.reverse();
+            return Motion::Follows(at, steps);
+        };
+        let source = index.get(mimic.source.name.as_str()).copied();
+        let Some(next) = source else {
+            // Said once, by the joint that names it.
+            if at == number {
+                unknown("joint", &mimic.source, index.keys().copied(), errors);
+            }
+            return Motion::Free;
+        };
+        let one = |kind| matches!(kind, Kind::Revolute | Kind::Continuous | Kind::Prismatic);
+        if !one(robot.joints[next].kind) || !one(joint.kind) {
+            if at == number {
+                errors.push(
+                    &mimic.source.range,
+                    format!("`{}` cannot mimic `{}`", joint.name.name, mimic.source.name),
+                    "both have to be revolute, continuous or prismatic",
+                );
+            }
+            return Motion::Free;
+        }
+        steps.push((mimic.multiplier.clone(), mimic.offset.clone()));
+        if next == number || steps.len() > robot.joints.len() {
+            if next == number {
+                errors.push(
+                    &mimic.source.range,
+                    format!("`{}` mimics itself", robot.joints[number].name.name),
+                    "one joint of the circle has to move by itself",
+                );
+            }
+            return Motion::Free;
+        }
+        at = next;
+    }
+}

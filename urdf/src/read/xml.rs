@@ -1,0 +1,236 @@
+//! Elements, attributes and numbers of XML, with the place of what is missing or unreadable.
+
+use super::{Cleaned, Named, Origin};
+use crate::angle::{Angle, Rotation};
+use crate::decimal::Decimal;
+use crate::problem::Problems;
+use roxmltree::{Attribute, Document, Node, ParsingOptions};
+use std::ops::Range;
+
+/// Noise that stands alone in its vector is judged absolutely, by so much of the tolerance: 1e-15.
+const ALONE: f64 = 1e-6;
+
+/// Parses XML; an error has its place.
+pub(super) fn parse(text: &str) -> Result<Document<'_>, (Range<usize>, String)> {
+    let options = ParsingOptions {
+        // Some exporters write a document type; its entities are not read from anywhere.
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(text, options).map_err(|error| {
+        let place = error.pos();
+        let line = place.row.saturating_sub(1) as usize;
+        let start: usize = text.split_inclusive('\n').take(line).map(str::len).sum();
+        let rest = text.get(start..).unwrap_or("");
+        let column = place.col.saturating_sub(1) as usize;
+        let offset = rest
+            .char_indices()
+            .nth(column)
+            .map_or(0, |(offset, _)| offset);
+        let begin = (start + offset).min(text.len());
+        let width = text.get(begin..).and_then(|rest| rest.chars().next());
+        let end = begin + width.map_or(0, char::len_utf8);
+        // The place is said by its own means.
+        let message = error.to_string();
+        let message = match message.rfind(" at ") {
+            Some(end) if message.ends_with(|c: char| c.is_ascii_digit()) => &message[..end],
+            _ => &message,
+        };
+        (begin..end, message.to_string())
+    })
+}
+
+/// The opening `<name` of an element.
+pub(super) fn tag(text: &str, node: &Node<'_, '_>) -> Range<usize> {
+    let start = node.range().start;
+    let rest = text.get(start..).unwrap_or("");
+    let length = rest.find(|c: char| c.is_whitespace() || c == '>' || c == '/');
+    start..start + length.unwrap_or(rest.len())
+}
+
+/// Reads elements and keeps what is wrong with them.
+pub(super) struct Reader<'a, 'p, 't> {
+    pub(super) text: &'a str,
+    pub(super) tolerance: f64,
+    pub(super) errors: &'p mut Problems<'t>,
+    pub(super) warnings: &'p mut Problems<'t>,
+    pub(super) cleaned: Vec<Cleaned>,
+}
+
+impl<'a> Reader<'a, '_, '_> {
+    /// The only child of a name; a second one is an error.
+    pub(super) fn child<'d>(&mut self, node: &Node<'d, 'a>, name: &str) -> Option<Node<'d, 'a>> {
+        let mut found = node
+            .children()
+            .filter(|child| child.tag_name().name() == name);
+        let first = found.next();
+        for second in found {
+            self.errors.push(
+                &tag(self.text, &second),
+                format!("a second `<{name}>` in one `<{}>`", node.tag_name().name()),
+                "remove one of them",
+            );
+        }
+        first
+    }
+
+    /// The only child of a name; none is an error, too.
+    pub(super) fn required<'d>(
+        &mut self,
+        node: &Node<'d, 'a>,
+        name: &str,
+        form: &str,
+    ) -> Option<Node<'d, 'a>> {
+        let found = self.child(node, name);
+        if found.is_none() {
+            self.errors.push(
+                &tag(self.text, node),
+                format!("`<{}>` without `<{name}>`", node.tag_name().name()),
+                format!("add `{form}`"),
+            );
+        }
+        found
+    }
+
+    /// An attribute that has to be there.
+    pub(super) fn attribute<'d>(
+        &mut self,
+        node: &Node<'d, 'a>,
+        name: &str,
+    ) -> Option<Attribute<'d, 'a>> {
+        let found = node.attribute_node(name);
+        if found.is_none() {
+            let element = node.tag_name().name();
+            self.errors.push(
+                &tag(self.text, node),
+                format!("`<{element}>` without `{name}`"),
+                format!("write `<{element} {name}=\"…\">`"),
+            );
+        }
+        found
+    }
+
+    /// A name that is not empty.
+    pub(super) fn name(&mut self, node: &Node<'_, 'a>, attribute: &str) -> Option<Named> {
+        let found = self.attribute(node, attribute)?;
+        let named = Named {
+            name: found.value().trim().to_string(),
+            range: found.range_value(),
+        };
+        if named.name.is_empty() {
+            self.errors.push(
+                &found.range(),
+                format!("`{attribute}` is empty"),
+                "give it a name",
+            );
+            return None;
+        }
+        Some(named)
+    }
+
+    /// A number that has to be there.
+    pub(super) fn number(&mut self, node: &Node<'_, 'a>, attribute: &str) -> Option<Decimal> {
+        let found = self.attribute(node, attribute)?;
+        self.decimal(found.value().trim(), &found.range_value())
+    }
+
+    /// A number that may be left out.
+    pub(super) fn optional(&mut self, node: &Node<'_, 'a>, attribute: &str) -> Option<Decimal> {
+        let found = node.attribute_node(attribute)?;
+        self.decimal(found.value().trim(), &found.range_value())
+    }
+
+    fn decimal(&mut self, written: &str, range: &Range<usize>) -> Option<Decimal> {
+        let number = Decimal::parse(written);
+        if number.is_none() {
+            self.errors.push(
+                range,
+                format!("`{written}` is not a number"),
+                "numbers are finite decimals, as in `0.25` or `1e-3`",
+            );
+        }
+        number
+    }
+
+    /// Three numbers with blanks between.
+    pub(super) fn vector(&mut self, found: &Attribute<'_, 'a>) -> Option<[Decimal; 3]> {
+        let range = found.range_value();
+        let words: Vec<&str> = found.value().split_whitespace().collect();
+        let [a, b, c] = words.as_slice() else {
+            self.errors.push(
+                &range,
+                format!("three numbers expected, {} found", words.len()),
+                format!("write `{}=\"0 0 0\"`, with blanks between", found.name()),
+            );
+            return None;
+        };
+        let numbers = [a, b, c].map(|word| self.decimal(word, &range));
+        let [Some(a), Some(b), Some(c)] = numbers else {
+            return None;
+        };
+        Some([a, b, c])
+    }
+
+    /// `<origin xyz rpy>`, all of it optional; `None` where it cannot be read.
+    pub(super) fn origin(&mut self, node: &Node<'_, 'a>) -> Option<Origin> {
+        let Some(element) = self.child(node, "origin") else {
+            return Some(Origin::identity());
+        };
+        let mut origin = Origin::identity();
+        let mut sound = true;
+        if let Some(attribute) = element.attribute_node("xyz") {
+            match self.vector(&attribute) {
+                Some(mut position) => {
+                    self.clean(&mut position, &attribute.range_value());
+                    origin.position = position;
+                }
+                None => sound = false,
+            }
+        }
+        if let Some(attribute) = element.attribute_node("rpy") {
+            match self.vector(&attribute) {
+                Some(angles) => {
+                    let range = attribute.range_value();
+                    origin.rotation = Rotation(angles.map(|angle| self.angle(&angle, &range)));
+                }
+                None => sound = false,
+            }
+        }
+        sound.then_some(origin)
+    }
+
+    fn angle(&mut self, number: &Decimal, range: &Range<usize>) -> Angle {
+        let angle = Angle::read(number, self.tolerance);
+        if matches!(angle, Angle::Right(_)) && !number.is_zero() {
+            self.changed(number, &angle.text(), range);
+        }
+        angle
+    }
+
+    /// Sets entries to 0 that are nothing beside the largest one, or nothing at all.
+    pub(super) fn clean<const N: usize>(
+        &mut self,
+        entries: &mut [Decimal; N],
+        range: &Range<usize>,
+    ) {
+        let largest = entries
+            .iter()
+            .fold(0.0, |most: f64, entry| most.max(entry.value.abs()));
+        let bound = self.tolerance * largest;
+        for entry in entries {
+            let size = entry.value.abs();
+            if !entry.is_zero() && (size <= bound || size <= self.tolerance * ALONE) {
+                self.changed(entry, "0", range);
+                *entry = Decimal::zero();
+            }
+        }
+    }
+
+    fn changed(&mut self, number: &Decimal, read: &str, range: &Range<usize>) {
+        self.cleaned.push(Cleaned {
+            range: range.clone(),
+            written: number.text.clone(),
+            read: read.to_string(),
+        });
+    }
+}

@@ -1,0 +1,176 @@
+//! Links and joints as a tree: one root, every other link moved by one joint.
+
+use crate::problem::Problems;
+use crate::read::{Named, Robot};
+use std::collections::BTreeMap;
+
+/// The order in which links are reached from the root.
+#[derive(Debug)]
+pub(crate) struct Tree {
+    /// The link that no joint moves.
+    pub(crate) root: usize,
+    /// The joints, parents first, each branch to its end, in the order of the file; with the
+    /// indices of the links that they join, parent and child.
+    pub(crate) joints: Vec<Edge>,
+}
+
+/// A joint between two links, all by index.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edge {
+    pub(crate) joint: usize,
+    pub(crate) parent: usize,
+    pub(crate) child: usize,
+}
+
+/// Finds the tree; `None` where there is none.
+pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
+    let links = by_name(robot.links.iter().map(|link| &link.name), "link", errors);
+    by_name(
+        robot.joints.iter().map(|joint| &joint.name),
+        "joint",
+        errors,
+    );
+    if robot.links.is_empty() {
+        if errors.is_empty() {
+            errors.push(
+                &robot.range,
+                "the robot has no links",
+                "add `<link name=\"…\">`",
+            );
+        }
+        return None;
+    }
+    let mut edges: Vec<Edge> = Vec::new();
+    let mut mover: Vec<Option<usize>> = vec![None; robot.links.len()];
+    let mut sound = true;
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let [parent, child] = [&joint.parent, &joint.child].map(|end| {
+            let found = links.get(end.name.as_str()).copied();
+            if found.is_none() {
+                unknown("link", end, links.keys().copied(), errors);
+            }
+            found
+        });
+        let (Some(parent), Some(child)) = (parent, child) else {
+            sound = false;
+            continue;
+        };
+        if let Some(other) = mover[child].and_then(|other| robot.joints.get(other)) {
+            sound = false;
+            errors.push(
+                &joint.child.range,
+                format!(
+                    "`{}` moves already with `{}`",
+                    joint.child.name, other.name.name
+                ),
+                "URDF has trees alone; a closed loop is a `loop` statement in the description",
+            );
+            continue;
+        }
+        mover[child] = Some(index);
+        edges.push(Edge {
+            joint: index,
+            parent,
+            child,
+        });
+    }
+    if !sound {
+        return None;
+    }
+    let roots: Vec<usize> = (0..mover.len())
+        .filter(|&link| mover[link].is_none())
+        .collect();
+    let (Some(&root), true) = (roots.first(), errors.is_empty()) else {
+        // Every link is moved by another one.
+        if errors.is_empty() {
+            errors.push(
+                &robot.range,
+                "no link is the base: the joints form a cycle",
+                "remove the joint that moves the base",
+            );
+        }
+        return None;
+    };
+    for &other in &roots[1..] {
+        let names = (&robot.links[other].name, &robot.links[root].name.name);
+        errors.push(
+            &names.0.range,
+            format!(
+                "no joint moves `{}`, and `{}` is the base",
+                names.0.name, names.1
+            ),
+            "join it to the rest, or remove it",
+        );
+    }
+    let mut order = Vec::new();
+    let mut open = vec![root];
+    let mut reached = vec![false; robot.links.len()];
+    while let Some(link) = open.pop() {
+        reached[link] = true;
+        order.extend(edges.iter().filter(|edge| edge.child == link));
+        let children = edges.iter().rev().filter(|edge| edge.parent == link);
+        open.extend(children.map(|edge| edge.child));
+    }
+    if roots.len() == 1
+        && let Some(edge) = edges.iter().find(|edge| !reached[edge.child])
+    {
+        let joint = &robot.joints[edge.joint];
+        errors.push(
+            &joint.name.range,
+            format!("`{}` is part of a cycle of joints", joint.name.name),
+            "URDF has trees alone; remove one joint of the cycle",
+        );
+    }
+    errors.is_empty().then_some(Tree {
+        root,
+        joints: order,
+    })
+}
+
+/// Indices by name; a name that comes again is an error.
+fn by_name<'a>(
+    names: impl Iterator<Item = &'a Named>,
+    what: &str,
+    errors: &mut Problems<'_>,
+) -> BTreeMap<&'a str, usize> {
+    let mut known = BTreeMap::new();
+    for (index, name) in names.enumerate() {
+        if known.contains_key(name.name.as_str()) {
+            errors.push(
+                &name.range,
+                format!("a second {what} of the name `{}`", name.name),
+                "names of links, and those of joints, have to differ",
+            );
+        } else {
+            known.insert(name.name.as_str(), index);
+        }
+    }
+    known
+}
+
+/// Reports a name that nothing has.
+pub(crate) fn unknown<'a>(
+    what: &str,
+    name: &Named,
+    known: impl Iterator<Item = &'a str>,
+    errors: &mut Problems<'_>,
+) {
+    errors.push(
+        &name.range,
+        format!("there is no {what} `{}`", name.name),
+        near(&name.name, known).map_or_else(
+            || format!("name a {what} of this robot"),
+            |near| format!("did you mean `{near}`?"),
+        ),
+    );
+}
+
+/// The name that differs least, if it differs by little.
+pub(crate) fn near<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let most = name.chars().count().div_ceil(3);
+    known
+        .map(|other| (strsim::damerau_levenshtein(name, other), other))
+        .filter(|(distance, _)| *distance <= most)
+        .min()
+        .map(|(_, other)| other)
+}

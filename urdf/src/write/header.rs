@@ -1,0 +1,128 @@
+//! What a reader has to know before the statements: where they are from, what was changed.
+
+use super::Writer;
+use crate::options::Mimic;
+use crate::plan::Motion;
+use crate::problem::place;
+use crate::read::Cleaned;
+
+/// What was changed, numbers of one spelling in one sentence, in the order of the file.
+pub(super) fn cleaned(xml: &str, list: &[Cleaned]) -> Vec<String> {
+    let mut kinds: Vec<(&Cleaned, usize)> = Vec::new();
+    for change in list {
+        let same = |(known, _): &&mut (&Cleaned, usize)| {
+            known.written == change.written && known.read == change.read
+        };
+        match kinds.iter_mut().find(same) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((change, 1)),
+        }
+    }
+    kinds
+        .into_iter()
+        .map(|(change, count)| {
+            let (line, _) = place(xml, change.range.start);
+            let (written, read) = (&change.written, &change.read);
+            match count {
+                1 => format!("{written} is read as {read} (line {line})"),
+                _ => format!("{written} is read as {read} ({count} times, first in line {line})"),
+            }
+        })
+        .collect()
+}
+
+impl Writer<'_> {
+    pub(super) fn header(&mut self, cleaned: &[String]) {
+        let options = self.options;
+        // Names and paths are quoted as they are, without what would end a line.
+        let plain = |text: &str| text.replace(|c: char| c.is_control(), " ");
+        let robot = plain(&self.robot.name);
+        let base = if options.floating {
+            "floating"
+        } else {
+            "fixed"
+        };
+        let count = self.free().count();
+        let plural = if count == 1 { "" } else { "s" };
+        self.page.top(&format!(
+            "/// The robot `{robot}`, {base} base, {count} moving joint{plural}."
+        ));
+        self.page.top("///");
+        let mut command = format!("hamel import {}", plain(&options.file));
+        if options.floating {
+            command.push_str(" --floating");
+        }
+        for (joint, value) in &options.locks {
+            command.push_str(&format!(" --lock {}={}", plain(joint), plain(value)));
+        }
+        if options.params {
+            command.push_str(" --params");
+        }
+        if options.mimic == Mimic::Free {
+            command.push_str(" --mimic free");
+        }
+        if let Some(name) = &options.name {
+            command.push_str(&format!(" --name {}", plain(name)));
+        }
+        if options.tolerance != crate::TOLERANCE {
+            command.push_str(&format!(" --rounding {:e}", options.tolerance));
+        }
+        self.page.top(&format!("/// Written by `{command}`."));
+        if !cleaned.is_empty() {
+            self.page.top("//");
+            let tolerance = options.tolerance;
+            self.page
+                .top(&format!("// Taken for roundings, within {tolerance:e}:"));
+            for change in cleaned {
+                self.page.top(&format!("// - {change}"));
+            }
+        }
+        let pairs: Vec<(String, String)> = {
+            let robot = self.robot;
+            let links = robot.links.iter().zip(&self.names.links);
+            let links = links.map(|(link, name)| (link.name.name.clone(), name.clone()));
+            let joints = robot.joints.iter().zip(&self.names.joints);
+            let joints = joints.map(|(joint, name)| (joint.name.name.clone(), name.clone()));
+            joints.chain(links).filter(|(a, b)| a != b).collect()
+        };
+        if !pairs.is_empty() {
+            self.page.top("//");
+            self.page.top("// Names that are none here, or are taken:");
+            for (written, name) in pairs {
+                self.page
+                    .top(&format!("// - `{}` is `{name}`", plain(&written)));
+            }
+        }
+        let system = self.names.system.clone();
+        self.page.top(&format!("pub system {system} {{"));
+    }
+
+    /// Masses, centres of mass and inertias that a program may change.
+    pub(super) fn parameters(&mut self) {
+        if !self.options.params {
+            return;
+        }
+        for link in self.bodies() {
+            self.parameters_of(link);
+        }
+        self.page.blank();
+    }
+
+    /// Links with mass that move, in the order of the tree.
+    fn bodies(&self) -> Vec<usize> {
+        let moving = self.moving();
+        let order = self.tree.joints.iter().map(|edge| edge.child);
+        std::iter::once(self.tree.root)
+            .chain(order)
+            .filter(|&link| {
+                let inertial = self.robot.links[link].inertial.as_ref();
+                moving[link] && inertial.is_some_and(|inertial| !inertial.is_zero())
+            })
+            .collect()
+    }
+
+    /// Whether a joint's angle is a coordinate that others follow.
+    pub(super) fn is_followed(&self, joint: usize) -> bool {
+        self.plan.followed[joint] && self.plan.motions[joint] == Motion::Free
+    }
+}

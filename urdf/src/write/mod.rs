@@ -1,0 +1,140 @@
+//! The description: joints and bodies in the order of the tree.
+
+mod body;
+mod header;
+mod joint;
+mod page;
+
+use crate::names::Names;
+use crate::options::{Imported, Options};
+use crate::plan::{Motion, Plan};
+use crate::read::{Kind, Read, Robot};
+use crate::tree::{Edge, Tree};
+use page::Page;
+
+/// What the statements are written from.
+struct Writer<'a> {
+    robot: &'a Robot,
+    tree: &'a Tree,
+    plan: &'a Plan,
+    options: &'a Options,
+    names: Names,
+    page: Page,
+}
+
+/// Writes the description of a robot that was read and checked.
+pub(crate) fn write(
+    xml: &str,
+    read: &Read,
+    tree: &Tree,
+    plan: &Plan,
+    options: &Options,
+) -> Imported {
+    let names = Names::of(&read.robot, options.name.as_deref());
+    let cleaned = header::cleaned(xml, &read.cleaned);
+    let mut writer = Writer {
+        robot: &read.robot,
+        tree,
+        plan,
+        options,
+        names,
+        page: Page::default(),
+    };
+    writer.header(&cleaned);
+    writer.parameters();
+    writer.page.line(None, "gravity [0, 0, -9.81];");
+    writer.inputs();
+    writer.base();
+    let moving = writer.moving();
+    for edge in &tree.joints {
+        writer.page.blank();
+        writer.joint(edge);
+        if moving[edge.child] {
+            writer.body(edge.child);
+        }
+    }
+    writer.page.close();
+    let joints = writer.own_joints();
+    Imported {
+        name: writer.names.system,
+        joints,
+        cleaned,
+        warnings: Vec::new(),
+        text: writer.page.text,
+        origins: writer.page.origins,
+    }
+}
+
+impl Writer<'_> {
+    /// Whether each link moves in the world.
+    fn moving(&self) -> Vec<bool> {
+        let mut moving = vec![self.options.floating; self.robot.links.len()];
+        for edge in &self.tree.joints {
+            let motion = &self.plan.motions[edge.joint];
+            let still = matches!(motion, Motion::Fixed | Motion::Locked(_));
+            moving[edge.child] = moving[edge.parent] || !still;
+        }
+        moving
+    }
+
+    /// Joints with coordinates of their own, in the order of the tree.
+    fn free(&self) -> impl Iterator<Item = &Edge> {
+        let free = |edge: &&Edge| self.plan.motions[edge.joint] == Motion::Free;
+        self.tree.joints.iter().filter(free)
+    }
+
+    fn own_joints(&self) -> Vec<(String, String)> {
+        let root = self
+            .options
+            .floating
+            .then(|| (self.names.root.clone(), self.names.root.clone()));
+        let joints = self.free().map(|edge| {
+            let name = self.robot.joints[edge.joint].name.name.clone();
+            (name, self.names.joints[edge.joint].clone())
+        });
+        root.into_iter().chain(joints).collect()
+    }
+
+    /// One input for each freedom.
+    fn inputs(&mut self) {
+        let mut inputs = Vec::new();
+        if self.options.floating {
+            let root = &self.names.root;
+            inputs.push(format!("{root}_force: vec3"));
+            inputs.push(format!("{root}_torque: vec3"));
+        }
+        for edge in self.free() {
+            let name = &self.names.joints[edge.joint];
+            match self.robot.joints[edge.joint].kind {
+                Kind::Floating => {
+                    inputs.push(format!("{name}_force: vec3"));
+                    inputs.push(format!("{name}_torque: vec3"));
+                }
+                Kind::Planar => {
+                    inputs.push(format!("{name}_force: vec2"));
+                    inputs.push(format!("{name}_tau"));
+                }
+                _ => inputs.push(format!("{name}_tau")),
+            }
+        }
+        self.page.list("input", &inputs);
+    }
+
+    /// The root link: free, or the world.
+    fn base(&mut self) {
+        let link = &self.robot.links[self.tree.root];
+        let (name, range) = (link.name.name.clone(), link.name.range.clone());
+        self.page.blank();
+        if !self.options.floating {
+            self.page
+                .line(Some(&range), &format!("// `{name}` stands in the world."));
+            return;
+        }
+        let (root, frame) = (&self.names.root, &self.names.links[self.tree.root]);
+        let joint = format!("joint {root}: free moves {frame};");
+        let wrench = format!("wrench ({root}_force, {root}_torque) on {frame} in body;");
+        self.page.line(Some(&range), &joint);
+        self.page.line(Some(&range), &wrench);
+        self.body(self.tree.root);
+    }
+}
