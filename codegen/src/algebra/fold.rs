@@ -5,7 +5,7 @@ use super::fp::Fp;
 use super::graph::{Graph, LANES};
 use super::node::{Edge, Function, Node, NodeId};
 use num_rational::BigRational;
-use num_traits::{One, Zero};
+use num_traits::{One, ToPrimitive, Zero};
 
 impl Graph {
     /// √ of a rational square.
@@ -98,6 +98,44 @@ impl Graph {
             let constant = self.mul(p, q);
             Some(self.mul(constant, y))
         }
+    }
+
+    /// sin or cos of an angle with whole quarter turns in it, which are taken out of it.
+    pub(super) fn without_right_angles(
+        &mut self,
+        function: Function,
+        argument: Edge,
+        form: &[(NodeId, BigRational)],
+    ) -> Option<Edge> {
+        let is_pi = |atom: NodeId| self.value(Edge::of(atom)).iter().all(|v| *v == Fp::PI);
+        let (pi, halves) = form
+            .iter()
+            .find(|(atom, _)| is_pi(*atom))
+            .map(|(atom, c)| (*atom, c * BigRational::from_integer(2.into())))?;
+        let quarters = halves
+            .is_integer()
+            .then(|| halves.to_integer().to_i64())??;
+        if form.len() == 1 {
+            return Some(match (function, quarters.rem_euclid(4)) {
+                (Function::Sin, 1) | (Function::Cos, 0) => self.one(),
+                (Function::Sin, 3) | (Function::Cos, 2) => -self.one(),
+                _ => self.zero(),
+            });
+        }
+        let turn = self.ratio(quarters, 2);
+        let turn = self.mul(turn, Edge::of(pi));
+        let rest = self.sub(argument, turn);
+        let (sin, cos) = (Function::Sin, Function::Cos);
+        Some(match (function, quarters.rem_euclid(4)) {
+            (Function::Sin, 0) => self.apply(sin, rest),
+            (Function::Sin, 1) => self.apply(cos, rest),
+            (Function::Sin, 2) => -self.apply(sin, rest),
+            (Function::Sin, _) => -self.apply(cos, rest),
+            (_, 0) => self.apply(cos, rest),
+            (_, 1) => -self.apply(sin, rest),
+            (_, 2) => -self.apply(cos, rest),
+            (_, _) => self.apply(sin, rest),
+        })
     }
 
     /// The argument of a function with a group law, as Σ coefficient · atom.

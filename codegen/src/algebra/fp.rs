@@ -25,6 +25,8 @@ impl Fp {
     pub const ONE: Fp = Fp(1, 0);
     /// i.
     pub const I: Fp = Fp(0, 1);
+    /// What stands for π, the same at every point: the sines and cosines of its twelfths are known.
+    pub const PI: Fp = Fp(0x0a3f_51c7_9e26_d80b, 0);
 
     /// The class of a non-negative integer.
     pub fn new(value: u64) -> Self {

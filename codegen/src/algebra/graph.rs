@@ -296,6 +296,11 @@ impl Graph {
             Function::Sin | Function::Cos | Function::Exp => self.linear_form(argument),
             _ => Vec::new(),
         };
+        if matches!(function, Function::Sin | Function::Cos)
+            && let Some(turned) = self.without_right_angles(function, argument, &form)
+        {
+            return turned.signed(negative);
+        }
         let arguments = self.value(argument);
         let value = std::array::from_fn(|lane| {
             let form = form
@@ -392,7 +397,7 @@ impl Graph {
             return None;
         }
         let (n, d) = value[0].to_small_rational(29)?;
-        Some(self.ratio(n, d))
+        is_plain(n, d).then(|| self.ratio(n, d))
     }
 
     /// A node that later expressions do not merge with.
@@ -425,6 +430,19 @@ impl Graph {
         }
         Edge::of(id)
     }
+}
+
+/// Whether n/d is a fraction that descriptions lead to: small, or with a decimal-like denominator.
+/// A number that is irrational, and so the same at both points, is one of these by chance only once
+/// in a million.
+fn is_plain(n: i64, d: i64) -> bool {
+    let mut rest = d;
+    for factor in [2, 3, 5, 7] {
+        while rest % factor == 0 {
+            rest /= factor;
+        }
+    }
+    rest == 1 || (n.abs() < 1 << 16 && d < 1 << 16)
 }
 
 fn ordered(a: Edge, b: Edge) -> (Edge, Edge) {

@@ -2,7 +2,8 @@
 //!
 //! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a
 //! random point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that
-//! sin(a + b) and sin a cos b + cos a sin b have the same value. exp is treated likewise.
+//! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
+//! exp is treated likewise.
 
 use super::fp::{Fp, P, Random};
 use super::graph::Function;
@@ -94,7 +95,11 @@ impl Lane {
         form.iter()
             .fold((Fp::ONE, Fp::ZERO), |total, (atom, coefficient)| {
                 let (base, count, parts) = split(*atom, coefficient);
-                let point = circle_point(&mut self.draw(64 + parts, base, Fp::ONE));
+                let point = if base == Fp::PI && parts == 1 {
+                    twelfth()
+                } else {
+                    circle_point(&mut self.draw(64 + parts, base, Fp::ONE))
+                };
                 rotate(total, power(point, count))
             })
     }
@@ -144,6 +149,13 @@ pub fn circle_point(random: &mut Random) -> (Fp, Fp) {
     let t = random.element();
     let scale = (Fp::ONE + t * t).inv().unwrap_or(Fp::ONE);
     ((Fp::ONE - t * t) * scale, (t + t) * scale)
+}
+
+/// Cosine and sine of π/12, (√3 ± 1) √2 / 4.
+fn twelfth() -> (Fp, Fp) {
+    let root = |n| Fp::new(n).sqrt().unwrap_or(Fp::ONE);
+    let quarter = Fp::new(4).inv().unwrap_or(Fp::ONE) * root(2);
+    ((root(3) + Fp::ONE) * quarter, (root(3) - Fp::ONE) * quarter)
 }
 
 fn rotate(a: (Fp, Fp), b: (Fp, Fp)) -> (Fp, Fp) {

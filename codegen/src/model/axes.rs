@@ -5,10 +5,9 @@
 //! rational unit vector beside it, the image of rational numbers under the stereographic projection.
 
 use super::class;
-use super::functions::root;
 use super::value::Value;
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::algebra::numeric::evaluate;
 use crate::diagnostics::Diagnostic;
@@ -100,7 +99,7 @@ fn unit(graph: &mut Graph, value: &Value) -> Result<Vec3, Refused> {
         let length = match exact_root(&number) {
             Some(length) => Some(graph.rational(&length)),
             None if Fp::from_rational(&number).is_some_and(|image| image.sqrt().is_some()) => {
-                Some(root(graph, square))
+                Some(graph.apply(Function::Sqrt, square))
             }
             None => None,
         };

@@ -55,8 +55,8 @@ pub fn declare(
     report: &mut Report,
 ) -> Declared {
     let mut declared = Declared::default();
-    let value = next(graph);
-    graph.symbol("pi", 0, value);
+    next(graph);
+    graph.symbol("pi", 0, [Fp::PI; LANES]);
     for item in &system.items {
         if let ItemKind::Const(list) = &item.kind {
             for declaration in list {

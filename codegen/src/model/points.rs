@@ -98,6 +98,10 @@ impl Points {
     /// A point of the blocks of x.
     fn unconstrained(&self, random: &mut Random) -> Vec<Fp> {
         let mut values: Vec<Fp> = (0..self.symbols).map(|_| random.element()).collect();
+        // π is the first symbol, and the same everywhere.
+        if let Some(first) = values.first_mut() {
+            *first = Fp::PI;
+        }
         let mut place = self.first;
         for &block in &self.blocks {
             for value in sample(block, random) {
