@@ -5,6 +5,9 @@
 //! Where constraints leave ξ = C(x) ξₐ, the n displacements h stay, of ξ only ξₐ varies, and the
 //! matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ.
 
+use super::accel::recursive::Recursion;
+use super::accel::setting::Setting;
+use super::accel::solve::solve_columns;
 use super::calculus::Calculus;
 use super::reduction::Reduction;
 use super::{commutation, kinematics};
@@ -85,15 +88,18 @@ impl Displacements {
 /// entries expanded, their coefficients computed when parameters are set.
 pub fn linearize(model: &Model, motion: &Motion) -> Linear {
     let upper = upper(model, motion);
-    let explicit = explicit(model, motion, &upper);
-    let mut candidates = Vec::new();
-    if model.n() <= MOST_EXPANDED {
-        candidates.extend(expanded(model, &explicit, motion.graph));
+    let mut candidates: Vec<Linear> = recursive(model, motion, &upper).into_iter().collect();
+    // Beyond a few links nothing comes near the recursion.
+    if candidates.is_empty() || model.n() <= MOST_EXPANDED {
+        let explicit = explicit(model, motion, &upper);
+        if model.n() <= MOST_EXPANDED {
+            candidates.extend(expanded(model, &explicit, motion.graph));
+        }
+        candidates.extend(implicit(model, motion, &upper));
+        candidates.push(explicit);
     }
-    candidates.extend(implicit(model, motion, &upper));
-    candidates.push(explicit);
     let cost = |linear: &Linear| count(&linear.graph, &linear.rows.concat()).weight();
-    // The first of equals; there is always the explicit one.
+    // The first of equals; there is always one.
     let cheapest = (1..candidates.len()).fold(0, |best, i| {
         if cost(&candidates[i]) < cost(&candidates[best]) {
             i
@@ -189,6 +195,18 @@ fn implicit(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
         })
         .collect();
     let solved = solve_symmetric(&mut graph, mass, &changes)?;
+    let mut rows = carried(upper, &mut graph);
+    rows.extend(solved);
+    Some(Linear { graph, rows })
+}
+
+/// The same for a tree of links, by recursion; M factored from the leaves to the root.
+fn recursive(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
+    let (mass, _) = motion.implicit?;
+    let recursion = Recursion::of(&Setting::given(model))?;
+    let mut graph = motion.graph.clone();
+    let changes = recursion.slopes(&mut graph, motion.xi_dot)?;
+    let solved = solve_columns(&mut graph, mass, &changes)?;
     let mut rows = carried(upper, &mut graph);
     rows.extend(solved);
     Some(Linear { graph, rows })

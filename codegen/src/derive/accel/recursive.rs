@@ -4,10 +4,13 @@ use super::parts::Parts;
 use super::setting::Setting;
 use super::solve::{Plan, solve};
 use super::{Acceleration, keep};
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::zero3;
+use crate::algebra::transplant::map_symbols;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{inverse, wrenches};
+use crate::derive::tree::nearby::slopes;
 use crate::derive::tree::{Tree, articulated, composite};
 use crate::model::Model;
 use crate::program::count::{count, depth};
@@ -140,6 +143,48 @@ impl Recursion {
             momentum: Some(momentum),
         };
         parts.rebuilt(&graph, into)
+    }
+}
+
+impl Recursion {
+    /// ∂(f − M ξ̇ − Γ ξ ξ − ∂V) along displacements, velocities and inputs at constant ξ̇: n rows of
+    /// 2 n + m, in `into`, where ξ̇ is F. `None` where a joint varies with x.
+    pub fn slopes(&self, into: &mut Graph, rates: &[Edge]) -> Option<Vec<Vec<Edge>>> {
+        let mut graph = self.model.graph.clone();
+        let model = &self.model;
+        let (xi, xi_dot) = (&model.xi, &model.xi_dot);
+        let found = slopes(&mut graph, &self.tree, xi, xi_dot, model.gravity)?;
+        let load = self.load(&mut graph);
+        let one = graph.one();
+        let mut along: Vec<Derivation> = (0..xi.len())
+            .map(|j| {
+                Derivation::new(
+                    model
+                        .x
+                        .iter()
+                        .zip(&model.a)
+                        .map(|(x, row)| (x.node(), row[j])),
+                )
+            })
+            .collect();
+        let symbols = xi.iter().chain(&model.u);
+        along.extend(symbols.map(|symbol| Derivation::new([(symbol.node(), one)])));
+        let mut images: Vec<Edge> = into.symbols().iter().map(|s| Edge::of(s.node)).collect();
+        for (symbol, &rate) in xi_dot.iter().zip(rates) {
+            if let Node::Symbol(index) = graph.node(symbol.node()) {
+                images[index as usize] = rate;
+            }
+        }
+        let mut rows = Vec::new();
+        for (i, &force) in load.iter().enumerate() {
+            let mut row: Vec<Edge> = along.iter_mut().map(|d| d.of(&mut graph, force)).collect();
+            let both = found.displacement[i].iter().chain(&found.velocity[i]);
+            for (entry, &slope) in row.iter_mut().zip(both) {
+                *entry = graph.sub(*entry, slope);
+            }
+            rows.push(map_symbols(&graph, into, &row, &images));
+        }
+        Some(rows)
     }
 }
 

@@ -17,14 +17,20 @@ pub struct Wrench {
 }
 
 /// A link's motion in its axes.
-#[derive(Clone, Copy)]
-struct Motion {
-    omega: Vec3,
-    alpha: Vec3,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    /// Angular velocity.
+    pub(super) omega: Vec3,
+    /// Angular acceleration.
+    pub(super) alpha: Vec3,
     /// Acceleration of the origin, less gravity.
-    a: Vec3,
+    pub(super) a: Vec3,
     /// α̂ + ω̂ ω̂.
-    u: Mat3,
+    pub(super) u: Mat3,
+    /// What the link would do if its joint were locked: ω, α, a.
+    pub(super) carried: [Vec3; 3],
+    /// Its joint's own angular velocity and velocity.
+    pub(super) relative: (Vec3, Vec3),
 }
 
 /// What the motion of every link needs, at rates ξ and ξ̇ and under gravity (world axes).
@@ -35,22 +41,36 @@ pub fn wrenches(
     xi_dot: &[Edge],
     gravity: Vec3,
 ) -> Vec<Wrench> {
+    let motions = motions(graph, tree, xi, xi_dot, gravity);
+    let links = tree.links.iter().zip(&motions);
+    links
+        .map(|(link, motion)| wrench(graph, &link.mass, motion))
+        .collect()
+}
+
+/// The motion of every link.
+pub(super) fn motions(
+    graph: &mut Graph,
+    tree: &Tree,
+    xi: &[Edge],
+    xi_dot: &[Edge],
+    gravity: Vec3,
+) -> Vec<Motion> {
     let zero = zero3(graph);
     let ground = Motion {
         omega: zero,
         alpha: zero,
         a: gravity.map(|entry| -entry),
         u: [zero; 3],
+        carried: [zero; 3],
+        relative: (zero, zero),
     };
     let mut motions: Vec<Motion> = Vec::with_capacity(tree.links.len());
-    let mut wrenches = Vec::with_capacity(tree.links.len());
     for link in &tree.links {
         let before = link.parent.map_or(ground, |parent| motions[parent]);
-        let motion = outward(graph, link, &before, xi, xi_dot);
-        wrenches.push(wrench(graph, &link.mass, &motion));
-        motions.push(motion);
+        motions.push(outward(graph, link, &before, xi, xi_dot));
     }
-    wrenches
+    motions
 }
 
 fn outward(
@@ -80,14 +100,15 @@ fn outward(
     let carried = link.back(graph, before.omega);
     let omega = add3(graph, carried, relative.0);
     let gyro = cross(graph, carried, relative.0);
-    let alpha = link.back(graph, before.alpha);
-    let alpha = add3(graph, alpha, gyro);
+    let locked = link.back(graph, before.alpha);
+    let alpha = add3(graph, locked, gyro);
     let alpha = add3(graph, alpha, change.0);
     let swing = apply3(graph, &before.u, link.position);
     let a = add3(graph, before.a, swing);
     let mut a = link.back(graph, a);
+    let carried = [carried, locked, a];
     if relative.1 != zero {
-        let twice = add3(graph, carried, omega);
+        let twice = add3(graph, carried[0], omega);
         let coriolis = cross(graph, twice, relative.1);
         a = add3(graph, a, coriolis);
     }
@@ -97,6 +118,8 @@ fn outward(
         alpha,
         a,
         u: tensor(graph, omega, alpha),
+        carried,
+        relative,
     }
 }
 
@@ -114,7 +137,7 @@ fn tensor(graph: &mut Graph, omega: Vec3, alpha: Vec3) -> Mat3 {
     u
 }
 
-fn wrench(graph: &mut Graph, mass: &Mass, motion: &Motion) -> Wrench {
+pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &Motion) -> Wrench {
     let Motion { a, u, .. } = motion;
     let s = &mass.second;
     let push = scale3(graph, mass.mass, *a);

@@ -1,7 +1,7 @@
 //! Recursions against the derivation that knows no trees: the same values on X.
 
 use super::inverse::{collect, inverse, wrenches};
-use super::{Tree, articulated, composite};
+use super::{Tree, articulated, composite, nearby};
 use crate::algebra::graph::Edge;
 use crate::derive::accel::parts::{Axes, Reference, Variant, parts};
 use crate::derive::accel::solve::{Plan, solve};
@@ -58,6 +58,27 @@ fn agree(mut model: Model, name: &str) {
         );
     }
     let id_count = flops(&model, &id);
+    let mut slopes = model.graph.clone();
+    let found =
+        nearby::slopes(&mut slopes, &tree, &xi, &model.xi_dot.clone(), gravity).expect("is plain");
+    for i in 0..n {
+        for j in 0..n {
+            let by_place = calculus.along(&mut model.graph, j, id[i]);
+            assert_eq!(
+                model.graph.value(by_place),
+                slopes.value(found.displacement[i][j]),
+                "row {i} along displacement {j}"
+            );
+            let by_rate =
+                crate::algebra::derivation::Derivation::new([(xi[j].node(), model.graph.one())])
+                    .of(&mut model.graph, id[i]);
+            assert_eq!(
+                model.graph.value(by_rate),
+                slopes.value(found.velocity[i][j]),
+                "row {i} along velocity {j}"
+            );
+        }
+    }
     let mut other = model.clone();
     let mass = composite::mass_matrix(&mut other.graph, &tree, n);
     for i in 0..n {
