@@ -88,6 +88,29 @@ impl Link {
         }
     }
 
+    /// A link about the third axis whose principal axes are those of its frame.
+    pub fn body(
+        kind: Kind,
+        parent: Option<usize>,
+        place: [f64; 3],
+        mass: f64,
+        com: [f64; 3],
+        [x, y, z]: [f64; 3],
+    ) -> Self {
+        Link {
+            kind,
+            parent,
+            axis: [0.0, 0.0, 1.0],
+            rpy: [0.0; 3],
+            place,
+            mass,
+            com,
+            inertia: [x, y, z, 0.0, 0.0, 0.0],
+            damping: 0.0,
+            armature: 0.0,
+        }
+    }
+
     /// Its entries in x.
     fn coordinates(&self) -> usize {
         match self.kind {
@@ -203,6 +226,8 @@ pub fn text(links: &[Link]) -> String {
 
 /// A tree at a state.
 pub struct Tree<'a> {
+    /// Acceleration of gravity, world axes.
+    pub gravity: [f64; 3],
     links: &'a [Link],
     /// Rotation and origin of each frame in the one before.
     poses: Vec<(M3, [f64; 3])>,
@@ -214,6 +239,7 @@ impl<'a> Tree<'a> {
     /// A tree at (x, ξ).
     pub fn new(links: &'a [Link], x: &[f64], xi: &'a [f64]) -> Self {
         let mut tree = Tree {
+            gravity: GRAVITY,
             links,
             poses: Vec::new(),
             twists: Vec::new(),
@@ -235,7 +261,7 @@ impl<'a> Tree<'a> {
 
     /// The forces that the accelerations ξ̇ need, gravity as an acceleration of the world.
     pub fn needed(&self, xi_dot: &[f64], gravity: f64) -> Vec<f64> {
-        let world = whole([0.0; 3], GRAVITY.map(|g| -gravity * g));
+        let world = whole([0.0; 3], self.gravity.map(|g| -gravity * g));
         let mut accelerations: Vec<Six> = Vec::new();
         let mut wrenches: Vec<Six> = Vec::new();
         let mut speed = 0;
@@ -301,7 +327,7 @@ impl<'a> Tree<'a> {
             energy += (0..6).map(|i| twist[i] * momentum[i]).sum::<f64>() / 2.0;
             let arm = apply(&pose.0, link.com);
             energy -= (0..3)
-                .map(|i| link.mass * GRAVITY[i] * (pose.1[i] + arm[i]))
+                .map(|i| link.mass * self.gravity[i] * (pose.1[i] + arm[i]))
                 .sum::<f64>();
             for _ in 0..link.freedoms() {
                 energy += link.armature * self.xi[speed] * self.xi[speed] / 2.0;
