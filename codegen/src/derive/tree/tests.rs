@@ -106,9 +106,7 @@ fn agree(mut model: Model, name: &str) {
         let given = super::super::accel::parts::Parts {
             mass: mass.clone(),
             groups: vec![right],
-            inertia: vec![],
-            conservative: vec![],
-            applied: vec![],
+            ..Default::default()
         };
         let solution = solve(&mut graph, &given, &plan).expect("solves");
         best.push(count(&graph, &solution.xi_dot).flops());
