@@ -1,6 +1,7 @@
 //! JSON values to numbers, with the path of every mistake.
 
 use super::State;
+use super::joints::joints;
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::suggest::closest;
@@ -30,10 +31,22 @@ impl Reader {
             ("input", &model.inputs, &mut state.u),
         ];
         for (part, groups, numbers) in groups {
-            let names: Vec<&str> = groups.iter().map(|group| group.name.as_str()).collect();
+            let joints = match part {
+                "velocity" => joints(model, &[]),
+                _ => Vec::new(),
+            };
+            let symbols = groups.iter().map(|group| group.name.as_str());
+            let names: Vec<&str> = symbols
+                .chain(joints.iter().map(|joint| joint.name.as_str()))
+                .collect();
             let Some(given) = self.part(parts, part, &names) else {
                 continue;
             };
+            for joint in &joints {
+                if let Some(value) = given.get(&joint.name) {
+                    self.motion(&format!("{part}.{}", joint.name), value, joint, numbers);
+                }
+            }
             for group in groups {
                 if let Some(value) = given.get(&group.name)
                     && let Some(values) =
@@ -67,7 +80,7 @@ impl Reader {
     }
 
     /// An object with one member for each name, or fewer.
-    fn part<'a>(
+    pub(super) fn part<'a>(
         &mut self,
         parts: &'a Map<String, Value>,
         part: &str,
@@ -86,7 +99,7 @@ impl Reader {
     }
 
     /// Reports members that have no such name.
-    fn known(&mut self, at: &str, given: &Map<String, Value>, names: &[&str]) {
+    pub(super) fn known(&mut self, at: &str, given: &Map<String, Value>, names: &[&str]) {
         for name in given.keys().filter(|name| !names.contains(&name.as_str())) {
             let path = if at.is_empty() {
                 name.clone()
@@ -180,7 +193,7 @@ impl Reader {
         }
     }
 
-    fn matrix(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn matrix(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<Vec<f64>>> {
         let rows = self.list(
             at,
             value,
@@ -195,7 +208,7 @@ impl Reader {
         rows.into_iter().collect()
     }
 
-    fn vector(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<f64>> {
+    pub(super) fn vector(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<f64>> {
         let list = self.list(at, value, n, &format!("a list of {n} numbers"))?;
         let numbers: Vec<_> = list
             .iter()
@@ -223,7 +236,7 @@ impl Reader {
         None
     }
 
-    fn number(&mut self, at: &str, value: &Value) -> Option<f64> {
+    pub(super) fn number(&mut self, at: &str, value: &Value) -> Option<f64> {
         match value.as_f64() {
             Some(number) if number.is_finite() => return Some(number),
             Some(_) => self.error(at, "the number is not finite".into()),
@@ -232,7 +245,7 @@ impl Reader {
         None
     }
 
-    fn error(&mut self, at: &str, message: String) {
+    pub(super) fn error(&mut self, at: &str, message: String) {
         self.errors.push(if at.is_empty() {
             message
         } else {
@@ -242,7 +255,7 @@ impl Reader {
 }
 
 /// A JSON value in words.
-fn kind(value: &Value) -> &'static str {
+pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
         Value::Bool(_) => "a truth value",
