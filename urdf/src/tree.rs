@@ -171,7 +171,7 @@ pub(crate) fn near<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Opti
     let most = name.chars().count().div_ceil(3);
     known
         .map(|other| (strsim::damerau_levenshtein(name, other), other))
-        .filter(|(distance, _)| *distance <= most)
+        .filter(|(distance, other)| *distance <= most && *distance < other.chars().count())
         .min()
         .map(|(_, other)| other)
 }

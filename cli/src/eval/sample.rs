@@ -7,7 +7,7 @@ use crate::json::Json;
 use crate::names;
 use crate::source::Source;
 use crate::state::joints::rows;
-use crate::state::sample::Sample;
+use crate::state::sample::{ORDER, Sample};
 use hamel_codegen::generate::Generated;
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
@@ -26,7 +26,7 @@ const FUNCTIONS: [&str; 8] = [
 /// Inputs reach a force when they miss it by no more than this part of it.
 const REACHED: f64 = 1e-9;
 
-/// Evaluates and prints.
+/// Evaluates and prints one state, or each of a list `samples`.
 ///
 /// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
 /// friction and other loads of the description are part of it, not added to it. Without a force
@@ -38,8 +38,64 @@ pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
         Some(robot) => &robot.imported.joints,
         None => &[],
     };
-    let sample =
-        Sample::parse(json, model, joints).map_err(|errors| Failure::usages(path, &errors))?;
+    let (list, several) = match json.get("samples") {
+        Some(Value::Array(list)) => (list.as_slice(), true),
+        _ => (std::slice::from_ref(json), false),
+    };
+    // What is said once about all of them.
+    let order = json.get(ORDER).filter(|_| several);
+    let mut errors = Vec::new();
+    let mut samples = Vec::new();
+    for (index, one) in list.iter().enumerate() {
+        match Sample::parse(one, order, model, joints) {
+            Ok(sample) => samples.push(sample),
+            Err(found) if several => {
+                errors.extend(
+                    found
+                        .iter()
+                        .map(|error| format!("samples[{index}].{error}")),
+                );
+            }
+            Err(found) => errors.extend(found),
+        }
+    }
+    if !errors.is_empty() {
+        return Err(Failure::usages(path, &errors));
+    }
+    let mut failed = Vec::new();
+    let mut written = Vec::new();
+    for (index, sample) in samples.iter().enumerate() {
+        let (members, missing) = members(&generated, sample)?;
+        let place = match several {
+            true => format!("samples[{index}]: "),
+            false => String::new(),
+        };
+        failed.extend(missing.into_iter().map(|why| format!("{place}{why}")));
+        written.push(Json::object(members));
+    }
+    let output = match written.pop() {
+        Some(only) if !several => only,
+        last => {
+            written.extend(last);
+            Json::object([("samples", Json::List(written))])
+        }
+    };
+    print(&output.pretty())?;
+    match failed.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::failed(format!(
+            "{}: {}",
+            source.path,
+            failed.join("; ")
+        ))),
+    }
+}
+
+/// What is printed of a state, and what has no value there.
+type Members = (Vec<(&'static str, Json)>, Vec<String>);
+
+fn members(generated: &Generated, sample: &Sample) -> Result<Members, Failure> {
+    let model = &generated.active;
     let state = &sample.state;
     let call = |name: &str| -> Result<Vec<f64>, Failure> {
         let value = function(&generated.program, name, &state.params)?;
@@ -55,13 +111,13 @@ pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
         .zip(&slope)
         .map(|(a, b)| a + b)
         .collect();
-    let accel = accel(&generated, &sample, &mass)?;
+    let accel = accel(generated, sample, &mass)?;
     let rows_of_mass: Vec<Vec<f64>> = mass
         .row_iter()
         .map(|row| row.iter().copied().collect())
         .collect();
     let number = |values: Vec<f64>| Json::Number(values.first().copied().unwrap_or(f64::NAN));
-    let members = [
+    let members = vec![
         ("system", Json::Text(generated.model.name.clone())),
         ("coordinates", Json::texts(&names::coordinates(model))),
         ("velocities", Json::texts(&rows(model, &sample.joints))),
@@ -79,21 +135,16 @@ pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
         ("kinetic_energy", number(call("kinetic_energy")?)),
         ("potential_energy", number(call("potential_energy")?)),
     ];
+    let mut missing = Vec::new();
+    if accel.value.is_none() {
+        missing.push("the mass matrix is not positive definite, `accel` has no value".to_string());
+    }
     let infinite = members.iter().filter(|(_, value)| !finite(value));
     let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
-    print(&Json::object(members.iter().cloned()).pretty())?;
-    if accel.value.is_none() {
-        let why = "the mass matrix is not positive definite, `accel` has no value";
-        return Err(Failure::failed(format!("{}: {why}", source.path)));
-    }
     if !infinite.is_empty() {
-        let list = infinite.join(", ");
-        return Err(Failure::failed(format!(
-            "{}: not finite at this state: {list}",
-            source.path
-        )));
+        missing.push(format!("not finite at this state: {}", infinite.join(", ")));
     }
-    Ok(())
+    Ok((members, missing))
 }
 
 /// ξ̇ with the force that causes it.

@@ -18,7 +18,7 @@ const RESULTS: [&str; 6] = [
     "potential_energy",
 ];
 /// Order of a list of forces, by joint.
-const ORDER: &str = "velocity_order";
+pub const ORDER: &str = "velocity_order";
 
 /// A state with the generalised force that acts on it.
 #[derive(Clone, Debug)]
@@ -42,9 +42,11 @@ pub fn is_sample(json: &Value) -> bool {
 }
 
 impl Sample {
-    /// Reads a sample; all mistakes at once.
+    /// Reads a sample; all mistakes at once. `order` is that of lists of forces, where the sample
+    /// does not say one.
     pub fn parse(
         json: &Value,
+        order: Option<&Value>,
         model: &Model,
         names: &[(String, String)],
     ) -> Result<Self, Vec<String>> {
@@ -55,11 +57,7 @@ impl Sample {
         };
         let mut reader = Reader::default();
         match json {
-            Value::Object(parts) if parts.contains_key("samples") => reader.error(
-                "samples",
-                "the file holds several states: give one of them, as in `jq '.samples[0]' FILE | hamel eval … --at -`".into(),
-            ),
-            Value::Object(parts) => reader.sample(parts, &mut sample),
+            Value::Object(parts) => reader.sample(parts, order, &mut sample),
             other => reader.error("", format!("an object expected, {} found", kind(other))),
         }
         let mut errors = reader.errors;
@@ -75,7 +73,7 @@ impl Sample {
 }
 
 impl Reader {
-    fn sample(&mut self, parts: &Map<String, Value>, sample: &mut Sample) {
+    fn sample(&mut self, parts: &Map<String, Value>, order: Option<&Value>, sample: &mut Sample) {
         let known: Vec<&str> = READ
             .iter()
             .chain(&RESULTS)
@@ -103,7 +101,10 @@ impl Reader {
         let mut force = vec![0.0; xi.len()];
         match parts.get("force") {
             None => return,
-            Some(Value::Array(_)) => self.forces(parts, &joints, &mut force),
+            Some(Value::Array(_)) => {
+                let order = parts.get(ORDER).or(order);
+                self.forces(parts, order, &joints, &mut force);
+            }
             Some(_) => {
                 if let Some(given) = self.part(parts, "force", &names) {
                     for joint in &joints {
@@ -118,14 +119,20 @@ impl Reader {
     }
 
     /// A list in the order of ξ, or in the order that the file says by joint for each entry.
-    fn forces(&mut self, parts: &Map<String, Value>, joints: &[Joint], force: &mut [f64]) {
+    fn forces(
+        &mut self,
+        parts: &Map<String, Value>,
+        order: Option<&Value>,
+        joints: &[Joint],
+        force: &mut [f64],
+    ) {
         let Some(list) = parts
             .get("force")
             .and_then(|value| self.vector("force", value, force.len()))
         else {
             return;
         };
-        let Some(order) = parts.get(ORDER) else {
+        let Some(order) = order else {
             force.copy_from_slice(&list);
             return;
         };
