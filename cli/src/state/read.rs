@@ -1,7 +1,6 @@
 //! JSON values to numbers, with the path of every mistake.
 
 use super::State;
-use super::joints::joints;
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::suggest::closest;
@@ -31,20 +30,27 @@ impl Reader {
             ("input", &model.inputs, &mut state.u),
         ];
         for (part, groups, numbers) in groups {
-            let joints = match part {
-                "velocity" => joints(model, &[]),
-                _ => Vec::new(),
+            let joints = if part == "velocity" {
+                joints(model)
+            } else {
+                Vec::new()
             };
-            let symbols = groups.iter().map(|group| group.name.as_str());
-            let names: Vec<&str> = symbols
-                .chain(joints.iter().map(|joint| joint.name.as_str()))
-                .collect();
+            let mut names: Vec<&str> = groups.iter().map(|group| group.name.as_str()).collect();
+            names.extend(joints.iter().map(|(name, _)| *name));
             let Some(given) = self.part(parts, part, &names) else {
                 continue;
             };
-            for joint in &joints {
-                if let Some(value) = given.get(&joint.name) {
-                    self.motion(&format!("{part}.{}", joint.name), value, joint, numbers);
+            for (name, places) in &joints {
+                let Some(value) = given.get(*name) else {
+                    continue;
+                };
+                let at = format!("{part}.{name}");
+                let values = match places.as_slice() {
+                    [_] => self.shape(&at, value, ShapeKind::Scalar),
+                    places => self.vector(&at, value, places.len()),
+                };
+                for (&place, value) in places.iter().zip(values.unwrap_or_default()) {
+                    numbers[place] = value;
                 }
             }
             for group in groups {
@@ -264,4 +270,21 @@ pub(super) fn kind(value: &Value) -> &'static str {
         Value::Array(_) => "a list",
         Value::Object(_) => "an object",
     }
+}
+
+/// The joints, with the places of their velocities in ξ.
+fn joints(model: &Model) -> Vec<(&str, Vec<usize>)> {
+    let places = |names: &[String]| -> Vec<usize> {
+        let groups = names.iter().filter_map(|name| {
+            let mut groups = model.velocities.iter();
+            groups.find(|group| group.name == *name)
+        });
+        groups
+            .flat_map(|group| group.offset..group.offset + group.len)
+            .collect()
+    };
+    let all = model.joints.iter();
+    all.map(|joint| (joint.name.as_str(), places(&joint.velocities)))
+        .filter(|(_, places)| !places.is_empty())
+        .collect()
 }

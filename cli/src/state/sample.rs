@@ -207,7 +207,7 @@ impl Reader {
     }
 
     /// Rates, or forces: a number, a list, or `linear` and `angular`.
-    pub(super) fn motion(&mut self, at: &str, value: &Value, joint: &Joint, xi: &mut [f64]) {
+    fn motion(&mut self, at: &str, value: &Value, joint: &Joint, xi: &mut [f64]) {
         let (first, count) = joint.velocities;
         if let (Place::Free(..), Value::Object(_)) = (joint.place, value) {
             let Some(given) = self.members(at, value, &["linear", "angular"]) else {

@@ -440,6 +440,7 @@ impl<'a> Builder<'a> {
             blocks: model.blocks.clone(),
             velocities: model.velocities.clone(),
             inputs: model.inputs.clone(),
+            joints: model.joints.clone(),
             nu: model.nu(),
             n: model.n(),
             m: model.u.len(),

@@ -25,6 +25,7 @@ mod docs;
 #[cfg(feature = "files")]
 mod format;
 mod function;
+mod limits;
 mod locals;
 mod lower;
 mod methods;
@@ -155,6 +156,7 @@ impl<'a> Emitter<'a> {
 pub fn rust(program: &Program, options: &Options) -> String {
     let emitter = Emitter::new(program, options.chunk);
     let mut methods = structure::sizes(&emitter);
+    methods.push_str(&limits::constants(program));
     for spec in emitter.specs() {
         methods.push_str(&function::text(&emitter, &spec));
     }

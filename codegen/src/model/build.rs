@@ -127,7 +127,10 @@ impl<'a> Reading<'a> {
         let scope = &self.scope;
         let numbers = declared.numbers(&defaults, starts.as_ref());
         let frames = names.frames;
-        let dynamics = dynamics::read(system, graph, scope, &frames, declared, &numbers, report);
+        let mut dynamics =
+            dynamics::read(system, graph, scope, &frames, declared, &numbers, report);
+        let joints = joints::read(system, graph, scope, report);
+        let armature = joints::armature(system, graph, scope, declared, &mut dynamics, report);
         let invariants = invariants::read(system, graph, scope, &frames, declared, report);
         let constraints =
             pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
@@ -181,9 +184,11 @@ impl<'a> Reading<'a> {
             kinetic_terms: None,
             completion: kinematics.completion,
             frames,
+            joints,
             bodies: dynamics.bodies,
             particles: dynamics.particles,
             kinetic: dynamics.kinetic,
+            armature,
             potential: dynamics.potential,
             gravity: dynamics.gravity,
             wrenches: dynamics.wrenches,

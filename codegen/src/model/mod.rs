@@ -21,7 +21,7 @@ mod frames;
 mod functions;
 mod independent;
 pub mod invariants;
-mod joints;
+pub mod joints;
 mod kinematics;
 pub mod layout;
 mod line;
@@ -230,12 +230,17 @@ pub struct Model {
     pub completion: Completion,
     /// Frames.
     pub frames: Vec<Frame>,
+    /// Joints, in the order of the text.
+    pub joints: Vec<joints::Joint>,
     /// Bodies.
     pub bodies: Vec<Body>,
     /// Particles.
     pub particles: Vec<Particle>,
-    /// Kinetic energy beyond that of bodies and particles.
+    /// Kinetic energy beyond that of bodies and particles; that of armatures is a part of it.
     pub kinetic: Edge,
+    /// J of ½ J ξⁱ², the armatures of joints, for every velocity; each of these is the rate of a
+    /// coordinate, so that they add J ξ̇ⁱ to the forces and nothing else (kg m², kg).
+    pub armature: Vec<Edge>,
     /// Potential beyond that of gravity.
     pub potential: Edge,
     /// Acceleration of gravity, world axes (m/s²).

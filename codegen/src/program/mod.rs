@@ -6,6 +6,7 @@ pub mod schedule;
 pub mod structure;
 
 use crate::algebra::graph::{Edge, Graph};
+use crate::model::joints::Joint;
 use crate::model::layout::Block;
 use crate::model::{Coordinate, Group};
 use structure::Structure;
@@ -78,6 +79,8 @@ pub struct Program {
     pub velocities: Vec<Group>,
     /// Inputs.
     pub inputs: Vec<Group>,
+    /// Joints, whose limits are constants of the type.
+    pub joints: Vec<Joint>,
     /// ν.
     pub nu: usize,
     /// n.

@@ -133,8 +133,11 @@ pub(super) fn joint(cursor: &mut Cursor<'_>) -> Parsed<Joint> {
         None
     };
     let fields = if cursor.is_open(Delimiter::Brace) {
-        fields(cursor)?
+        let fields = fields(cursor)?;
+        cursor.eat_punct(';');
+        fields
     } else {
+        cursor.end(follows.is_some())?;
         Vec::new()
     };
     Ok(Joint {

@@ -42,6 +42,8 @@ pub mod written;
 #[cfg(all(test, feature = "files"))]
 mod tests;
 
+pub(crate) use joint::{field_name as joint_field, kind_name as joint_kind};
+
 /// Errors reported for one description; what follows is rarely read.
 const MAX_ERRORS: usize = 100;
 

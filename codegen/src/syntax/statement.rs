@@ -100,7 +100,14 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
                 span: since(start, cursor),
             });
         }
-        "joint" => ItemKind::Joint(Box::new(joint::joint(cursor)?)),
+        // Ends with its braces, where it has any.
+        "joint" => {
+            let kind = ItemKind::Joint(Box::new(joint::joint(cursor)?));
+            return Ok(Item {
+                kind,
+                span: since(start, cursor),
+            });
+        }
         "particle" => body::particle(cursor)?,
         "kinetic" => ItemKind::Kinetic(expression(cursor)?),
         "potential" => ItemKind::Potential(expression(cursor)?),
@@ -133,7 +140,6 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
             | "wrench"
             | "spring"
             | "damper"
-            | "joint"
             | "generate"
     );
     cursor.end(!names)?;

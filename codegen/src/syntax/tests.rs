@@ -3,6 +3,7 @@
 mod accepted;
 mod elements;
 mod hostile;
+mod joints;
 mod refused;
 mod rendered;
 
@@ -162,6 +163,22 @@ fn told(kind: &ItemKind) -> String {
                 body.frame.name,
                 maybe(&body.mass),
                 maybe(&body.com)
+            )
+        }
+        Joint(joint) => {
+            let list = |all: &[Expr]| all.iter().map(spelled).collect::<Vec<_>>().join(", ");
+            let fields = joint.fields.iter();
+            let fields = fields.map(|(field, _, values)| format!("{field:?} {}", list(values)));
+            format!(
+                "joint {}: {:?} [{}] on {:?} at {} moves {} follows {} {{{}}}",
+                joint.name.name,
+                joint.kind.0,
+                list(&joint.axes),
+                joint.on.as_ref().map(|on| &on.name),
+                maybe(&joint.at),
+                joint.moves.name,
+                maybe(&joint.follows),
+                fields.collect::<Vec<_>>().join("; ")
             )
         }
         Particle { mass, at, on } => {

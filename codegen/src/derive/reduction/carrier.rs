@@ -131,6 +131,7 @@ impl Carrier {
         model.dissipation = self.one(full.dissipation);
         model.observed.clear();
         model.kinetic = self.one(full.kinetic);
+        model.armature = vec![self.graph.zero(); model.xi.len()];
         model.kinetic_terms = self.kinetic.take().map(|terms| KineticTerms {
             mass: self.rows(&terms.mass),
             bias: self.carry(&terms.bias),

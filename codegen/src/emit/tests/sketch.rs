@@ -100,6 +100,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
         coordinates,
         velocities,
         inputs,
+        joints: Vec::new(),
         nu: x.len(),
         n: xi.len(),
         m: u.len(),

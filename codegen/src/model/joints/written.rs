@@ -1,77 +1,22 @@
-//! Joints, written out as coordinates, velocities, rates and frames.
-//!
-//! | kind | coordinates | velocities | pose of the frame that it carries, at its place |
-//! |---|---|---|---|
-//! | `revolute n` | `j` | `j_dot` | turn by j about n |
-//! | `continuous n` | `j: S1` | `j_dot` | turn by (c, s) about n |
-//! | `prismatic n` | `j` | `j_dot` | shift by j n |
-//! | `spherical` | `j: SO3` (`S3`) | `j_dot: vec3`, angular velocity in the axes of the frame | rotation j |
-//! | `free` | `j_r: R3`, `j_R: SO3` | `j_v: vec3`, `j_w: vec3`, its twist in its axes | rotation `j_R`, shift `j_r` |
-//! | `planar n` | `j_r: R2`, `j` | `j_r_dot: vec2`, `j_dot` | shift by `j_r` in the plane, turn by j about n |
-//! | `universal a, b` | `j_1`, `j_2` | `j_1_dot`, `j_2_dot` | turn about a, then about b that turned along |
-//! | `cylindrical n` | `j`, `j_d` | `j_dot`, `j_d_dot` | turn by j about n, shift by `j_d` n |
-//! | `fixed` | | | none |
-//!
-//! What stands here is text for text what a user would write without joints; spans are those of the
-//! joint, so that every later error points at it.
+//! One joint as the statements that say the same without it.
 
-use super::axes::{AXIS, PLACE, PLANE};
-use crate::diagnostics::{Diagnostic, Report};
+use super::fields::has;
+use crate::model::axes::{AXIS, PLACE, PLANE};
 use crate::syntax::ast::{
-    BinaryOp, CoordKind, Declaration, Expr, ExprKind, Ident, Item, ItemKind, Joint, JointKind,
-    Shape, ShapeKind, Span, System, Target,
+    Acting, BinaryOp, CoordKind, Declaration, Expr, ExprKind, Ident, Item, ItemKind, Joint,
+    JointField, JointKind, Shape, ShapeKind, Span, Target,
 };
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-/// The system with every joint written out.
-pub fn expand(system: &System, report: &mut Report) -> System {
-    let mut items = Vec::new();
-    let mut moved: Vec<&Ident> = Vec::new();
-    let frames = system.items.iter().filter_map(|item| match &item.kind {
-        ItemKind::Frame { name, .. } => Some(name),
-        _ => None,
-    });
-    moved.extend(frames);
-    for item in &system.items {
-        let ItemKind::Joint(joint) = &item.kind else {
-            items.push(item.clone());
-            continue;
-        };
-        let mut writer = Writer {
-            joint,
-            span: item.span,
-            items: Vec::new(),
-        };
-        let poses = writer.motion();
-        match moved.iter().find(|other| other.name == joint.moves.name) {
-            Some(first) => report.push(twice(joint, first)),
-            None => writer.frames(poses),
-        }
-        moved.push(&joint.moves);
-        items.extend(writer.items);
-    }
-    System {
-        items,
-        ..system.clone()
-    }
-}
-
-/// The error for a frame that is placed already.
-fn twice(joint: &Joint, first: &Ident) -> Diagnostic {
-    let message = format!("the frame `{}` is placed twice", first.name);
-    Diagnostic::new(joint.moves.span, message)
-        .help(
-            "a joint carries a frame of its own; what closes a mechanism is a `loop` between coordinates",
-        )
-        .note(first.span, "placed here already")
-}
-
 /// One joint's statements so far.
-struct Writer<'a> {
-    joint: &'a Joint,
-    span: Span,
-    items: Vec<Item>,
+pub(super) struct Writer<'a> {
+    /// The joint.
+    pub joint: &'a Joint,
+    /// Its statement.
+    pub span: Span,
+    /// The statements.
+    pub items: Vec<Item>,
 }
 
 impl Writer<'_> {
@@ -208,7 +153,7 @@ impl Writer<'_> {
 
     /// Writes coordinates, velocities and rates; the poses of the frames one on the other that lead
     /// to the one that the joint carries, each with its name.
-    fn motion(&mut self) -> Vec<(Ident, Expr)> {
+    pub fn motion(&mut self) -> Vec<(Ident, Expr)> {
         use CoordKind::{Euclidean, Real, S1, S3, SO3};
         use ShapeKind::{Scalar, Vector};
         let pose = match self.joint.kind.0 {
@@ -288,7 +233,7 @@ impl Writer<'_> {
     }
 
     /// Writes the frames, the first at the place of the joint.
-    fn frames(&mut self, poses: Vec<(Ident, Expr)>) {
+    pub fn frames(&mut self, poses: Vec<(Ident, Expr)>) {
         let mut on = self.joint.on.clone();
         let mut place = self.joint.at.clone();
         for (name, pose) in poses {
@@ -305,6 +250,61 @@ impl Writer<'_> {
                 on: parent,
                 pose,
             });
+        }
+    }
+
+    /// Writes what acts on the joint: its damping, spring and force.
+    pub fn loads(&mut self) {
+        let field = |wanted| {
+            let of = |(field, span, values): &(JointField, Span, Vec<Expr>)| {
+                let value = values
+                    .first()
+                    .filter(|_| *field == wanted && has(self.joint, wanted))?;
+                Some((*span, value.clone()))
+            };
+            self.joint.fields.iter().find_map(of)
+        };
+        let (damping, stiffness) = (field(JointField::Damping), field(JointField::Stiffness));
+        let (rest, force) = (field(JointField::Rest), field(JointField::Force));
+        if let Some((_, coefficient)) = damping {
+            for rate in self.rates() {
+                let coefficient = coefficient.clone();
+                let acting = Acting::On(rate);
+                self.push(ItemKind::Damper {
+                    coefficient,
+                    acting,
+                });
+            }
+        }
+        if let Some((_, stiffness)) = stiffness {
+            let acting = Acting::On(self.name(""));
+            self.push(ItemKind::Spring {
+                stiffness,
+                length: rest.map(|(_, value)| value),
+                acting,
+            });
+        }
+        if let Some((span, value)) = force {
+            let (name, field) = (self.ident("_dot"), None);
+            let name = Ident { span, ..name };
+            self.push(ItemKind::Generalized {
+                target: Target { name, field },
+                value,
+            });
+        }
+    }
+
+    /// The velocities of the joint, one by one.
+    fn rates(&self) -> Vec<Expr> {
+        let whole = self.name("_dot");
+        match self.joint.kind.0 {
+            JointKind::Spherical | JointKind::SphericalS3 => (1..=3)
+                .map(|index| Expr {
+                    span: whole.span,
+                    kind: ExprKind::Index(Box::new(whole.clone()), vec![self.number(index)]),
+                })
+                .collect(),
+            _ => vec![whole],
         }
     }
 }

@@ -1,0 +1,95 @@
+//! Generated systems evaluated at random states, for tests of descriptions.
+
+use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::model::layout::Block;
+use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::render::render;
+
+/// SplitMix64: the same numbers on every machine.
+#[derive(Clone)]
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number in ±1.
+    pub fn number(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Numbers in ±1.
+    pub fn numbers(&mut self, count: usize) -> Vec<f64> {
+        (0..count).map(|_| self.number()).collect()
+    }
+
+    /// One of the first few whole numbers.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.bits() % count as u64) as usize
+    }
+
+    /// A point of every block of x.
+    pub fn configuration(&mut self, blocks: &[Block]) -> Vec<f64> {
+        let mut x = Vec::new();
+        for block in blocks {
+            match block {
+                Block::Flat(n) => x.extend(self.numbers(*n)),
+                Block::Circle => {
+                    let (s, c) = (3.0 * self.number()).sin_cos();
+                    x.extend([c, s]);
+                }
+                Block::Quaternion => x.extend(self.quaternion()),
+                Block::Rotation => {
+                    let [w, a, b, c] = self.quaternion();
+                    x.extend([
+                        1.0 - 2.0 * (b * b + c * c),
+                        2.0 * (a * b - w * c),
+                        2.0 * (a * c + w * b),
+                        2.0 * (a * b + w * c),
+                        1.0 - 2.0 * (a * a + c * c),
+                        2.0 * (b * c - w * a),
+                        2.0 * (a * c - w * b),
+                        2.0 * (b * c + w * a),
+                        1.0 - 2.0 * (a * a + b * b),
+                    ]);
+                }
+            }
+        }
+        x
+    }
+
+    fn quaternion(&mut self) -> [f64; 4] {
+        let q: [f64; 4] = std::array::from_fn(|_| self.number());
+        let length = q.iter().map(|q| q * q).sum::<f64>().sqrt();
+        q.map(|q| q / length)
+    }
+}
+
+/// A description that is known to be right.
+pub fn generated(text: &str) -> Generated {
+    from_text(text).unwrap_or_else(|errors| panic!("{}", render(&errors, "test", text, false)))
+}
+
+/// The value of a function at (x, ξ, u, ξ̇), parameters at their defaults.
+pub fn value(of: &Generated, name: &str, [x, xi, u, dot]: [&[f64]; 4]) -> Vec<f64> {
+    let function = of.program.function(name).expect("it was asked for");
+    let compiled = Interpreter::new(&of.program, function, &of.program.defaults);
+    compiled
+        .call_with([x, xi, u, dot, &[]])
+        .unwrap_or_else(|guard| panic!("{name}: pivot {guard} is not positive"))
+}
+
+/// The largest difference of two lists, over the largest entry of the first (1 where that is less).
+pub fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let scale = a.iter().fold(1.0, |most: f64, a| most.max(a.abs()));
+    a.iter()
+        .zip(b)
+        .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs() / scale))
+}
