@@ -1,6 +1,7 @@
 //! `hamel check`: the identities behind a description's equations, proved or refuted.
 
 use crate::failure::{Failure, print};
+use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::Args;
 use hamel_codegen::derive::check::{Identity, Verdict, check};
@@ -26,9 +27,11 @@ use std::path::PathBuf;
     after_help = "Examples:\n  hamel check heavy_top.eom\n  hamel check models/*.eom && echo sound"
 )]
 pub struct Arguments {
-    /// Descriptions, `-` for standard input.
+    /// Descriptions, or robots in URDF; `-` for standard input.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 /// Checks every file; the failures of all of them are reported.
@@ -39,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let gap = if index > 0 { "\n" } else { "" };
             print(&format!("{gap}\x1b[1m{}\x1b[0m\n", path.display()))?;
         }
-        let checked = Source::read(path).and_then(|source| {
+        let checked = Source::open(path, &arguments.robot).and_then(|source| {
             let generated = source.derive_all()?;
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;

@@ -1,6 +1,7 @@
 //! `hamel emit`: the generated Rust.
 
 use crate::failure::{Failure, print, write};
+use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::Args;
 use hamel_codegen::builder;
@@ -15,7 +16,7 @@ use std::path::PathBuf;
   hamel emit heavy_top.eom -o src/heavy_top.rs      to a file
   hamel emit heavy_top.eom -o src/heavy_top.rs --check    in CI: is the file up to date?")]
 pub struct Arguments {
-    /// Description, `-` for standard input.
+    /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Where to write; standard output where it is left out.
@@ -24,15 +25,23 @@ pub struct Arguments {
     /// Write nothing; status 1 where OUT is not what would be written.
     #[arg(long, requires = "out")]
     check: bool,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 /// Emits, or compares.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::read(&arguments.file)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?;
     let name = arguments
         .file
         .file_name()
-        .map_or("-".into(), |name| name.to_string_lossy());
+        .map_or_else(|| "-".into(), PathBuf::from);
+    // A robot's description is written by `hamel import`, as its first lines say.
+    let name = match source.robot {
+        Some(_) => name.with_extension("eom"),
+        None => name,
+    };
+    let name = name.to_string_lossy();
     let code = builder::source(&source.text, &name).map_err(|errors| source.refused(&errors))?;
     let Some(out) = &arguments.out else {
         return print(&code);

@@ -81,6 +81,12 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Writes what does not end the command to standard error.
+pub fn warn(text: &str) {
+    // Where standard error is gone there is nobody to tell.
+    let _ = anstream::stderr().write_all(text.as_bytes());
+}
+
 /// Writes a file.
 pub fn write(path: &std::path::Path, text: &str) -> Result<(), Failure> {
     std::fs::write(path, text)

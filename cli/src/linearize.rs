@@ -6,6 +6,7 @@ use crate::interpreted::{Interpreted, constant_singular, function};
 use crate::json::Json;
 use crate::names;
 use crate::number::short;
+use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
@@ -27,7 +28,7 @@ const AT_REST: f64 = 1e-9;
   hamel linearize heavy_top.eom --at state.json
   hamel linearize heavy_top.eom --format json")]
 pub struct Arguments {
-    /// Description, `-` for standard input.
+    /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// State; see `hamel eval --help`.
@@ -36,6 +37,8 @@ pub struct Arguments {
     /// How to write the matrices.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -64,7 +67,7 @@ struct Linear {
 
 /// Linearises and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let generated = Source::read(&arguments.file)?.derive_linearized()?;
+    let generated = Source::open(&arguments.file, &arguments.robot)?.derive_linearized()?;
     let state = State::read(&generated.active, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;

@@ -2,9 +2,10 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `compare` | one subcommand each |
+//! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `compare`, `import` | one subcommand each |
 //! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
+//! | `robot` | robots in URDF as descriptions, and the options for them |
 //! | `state` | reading the numbers of a state |
 //! | `interpreted` | a described system that the integrators can run |
 //! | `method` | the methods by their names, and which systems they are for |
@@ -17,12 +18,14 @@ mod eigenvalues;
 mod emit;
 mod eval;
 mod failure;
+mod import;
 mod interpreted;
 mod json;
 mod linearize;
 mod method;
 mod names;
 mod ops;
+mod robot;
 mod simulate;
 mod source;
 mod state;
@@ -41,8 +44,9 @@ Examples:
   hamel simulate heavy_top.eom --until 10       a first run
   hamel compare heavy_top.eom --until 10        error of methods against what they cost
   hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
+  hamel import arm.urdf -o arm.eom              a robot in URDF as a description
 
-FILE may be `-`: the description is then read from standard input.
+FILE may be a robot in URDF, and `-`: it is then read from standard input.
 Exit status: 0 done, 1 a description or a check failed, 2 wrong usage or unreadable files.";
 
 /// Generates equations of motion in redundant coordinates and quasi-velocities.
@@ -63,6 +67,7 @@ enum Command {
     Linearize(linearize::Arguments),
     Simulate(simulate::Arguments),
     Compare(compare::Arguments),
+    Import(import::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -75,6 +80,7 @@ fn main() -> ExitCode {
         Command::Linearize(arguments) => linearize::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Import(arguments) => import::run(&arguments),
     };
     result.map_or_else(Failure::report, |()| ExitCode::SUCCESS)
 }

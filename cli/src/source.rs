@@ -1,9 +1,12 @@
 //! A description's file: reading and deriving it, with errors shown in its text.
 
 use crate::failure::Failure;
+use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
+use hamel_codegen::urdf;
+use hamel_codegen::{model, syntax};
 use std::io::Read;
 use std::path::Path;
 
@@ -11,8 +14,10 @@ use std::path::Path;
 pub struct Source {
     /// The path as given, or `<stdin>`.
     pub path: String,
-    /// The text.
+    /// The text of the description.
     pub text: String,
+    /// The robot that the description is made from, if it is.
+    pub robot: Option<Robot>,
 }
 
 impl Source {
@@ -36,7 +41,11 @@ impl Source {
         let bytes =
             bytes.map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))?;
         match String::from_utf8(bytes) {
-            Ok(text) => Ok(Source { path: name, text }),
+            Ok(text) => Ok(Source {
+                path: name,
+                text,
+                robot: None,
+            }),
             Err(error) => {
                 let place = error.utf8_error().valid_up_to();
                 Err(Failure::usage(format!(
@@ -44,6 +53,42 @@ impl Source {
                 )))
             }
         }
+    }
+
+    /// Reads a description, or a robot in URDF.
+    pub fn open(path: &Path, options: &RobotOptions) -> Result<Self, Failure> {
+        let source = Source::read(path)?;
+        if urdf::is_urdf(path) || source.text.trim_start().starts_with('<') {
+            return source.robot(options);
+        }
+        if options.given() {
+            return Err(Failure::usage(format!(
+                "{} is a description: --floating, --lock, --params, --mimic, --name and --rounding are for robots in URDF",
+                source.path
+            )));
+        }
+        Ok(source)
+    }
+
+    /// The text is a robot in URDF: it becomes a description.
+    pub fn robot(self, options: &RobotOptions) -> Result<Self, Failure> {
+        let robot = Robot::read(self.text, &self.path, options)?;
+        Ok(Source {
+            path: self.path,
+            text: robot.imported.text.clone(),
+            robot: Some(robot),
+        })
+    }
+
+    /// Derives these functions, whatever the description's `generate` says.
+    pub fn derive_only(&self, functions: &[&str]) -> Result<Generated, Failure> {
+        let model = syntax::parse_text(&self.text).and_then(|system| model::build(&system));
+        model
+            .and_then(|mut model| {
+                model.generate = functions.iter().map(|name| name.to_string()).collect();
+                Generated::of(model, 0)
+            })
+            .map_err(|errors| self.refused(&errors))
     }
 
     /// Derives the functions that the description asks for.
@@ -70,6 +115,9 @@ impl Source {
 
     /// The errors with their source underlined.
     pub fn refused(&self, errors: &[Diagnostic]) -> Failure {
-        Failure::Failed(render(errors, &self.path, &self.text, true))
+        Failure::Failed(match &self.robot {
+            Some(robot) => urdf::refused(errors, &robot.imported, &self.path, &robot.urdf, true),
+            None => render(errors, &self.path, &self.text, true),
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! `hamel tables`: the symbols of the formalism, as people read them.
 
 use crate::failure::{Failure, print};
+use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::tables::{self, Table};
@@ -20,7 +21,7 @@ use std::path::PathBuf;
 Tables: phi, A, Y, gamma, M, Gamma (these where --of is left out), accel, bias, potential_force,
 generalized_force, outputs, geometry.")]
 pub struct Arguments {
-    /// Description, `-` for standard input.
+    /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Which tables, a list with commas.
@@ -32,6 +33,8 @@ pub struct Arguments {
     /// Every entry on a row of its own, zeros too.
     #[arg(long)]
     all: bool,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -44,7 +47,7 @@ enum Format {
 
 /// Derives and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::read(&arguments.file)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?;
     let generated = source.derive_all()?;
     let tables = tables::tables(&generated, &arguments.of)
         .map_err(|why| Failure::failed(format!("{}: {why}", source.path)))?;

@@ -20,8 +20,18 @@ use std::path::{Path, PathBuf};
 /// Generates files in a build script.
 #[derive(Clone, Debug, Default)]
 pub struct Builder {
-    files: Vec<PathBuf>,
+    files: Vec<(PathBuf, Kind)>,
     out_dir: Option<PathBuf>,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug)]
+enum Kind {
+    /// A description.
+    Description,
+    /// A robot, and how it is read.
+    #[cfg(feature = "urdf")]
+    Urdf(crate::urdf::Options),
 }
 
 /// Why nothing, or not everything, was generated; shows every error with its place in the source.
@@ -48,9 +58,26 @@ impl Builder {
         Builder::default()
     }
 
-    /// Adds a description, by its path from the package's folder.
+    /// Adds a description, by its path from the package's folder. With the feature `urdf`, files
+    /// that end in `.urdf` are robots.
     pub fn file(mut self, path: impl Into<PathBuf>) -> Self {
-        self.files.push(path.into());
+        let path = path.into();
+        #[cfg(feature = "urdf")]
+        if crate::urdf::is_urdf(&path) {
+            return self.urdf(path, crate::urdf::Options::default());
+        }
+        self.files.push((path, Kind::Description));
+        self
+    }
+
+    /// Adds a robot in URDF with what its import decides; the name of the file stands in the
+    /// generated text.
+    #[cfg(feature = "urdf")]
+    pub fn urdf(mut self, path: impl Into<PathBuf>, options: crate::urdf::Options) -> Self {
+        let path = path.into();
+        let file = name(&path);
+        let options = crate::urdf::Options { file, ..options };
+        self.files.push((path, Kind::Urdf(options)));
         self
     }
 
@@ -60,7 +87,7 @@ impl Builder {
         self
     }
 
-    /// Generates `stem.rs` for every `stem.eom`. All files are read before anything is reported;
+    /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before anything is reported;
     /// files whose bytes would not change are not touched.
     pub fn generate(self) -> Result<(), BuildError> {
         let out_dir = match self
@@ -76,7 +103,7 @@ impl Builder {
         };
         let mut errors = Vec::new();
         let mut stems: BTreeMap<String, PathBuf> = BTreeMap::new();
-        for path in &self.files {
+        for (path, kind) in &self.files {
             println!("cargo:rerun-if-changed={}", path.display());
             let stem = path
                 .file_stem()
@@ -90,7 +117,7 @@ impl Builder {
                 ));
                 continue;
             }
-            if let Err(error) = generate_file(path, &out_dir.join(format!("{stem}.rs"))) {
+            if let Err(error) = generate_file(path, kind, &out_dir.join(format!("{stem}.rs"))) {
                 errors.push(error);
             }
         }
@@ -102,15 +129,32 @@ impl Builder {
     }
 }
 
-fn generate_file(path: &Path, target: &Path) -> Result<(), String> {
+fn name(path: &Path) -> String {
+    path.file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default()
+}
+
+fn generate_file(path: &Path, kind: &Kind, target: &Path) -> Result<(), String> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    let name = path
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default();
-    let code = source(&text, &name)
-        .map_err(|errors| render(&errors, &path.display().to_string(), &text, false))?;
+    let shown = path.display().to_string();
+    let code = match kind {
+        Kind::Description => {
+            source(&text, &name(path)).map_err(|errors| render(&errors, &shown, &text, false))
+        }
+        #[cfg(feature = "urdf")]
+        Kind::Urdf(options) => {
+            use crate::urdf::{import, refused, warnings};
+            let imported = import(&text, options, &shown, false)?;
+            for line in warnings(&imported, &shown, &text, false).lines() {
+                println!("cargo:warning={line}");
+            }
+            let description = name(&path.with_extension("eom"));
+            source(&imported.text, &description)
+                .map_err(|errors| refused(&errors, &imported, &shown, &text, false))
+        }
+    }?;
     if std::fs::read_to_string(target).is_ok_and(|known| known == code) {
         return Ok(());
     }

@@ -14,7 +14,7 @@
 //! | [`program`] | binding times, operation counts, interpretation |
 //! | [`emit`] | Rust text; no algebra |
 //! | [`tables`] | what people read |
-//! | [`generate`], [`expand()`], [`Builder`] | the doors |
+//! | [`generate`], [`expand()`], [`Builder`] | the doors; `urdf` with the feature of that name |
 
 pub mod algebra;
 #[cfg(feature = "files")]
@@ -29,6 +29,8 @@ pub mod program;
 pub mod render;
 pub mod syntax;
 pub mod tables;
+#[cfg(feature = "urdf")]
+pub mod urdf;
 
 #[cfg(feature = "files")]
 pub use builder::{BuildError, Builder};

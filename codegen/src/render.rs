@@ -39,13 +39,15 @@ fn compile_error(error: &Diagnostic) -> [TokenTree; 8] {
 
 #[cfg(feature = "files")]
 pub use text::render;
+#[cfg(feature = "urdf")]
+pub(crate) use text::{Level, Note, notes, span_bytes};
 
 #[cfg(feature = "files")]
 mod text {
     use std::ops::Range;
 
     use annotate_snippets::renderer::DecorStyle;
-    use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+    use annotate_snippets::{AnnotationKind, Group, Origin, Renderer, Snippet};
 
     use crate::diagnostics::Diagnostic;
     use crate::syntax::ast::Span;
@@ -54,12 +56,7 @@ mod text {
     ///
     /// `path` is how the file is named, `source` the text that was parsed; `color` adds terminal colours.
     pub fn render(errors: &[Diagnostic], path: &str, source: &str, color: bool) -> String {
-        let renderer = if color {
-            Renderer::styled()
-        } else {
-            Renderer::plain()
-        };
-        let renderer = renderer.decor_style(DecorStyle::Ascii);
+        let renderer = renderer(color);
         let mut placed: Vec<_> = errors
             .iter()
             .map(|error| (place(error.span, source), error))
@@ -80,39 +77,100 @@ mod text {
         rendered
     }
 
+    fn renderer(color: bool) -> Renderer {
+        let renderer = if color {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
+        };
+        renderer.decor_style(DecorStyle::Ascii)
+    }
+
+    /// Errors or warnings about a text that is no description.
+    #[cfg(feature = "urdf")]
+    #[derive(Clone, Copy, PartialEq, Eq)]
+    pub(crate) enum Level {
+        Error,
+        Warning,
+    }
+
+    /// One of them.
+    #[cfg(feature = "urdf")]
+    pub(crate) struct Note {
+        pub(crate) range: Range<usize>,
+        pub(crate) message: String,
+        pub(crate) help: Vec<String>,
+    }
+
+    /// The notes in the order of the text, underlined; errors with their number.
+    #[cfg(feature = "urdf")]
+    pub(crate) fn notes(
+        list: &[Note],
+        level: Level,
+        path: &str,
+        source: &str,
+        color: bool,
+    ) -> String {
+        let renderer = renderer(color);
+        let mut sorted: Vec<&Note> = list.iter().collect();
+        sorted.sort_by_key(|note| (note.range.start, note.range.end));
+        let mut rendered = String::new();
+        for note in sorted {
+            let title = match level {
+                Level::Error => annotate_snippets::Level::ERROR,
+                Level::Warning => annotate_snippets::Level::WARNING,
+            };
+            let places = vec![(AnnotationKind::Primary, note.range.clone(), "")];
+            let help = note.help.iter();
+            let help = help.map(|help| annotate_snippets::Level::HELP.message(help.as_str()));
+            let group = title
+                .primary_title(note.message.as_str())
+                .element(snippet(places, path, source))
+                .elements(help);
+            rendered.push_str(&renderer.render(&[group]));
+            rendered.push_str("\n\n");
+        }
+        if level == Level::Error {
+            let plural = if list.len() == 1 { "" } else { "s" };
+            rendered.push_str(&format!("{} error{plural}\n", list.len()));
+        }
+        rendered
+    }
+
     fn group<'a>(
         error: &'a Diagnostic,
         range: Option<Range<usize>>,
         path: &'a str,
         source: &'a str,
     ) -> Group<'a> {
-        let group = Level::ERROR.primary_title(error.message.as_str());
+        let group = annotate_snippets::Level::ERROR.primary_title(error.message.as_str());
         let mut messages = Vec::new();
-        let group = match range {
-            None => {
-                messages.extend(
-                    error
-                        .notes
-                        .iter()
-                        .map(|(_, label)| Level::NOTE.message(label.as_str())),
-                );
-                group.element(Origin::path(path).line(1).char_column(1))
-            }
-            Some(range) => {
-                let mut places = vec![(AnnotationKind::Primary, range, "")];
-                for (span, label) in &error.notes {
-                    match place(*span, source) {
-                        Some(range) => {
-                            places.push((AnnotationKind::Context, range, label.as_str()))
-                        }
-                        None => messages.push(Level::NOTE.message(label.as_str())),
-                    }
+        let group =
+            match range {
+                None => {
+                    messages.extend(
+                        error.notes.iter().map(|(_, label)| {
+                            annotate_snippets::Level::NOTE.message(label.as_str())
+                        }),
+                    );
+                    group.element(Origin::path(path).line(1).char_column(1))
                 }
-                group.element(snippet(places, path, source))
-            }
-        };
+                Some(range) => {
+                    let mut places = vec![(AnnotationKind::Primary, range, "")];
+                    for (span, label) in &error.notes {
+                        match place(*span, source) {
+                            Some(range) => {
+                                places.push((AnnotationKind::Context, range, label.as_str()))
+                            }
+                            None => messages
+                                .push(annotate_snippets::Level::NOTE.message(label.as_str())),
+                        }
+                    }
+                    group.element(snippet(places, path, source))
+                }
+            };
         if let Some(help) = &error.help {
-            messages.push(Level::HELP.message(help.as_str()));
+            messages.push(annotate_snippets::Level::HELP.message(help.as_str()));
         }
         group.elements(messages)
     }
@@ -162,6 +220,12 @@ mod text {
             .line_start(line)
             .path(path)
             .annotations(annotations)
+    }
+
+    /// The bytes of a region in a text.
+    #[cfg(feature = "urdf")]
+    pub(crate) fn span_bytes(span: Span, source: &str) -> Option<Range<usize>> {
+        place(span, source)
     }
 
     /// The bytes of a region, `None` where its tokens have no place in a text.

@@ -137,9 +137,19 @@ fn runtime_and_generator_never_meet() {
 }
 
 #[test]
+fn the_import_knows_no_generator() {
+    let manifest = fs::read_to_string(root().join("urdf/Cargo.toml")).expect("a manifest");
+    assert!(!manifest.contains("hamel-codegen"));
+    // The macro must not pull a parser of XML into its users' builds.
+    let manifest = fs::read_to_string(root().join("macros/Cargo.toml")).expect("a manifest");
+    assert!(!manifest.contains("urdf"));
+}
+
+#[test]
 fn no_file_hides_two_ideas() {
     for folder in [
         "codegen/src",
+        "urdf/src",
         "macros/src",
         "runtime/src",
         "report/src",

@@ -5,8 +5,9 @@ use crate::problem::Problems;
 use crate::read::{Inertial, Kind, Robot};
 use crate::tree::Tree;
 
-/// Principal moments below this part of the largest are roundings of 0: printed inertias have a few digits.
-const ROUNDING: f64 = 1e-9;
+/// A part of the largest moment that says nothing: the cosines below lose half of the digits where
+/// moments are equal, and printed inertias have no more.
+const ROUNDING: f64 = 1e-6;
 
 /// Refuses what moves without mass, and warns of inertias that no body has.
 pub(crate) fn check(

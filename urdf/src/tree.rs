@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 pub(crate) struct Tree {
     /// The link that no joint moves.
     pub(crate) root: usize,
-    /// The joints, parents first, each branch to its end, in the order of the file; with the
-    /// indices of the links that they join, parent and child.
+    /// The joints, parents first, each branch to its end, those on one link in the order of their
+    /// names, as in programs that build on `urdfdom`: rows of matrices are in one order then.
     pub(crate) joints: Vec<Edge>,
 }
 
@@ -108,8 +108,9 @@ pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
     while let Some(link) = open.pop() {
         reached[link] = true;
         order.extend(edges.iter().filter(|edge| edge.child == link));
-        let children = edges.iter().rev().filter(|edge| edge.parent == link);
-        open.extend(children.map(|edge| edge.child));
+        let mut children: Vec<&Edge> = edges.iter().filter(|edge| edge.parent == link).collect();
+        children.sort_by_key(|edge| &robot.joints[edge.joint].name.name);
+        open.extend(children.iter().rev().map(|edge| edge.child));
     }
     if roots.len() == 1
         && let Some(edge) = edges.iter().find(|edge| !reached[edge.child])
@@ -170,7 +171,7 @@ pub(crate) fn near<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Opti
     let most = name.chars().count().div_ceil(3);
     known
         .map(|other| (strsim::damerau_levenshtein(name, other), other))
-        .filter(|(distance, _)| *distance <= most)
+        .filter(|(distance, other)| *distance <= most && *distance < other.chars().count())
         .min()
         .map(|(_, other)| other)
 }

@@ -6,6 +6,7 @@ mod write;
 use crate::failure::{Failure, print};
 use crate::interpreted::{Interpreted, constant_singular};
 use crate::method::{self, Named};
+use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
@@ -49,7 +50,7 @@ A reference solution is JSON: {\"initial\": {\"R\": [[…]], \"omega\": […]}, 
 Fields are matched with coordinates and velocities by name (omega also with w); the start of those is
 taken from it, everything else from the description or --at.")]
 pub struct Arguments {
-    /// Descriptions.
+    /// Descriptions, or robots in URDF.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Methods, see `hamel simulate --help`; all that fit where it is left out.
@@ -73,6 +74,8 @@ pub struct Arguments {
     /// What is printed.
     #[arg(long, value_enum, default_value = "markdown")]
     format: Format,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 /// What is printed.
@@ -127,7 +130,7 @@ fn compare(
     arguments: &Arguments,
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
-    let generated = Source::read(file)?.derive_all()?;
+    let generated = Source::open(file, &arguments.robot)?.derive_all()?;
     let mut state = State::read(&generated.active, arguments.at.as_deref())?;
     let fields = solution
         .map(|solution| Fields::of(solution, &generated.program))

@@ -4,6 +4,7 @@ mod advice;
 
 use crate::failure::{Failure, print};
 use crate::json::Json;
+use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::algebra::graph::{Edge, Function as Elementary, Graph, Node};
@@ -22,7 +23,7 @@ use std::path::PathBuf;
     after_help = "Examples:\n  hamel ops heavy_top.eom\n  hamel ops heavy_top.eom --format json\n  hamel ops heavy_top.eom --advise"
 )]
 pub struct Arguments {
-    /// Description, `-` for standard input.
+    /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// How to write the counts.
@@ -32,6 +33,8 @@ pub struct Arguments {
     /// angles absolute or relative; the cheapest first, with the statements to write.
     #[arg(long)]
     advise: bool,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -53,7 +56,7 @@ struct Row {
 
 /// Counts and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::read(&arguments.file)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?;
     let mut generated = source.derive()?;
     if arguments.advise {
         return advice::run(

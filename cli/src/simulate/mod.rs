@@ -9,6 +9,7 @@ mod write;
 use crate::failure::{Failure, print};
 use crate::interpreted::{Interpreted, constant_singular};
 use crate::method::{self, Chosen, Stepper};
+use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
 use clap::Args;
@@ -45,7 +46,7 @@ const TOLERANCE: f64 = 1e-9;
   hamel simulate heavy_top.eom --until 10 --method rk4 --lambda 5
   hamel simulate heavy_top.eom --until 10 --at state.json", after_long_help = method::described())]
 pub struct Arguments {
-    /// Description, `-` for standard input.
+    /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Length of the run, in the unit of time of the description (s).
@@ -76,6 +77,8 @@ pub struct Arguments {
     /// with Poinsot's construction.
     #[arg(long, value_name = "F.svg")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 /// Runs and reports.
@@ -96,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "description and state cannot both be read from standard input",
         ));
     }
-    let generated = Source::read(&arguments.file)?.derive_all()?;
+    let generated = Source::open(&arguments.file, &arguments.robot)?.derive_all()?;
     let state = State::read(&generated.active, arguments.at.as_deref())?;
     if constant_singular(&generated.program, &state.params) {
         let message = "the mass matrix is not positive definite with these parameters";

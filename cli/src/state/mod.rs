@@ -3,7 +3,9 @@
 //! `{"param": {…}, "coord": {…}, "velocity": {…}, "input": {…}}`, all optional. Every mistake is
 //! reported with its path in the file, all at once.
 
+pub mod joints;
 mod read;
+pub mod sample;
 #[cfg(test)]
 mod tests;
 
@@ -70,7 +72,7 @@ impl State {
     }
 
     /// Where x leaves the configuration manifold.
-    fn violations(&self, model: &Model) -> Vec<String> {
+    pub(super) fn violations(&self, model: &Model) -> Vec<String> {
         let numbers = model.numbers(
             &self.params,
             &self.x,

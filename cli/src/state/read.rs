@@ -86,7 +86,7 @@ impl Reader {
     }
 
     /// An object with one member for each name, or fewer.
-    fn part<'a>(
+    pub(super) fn part<'a>(
         &mut self,
         parts: &'a Map<String, Value>,
         part: &str,
@@ -105,7 +105,7 @@ impl Reader {
     }
 
     /// Reports members that have no such name.
-    fn known(&mut self, at: &str, given: &Map<String, Value>, names: &[&str]) {
+    pub(super) fn known(&mut self, at: &str, given: &Map<String, Value>, names: &[&str]) {
         for name in given.keys().filter(|name| !names.contains(&name.as_str())) {
             let path = if at.is_empty() {
                 name.clone()
@@ -199,7 +199,7 @@ impl Reader {
         }
     }
 
-    fn matrix(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn matrix(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<Vec<f64>>> {
         let rows = self.list(
             at,
             value,
@@ -214,7 +214,7 @@ impl Reader {
         rows.into_iter().collect()
     }
 
-    fn vector(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<f64>> {
+    pub(super) fn vector(&mut self, at: &str, value: &Value, n: usize) -> Option<Vec<f64>> {
         let list = self.list(at, value, n, &format!("a list of {n} numbers"))?;
         let numbers: Vec<_> = list
             .iter()
@@ -242,7 +242,7 @@ impl Reader {
         None
     }
 
-    fn number(&mut self, at: &str, value: &Value) -> Option<f64> {
+    pub(super) fn number(&mut self, at: &str, value: &Value) -> Option<f64> {
         match value.as_f64() {
             Some(number) if number.is_finite() => return Some(number),
             Some(_) => self.error(at, "the number is not finite".into()),
@@ -251,7 +251,7 @@ impl Reader {
         None
     }
 
-    fn error(&mut self, at: &str, message: String) {
+    pub(super) fn error(&mut self, at: &str, message: String) {
         self.errors.push(if at.is_empty() {
             message
         } else {
@@ -261,7 +261,7 @@ impl Reader {
 }
 
 /// A JSON value in words.
-fn kind(value: &Value) -> &'static str {
+pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
         Value::Bool(_) => "a truth value",

@@ -124,6 +124,17 @@ pub(crate) struct Read {
     pub(crate) cleaned: Vec<Cleaned>,
 }
 
+const XACRO: &str = "this is a xacro file, whose macros are not part of URDF";
+const EXPAND: &str = "expand them first: `xacro FILE > robot.urdf`";
+
+/// Whether what is not well-formed is a macro without its namespace.
+fn is_xacro(text: &str, range: &Range<usize>) -> bool {
+    let rest = text.get(range.start..).unwrap_or("");
+    ["xacro:", "<xacro:"]
+        .iter()
+        .any(|start| rest.starts_with(start))
+}
+
 /// Reads the file; `None` where there is no robot in it. Parts with errors are left out.
 pub(crate) fn robot<'t>(
     text: &str,
@@ -131,19 +142,12 @@ pub(crate) fn robot<'t>(
     errors: &mut Problems<'t>,
     warnings: &mut Problems<'t>,
 ) -> Option<Read> {
-    if text.contains("<xacro:")
-        || text.contains("http://www.ros.org/wiki/xacro") && text.contains("${")
-    {
-        let at = text.find("<xacro:").unwrap_or(0);
-        errors.push(
-            &(at..at + usize::from(!text.is_empty())),
-            "this is a xacro file, whose macros are not part of URDF",
-            "expand them first: `xacro FILE > robot.urdf`",
-        );
-        return None;
-    }
     let document = match xml::parse(text) {
         Ok(document) => document,
+        Err((range, _)) if is_xacro(text, &range) => {
+            errors.push(&range, XACRO, EXPAND);
+            return None;
+        }
         Err((range, message)) => {
             errors.push(
                 &range,
@@ -154,6 +158,14 @@ pub(crate) fn robot<'t>(
         }
     };
     let root = document.root_element();
+    let macros = document.descendants().find(|node| {
+        let space = node.tag_name().namespace();
+        space.is_some_and(|space| space.contains("xacro"))
+    });
+    if let Some(node) = macros {
+        errors.push(&xml::tag(text, &node), XACRO, EXPAND);
+        return None;
+    }
     if root.tag_name().name() != "robot" {
         errors.push(
             &xml::tag(text, &root),

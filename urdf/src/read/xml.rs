@@ -146,7 +146,10 @@ impl<'a> Reader<'a, '_, '_> {
             self.errors.push(
                 range,
                 format!("`{written}` is not a number"),
-                "numbers are finite decimals, as in `0.25` or `1e-3`",
+                match written.contains("${") {
+                    true => "this is a property of xacro: expand the file first, `xacro FILE > robot.urdf`",
+                    false => "numbers are finite decimals, as in `0.25` or `1e-3`",
+                },
             );
         }
         number

@@ -53,7 +53,11 @@ impl Writer<'_> {
             command.push_str(" --floating");
         }
         for (joint, value) in &options.locks {
-            command.push_str(&format!(" --lock {}={}", plain(joint), plain(value)));
+            let lock = format!("{}={}", plain(joint), plain(value));
+            match lock.contains(' ') {
+                true => command.push_str(&format!(" --lock '{lock}'")),
+                false => command.push_str(&format!(" --lock {lock}")),
+            }
         }
         if options.params {
             command.push_str(" --params");

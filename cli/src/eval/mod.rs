@@ -1,11 +1,16 @@
 //! `hamel eval`: numbers of everything at a state.
 
+mod sample;
+
 use crate::failure::{Failure, print};
 use crate::interpreted::{Interpreted, constant_singular, function};
 use crate::json::Json;
 use crate::names;
+use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
+use crate::state::joints::{joints, rows};
+use crate::state::sample::is_sample;
 use clap::Args;
 use hamel::System;
 use hamel_codegen::algebra::graph::Edge;
@@ -20,26 +25,48 @@ use std::path::PathBuf;
 /// The state is the description's start with default parameters and zero input, changed by what
 /// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…}, "input": {…}}.
 /// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
+/// Velocities of joints are known by the joint's name, too.
 /// Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk.
+///
+/// STATE.json may also be about joints: {"configuration": {"elbow": 0.3, "root_joint": {"position": […],
+/// "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […], "angular": […]}},
+/// "force": […]}, angles in rad, forces by joint or in the order of the rows. Then `velocities` names
+/// each row by its joint, `bias` is Γ ξ ξ + ∂V, gravity in it, and `accel` is M⁻¹ (force − bias): force is
+/// all of the generalised force, friction in it.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel eval heavy_top.eom
   hamel eval heavy_top.eom --at state.json
+  hamel eval quadruped.urdf --floating --at sample.json
   echo '{\"velocity\": {\"w\": [0, 0, 9]}}' | hamel eval heavy_top.eom --at -")]
 pub struct Arguments {
-    /// Description, `-` for standard input.
+    /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// State, `-` for standard input.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 /// Evaluates and prints; where something has no value it is `null`, and the command fails.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::read(&arguments.file)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let at = arguments.at.as_deref().map(Source::read).transpose()?;
+    // What is no JSON is refused below, with its place.
+    if let Some(at) = &at
+        && let Ok(json) = serde_json::from_str(&at.text)
+        && is_sample(&json)
+    {
+        return sample::run(&source, &json, &at.path);
+    }
     let generated = source.derive_all()?;
-    let state = State::read(&generated.active, arguments.at.as_deref())?;
+    let state = match &at {
+        Some(at) => State::parse(&generated.active, &at.text)
+            .map_err(|errors| Failure::usages(&at.path, &errors))?,
+        None => State::start(&generated.active),
+    };
     let mut members = vec![
         ("system", Json::Text(generated.model.name.clone())),
         (
@@ -54,6 +81,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ("x", Json::vector(&state.x)),
         ("xi", Json::vector(&state.xi)),
     ];
+    // Rows by joint, where there are any.
+    let known = joints(&generated.active, &[]);
+    if !known.is_empty() {
+        let rows = rows(&generated.active, &known);
+        members.push(("joints", Json::texts(&rows)));
+    }
     members.extend(geometry(&generated, &state)?);
     let mut missing: Vec<String> = Vec::new();
     members.extend(motion(&generated, &state, &mut missing)?);

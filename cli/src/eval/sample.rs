@@ -1,0 +1,221 @@
+//! Numbers at a state that is given by joints: what other programs call M, bias and acceleration.
+
+use super::finite;
+use crate::failure::{Failure, print};
+use crate::interpreted::{constant_singular, function};
+use crate::json::Json;
+use crate::names;
+use crate::source::Source;
+use crate::state::joints::rows;
+use crate::state::sample::{ORDER, Sample};
+use hamel_codegen::generate::Generated;
+use nalgebra::{DMatrix, DVector};
+use serde_json::Value;
+
+/// All that is evaluated; nothing else is derived.
+const FUNCTIONS: [&str; 8] = [
+    "rate",
+    "accel",
+    "mass_matrix",
+    "bias",
+    "potential_force",
+    "generalized_force",
+    "kinetic_energy",
+    "potential_energy",
+];
+/// Inputs reach a force when they miss it by no more than this part of it.
+const REACHED: f64 = 1e-9;
+
+/// Evaluates and prints one state, or each of a list `samples`.
+///
+/// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
+/// friction and other loads of the description are part of it, not added to it. Without a force
+/// the loads of the description act, with zero input.
+pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
+    let generated = source.derive_only(&FUNCTIONS)?;
+    let model = &generated.active;
+    let joints: &[(String, String)] = match &source.robot {
+        Some(robot) => &robot.imported.joints,
+        None => &[],
+    };
+    let (list, several) = match json.get("samples") {
+        Some(Value::Array(list)) => (list.as_slice(), true),
+        _ => (std::slice::from_ref(json), false),
+    };
+    // What is said once about all of them.
+    let order = json.get(ORDER).filter(|_| several);
+    let mut errors = Vec::new();
+    let mut samples = Vec::new();
+    for (index, one) in list.iter().enumerate() {
+        match Sample::parse(one, order, model, joints) {
+            Ok(sample) => samples.push(sample),
+            Err(found) if several => {
+                errors.extend(
+                    found
+                        .iter()
+                        .map(|error| format!("samples[{index}].{error}")),
+                );
+            }
+            Err(found) => errors.extend(found),
+        }
+    }
+    if !errors.is_empty() {
+        return Err(Failure::usages(path, &errors));
+    }
+    let mut failed = Vec::new();
+    let mut written = Vec::new();
+    for (index, sample) in samples.iter().enumerate() {
+        let (members, missing) = members(&generated, sample)?;
+        let place = match several {
+            true => format!("samples[{index}]: "),
+            false => String::new(),
+        };
+        failed.extend(missing.into_iter().map(|why| format!("{place}{why}")));
+        written.push(Json::object(members));
+    }
+    let output = match written.pop() {
+        Some(only) if !several => only,
+        last => {
+            written.extend(last);
+            Json::object([("samples", Json::List(written))])
+        }
+    };
+    print(&output.pretty())?;
+    match failed.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::failed(format!(
+            "{}: {}",
+            source.path,
+            failed.join("; ")
+        ))),
+    }
+}
+
+/// What is printed of a state, and what has no value there.
+type Members = (Vec<(&'static str, Json)>, Vec<String>);
+
+fn members(generated: &Generated, sample: &Sample) -> Result<Members, Failure> {
+    let model = &generated.active;
+    let state = &sample.state;
+    let call = |name: &str| -> Result<Vec<f64>, Failure> {
+        let value = function(&generated.program, name, &state.params)?;
+        Ok(value
+            .call(&state.x, &state.xi, &state.u, &[])
+            .unwrap_or_default())
+    };
+    let n = state.xi.len();
+    let mass = DMatrix::from_row_slice(n, n, &square(call("mass_matrix")?, n)?);
+    let slope = call("potential_force")?;
+    let bias: Vec<f64> = call("bias")?
+        .iter()
+        .zip(&slope)
+        .map(|(a, b)| a + b)
+        .collect();
+    let accel = accel(generated, sample, &mass)?;
+    let rows_of_mass: Vec<Vec<f64>> = mass
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect();
+    let number = |values: Vec<f64>| Json::Number(values.first().copied().unwrap_or(f64::NAN));
+    let members = vec![
+        ("system", Json::Text(generated.model.name.clone())),
+        ("coordinates", Json::texts(&names::coordinates(model))),
+        ("velocities", Json::texts(&rows(model, &sample.joints))),
+        ("x", Json::vector(&state.x)),
+        ("xi", Json::vector(&state.xi)),
+        ("M", Json::matrix(&rows_of_mass)),
+        ("bias", Json::vector(&bias)),
+        ("potential_force", Json::vector(&slope)),
+        ("generalized_force", Json::vector(&accel.force)),
+        ("rate", Json::vector(&call("rate")?)),
+        (
+            "accel",
+            accel.value.as_deref().map_or(Json::Null, Json::vector),
+        ),
+        ("kinetic_energy", number(call("kinetic_energy")?)),
+        ("potential_energy", number(call("potential_energy")?)),
+    ];
+    let mut missing = Vec::new();
+    if accel.value.is_none() {
+        missing.push("the mass matrix is not positive definite, `accel` has no value".to_string());
+    }
+    let infinite = members.iter().filter(|(_, value)| !finite(value));
+    let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
+    if !infinite.is_empty() {
+        missing.push(format!("not finite at this state: {}", infinite.join(", ")));
+    }
+    Ok((members, missing))
+}
+
+/// ξ̇ with the force that causes it.
+struct Accel {
+    value: Option<Vec<f64>>,
+    force: Vec<f64>,
+}
+
+fn accel(generated: &Generated, sample: &Sample, mass: &DMatrix<f64>) -> Result<Accel, Failure> {
+    let state = &sample.state;
+    let program = &generated.program;
+    let forward = function(program, "accel", &state.params)?;
+    let loads = function(program, "generalized_force", &state.params)?;
+    let loads = |u: &[f64]| {
+        let value = loads.call(&state.x, &state.xi, u, &[]);
+        DVector::from_vec(value.unwrap_or_default())
+    };
+    let singular = constant_singular(program, &state.params);
+    let accel = |u: &[f64]| match singular {
+        true => None,
+        false => forward.call(&state.x, &state.xi, u, &[]).ok(),
+    };
+    let own = loads(&state.u);
+    let Some(force) = &sample.force else {
+        return Ok(Accel {
+            value: accel(&state.u),
+            force: own.as_slice().to_vec(),
+        });
+    };
+    // Loads are affine in the inputs: those that make the force, if there are any.
+    let wanted = DVector::from_column_slice(force);
+    let missing = &wanted - &own;
+    let columns: Vec<DVector<f64>> = (0..state.u.len())
+        .map(|index| {
+            let mut u = state.u.clone();
+            u[index] = 1.0;
+            loads(&u) - &own
+        })
+        .collect();
+    let inputs = match columns.is_empty() {
+        true => None,
+        false => {
+            let reach = DMatrix::from_columns(&columns);
+            let solved = reach.clone().svd(true, true).solve(&missing, f64::EPSILON);
+            solved.ok().filter(|u| {
+                let short = (&reach * u - &missing).norm();
+                short <= REACHED * (wanted.norm() + own.norm())
+            })
+        }
+    };
+    let value = match inputs {
+        Some(inputs) => accel(inputs.as_slice()),
+        // No motor makes this force: M ξ̇ = M ξ̇₀ + what is missing.
+        None => accel(&state.u).and_then(|start| {
+            let more = mass.clone().cholesky()?.solve(&missing);
+            Some((DVector::from_vec(start) + more).as_slice().to_vec())
+        }),
+    };
+    Ok(Accel {
+        value,
+        force: force.clone(),
+    })
+}
+
+/// Entries of an n × n matrix.
+fn square(entries: Vec<f64>, n: usize) -> Result<Vec<f64>, Failure> {
+    if entries.len() == n * n {
+        Ok(entries)
+    } else {
+        Err(Failure::failed(
+            "the mass matrix has no value at this state",
+        ))
+    }
+}

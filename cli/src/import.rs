@@ -1,0 +1,51 @@
+//! `hamel import`: a robot in URDF as a description.
+
+use crate::failure::{Failure, print, warn, write};
+use crate::robot::RobotOptions;
+use crate::source::Source;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Writes a robot in URDF as a description.
+///
+/// One `joint` for each joint and one `body` for each link with mass, in the order of the tree;
+/// the joints on one link in the order of their names. Inertias are exact constants unless
+/// --params. Every joint gets an input, its motor's torque or force. Limits stand as documented
+/// constants; Coulomb friction is mentioned, and not modelled. What is taken for a rounding is
+/// listed on standard error.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel import arm.urdf -o arm.eom
+  hamel import quadruped.urdf --floating -o quadruped.eom
+  hamel import arm.urdf --lock finger_joint1=0.04 --lock finger_joint2=0.04
+  hamel import arm.urdf --params -o arm.eom
+
+The other commands take the file, too:
+  hamel ops quadruped.urdf --floating")]
+pub struct Arguments {
+    /// Robot, `-` for standard input.
+    #[arg(value_name = "ROBOT.urdf")]
+    file: PathBuf,
+    /// Where to write; standard output where it is left out.
+    #[arg(short, long, value_name = "F.eom")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    robot: RobotOptions,
+}
+
+/// Imports and writes.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Source::read(&arguments.file)?.robot(&arguments.robot)?;
+    let cleaned = source
+        .robot
+        .iter()
+        .flat_map(|robot| &robot.imported.cleaned);
+    let cleaned: String = cleaned
+        .map(|change| format!("{}: {change}\n", source.path))
+        .collect();
+    warn(&cleaned);
+    match &arguments.out {
+        Some(out) => write(out, &source.text),
+        None => print(&source.text),
+    }
+}

@@ -1,0 +1,102 @@
+//! Options for robots in URDF, which every command takes that takes descriptions.
+
+use crate::failure::Failure;
+use clap::{Args, ValueEnum};
+use hamel_codegen::urdf::{self, Imported, Options, TOLERANCE};
+use std::path::Path;
+
+/// How a robot in URDF is read.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Robots in URDF")]
+pub struct RobotOptions {
+    /// The base moves freely: `root_joint`, position and rotation, with its twist in body axes.
+    #[arg(long)]
+    floating: bool,
+    /// A joint that does not move, with its angle (rad) or length (m); once for each joint.
+    #[arg(long = "lock", value_name = "JOINT=VALUE", value_parser = lock)]
+    locks: Vec<(String, String)>,
+    /// Masses, centres of mass and inertias are run-time parameters, not exact constants.
+    #[arg(long)]
+    params: bool,
+    /// How joints move that mimic another one.
+    #[arg(long, value_enum, value_name = "HOW")]
+    mimic: Option<Mimic>,
+    /// Name of the system; the robot's where it is left out.
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Angles this near to a multiple of π/2 (rad) are that multiple, and entries this small beside
+    /// the largest of their vector or matrix are 0; 1e-9 where it is left out, 0 keeps every digit.
+    #[arg(long, value_name = "TOL", value_parser = tolerance)]
+    rounding: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Mimic {
+    /// As the joint that they mimic.
+    Follow,
+    /// By themselves.
+    Free,
+}
+
+fn lock(text: &str) -> Result<(String, String), String> {
+    let (joint, value) = text
+        .rsplit_once('=')
+        .ok_or("write JOINT=VALUE, as in `--lock finger_joint=0.04`")?;
+    Ok((joint.to_string(), value.to_string()))
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let tolerance: f64 = text.parse().map_err(|_| "not a number".to_string())?;
+    if (0.0..=0.1).contains(&tolerance) {
+        Ok(tolerance)
+    } else {
+        Err("not between 0 and 0.1".into())
+    }
+}
+
+impl RobotOptions {
+    /// Whether anything was asked for.
+    pub fn given(&self) -> bool {
+        self.floating
+            || !self.locks.is_empty()
+            || self.params
+            || self.mimic.is_some()
+            || self.name.is_some()
+            || self.rounding.is_some()
+    }
+
+    /// The same for an import.
+    fn options(&self, path: &str) -> Options {
+        let file = Path::new(path).file_name();
+        Options {
+            file: file.map_or_else(|| path.to_string(), |file| file.to_string_lossy().into()),
+            name: self.name.clone(),
+            floating: self.floating,
+            locks: self.locks.clone(),
+            params: self.params,
+            mimic: match self.mimic {
+                Some(Mimic::Free) => urdf::Mimic::Free,
+                Some(Mimic::Follow) | None => urdf::Mimic::Follow,
+            },
+            tolerance: self.rounding.unwrap_or(TOLERANCE),
+        }
+    }
+}
+
+/// A robot, with the text that it was read from.
+pub struct Robot {
+    /// The URDF.
+    pub urdf: String,
+    /// What was made of it.
+    pub imported: Imported,
+}
+
+impl Robot {
+    /// Reads a URDF text; warnings go to standard error.
+    pub fn read(urdf: String, path: &str, options: &RobotOptions) -> Result<Self, Failure> {
+        let imported =
+            urdf::import(&urdf, &options.options(path), path, true).map_err(Failure::Failed)?;
+        crate::failure::warn(&urdf::warnings(&imported, path, &urdf, true));
+        Ok(Robot { urdf, imported })
+    }
+}

@@ -1,0 +1,119 @@
+//! Coordinates and velocities of one name: what files of joint angles are about.
+//!
+//! | velocity | coordinate | as a joint |
+//! |---|---|---|
+//! | `j_dot` | `j` | an angle or a length |
+//! | `j_dot` | `j: S1` | an angle |
+//! | `j_dot: vec2` and so on | `j: R2` | a list |
+//! | `j_dot: vec3` | `j: SO3` or `S3` | a rotation |
+//! | `j_v: vec3`, `j_w: vec3` | `j_r: R3`, `j_R: SO3` | a free body, `j` |
+//!
+//! `joint` statements declare these names; coordinates that are declared one by one count as well.
+
+use crate::names;
+use hamel_codegen::model::{Coordinate, Group, Model};
+use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
+
+/// What a joint's coordinates are, with their places in x.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Numbers as they are.
+    Plain(usize),
+    /// Cosine and sine.
+    Circle(usize),
+    /// A unit quaternion.
+    Quaternion(usize),
+    /// A rotation matrix.
+    Rotation(usize),
+    /// Position and rotation matrix.
+    Free(usize, usize),
+}
+
+/// A joint.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Its name, that of the robot's file where there is one.
+    pub name: String,
+    /// Its coordinates.
+    pub place: Place,
+    /// The place of its velocities in ξ, and their number.
+    pub velocities: (usize, usize),
+}
+
+/// The joints of a model in the order of their velocities; `names` are pairs of a joint's name in
+/// the robot's file and in the description.
+pub fn joints(model: &Model, names: &[(String, String)]) -> Vec<Joint> {
+    let mut joints = Vec::new();
+    let mut groups = model.velocities.iter().peekable();
+    while let Some(group) = groups.next() {
+        let found = match groups.peek() {
+            Some(next) => free(model, group, next),
+            None => None,
+        };
+        let found = found
+            .inspect(|_| {
+                groups.next();
+            })
+            .or_else(|| single(model, group));
+        if let Some((own, place, velocities)) = found {
+            let written = names.iter().find(|(_, name)| *name == own);
+            joints.push(Joint {
+                name: written.map_or(own, |(written, _)| written.clone()),
+                place,
+                velocities,
+            });
+        }
+    }
+    joints
+}
+
+/// Each row of M by its joint's name; velocities of no joint by their own.
+pub fn rows(model: &Model, joints: &[Joint]) -> Vec<String> {
+    let mut rows = names::velocities(model);
+    for joint in joints {
+        let (first, count) = joint.velocities;
+        for row in rows.iter_mut().skip(first).take(count) {
+            row.clone_from(&joint.name);
+        }
+    }
+    rows
+}
+
+type Found = (String, Place, (usize, usize));
+
+fn coordinate<'a>(model: &'a Model, name: &str) -> Option<&'a Coordinate> {
+    model
+        .coordinates
+        .iter()
+        .find(|coordinate| coordinate.name == name)
+}
+
+fn free(model: &Model, first: &Group, second: &Group) -> Option<Found> {
+    let name = first.name.strip_suffix("_v")?;
+    let twist = second.name.strip_suffix("_w")? == name
+        && [first, second]
+            .iter()
+            .all(|group| group.shape == ShapeKind::Vector(3));
+    let position = coordinate(model, &format!("{name}_r"))?;
+    let rotation = coordinate(model, &format!("{name}_R"))?;
+    let pose = position.kind == CoordKind::Euclidean(3) && rotation.kind == CoordKind::SO3;
+    (twist && pose).then(|| {
+        let place = Place::Free(position.offset, rotation.offset);
+        (name.to_string(), place, (first.offset, 6))
+    })
+}
+
+fn single(model: &Model, group: &Group) -> Option<Found> {
+    let name = group.name.strip_suffix("_dot")?;
+    let found = coordinate(model, name)?;
+    let at = found.offset;
+    let place = match (found.kind, group.shape) {
+        (CoordKind::Real, ShapeKind::Scalar) => Place::Plain(at),
+        (CoordKind::S1, ShapeKind::Scalar) => Place::Circle(at),
+        (CoordKind::Euclidean(n), ShapeKind::Vector(m)) if n == m => Place::Plain(at),
+        (CoordKind::S3, ShapeKind::Vector(3)) => Place::Quaternion(at),
+        (CoordKind::SO3, ShapeKind::Vector(3)) => Place::Rotation(at),
+        _ => return None,
+    };
+    Some((name.to_string(), place, (group.offset, group.len)))
+}

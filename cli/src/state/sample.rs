@@ -1,0 +1,259 @@
+//! States by the names of joints: `{"configuration": {…}, "velocity": {…}, "force": […]}`.
+
+use super::State;
+use super::joints::{Joint, Place, joints};
+use super::read::{Reader, kind};
+use hamel_codegen::model::Model;
+use serde_json::{Map, Value};
+
+/// What a sample can have, and what is read of it.
+const READ: [&str; 3] = ["configuration", "velocity", "force"];
+/// Results that stand beside them in files of reference values.
+const RESULTS: [&str; 6] = [
+    "mass_matrix",
+    "bias",
+    "gravity_force",
+    "acceleration",
+    "kinetic_energy",
+    "potential_energy",
+];
+/// Order of a list of forces, by joint.
+pub const ORDER: &str = "velocity_order";
+
+/// A state with the generalised force that acts on it.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The state; its inputs are zero.
+    pub state: State,
+    /// Its joints.
+    pub joints: Vec<Joint>,
+    /// The whole generalised force, in the order of ξ; what the description says where it is `None`.
+    pub force: Option<Vec<f64>>,
+}
+
+/// Whether a file is about joints.
+pub fn is_sample(json: &Value) -> bool {
+    let Value::Object(parts) = json else {
+        return false;
+    };
+    ["configuration", "force", "samples"]
+        .iter()
+        .any(|part| parts.contains_key(*part))
+}
+
+impl Sample {
+    /// Reads a sample; all mistakes at once. `order` is that of lists of forces, where the sample
+    /// does not say one.
+    pub fn parse(
+        json: &Value,
+        order: Option<&Value>,
+        model: &Model,
+        names: &[(String, String)],
+    ) -> Result<Self, Vec<String>> {
+        let mut sample = Sample {
+            state: State::start(model),
+            joints: joints(model, names),
+            force: None,
+        };
+        let mut reader = Reader::default();
+        match json {
+            Value::Object(parts) => reader.sample(parts, order, &mut sample),
+            other => reader.error("", format!("an object expected, {} found", kind(other))),
+        }
+        let mut errors = reader.errors;
+        if errors.is_empty() {
+            errors = sample.state.violations(model);
+        }
+        if errors.is_empty() {
+            Ok(sample)
+        } else {
+            Err(errors)
+        }
+    }
+}
+
+impl Reader {
+    fn sample(&mut self, parts: &Map<String, Value>, order: Option<&Value>, sample: &mut Sample) {
+        let known: Vec<&str> = READ
+            .iter()
+            .chain(&RESULTS)
+            .copied()
+            .chain([ORDER])
+            .collect();
+        self.known("", parts, &known);
+        let joints = sample.joints.clone();
+        let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+        let State { x, xi, .. } = &mut sample.state;
+        if let Some(given) = self.part(parts, "configuration", &names) {
+            for joint in &joints {
+                if let Some(value) = given.get(&joint.name) {
+                    self.configuration(&format!("configuration.{}", joint.name), value, joint, x);
+                }
+            }
+        }
+        if let Some(given) = self.part(parts, "velocity", &names) {
+            for joint in &joints {
+                if let Some(value) = given.get(&joint.name) {
+                    self.motion(&format!("velocity.{}", joint.name), value, joint, xi);
+                }
+            }
+        }
+        let mut force = vec![0.0; xi.len()];
+        match parts.get("force") {
+            None => return,
+            Some(Value::Array(_)) => {
+                let order = parts.get(ORDER).or(order);
+                self.forces(parts, order, &joints, &mut force);
+            }
+            Some(_) => {
+                if let Some(given) = self.part(parts, "force", &names) {
+                    for joint in &joints {
+                        if let Some(value) = given.get(&joint.name) {
+                            self.motion(&format!("force.{}", joint.name), value, joint, &mut force);
+                        }
+                    }
+                }
+            }
+        }
+        sample.force = Some(force);
+    }
+
+    /// A list in the order of ξ, or in the order that the file says by joint for each entry.
+    fn forces(
+        &mut self,
+        parts: &Map<String, Value>,
+        order: Option<&Value>,
+        joints: &[Joint],
+        force: &mut [f64],
+    ) {
+        let Some(list) = parts
+            .get("force")
+            .and_then(|value| self.vector("force", value, force.len()))
+        else {
+            return;
+        };
+        let Some(order) = order else {
+            force.copy_from_slice(&list);
+            return;
+        };
+        let order: Vec<&str> = match order {
+            Value::Array(names) => names.iter().filter_map(Value::as_str).collect(),
+            _ => Vec::new(),
+        };
+        let mut placed = 0;
+        for joint in joints {
+            let (first, count) = joint.velocities;
+            let entries = order
+                .iter()
+                .zip(&list)
+                .filter(|(name, _)| **name == joint.name);
+            for (offset, (_, entry)) in entries.take(count).enumerate() {
+                if let Some(place) = force.get_mut(first + offset) {
+                    *place = *entry;
+                    placed += 1;
+                }
+            }
+        }
+        if placed != force.len() || order.len() != force.len() {
+            let message =
+                "each row by the name of its joint expected, as in `velocities` of the output";
+            self.error(ORDER, message.into());
+        }
+    }
+
+    fn configuration(&mut self, at: &str, value: &Value, joint: &Joint, x: &mut [f64]) {
+        let count = joint.velocities.1;
+        match joint.place {
+            Place::Plain(offset) if count == 1 => {
+                let number = self.number(at, value);
+                put(x, offset, &number.into_iter().collect::<Vec<_>>());
+            }
+            Place::Plain(offset) => {
+                put(
+                    x,
+                    offset,
+                    &self.vector(at, value, count).unwrap_or_default(),
+                );
+            }
+            Place::Circle(offset) => {
+                if let Some(angle) = self.number(at, value) {
+                    put(x, offset, &[angle.cos(), angle.sin()]);
+                }
+            }
+            Place::Quaternion(offset) => {
+                put(x, offset, &self.vector(at, value, 4).unwrap_or_default());
+            }
+            Place::Rotation(offset) => {
+                put(
+                    x,
+                    offset,
+                    &self.matrix(at, value, 3).unwrap_or_default().concat(),
+                );
+            }
+            Place::Free(position, rotation) => {
+                let Some(given) = self.members(at, value, &["position", "rotation"]) else {
+                    return;
+                };
+                if let Some(value) = given.get("position") {
+                    let read = self.vector(&format!("{at}.position"), value, 3);
+                    put(x, position, &read.unwrap_or_default());
+                }
+                if let Some(value) = given.get("rotation") {
+                    let read = self.matrix(&format!("{at}.rotation"), value, 3);
+                    put(x, rotation, &read.unwrap_or_default().concat());
+                }
+            }
+        }
+    }
+
+    /// Rates, or forces: a number, a list, or `linear` and `angular`.
+    fn motion(&mut self, at: &str, value: &Value, joint: &Joint, xi: &mut [f64]) {
+        let (first, count) = joint.velocities;
+        if let (Place::Free(..), Value::Object(_)) = (joint.place, value) {
+            let Some(given) = self.members(at, value, &["linear", "angular"]) else {
+                return;
+            };
+            for (part, offset) in [("linear", 0), ("angular", 3)] {
+                if let Some(value) = given.get(part) {
+                    let read = self.vector(&format!("{at}.{part}"), value, 3);
+                    put(xi, first + offset, &read.unwrap_or_default());
+                }
+            }
+        } else if count == 1 {
+            let number = self.number(at, value);
+            put(xi, first, &number.into_iter().collect::<Vec<_>>());
+        } else {
+            put(
+                xi,
+                first,
+                &self.vector(at, value, count).unwrap_or_default(),
+            );
+        }
+    }
+
+    fn members<'a>(
+        &mut self,
+        at: &str,
+        value: &'a Value,
+        names: &[&str],
+    ) -> Option<&'a Map<String, Value>> {
+        let Value::Object(given) = value else {
+            let names: Vec<String> = names.iter().map(|name| format!("\"{name}\": …")).collect();
+            let expected = names.join(", ");
+            self.error(
+                at,
+                format!("{{{expected}}} expected, {} found", kind(value)),
+            );
+            return None;
+        };
+        self.known(at, given, names);
+        Some(given)
+    }
+}
+
+/// Values from a place on.
+fn put(target: &mut [f64], offset: usize, values: &[f64]) {
+    for (place, value) in target.iter_mut().skip(offset).zip(values) {
+        *place = *value;
+    }
+}

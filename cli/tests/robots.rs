@@ -1,0 +1,158 @@
+//! Eight real robots, read from their URDF files, against Pinocchio's numbers for them.
+//!
+//! The files are those of the wheel `example-robot-data`, which `tests/robots/install.sh` installs
+//! below the target folder. Without them these tests say so and end.
+
+mod common;
+
+use common::{hamel, text};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Largest difference in the Euclidean norm, relative to the reference: twelve digits of π/2 in a
+/// URDF are read as π/2, which turns what hangs on the joint by some 1e-12 rad for each of them.
+const AGREEMENT: f64 = 1e-9;
+/// Sums of a few masses, but for rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// The folder with the robots, if they are installed.
+fn installed() -> Option<PathBuf> {
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent()?;
+    let libraries = std::fs::read_dir(target.join("robots/lib")).ok()?;
+    let folders = libraries.filter_map(|entry| {
+        let packages = entry.ok()?.path().join("site-packages");
+        Some(packages.join("cmeel.prefix/share/example-robot-data/robots"))
+    });
+    folders.into_iter().find(|folder| folder.is_dir())
+}
+
+/// A robot with its reference values.
+struct Robot {
+    name: String,
+    urdf: String,
+    reference: PathBuf,
+    values: Value,
+}
+
+impl Robot {
+    /// `None`, and a line that says so, where the URDF files are absent.
+    fn open(name: &str) -> Option<Robot> {
+        let Some(folder) = installed() else {
+            eprintln!(
+                "{name} is not tested: its URDF is absent; tests/robots/install.sh installs it"
+            );
+            return None;
+        };
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/reference/robots");
+        let reference = root.join(format!("{name}.json"));
+        let json = std::fs::read_to_string(&reference).expect("reference values");
+        let values: Value = serde_json::from_str(&json).expect("JSON");
+        let urdf = folder.join(values["urdf"].as_str().expect("a path"));
+        Some(Robot {
+            name: name.to_string(),
+            urdf: urdf.display().to_string(),
+            reference,
+            values,
+        })
+    }
+
+    /// Standard output of a command with the robot's file.
+    fn run(&self, command: &str, further: &[&str]) -> String {
+        let mut arguments = vec![command, self.urdf.as_str()];
+        if self.values["floating_base"] == true {
+            arguments.push("--floating");
+        }
+        arguments.extend(further);
+        let output = hamel(&arguments, "");
+        let errors = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{}: {errors}", self.name);
+        text(&output.stdout)
+    }
+}
+
+/// All numbers of a value, rows one after the other.
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(list) => list.iter().flat_map(numbers).collect(),
+        Value::Number(number) => vec![number.as_f64().expect("a double")],
+        other => panic!("no number: {other}"),
+    }
+}
+
+fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>().sqrt()
+}
+
+/// All samples of a robot, and its mass.
+fn agrees(name: &str) {
+    let Some(robot) = Robot::open(name) else {
+        return;
+    };
+    let printed = robot.run("eval", &["--at", &robot.reference.display().to_string()]);
+    let printed: Value = serde_json::from_str(&printed).expect("JSON");
+    let samples = robot.values["samples"].as_array().expect("samples");
+    let evaluated = printed["samples"].as_array().expect("samples");
+    assert_eq!((evaluated.len(), samples.len()), (5, 5));
+    for (ours, theirs) in evaluated.iter().zip(samples) {
+        assert_eq!(ours["velocities"], robot.values["velocity_order"]);
+        for (our, their) in [
+            ("M", "mass_matrix"),
+            ("bias", "bias"),
+            ("potential_force", "gravity_force"),
+            ("accel", "acceleration"),
+            ("kinetic_energy", "kinetic_energy"),
+            ("potential_energy", "potential_energy"),
+        ] {
+            let (found, expected) = (numbers(&ours[our]), numbers(&theirs[their]));
+            assert_eq!(found.len(), expected.len(), "{name}: {our}");
+            let difference: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
+            let error = norm(&difference) / norm(&expected);
+            assert!(error <= AGREEMENT, "{name}: {our} differs by {error:.1e}");
+        }
+    }
+    let imported = robot.run("import", &[]);
+    let masses = imported.split("mass ").skip(1).filter_map(|rest| {
+        let number = rest.split(';').next()?;
+        number.parse::<f64>().ok()
+    });
+    let mass: f64 = masses.sum();
+    let expected = robot.values["total_mass"].as_f64().expect("a mass");
+    assert!(
+        (mass - expected).abs() <= ROUNDING * expected,
+        "{name}: {mass} kg"
+    );
+}
+
+/// The description that is imported generates, byte for byte, the code of the robot itself.
+fn generates_the_same(name: &str) {
+    let Some(robot) = Robot::open(name) else {
+        return;
+    };
+    let description = Path::new(&robot.urdf).with_extension("eom");
+    let description = description.file_name().expect("a file");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let description = folder.join(description).display().to_string();
+    robot.run("import", &["-o", &description]);
+    let output = hamel(&["emit", &description], "");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(robot.run("emit", &[]), text(&output.stdout));
+}
+
+macro_rules! robots {
+    ($($name:ident)*) => {$(
+        mod $name {
+            #[test]
+            fn agrees_with_pinocchio() {
+                super::agrees(stringify!($name));
+            }
+
+            #[test]
+            fn generates_the_same_from_its_description() {
+                super::generates_the_same(stringify!($name));
+            }
+        }
+    )*};
+}
+
+robots! { double_pendulum iris finger_edu so100 ur5 z1 solo12 a1 }

@@ -1,0 +1,135 @@
+//! The door for robots in URDF: `hamel_urdf` makes a description of them, and errors about that
+//! description are shown at the place in the URDF that its lines are made from.
+
+use crate::diagnostics::Diagnostic;
+use crate::render::{Level, Note, notes, render, span_bytes};
+pub use hamel_urdf::{Imported, Mimic, Options, TOLERANCE};
+use std::ops::Range;
+use std::path::Path;
+
+/// Whether a path is that of a URDF file.
+pub fn is_urdf(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
+}
+
+/// Makes a description; errors are underlined in the text, which is named `path`.
+pub fn import(text: &str, options: &Options, path: &str, color: bool) -> Result<Imported, String> {
+    hamel_urdf::import(text, options)
+        .map_err(|problems| shown(&problems, Level::Error, path, text, color))
+}
+
+/// What is legal and still looks wrong, underlined; empty where there is nothing.
+pub fn warnings(imported: &Imported, path: &str, text: &str, color: bool) -> String {
+    match imported.warnings.as_slice() {
+        [] => String::new(),
+        problems => shown(problems, Level::Warning, path, text, color),
+    }
+}
+
+fn shown(
+    problems: &[hamel_urdf::Problem],
+    level: Level,
+    path: &str,
+    text: &str,
+    color: bool,
+) -> String {
+    let list: Vec<Note> = problems
+        .iter()
+        .map(|problem| Note {
+            range: problem.range.clone(),
+            message: problem.message.clone(),
+            help: vec![problem.help.clone()],
+        })
+        .collect();
+    notes(&list, level, path, text, color)
+}
+
+/// Errors about the description, at their places in the URDF; those that have none there are shown
+/// in the description's own text.
+pub fn refused(
+    errors: &[Diagnostic],
+    imported: &Imported,
+    path: &str,
+    text: &str,
+    color: bool,
+) -> String {
+    let mut placed = Vec::new();
+    let mut rest = Vec::new();
+    for error in errors {
+        let Some((origin, line)) = origin(error, imported) else {
+            rest.push(error.clone());
+            continue;
+        };
+        let mut help: Vec<String> = error.help.iter().cloned().collect();
+        help.push(format!("the description made from it has `{line}`"));
+        placed.push(Note {
+            range: origin,
+            message: error.message.clone(),
+            help,
+        });
+    }
+    let mut rendered = String::new();
+    if !placed.is_empty() {
+        rendered.push_str(&notes(&placed, Level::Error, path, text, color));
+    }
+    if !rest.is_empty() {
+        let name = format!("{path}, as a description");
+        rendered.push_str(&render(&rest, &name, &imported.text, color));
+    }
+    rendered
+}
+
+/// The bytes of the URDF behind the line that an error is about, and that line.
+fn origin(error: &Diagnostic, imported: &Imported) -> Option<(Range<usize>, String)> {
+    let place = span_bytes(error.span, &imported.text)?;
+    let before = imported.text.get(..place.start)?;
+    let number = before.matches('\n').count();
+    let origin = imported.origins.get(number)?.clone()?;
+    let line = imported.text.lines().nth(number)?.trim().to_string();
+    Some((origin, line))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Options, import, refused};
+    use crate::generate::from_text;
+
+    const ARM: &str = r#"<robot name="arm">
+  <link name="base"/>
+  <joint name="hinge" type="revolute">
+    <parent link="base"/> <child link="rod"/> <axis xyz="0 1 0"/>
+  </joint>
+  <link name="rod">
+    <inertial>
+      <mass value="MASS"/>
+      <inertia ixx="0.2" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.01"/>
+    </inertial>
+  </link>
+</robot>"#;
+
+    #[test]
+    fn what_is_imported_is_derived() {
+        let text = ARM.replace("MASS", "2");
+        let imported = import(&text, &Options::default(), "arm.urdf", false).expect("a robot");
+        from_text(&imported.text).expect("a description");
+    }
+
+    #[test]
+    fn errors_about_the_description_are_shown_in_the_urdf() {
+        let text = ARM.replace("MASS", "2");
+        let mut imported = import(&text, &Options::default(), "arm.urdf", false).expect("a robot");
+        imported.text = imported.text.replace("mass 2;", "mass heavy;");
+        let errors = from_text(&imported.text).expect_err("`heavy` is nothing");
+        let shown = refused(&errors, &imported, "arm.urdf", &text, false);
+        assert!(
+            shown.contains("arm.urdf:7:") && shown.contains("mass heavy;"),
+            "{shown}"
+        );
+        // The gravity is made from no line of the URDF.
+        imported.text = imported.text.replace("-9.81", "-g");
+        let errors = from_text(&imported.text).expect_err("`g` is nothing");
+        let shown = refused(&errors, &imported, "arm.urdf", &text, false);
+        assert!(shown.contains("arm.urdf, as a description:"), "{shown}");
+    }
+}
