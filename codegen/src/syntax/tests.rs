@@ -4,6 +4,7 @@ mod accepted;
 mod elements;
 mod hostile;
 mod refused;
+mod refused_expressions;
 mod rendered;
 
 use super::ast::{Acting, BinaryOp, End, Expr, ExprKind, ItemKind, System, Target};

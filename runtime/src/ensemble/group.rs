@@ -13,20 +13,18 @@ pub struct Group {
 }
 
 impl Group {
-    /// `first` has to be one of them where there are none.
+    /// Members of a part by their place in it, at least one, and the index of the first of the part.
     pub(super) fn new(first: usize, chosen: &[usize]) -> Self {
-        let mut members: Vec<usize> = chosen.iter().map(|local| first + local).collect();
-        if members.is_empty() {
-            members.push(first);
+        Self {
+            members: chosen.iter().map(|local| first + local).collect(),
         }
-        Self { members }
     }
 
     /// The member in a lane, by its index in the list of states; lanes beyond the members repeat the
     /// last, and what they compute is not used.
     pub fn member(&self, lane: usize) -> usize {
-        let last = self.members.len() - 1;
-        self.members[lane.min(last)]
+        let member = self.members.get(lane).or(self.members.last());
+        member.copied().unwrap_or_default()
     }
 
     /// The members, as indices in the list of states.
