@@ -89,17 +89,46 @@ where
     if !state.is_finite() {
         return Err(StepError::NonFinite { time: state.t });
     }
-    let from = state.t;
-    let span = until - from;
-    let steps = count_steps(span, length)?;
+    let grid = Grid::new(state.t, until, length)?;
     observe(state);
-    for index in 1..=steps {
-        let time = from + span * (index as f64 / steps as f64);
-        step(system, &method, state, span / steps as f64, &inputs)?;
-        state.t = if index == steps { until } else { time };
+    for index in 1..=grid.count {
+        step(system, &method, state, grid.step(), &inputs)?;
+        state.t = grid.time(index);
         observe(state);
     }
     Ok(())
+}
+
+/// Equal steps from one time to another.
+pub(crate) struct Grid {
+    from: f64,
+    until: f64,
+    /// How many there are.
+    pub(crate) count: u64,
+}
+
+impl Grid {
+    /// The fewest equal steps no longer than `length`.
+    pub(crate) fn new(from: f64, until: f64, length: f64) -> Result<Self, StepError> {
+        let count = count_steps(until - from, length)?;
+        Ok(Self { from, until, count })
+    }
+
+    /// The length of a step, with its sign; there has to be one.
+    #[inline]
+    pub(crate) fn step(&self) -> f64 {
+        (self.until - self.from) / self.count as f64
+    }
+
+    /// The time after `index` steps, exactly `until` after the last.
+    #[inline]
+    pub(crate) fn time(&self, index: u64) -> f64 {
+        if index == self.count {
+            self.until
+        } else {
+            self.from + (self.until - self.from) * (index as f64 / self.count as f64)
+        }
+    }
 }
 
 /// How many equal steps, no longer than `step`, cover `span`.

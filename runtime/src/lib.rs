@@ -12,6 +12,8 @@
 //! - `std` (default): mathematical functions of the standard library, `Vec` as a [`Store`]. Without
 //!   it the crate is `no_std` and takes them from `libm`.
 //! - `macros` (default): `rigid_eom!`, which expands a description to a `System`.
+//! - `wide`: SIMD lanes as scalars, in `wide`.
+//! - `ensemble`: many states on lanes and threads, in `ensemble`.
 //! - `nalgebra` (default): views of states as nalgebra types, in `edge`.
 //!
 //! # Example
@@ -70,9 +72,12 @@ pub mod adaptive;
 pub mod canonical;
 #[cfg(feature = "nalgebra")]
 pub mod edge;
+#[cfg(feature = "ensemble")]
+pub mod ensemble;
 pub mod error;
 pub mod flows;
 pub mod integrate;
+pub mod lanes;
 pub mod manifold;
 pub mod methods;
 pub mod monitor;
@@ -85,12 +90,15 @@ pub mod split;
 pub mod state;
 pub mod store;
 pub mod system;
+#[cfg(feature = "wide")]
+pub mod wide;
 
 pub use canonical::Canonical;
 pub use error::{Singular, StepError};
 #[cfg(feature = "macros")]
 pub use hamel_macros::rigid_eom;
 pub use integrate::{integrate, step};
+pub use lanes::Lanes;
 pub use methods::Method;
 pub use monitor::Monitor;
 #[cfg(feature = "nalgebra")]

@@ -5,6 +5,7 @@ mod elements;
 mod hostile;
 mod joints;
 mod refused;
+mod refused_expressions;
 mod rendered;
 
 use super::ast::{Acting, BinaryOp, End, Expr, ExprKind, ItemKind, System, Target};
