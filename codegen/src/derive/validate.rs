@@ -16,6 +16,8 @@
 //! | `momentum_rate` | Ṁ ξ + f − h − ∂V |
 //! | `velocity_of_momentum` | the ξ with M ξ = p |
 
+use super::check::failures;
+use super::forms::Symbols;
 use super::numbers::{Numbers, Values};
 use super::slopes::Slopes;
 use super::structure::Proof;
@@ -34,12 +36,29 @@ pub const POINTS: u64 = 8;
 /// Points tried where square roots have no value.
 const TRIES: u64 = 400;
 
-/// Validates the functions of a program; an error here is a fault of the generator, never emitted.
+/// Models with more velocities are refused without the identities of their symbols.
+const MOST_EXPLAINED: usize = 8;
+
+/// Validates the functions of a program; an error here is a fault of the generator, never emitted. It
+/// names the identities of the symbols that are broken too, so that the fault is found.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    let missing = |what| move || failure(model, what);
-    let numbers = Numbers::new(model).ok_or_else(missing("Y A = I"))?;
-    let emitted = Emitted::new(model, program).ok_or_else(missing("that numbers have values"))?;
-    let slopes = Slopes::new(model, program).ok_or_else(missing("Y A = I"))?;
+    compared(model, program).map_err(|what| {
+        let mut broken = vec![what];
+        if model.n() <= MOST_EXPLAINED
+            && let Some(symbols) = Symbols::new(model)
+        {
+            let identities = failures(model, program, symbols);
+            broken.extend(identities.iter().map(|identity| identity.label.to_string()));
+        }
+        failure(model, &broken.join(", "))
+    })
+}
+
+/// The first comparison that fails, at the first point at which one does.
+pub(super) fn compared(model: &Model, program: &Program) -> Result<(), String> {
+    let numbers = Numbers::new(model).ok_or("Y A = I")?;
+    let emitted = Emitted::new(model, program).ok_or("that numbers have values")?;
+    let slopes = Slopes::new(model, program).ok_or("Y A = I")?;
     let splitting = Proof::new(model, program);
     let at_point = |lane: &Lane| -> Option<Result<(), String>> {
         let values = match numbers.at(lane)? {
@@ -60,10 +79,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
         loop {
             seed += 1;
             if seed > TRIES {
-                return Err(failure(
-                    model,
-                    "that the equations have values at some points",
-                ));
+                return Err("that the equations have values at some points".into());
             }
             let Some(lane) = model.points.lane(0x7a11 + seed) else {
                 continue;
@@ -71,7 +87,7 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             match at_point(&lane) {
                 None => continue,
                 Some(Ok(())) => break,
-                Some(Err(what)) => return Err(failure(model, &what)),
+                Some(Err(what)) => return Err(what),
             }
         }
     }

@@ -4,7 +4,7 @@ use super::Numbers;
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate_at;
 use crate::derive::forms::Symbols;
-use crate::derive::validate::validate;
+use crate::derive::validate::{COMPARED, compared};
 use crate::generate::{Generated, from_text};
 
 /// Everything that has a route of its own: bodies with their centres beside the origin, a particle, a
@@ -64,10 +64,10 @@ fn the_numbers_are_those_of_the_symbolic_derivations() {
 #[test]
 fn a_wrong_term_of_any_function_is_refused() {
     let Generated { model, program, .. } = generated(MODEL);
-    assert!(validate(&model, &program).is_ok());
+    assert!(compared(&model, &program).is_ok());
     let mut refused = 0;
     for index in 0..program.functions.len() {
-        if !super::super::validate::COMPARED.contains(&program.functions[index].name.as_str()) {
+        if !COMPARED.contains(&program.functions[index].name.as_str()) {
             continue;
         }
         let last = program.functions[index].outputs.len() - 1;
@@ -77,7 +77,7 @@ fn a_wrong_term_of_any_function_is_refused() {
             let entry = broken.functions[index].outputs[place];
             broken.functions[index].outputs[place] = broken.graph.add(entry, one);
             let name = &program.functions[index].name;
-            assert!(validate(&model, &broken).is_err(), "{name} {place}");
+            assert!(compared(&model, &broken).is_err(), "{name} {place}");
             refused += 1;
         }
     }
