@@ -8,6 +8,7 @@ pub mod echelon;
 mod fold;
 pub mod fp;
 pub mod graph;
+pub mod jets;
 pub mod lane;
 pub mod linear;
 pub mod node;
@@ -15,6 +16,7 @@ pub mod numeric;
 pub mod poly;
 pub mod resubstitute;
 pub mod tangent;
+pub mod tape;
 #[cfg(test)]
 mod tests;
 pub mod text;

@@ -16,6 +16,10 @@ use crate::program::structure::Structure;
 use crate::program::{Argument, Function, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
+/// Models with more velocities are looked at for lack of inertia by M as it is traced: the literal one, n²
+/// entries of all bodies, would take longer than all else.
+const MOST_LITERAL: usize = 8;
+
 /// Derives the functions of a model that are wanted; `reduction` solves its constraints.
 pub fn assemble(
     full: &Model,
@@ -24,9 +28,11 @@ pub fn assemble(
 ) -> Result<Program, Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
-    let mut calculus = Calculus::new(&reference);
-    let mass = inertia::mass_matrix(&mut reference, &mut calculus);
-    inertia::positive_definite(&mut reference, &mass)?;
+    if model.n() <= MOST_LITERAL {
+        let mut calculus = Calculus::new(&reference);
+        let mass = inertia::mass_matrix(&mut reference, &mut calculus);
+        inertia::positive_definite(model, &reference.graph, &mass)?;
+    }
     let Some((chosen, parts)) = accel(model) else {
         return Err(Diagnostic::new(
             model.span,
@@ -34,6 +40,9 @@ pub fn assemble(
         )
         .help("every velocity needs inertia: check masses and inertias"));
     };
+    if model.n() > MOST_LITERAL {
+        inertia::positive_definite(model, &chosen.graph, &parts.mass)?;
+    }
     let potential = energy::potential(&mut reference);
     let mut builder = Builder::new(model, chosen, parts);
     builder.kinematics();

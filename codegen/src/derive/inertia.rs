@@ -108,8 +108,13 @@ pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<V
         .collect()
 }
 
-/// M has to be positive definite at the start, with the default parameters.
-pub fn positive_definite(model: &mut Model, mass: &[Vec<Edge>]) -> Result<(), Diagnostic> {
+/// M, in a graph with the model's symbols, has to be positive definite at the start, with the default
+/// parameters.
+pub fn positive_definite(
+    model: &Model,
+    graph: &Graph,
+    mass: &[Vec<Edge>],
+) -> Result<(), Diagnostic> {
     let (m, n) = (model.u.len(), model.n());
     let numbers = model.numbers(
         &model.defaults,
@@ -118,7 +123,7 @@ pub fn positive_definite(model: &mut Model, mass: &[Vec<Edge>]) -> Result<(), Di
         &vec![0.0; m],
         &vec![0.0; n],
     );
-    let values = evaluate(&model.graph, &mass.concat(), &numbers);
+    let values = evaluate(graph, &mass.concat(), &numbers);
     let Some(pivot) = failing_pivot(&values, n) else {
         return Ok(());
     };

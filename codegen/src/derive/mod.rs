@@ -15,6 +15,7 @@
 //! | `gibbs` | equations of Gibbs and Appell, from accelerations | (30b) |
 //! | `levi_civita` | explicit equations, from M and Γ | (30c) |
 //! | `forms` | all symbols side by side, to be compared | (30) |
+//! | `numbers` | the three forms at points modulo p: what every build is compared with | (30) |
 //! | `energy` | T, V, momentum | |
 //! | `momentum` | ṗ, and ξ from p | (30a) |
 //! | `linearize` | the motion nearby, in displacement coordinates | (12) |
@@ -54,6 +55,7 @@ pub mod momentum;
 pub mod motion;
 pub mod multipliers;
 pub mod normal;
+mod numbers;
 pub mod reduction;
 mod reference;
 mod slopes;

@@ -5,14 +5,22 @@ use super::accel::parts::Parts;
 use super::accel::solve::{Solution, solve};
 use super::calculus::Calculus;
 use super::{commutation, energy, inertia, kinematics};
+use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
 use crate::model::Model;
 use crate::program::count::count;
 
+/// Models with more velocities get ṗ from what is traced for ξ̇: the n² entries of M and n³ of γ that it
+/// would be written out from are long then, and never the cheaper ones.
+const MOST_WRITTEN_OUT: usize = 8;
+
 /// ṗ in the graph of `parts`: ∂ᵢT − γᵢⱼᵏ ξʲ pₖ written out, or Ṁ ξ − Γ ξ ξ with what is there for ξ̇
 /// anyway, whichever costs less; then −∂V and the applied forces.
 pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
+    if model.n() > MOST_WRITTEN_OUT {
+        return traced_rate(model, graph, parts);
+    }
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
     let mass = inertia::mass_matrix(&mut own, &mut calculus);
@@ -72,6 +80,26 @@ pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
         }
     }
     best.unwrap_or_default()
+}
+
+/// d/dt (M ξ) at ξ̇ = 0, differentiated from M as it is traced, then −Γ ξ ξ − ∂V and the applied forces.
+fn traced_rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
+    let rates = rebuild(&model.graph, graph, &model.rate);
+    let moving = model.x.iter().map(|x| x.node()).zip(rates);
+    let mut motion = Derivation::new(moving);
+    let rows = parts.mass.iter().enumerate();
+    rows.map(|(i, row)| {
+        let momentum = graph.dot(row, &model.xi);
+        let swing = motion.of(graph, momentum);
+        let terms = [
+            swing,
+            parts.inertia[i],
+            parts.conservative[i],
+            parts.applied[i],
+        ];
+        graph.sum(&terms)
+    })
+    .collect()
 }
 
 /// M⁻¹ p with the cheapest elimination; `None` where M is singular everywhere.

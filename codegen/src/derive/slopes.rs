@@ -1,5 +1,4 @@
-//! Validation of what is a derivative or an inverse: [A B], ṗ, ξ of p, and invariants, at a point
-//! modulo p.
+//! Validation of the motion nearby, [A B], and of invariants, at a point modulo p.
 //!
 //! Slopes are taken by dual numbers from M, h, ∂V and f of the independent derivation, and M ξ̇ = F
 //! is solved in numbers: no derivative of the generator's own takes part.
@@ -7,17 +6,22 @@
 use super::calculus::Calculus;
 use super::invariants::quantity;
 use super::reference::Reference;
+use super::{energy, hamel_form};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
+use crate::model::Model;
 use crate::program::Program;
 
 /// What is compared at every point.
 pub struct Slopes {
-    /// Names of the invariants with their entries in the reference's graph.
+    /// Names of the invariants with their entries in the graph of a model.
     invariants: Vec<(String, Vec<Edge>)>,
+    model: Model,
+    /// What slopes are taken of, where the motion nearby is wanted.
+    reference: Option<Reference>,
 }
 
 /// M, F = f − h − ∂V, A and Aξ of one point, or their slopes.
@@ -57,53 +61,51 @@ impl Numbers {
 }
 
 impl Slopes {
-    /// Prepares for a program.
-    pub fn new(reference: &mut Reference, program: &Program) -> Self {
-        let claims = reference.model.invariants.clone();
-        let energies = (reference.kinetic, reference.potential);
-        let mut calculus = Calculus::new(&reference.model);
-        let wanted = claims
+    /// Prepares for a program; `None` where AᵀA is singular.
+    pub fn new(model: &Model, program: &Program) -> Option<Self> {
+        let claims: Vec<_> = model
+            .invariants
             .iter()
-            .filter(|claim| program.function(&claim.name).is_some());
-        let invariants = wanted
-            .map(|claim| {
-                let model = &mut reference.model;
-                let value = quantity::value(model, &mut calculus, energies, &claim.quantity);
-                (claim.name.clone(), value.entries())
-            })
+            .filter(|claim| program.function(&claim.name).is_some())
             .collect();
-        Slopes { invariants }
+        let linear = program.function("linearize").is_some();
+        let mut own = model.clone();
+        let mut invariants = Vec::new();
+        if !claims.is_empty() {
+            let mut calculus = Calculus::new(&own);
+            let kinetic = hamel_form::kinetic_energy(&mut own, &mut calculus);
+            let energies = (kinetic, energy::potential(&mut own));
+            for claim in claims {
+                let value = quantity::value(&mut own, &mut calculus, energies, &claim.quantity);
+                invariants.push((claim.name.clone(), value.entries()));
+            }
+        }
+        Some(Slopes {
+            invariants,
+            model: own,
+            reference: if linear {
+                Some(Reference::new(model)?)
+            } else {
+                None
+            },
+        })
     }
 
     /// Compares at one point; `None` where it cannot be evaluated there.
-    pub fn at_point(
-        &self,
-        reference: &Reference,
-        program: &Program,
-        lane: &Lane,
-    ) -> Option<Result<(), &'static str>> {
-        let graph = &reference.model.graph;
+    pub fn at_point(&self, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
         let value = |name: &str| {
             let function = program.function(name)?;
             evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
         };
-        let wanted = |name: &str| program.function(name).is_some();
         for (name, entries) in &self.invariants {
-            if value(name)? != evaluate_at(graph, entries, &mut lane.clone())? {
-                return Some(Err("an invariant"));
+            if value(name)? != evaluate_at(&self.model.graph, entries, &mut lane.clone())? {
+                return Some(Err("an invariant".into()));
             }
         }
-        if ![
-            "momentum",
-            "momentum_rate",
-            "velocity_of_momentum",
-            "linearize",
-        ]
-        .iter()
-        .any(|name| wanted(name))
-        {
+        let Some(reference) = &self.reference else {
             return Some(Ok(()));
-        }
+        };
+        let graph = &reference.model.graph;
         let roots = Numbers::roots(reference);
         let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut lane.clone())?);
         let symbol = |edges: &[Edge]| -> Vec<usize> {
@@ -117,20 +119,6 @@ impl Slopes {
         };
         let model = &reference.model;
         let (x, xi, u) = (symbol(&model.x), symbol(&model.xi), symbol(&model.u));
-        let numbers = |symbols: &[usize]| -> Vec<Fp> {
-            symbols.iter().map(|&index| lane.symbol(index)).collect()
-        };
-        let velocity = numbers(&xi);
-        let momentum = product(&here.mass, &velocity);
-        if wanted("momentum") && value("momentum")? != momentum {
-            return Some(Err("p"));
-        }
-        if wanted("velocity_of_momentum")
-            && product(&here.mass, &value("velocity_of_momentum")?)
-                != numbers(&symbol(&model.momenta))
-        {
-            return Some(Err("ξ of p"));
-        }
         // The slopes of everything along a direction in the symbols.
         let size = graph.symbols().len();
         let slope = |moved: &[(usize, Fp)]| -> Option<Numbers> {
@@ -144,17 +132,6 @@ impl Slopes {
             x.iter().copied().zip(column.iter().copied()).collect()
         };
         let moving = slope(&along(&here.rate))?;
-        if wanted("momentum_rate") {
-            // d/dt (M ξ) = Ṁ ξ + F.
-            let swing = product(&moving.mass, &velocity);
-            let rate: Vec<Fp> = (0..swing.len()).map(|i| swing[i] + here.force[i]).collect();
-            if value("momentum_rate")? != rate {
-                return Some(Err("ṗ"));
-            }
-        }
-        if !wanted("linearize") {
-            return Some(Ok(()));
-        }
         let n = model.n();
         let xi_dot = solve(here.mass.clone(), here.force.clone())?;
         let columns = 2 * n + u.len();
@@ -180,13 +157,13 @@ impl Slopes {
                 )
             };
             if product(&here.a, &column(j, 0..n)) != moved {
-                return Some(Err("ḣ of the motion nearby"));
+                return Some(Err("ḣ of the motion nearby".into()));
             }
             // M δξ̇ = δF − δM ξ̇.
             let held = product(&changed.mass, &xi_dot);
             let right: Vec<Fp> = (0..n).map(|i| changed.force[i] - held[i]).collect();
             if product(&here.mass, &column(j, n..2 * n)) != right {
-                return Some(Err("δξ̇ of the motion nearby"));
+                return Some(Err("δξ̇ of the motion nearby".into()));
             }
         }
         Some(Ok(()))

@@ -6,67 +6,88 @@
 //! |---|---|
 //! | `accel` | the ξ̇ with F(x, ξ, ξ̇) = f |
 //! | `inverse_dynamics` | F(x, ξ, ξ̇) |
-//! | `bias` | h = ⅓ (F(x, 2ξ, 0) − F(x, ξ, 0)), as h is quadratic in ξ |
-//! | `potential_force` | F(x, ξ, 0) − h |
+//! | `bias` | h = Γ ξ ξ, with F = M ξ̇ + h + ∂V |
+//! | `potential_force` | ∂V |
 //! | `generalized_force` | f by virtual work |
 //! | `momentum` | ∂T/∂ξ |
 //! | `dissipation` | D of the dampers' forces on points |
 //! | `kick` and its kind | the motion of the system, see `structure/proof` |
-//! | `mass_matrix` | M with M ξ̇ = F(x, ξ, ξ̇) − F(x, ξ, 0), for any ξ̇ |
+//! | `mass_matrix` | M |
+//! | `momentum_rate` | Ṁ ξ + f − h − ∂V |
+//! | `velocity_of_momentum` | the ξ with M ξ = p |
 
-use super::forms::Forms;
-use super::reference::Reference;
+use super::check::failures;
+use super::forms::Symbols;
+use super::numbers::{Numbers, Values};
 use super::slopes::Slopes;
 use super::structure::Proof;
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Node};
+use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
+use crate::algebra::tape::Tape;
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::program::Program;
+use rustc_hash::FxHashMap;
 
 /// Fresh points for every program.
 pub const POINTS: u64 = 8;
 /// Points tried where square roots have no value.
 const TRIES: u64 = 400;
 
-/// Validates the functions of a program; an error here is a fault of the generator, never emitted.
+/// Models with more velocities are refused without the identities of their symbols.
+const MOST_EXPLAINED: usize = 8;
+
+/// Validates the functions of a program; an error here is a fault of the generator, never emitted. It
+/// names the identities of the symbols that are broken too, so that the fault is found.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    let forms = Forms::new(model).ok_or_else(|| failure(model, "Y A = I"))?;
-    let mut reference = Reference::new(model).ok_or_else(|| failure(model, "Y A = I"))?;
-    let slopes = Slopes::new(&mut reference, program);
-    let splitting = Proof::new(&mut reference, program);
+    compared(model, program).map_err(|what| {
+        let mut broken = vec![what];
+        if model.n() <= MOST_EXPLAINED
+            && let Some(symbols) = Symbols::new(model)
+        {
+            let identities = failures(model, program, symbols);
+            broken.extend(identities.iter().map(|identity| identity.label.to_string()));
+        }
+        failure(model, &broken.join(", "))
+    })
+}
+
+/// The first comparison that fails, at the first point at which one does.
+pub(super) fn compared(model: &Model, program: &Program) -> Result<(), String> {
+    let numbers = Numbers::new(model).ok_or("Y A = I")?;
+    let emitted = Emitted::new(model, program).ok_or("that numbers have values")?;
+    let slopes = Slopes::new(model, program).ok_or("Y A = I")?;
+    let splitting = Proof::new(model, program);
+    let at_point = |lane: &Lane| -> Option<Result<(), String>> {
+        let values = match numbers.at(lane)? {
+            Ok(values) => values,
+            Err(what) => return Some(Err(what)),
+        };
+        let all = [
+            compare(model, program, &values, &emitted.at(lane)?, lane)?,
+            slopes.at_point(program, lane)?,
+            splitting.as_ref().map_or(Some(Ok(())), |splitting| {
+                splitting.at_point(&numbers, program, lane)
+            })?,
+        ];
+        Some(all.into_iter().collect())
+    };
     let mut seed = 0;
     for _ in 0..POINTS {
         loop {
             seed += 1;
             if seed > TRIES {
-                return Err(failure(
-                    model,
-                    "that the equations have values at some points",
-                ));
+                return Err("that the equations have values at some points".into());
             }
             let Some(lane) = model.points.lane(0x7a11 + seed) else {
                 continue;
             };
-            let found = at_point(&forms, program, &lane);
-            let found = match found {
-                Some(Ok(())) => slopes
-                    .at_point(&reference, program, &lane)
-                    .map(|found| found.map_err(str::to_string)),
-                found => found,
-            };
-            let found = match (found, &splitting) {
-                (Some(Ok(())), Some(splitting)) => splitting
-                    .at_point(&reference, program, &lane)
-                    .map(|found| found.map_err(str::to_string)),
-                (found, _) => found,
-            };
-            match found {
+            match at_point(&lane) {
                 None => continue,
                 Some(Ok(())) => break,
-                Some(Err(what)) => return Err(failure(model, &what)),
+                Some(Err(what)) => return Err(what),
             }
         }
     }
@@ -85,145 +106,150 @@ pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
     .help("this is a fault of the generator, nothing was emitted; please report the description")
 }
 
-/// What the forms give at one point.
-struct Values {
-    left: [Vec<Fp>; 3],
-    force: Vec<Fp>,
-    momentum: Vec<Fp>,
-    kinetic: Fp,
-    potential: Fp,
-    dissipation: Fp,
+/// The functions that are compared with the forms, to be evaluated together.
+struct Emitted {
+    /// Names with the number of their values.
+    names: Vec<(String, usize)>,
+    tape: Tape,
 }
 
-fn values(forms: &Forms, lane: &Lane) -> Option<Values> {
-    let n = forms.model.n();
-    let mut roots: Vec<Edge> = Vec::with_capacity(5 * n + 3);
-    for part in [
-        &forms.hamel,
-        &forms.gibbs,
-        &forms.levi_civita,
-        &forms.force,
-        &forms.momentum,
-    ] {
-        roots.extend(part);
-    }
-    roots.extend([forms.kinetic, forms.potential, forms.dissipation]);
-    let values = evaluate_at(&forms.model.graph, &roots, &mut lane.clone())?;
-    let mut parts = values.chunks(n.max(1)).map(<[Fp]>::to_vec);
-    let left = [parts.next()?, parts.next()?, parts.next()?];
-    let (force, momentum) = (parts.next()?, parts.next()?);
-    let [.., kinetic, potential, dissipation] = values.as_slice() else {
-        return None;
-    };
-    Some(Values {
-        left,
-        force,
-        momentum,
-        kinetic: *kinetic,
-        potential: *potential,
-        dissipation: *dissipation,
-    })
-}
+/// What is compared here; outputs of the description beside it.
+pub(super) const COMPARED: [&str; 14] = [
+    "accel",
+    "bias",
+    "dissipation",
+    "energy",
+    "generalized_force",
+    "inverse_dynamics",
+    "kinetic_energy",
+    "mass_matrix",
+    "momentum",
+    "momentum_rate",
+    "potential_energy",
+    "potential_force",
+    "rate",
+    "velocity_of_momentum",
+];
 
-/// The symbols of a vector, given other values.
-fn with(lane: &Lane, forms: &Forms, symbols: &[Edge], to: impl Fn(usize, Fp) -> Fp) -> Lane {
-    let mut changed = lane.clone();
-    for (i, symbol) in symbols.iter().enumerate() {
-        if let Node::Symbol(index) = forms.model.graph.node(symbol.node()) {
-            let index = index as usize;
-            changed.set_symbol(index, to(i, lane.symbol(index)));
-        }
+impl Emitted {
+    fn new(model: &Model, program: &Program) -> Option<Self> {
+        let compared = |name: &str| {
+            COMPARED.contains(&name) || model.outputs.iter().any(|(output, _)| output == name)
+        };
+        let functions = || program.functions.iter().filter(|f| compared(&f.name));
+        let roots: Vec<Edge> = functions().flat_map(|f| f.outputs.clone()).collect();
+        Some(Emitted {
+            names: functions()
+                .map(|function| (function.name.clone(), function.outputs.len()))
+                .collect(),
+            tape: Tape::new(&program.graph, &roots)?,
+        })
     }
-    changed
+
+    /// The values of all at a point.
+    fn at(&self, lane: &Lane) -> Option<FxHashMap<&str, Vec<Fp>>> {
+        let values = self.tape.values(lane)?;
+        let mut rest = values.into_iter();
+        Some(
+            self.names
+                .iter()
+                .map(|(name, size)| (name.as_str(), rest.by_ref().take(*size).collect()))
+                .collect(),
+        )
+    }
 }
 
 /// Compares at one point; `None` where it cannot be evaluated there.
-fn at_point(forms: &Forms, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
-    let model = &forms.model;
-    let moving = values(forms, lane)?;
-    let broken = disagreements(&moving.left);
+fn compare(
+    model: &Model,
+    program: &Program,
+    values: &Values,
+    emitted: &FxHashMap<&str, Vec<Fp>>,
+    lane: &Lane,
+) -> Option<Result<(), String>> {
+    let broken = disagreements(&values.left);
     if !broken.is_empty() {
         return Some(Err(broken.join(", ")));
     }
-    let value = |name: &str| {
-        let function = program.function(name)?;
-        evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
+    let product = |vector: &[Fp]| -> Vec<Fp> {
+        let entry = |row: &Vec<Fp>| {
+            let terms = row.iter().zip(vector);
+            terms.fold(Fp::ZERO, |sum, (&m, &v)| sum + m * v)
+        };
+        values.mass.iter().map(entry).collect()
     };
-    let wanted = |name: &str| program.function(name).is_some();
-    let coasting = with(lane, forms, &model.xi_dot, |_, _| Fp::ZERO);
-    let twice = with(&coasting, forms, &model.xi, |_, value| value + value);
-    let slow = values(forms, &coasting)?;
-    let fast = values(forms, &twice)?;
-    let third = Fp::new(3).inv()?;
-    let difference =
-        |a: &[Fp], b: &[Fp]| -> Vec<Fp> { a.iter().zip(b).map(|(&a, &b)| a - b).collect() };
-    let left = &moving.left[0];
-    let bias: Vec<Fp> = difference(&fast.left[0], &slow.left[0])
-        .into_iter()
-        .map(|entry| entry * third)
-        .collect();
-    let slope = difference(&slow.left[0], &bias);
-    if wanted("mass_matrix") {
-        let xi_dot = evaluate_at(&model.graph, &model.xi_dot, &mut lane.clone())?;
-        let inertial: Vec<Fp> = value("mass_matrix")?
-            .chunks(model.n().max(1))
-            .map(|row| {
-                let products = row.iter().zip(&xi_dot).map(|(&m, &rate)| m * rate);
-                products.fold(Fp::ZERO, |sum, product| sum + product)
-            })
-            .collect();
-        if inertial != difference(left, &slow.left[0]) {
-            return Some(Err(
-                "(20), M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩ for the emitted M".into()
-            ));
-        }
-    }
-    let energy = moving.kinetic + moving.potential;
-    let table: [(&str, &[Fp], &str); 9] = [
-        ("bias", &bias, "h = Γ ξ ξ for the emitted bias force"),
-        ("potential_force", &slope, "∂ᵢV for the emitted slope"),
+    let sum = |lists: &[&[Fp]]| -> Vec<Fp> {
+        (0..model.n())
+            .map(|i| lists.iter().fold(Fp::ZERO, |sum, list| sum + list[i]))
+            .collect()
+    };
+    let energy = values.kinetic + values.potential;
+    let resistance = sum(&[&values.bias, &values.slope]);
+    let table: [(&str, &[Fp], &str); 11] = [
+        (
+            "mass_matrix",
+            &values.mass.concat(),
+            "(20), M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩ for the emitted M",
+        ),
+        ("bias", &values.bias, "h = Γ ξ ξ for the emitted bias force"),
+        (
+            "potential_force",
+            &values.slope,
+            "∂ᵢV for the emitted slope",
+        ),
         (
             "generalized_force",
-            &moving.force,
+            &values.force,
             "(28), fᵢ = Σ ⟨F_p, ∂ᵢr_p⟩ for the emitted loads",
         ),
         (
             "inverse_dynamics",
-            left,
+            &values.left[0],
             "(30c) for the emitted inverse dynamics",
         ),
-        ("momentum", &moving.momentum, "p = ∂T/∂ξ"),
-        ("kinetic_energy", &[moving.kinetic], "T = ½ Σ m_p ‖ṙ_p‖²"),
+        ("momentum", &values.momentum, "p = ∂T/∂ξ"),
+        ("kinetic_energy", &[values.kinetic], "T = ½ Σ m_p ‖ṙ_p‖²"),
         (
             "potential_energy",
-            &[moving.potential],
+            &[values.potential],
             "V = −Σ m_p ⟨g, r_p⟩",
         ),
         ("energy", &[energy], "T + V"),
         (
             "dissipation",
-            &[moving.dissipation],
+            &[values.dissipation],
             "2 D = −fᵢ ξⁱ of dampers",
         ),
+        ("rate", &values.rate, "(5), ẋ = A ξ"),
     ];
     for (name, expected, what) in table {
-        if wanted(name) && value(name)? != expected {
+        if emitted.get(name).is_some_and(|value| value != expected) {
             return Some(Err(what.into()));
         }
     }
-    if wanted("accel") {
-        let xi_dot = value("accel")?;
-        let driven = with(lane, forms, &model.xi_dot, |i, value| {
-            xi_dot.get(i).copied().unwrap_or(value)
-        });
-        if values(forms, &driven)?.left[0] != moving.force {
-            return Some(Err("(30c) for the emitted ξ̇".into()));
+    if let Some(xi_dot) = emitted.get("accel")
+        && sum(&[&product(xi_dot), &resistance]) != values.force
+    {
+        return Some(Err("(30c) for the emitted ξ̇".into()));
+    }
+    // d/dt (M ξ) = Ṁ ξ + f − h − ∂V.
+    if let Some(rate) = emitted.get("momentum_rate")
+        && sum(&[rate, &resistance]) != sum(&[&values.swing, &values.force])
+    {
+        return Some(Err("ṗ".into()));
+    }
+    if let Some(xi) = emitted.get("velocity_of_momentum") {
+        let momenta = evaluate_at(&model.graph, &model.momenta, &mut lane.clone())?;
+        if product(xi) != momenta {
+            return Some(Err("ξ of p".into()));
         }
     }
     for (name, expected) in &model.outputs {
-        let expected = evaluate_at(&model.graph, &expected.entries(), &mut lane.clone())?;
-        if wanted(name) && value(name)? != expected {
-            return Some(Err(format!("output `{name}`")));
+        if program.function(name).is_some() {
+            let expected = evaluate_at(&model.graph, &expected.entries(), &mut lane.clone())?;
+            if emitted.get(name.as_str()) != Some(&expected) {
+                return Some(Err(format!("output `{name}`")));
+            }
         }
     }
     Some(Ok(()))

@@ -101,7 +101,7 @@ impl Locals {
         loop {
             *count += 1;
             let name = format!("{letter}{count}");
-            if self.scope.free(&name) == name {
+            if self.scope.is_free(&name) {
                 return self.claim(node, &name);
             }
         }

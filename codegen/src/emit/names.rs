@@ -15,7 +15,7 @@
 //! code. A name that is taken gets `_2`, `_3` …; a keyword gets `_`.
 
 use crate::program::{Argument, Program};
-use std::collections::BTreeSet;
+use rustc_hash::FxHashSet;
 
 const GREEK: &[(&str, &str)] = &[
     ("αΑ", "alpha"),
@@ -149,7 +149,7 @@ fn legal(text: String, reserved: &[&str]) -> String {
 /// Names of one scope, each given out once.
 #[derive(Clone, Debug, Default)]
 pub struct Unique {
-    taken: BTreeSet<String>,
+    taken: FxHashSet<String>,
 }
 
 impl Unique {
@@ -173,6 +173,11 @@ impl Unique {
     /// The name that `claim` would give, without taking it.
     pub fn free(&self, wanted: &str) -> String {
         self.free_where(wanted, |_| true)
+    }
+
+    /// Whether `claim` would give this very name.
+    pub fn is_free(&self, name: &str) -> bool {
+        !self.taken.contains(name)
     }
 
     fn claim_where(&mut self, wanted: &str, accept: impl Fn(&str) -> bool) -> String {

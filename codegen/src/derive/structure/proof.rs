@@ -17,14 +17,17 @@ use crate::algebra::lane::Lane;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
 use crate::derive::kinematics::chart_rates;
-use crate::derive::reference::Reference;
+use crate::derive::numbers::{Numbers, Values};
+use crate::model::Model;
 use crate::program::Program;
 use crate::program::structure::Structure;
 
 /// What is compared with.
 pub struct Proof {
     parts: Vec<Part>,
-    /// The rates of the coordinates, in the reference's graph.
+    /// The model, its graph holding the rates of the coordinates.
+    model: Model,
+    /// These rates.
     rates: Vec<Edge>,
     /// Numbers of the symbols x, ξ, p.
     x: Vec<usize>,
@@ -34,9 +37,9 @@ pub struct Proof {
 
 impl Proof {
     /// Prepares for a program; `None` where it has no such functions.
-    pub fn new(reference: &mut Reference, program: &Program) -> Option<Self> {
+    pub fn new(model: &Model, program: &Program) -> Option<Self> {
         program.function("kick")?;
-        let model = &mut reference.model;
+        let mut model = model.clone();
         let rates = chart_rates(&mut model.graph, &model.blocks, &model.x, &model.rate);
         let numbers = |graph: &Graph, edges: &[Edge]| -> Vec<usize> {
             let nodes = edges.iter().map(|edge| graph.node(edge.node()));
@@ -48,21 +51,23 @@ impl Proof {
                 .collect()
         };
         Some(Proof {
-            parts: parts(model),
+            parts: parts(&model),
             rates,
             x: numbers(&model.graph, &model.x),
             xi: numbers(&model.graph, &model.xi),
             p: numbers(&model.graph, &model.momenta),
+            model,
         })
     }
 
     /// Compares at one point; `None` where it cannot be evaluated there.
     pub fn at_point(
         &self,
-        reference: &Reference,
+        numbers: &Numbers,
         program: &Program,
         lane: &Lane,
-    ) -> Option<Result<(), &'static str>> {
+    ) -> Option<Result<(), String>> {
+        let wrong = |what: &str| Some(Err(what.to_string()));
         let at = |name: &str, lane: &Lane| {
             let function = program.function(name)?;
             evaluate_at(&program.graph, &function.outputs, &mut lane.clone())
@@ -73,18 +78,18 @@ impl Proof {
         let mut moving = lane.clone();
         set(&mut moving, &self.xi, &xi);
         if at("momenta", &moving)? != p {
-            return Some(Err("p of ξ of p is p, for the emitted momenta"));
+            return wrong("p of ξ of p is p, for the emitted momenta");
         }
         if program.function("centre").is_some() {
             let mut shifted = lane.clone();
             set(&mut shifted, &self.x, &at("centre", lane)?);
             if at("uncentre", &shifted)? != x {
-                return Some(Err("x of y of x is x, for the emitted centre"));
+                return wrong("x of y of x is x, for the emitted centre");
             }
         }
         let kick = at("kick", lane)?;
-        let spin = evaluate_at(&reference.model.graph, &self.rates, &mut moving.clone())?;
-        let (p_dot, y_dot) = self.slopes(reference, program, &moving)?;
+        let spin = evaluate_at(&self.model.graph, &self.rates, &mut moving.clone())?;
+        let (p_dot, y_dot) = self.slopes(numbers, program, &moving)?;
         let mut inertia = match program.function("rotor_inertia") {
             Some(_) => at("rotor_inertia", lane)?.into_iter(),
             None => Vec::new().into_iter(),
@@ -94,7 +99,7 @@ impl Proof {
             ..
         } = &program.structure
         else {
-            return Some(Err("a system that splits, for the emitted kick"));
+            return wrong("a system that splits, for the emitted kick");
         };
         let mut rotors = splitting.rotors.iter();
         for part in &self.parts {
@@ -108,7 +113,7 @@ impl Proof {
                     &spin[here.clone()]
                 };
                 if rate != &p[here.clone()] || p_dot[here.clone()] != kick[here] {
-                    return Some(Err("ẏ = p, ṗ = kick, for the emitted splitting"));
+                    return wrong("ẏ = p, ṗ = kick, for the emitted splitting");
                 }
                 continue;
             }
@@ -123,13 +128,13 @@ impl Proof {
                     .collect(),
             };
             if jw != big_p {
-                return Some(Err("P = J ω, for the emitted rotors"));
+                return wrong("P = J ω, for the emitted rotors");
             }
             for i in 0..3 {
                 let (a, b) = ((i + 1) % 3, (i + 2) % 3);
                 let gyroscopic = big_p[a] * w[b] - big_p[b] * w[a];
                 if p_dot[here.start + i] != gyroscopic + kick[here.start + i] {
-                    return Some(Err("Ṗ = P × ω + kick, for the emitted splitting"));
+                    return wrong("Ṗ = P × ω + kick, for the emitted splitting");
                 }
             }
         }
@@ -139,25 +144,23 @@ impl Proof {
     /// d/dt of the momenta and of y along the motion.
     fn slopes(
         &self,
-        reference: &Reference,
+        numbers: &Numbers,
         program: &Program,
         moving: &Lane,
     ) -> Option<(Vec<Fp>, Vec<Fp>)> {
-        let model = &reference.model;
-        let n = model.n();
-        let mut roots = reference.mass.concat();
-        for part in [&reference.force, &reference.bias, &reference.slope] {
-            roots.extend(part);
-        }
-        roots.extend(&model.rate);
-        let values = evaluate_at(&model.graph, &roots, &mut moving.clone())?;
-        let (mass, rest) = values.split_at(n * n);
-        let (forces, rate) = rest.split_at(3 * n);
-        let right = (0..n).map(|i| forces[i] - forces[n + i] - forces[2 * n + i]);
-        let rows = mass.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
-        let xi_dot = solve(rows, right.collect())?;
+        let model = &self.model;
+        let Values {
+            mass,
+            force,
+            bias,
+            slope,
+            rate,
+            ..
+        } = numbers.at(moving)?.ok()?;
+        let right = (0..model.n()).map(|i| force[i] - bias[i] - slope[i]);
+        let xi_dot = solve(mass, right.collect())?;
         let mut direction = vec![Fp::ZERO; model.graph.symbols().len()];
-        let moves = self.x.iter().zip(rate).chain(self.xi.iter().zip(&xi_dot));
+        let moves = self.x.iter().zip(&rate).chain(self.xi.iter().zip(&xi_dot));
         for (&place, &by) in moves {
             *direction.get_mut(place)? = by;
         }

@@ -124,10 +124,10 @@ pub fn dependence(
     x: &[Edge],
     edges: &[Edge],
 ) -> Vec<String> {
-    let changing = parts.iter().filter(|part| {
-        variation
-            .changes(graph, edges, part.entries(x))
-            .contains(&true)
+    let dependence = variation.of(graph, edges);
+    let changing = parts.iter().filter(|part| match &dependence {
+        Some(dependence) => dependence.changes(part.entries(x)).contains(&true),
+        None => true,
     });
     changing.map(|part| part.name.clone()).collect()
 }

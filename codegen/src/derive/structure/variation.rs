@@ -5,6 +5,7 @@ use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
+use crate::algebra::tape::Tape;
 use crate::model::Model;
 
 /// Points tried where square roots have no value.
@@ -28,32 +29,60 @@ impl<'a> Variation<'a> {
         })
     }
 
+    /// Prepares to ask on what expressions depend; `None` where they have no value here.
+    pub fn of(&'a self, graph: &'a Graph, edges: &[Edge]) -> Option<Dependence<'a>> {
+        let tape = Tape::new(graph, edges)?;
+        Some(Dependence {
+            variation: self,
+            graph,
+            values: tape.values(&self.here)?,
+            tape,
+        })
+    }
+
     /// For each expression whether it changes with the symbols that `moved` are; where no second point
     /// was found, it is said to.
     pub fn changes(&self, graph: &Graph, edges: &[Edge], moved: &[Edge]) -> Vec<bool> {
-        let places: Vec<usize> = moved
-            .iter()
-            .filter_map(|edge| match graph.node(edge.node()) {
-                Node::Symbol(index) => Some(index as usize),
-                _ => None,
-            })
-            .collect();
-        self.pair(graph, edges, &places).map_or_else(
-            || vec![true; edges.len()],
-            |(a, b)| a.iter().zip(&b).map(|(a, b)| a != b).collect(),
-        )
+        match self.of(graph, edges) {
+            Some(dependence) => dependence.changes(moved),
+            None => vec![true; edges.len()],
+        }
     }
+}
 
-    /// Values here, and with symbols moved.
-    fn pair(&self, graph: &Graph, edges: &[Edge], places: &[usize]) -> Option<(Vec<Fp>, Vec<Fp>)> {
-        let here = evaluate_at(graph, edges, &mut self.here.clone())?;
-        (0..TRIES).find_map(|seed| {
-            let other = self.model.points.lane(SEED + TRIES + seed)?;
-            let mut there = self.here.clone();
-            for &place in places {
+/// Expressions with their values at the point from which symbols are moved.
+pub struct Dependence<'a> {
+    variation: &'a Variation<'a>,
+    graph: &'a Graph,
+    tape: Tape,
+    values: Vec<Fp>,
+}
+
+impl Dependence<'_> {
+    /// For each expression whether it changes with the symbols that `moved` are; where no second point
+    /// was found, it is said to.
+    pub fn changes(&self, moved: &[Edge]) -> Vec<bool> {
+        let symbol = |edge: &Edge| match self.graph.node(edge.node()) {
+            Node::Symbol(index) => Some(index as usize),
+            _ => None,
+        };
+        let places: Vec<usize> = moved.iter().filter_map(symbol).collect();
+        let there = (0..TRIES).find_map(|seed| {
+            let other = self.variation.model.points.lane(SEED + TRIES + seed)?;
+            let mut there = self.variation.here.clone();
+            for &place in &places {
                 there.set_symbol(place, other.symbol(place));
             }
-            Some((here.clone(), evaluate_at(graph, edges, &mut there)?))
-        })
+            self.tape.values(&there)
+        });
+        match there {
+            Some(there) => self
+                .values
+                .iter()
+                .zip(&there)
+                .map(|(a, b)| a != b)
+                .collect(),
+            None => vec![true; self.values.len()],
+        }
     }
 }
