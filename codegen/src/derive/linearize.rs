@@ -203,6 +203,9 @@ fn implicit(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
 /// The same for a tree of links, by recursion; M factored from the leaves to the root.
 fn recursive(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
     let (mass, _) = motion.implicit?;
+    if motion.nearby.n() != model.n() {
+        return None;
+    }
     let recursion = Recursion::of(&Setting::given(model))?;
     let mut graph = motion.graph.clone();
     let changes = recursion.slopes(&mut graph, motion.xi_dot)?;

@@ -33,7 +33,8 @@ pub(super) struct Motion {
     pub(super) relative: (Vec3, Vec3),
 }
 
-/// What the motion of every link needs, at rates ξ and ξ̇ and under gravity (world axes).
+/// What the motion of every link needs, at rates ξ (the model's, or zero) and ξ̇ and under gravity (world
+/// axes).
 pub fn wrenches(
     graph: &mut Graph,
     tree: &Tree,
@@ -82,7 +83,9 @@ fn outward(
 ) -> Motion {
     let zero = zero3(graph);
     let mut relative = (zero, zero);
-    let mut change = link.drift;
+    // The drift is that of the model's ξ: at rest there is none.
+    let rest = xi.iter().all(|&rate| rate == graph.zero());
+    let mut change = if rest { (zero, zero) } else { link.drift };
     for freedom in &link.freedoms {
         let rate = freedom.rate_of(graph, xi);
         let growth = freedom.rate_of(graph, xi_dot);

@@ -46,8 +46,10 @@ pub fn slopes(
     gravity: Vec3,
 ) -> Option<Slopes> {
     let n = xi.len();
-    let zero = zero3(graph);
-    let steady = |link: &Link| link.drift == (zero, zero);
+    let steady = |link: &Link| {
+        let entries = link.freedoms.iter().flat_map(|f| f.angular.into_iter().chain(f.linear));
+        entries.into_iter().all(|entry| graph.is_free(entry.node()))
+    };
     if !tree.is_plain(graph, n) || !tree.links.iter().all(steady) {
         return None;
     }
