@@ -167,10 +167,7 @@ impl<'a> Builder<'a> {
         let bias: Vec<Edge> = self.parts.inertia.iter().map(|&edge| -edge).collect();
         let slope: Vec<Edge> = self.parts.conservative.iter().map(|&edge| -edge).collect();
         let applied = self.parts.applied.clone();
-        let momentum: Vec<Edge> = match &self.parts.momentum {
-            Some(momentum) => momentum.clone(),
-            None => mass.iter().map(|row| graph.dot(row, &xi)).collect(),
-        };
+        let momentum = self.parts.momentum_of(graph, self.model);
         let inverse = self.parts.whole(graph, self.model);
         let twice = graph.dot(&momentum, &xi);
         let half = graph.ratio(1, 2);

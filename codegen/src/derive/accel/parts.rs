@@ -87,29 +87,44 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Of each function the cheaper computation; both are in one graph.
+    /// Of each function the cheapest computation; both are in one graph.
     pub fn cheapest(self, other: Parts, graph: &mut Graph, model: &Model) -> Parts {
-        let whole = self.whole(graph, model);
-        let momentum: Vec<Edge> = self
-            .mass
-            .iter()
-            .map(|row| graph.dot(row, &model.xi))
-            .collect();
         let n = self.inertia.len().max(1);
-        let pick = |a: Vec<Edge>, b: Option<Vec<Edge>>| match b {
-            Some(b) if count(graph, &b).weight() < count(graph, &a).weight() => b,
-            _ => a,
+        let cheaper = |graph: &Graph, a: Vec<Edge>, b: Vec<Edge>| {
+            if count(graph, &b).weight() < count(graph, &a).weight() {
+                b
+            } else {
+                a
+            }
         };
-        Parts {
-            inverse_dynamics: Some(pick(whole, other.inverse_dynamics)),
-            momentum: Some(pick(momentum, other.momentum)),
-            mass: pick(self.mass.concat(), Some(other.mass.concat()))
-                .chunks(n)
-                .map(<[Edge]>::to_vec)
-                .collect(),
-            inertia: pick(self.inertia, Some(other.inertia)),
-            conservative: pick(self.conservative, Some(other.conservative)),
+        let mut momenta = vec![self.momentum_of(graph, model)];
+        let mut wholes = vec![self.whole(graph, model)];
+        momenta.extend(other.momentum.clone());
+        wholes.extend(other.inverse_dynamics.clone());
+        let mass = cheaper(graph, self.mass.concat(), other.mass.concat());
+        let mut parts = Parts {
+            mass: mass.chunks(n).map(<[Edge]>::to_vec).collect(),
+            inertia: cheaper(graph, self.inertia, other.inertia),
+            conservative: cheaper(graph, self.conservative, other.conservative),
+            inverse_dynamics: None,
+            momentum: None,
             ..self
+        };
+        momenta.push(parts.momentum_of(graph, model));
+        wholes.push(parts.whole(graph, model));
+        parts.momentum = momenta.into_iter().reduce(|a, b| cheaper(graph, a, b));
+        parts.inverse_dynamics = wholes.into_iter().reduce(|a, b| cheaper(graph, a, b));
+        parts
+    }
+
+    /// M ξ.
+    pub fn momentum_of(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
+        match &self.momentum {
+            Some(momentum) => momentum.clone(),
+            None => {
+                let rows = self.mass.iter();
+                rows.map(|row| graph.dot(row, &model.xi)).collect()
+            }
         }
     }
 

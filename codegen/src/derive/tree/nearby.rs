@@ -47,7 +47,10 @@ pub fn slopes(
 ) -> Option<Slopes> {
     let n = xi.len();
     let steady = |link: &Link| {
-        let entries = link.freedoms.iter().flat_map(|f| f.angular.into_iter().chain(f.linear));
+        let entries = link
+            .freedoms
+            .iter()
+            .flat_map(|f| f.angular.into_iter().chain(f.linear));
         entries.into_iter().all(|entry| graph.is_free(entry.node()))
     };
     if !tree.is_plain(graph, n) || !tree.links.iter().all(steady) {

@@ -89,9 +89,7 @@ fn compare(what: &str, listing: &Listing, mut values: Values, expected: &[f64]) 
 
 #[test]
 fn printed_values_are_those_of_the_graph() {
-    let folder = format!("{}/../tests/models", env!("CARGO_MANIFEST_DIR"));
-    for file in std::fs::read_dir(folder).expect("models").flatten() {
-        let name = file.file_name().to_string_lossy().replace(".eom", "");
+    for name in super::fixtures() {
         let generated = fixture(&name);
         let model = &generated.model;
         let numbered =
