@@ -88,9 +88,14 @@ impl Displacements {
 /// entries expanded, their coefficients computed when parameters are set.
 pub fn linearize(model: &Model, motion: &Motion) -> Linear {
     let upper = upper(model, motion);
-    let mut candidates: Vec<Linear> = recursive(model, motion, &upper).into_iter().collect();
+    let recursion = Recursion::of(&Setting::given(model));
     // Beyond a few links nothing comes near the recursion.
-    if candidates.is_empty() || model.n() <= MOST_EXPANDED {
+    let long = recursion.as_ref().is_some_and(Recursion::is_long);
+    let mut candidates: Vec<Linear> = recursion
+        .and_then(|recursion| recursive(model, motion, &recursion, &upper))
+        .into_iter()
+        .collect();
+    if candidates.is_empty() || !(long || model.n() > MOST_EXPANDED) {
         let explicit = explicit(model, motion, &upper);
         if model.n() <= MOST_EXPANDED {
             candidates.extend(expanded(model, &explicit, motion.graph));
@@ -201,12 +206,16 @@ fn implicit(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
 }
 
 /// The same for a tree of links, by recursion; M factored from the leaves to the root.
-fn recursive(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
+fn recursive(
+    model: &Model,
+    motion: &Motion,
+    recursion: &Recursion,
+    upper: &Linear,
+) -> Option<Linear> {
     let (mass, _) = motion.implicit?;
     if motion.nearby.n() != model.n() {
         return None;
     }
-    let recursion = Recursion::of(&Setting::given(model))?;
     let mut graph = motion.graph.clone();
     let changes = recursion.slopes(&mut graph, motion.xi_dot)?;
     let solved = solve_columns(&mut graph, mass, &changes)?;

@@ -4,6 +4,7 @@
 //! Γ ξ ξ) and in how they solve. Every candidate is built in a graph of its own and counted
 //! exactly; the cheapest is kept.
 
+pub mod cheapest;
 pub mod parts;
 pub mod polynomial;
 pub mod recursive;
@@ -15,6 +16,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::resubstitute::resubstitute;
 use crate::model::Model;
 use crate::program::count::{Count, count, depth};
+use cheapest::{Computation, cheapest};
 use parts::{Axes, Parts, Reference, Variant, parts};
 use recursive::Recursion;
 use saddle::Projections;
@@ -58,9 +60,9 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     let recursion = Recursion::of(&given);
     if let Some(recursion) = &recursion {
         recursion.search(&mut best);
-        if model.n() > SMALL {
+        if model.n() > SMALL || recursion.is_long() {
             let mut best = best?;
-            let parts = recursion.parts(&mut best.graph);
+            let parts = cheapest(vec![recursion.parts()], &mut best.graph, model);
             return Some((best, parts));
         }
     }
@@ -76,13 +78,13 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     }
     let mut best = polished(best?, model);
     let (traced, parts) = trace(&given, variant);
-    let parts = parts.rebuilt(&traced.graph, &mut best.graph);
     let parts = match recursion {
         Some(recursion) => {
-            let other = recursion.parts(&mut best.graph);
-            parts.cheapest(other, &mut best.graph, model)
+            let graph = traced.graph;
+            let both = vec![Computation { graph, parts }, recursion.parts()];
+            cheapest(both, &mut best.graph, model)
         }
-        None => parts,
+        None => parts.rebuilt(&traced.graph, &mut best.graph),
     };
     Some((best, parts))
 }

@@ -13,7 +13,6 @@ use crate::derive::inertia::{accumulate, kinetic_mass, symmetric};
 use crate::derive::normal::without_coordinates;
 use crate::derive::{kinematics, loads};
 use crate::model::{Body, Model};
-use crate::program::count::count;
 
 /// The axes in which linear motion is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,36 +86,6 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Of each function the cheapest computation; both are in one graph.
-    pub fn cheapest(self, other: Parts, graph: &mut Graph, model: &Model) -> Parts {
-        let n = self.inertia.len().max(1);
-        let cheaper = |graph: &Graph, a: Vec<Edge>, b: Vec<Edge>| {
-            if count(graph, &b).weight() < count(graph, &a).weight() {
-                b
-            } else {
-                a
-            }
-        };
-        let mut momenta = vec![self.momentum_of(graph, model)];
-        let mut wholes = vec![self.whole(graph, model)];
-        momenta.extend(other.momentum.clone());
-        wholes.extend(other.inverse_dynamics.clone());
-        let mass = cheaper(graph, self.mass.concat(), other.mass.concat());
-        let mut parts = Parts {
-            mass: mass.chunks(n).map(<[Edge]>::to_vec).collect(),
-            inertia: cheaper(graph, self.inertia, other.inertia),
-            conservative: cheaper(graph, self.conservative, other.conservative),
-            inverse_dynamics: None,
-            momentum: None,
-            ..self
-        };
-        momenta.push(parts.momentum_of(graph, model));
-        wholes.push(parts.whole(graph, model));
-        parts.momentum = momenta.into_iter().reduce(|a, b| cheaper(graph, a, b));
-        parts.inverse_dynamics = wholes.into_iter().reduce(|a, b| cheaper(graph, a, b));
-        parts
-    }
-
     /// M ξ.
     pub fn momentum_of(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
         match &self.momentum {

@@ -1,5 +1,6 @@
 //! Trees: ξ̇, M and forces by recursion over links.
 
+use super::cheapest::Computation;
 use super::parts::Parts;
 use super::setting::Setting;
 use super::solve::{Plan, solve};
@@ -14,6 +15,9 @@ use crate::derive::tree::nearby::slopes;
 use crate::derive::tree::{Tree, articulated, composite};
 use crate::model::Model;
 use crate::program::count::{count, depth};
+
+/// Trees with more links are not tried by other routes.
+const SHORT: usize = 3;
 
 /// A model whose inertia is that of links.
 pub struct Recursion {
@@ -49,6 +53,11 @@ impl Recursion {
             elastic,
             applied,
         })
+    }
+
+    /// Whether nothing else comes near the recursion.
+    pub fn is_long(&self) -> bool {
+        self.tree.links.len() > SHORT
     }
 
     /// What acts beside gravity.
@@ -111,8 +120,8 @@ impl Recursion {
         }
     }
 
-    /// M and forces, in another graph with the same symbols.
-    pub fn parts(&self, into: &mut Graph) -> Parts {
+    /// M and forces.
+    pub fn parts(&self) -> Computation {
         let mut graph = self.model.graph.clone();
         let n = self.model.n();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
@@ -142,7 +151,7 @@ impl Recursion {
             inverse_dynamics: Some(inverse_dynamics),
             momentum: Some(momentum),
         };
-        parts.rebuilt(&graph, into)
+        Computation { graph, parts }
     }
 }
 
