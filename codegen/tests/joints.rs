@@ -128,7 +128,7 @@ fn every_kind_is_what_is_written_by_hand() {
     }
 }
 
-/// The shorthand costs nothing: where both descriptions say the same, so do the counts.
+/// The shorthand costs nothing: never more than what is written by hand.
 #[test]
 fn joints_cost_nothing() {
     for (joint, hand) in PAIRS {
@@ -138,7 +138,8 @@ fn joints_cost_nothing() {
                 let function = of.program.function(name).expect("it was asked for");
                 count(&of.program.graph, &function.outputs).flops()
             };
-            assert_eq!(operations(&short), operations(&long), "{joint}: {name}");
+            let (ours, hand) = (operations(&short), operations(&long));
+            assert!(ours <= hand, "{joint}: {name} {ours} {hand}");
         }
     }
 }

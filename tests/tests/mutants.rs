@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The crates that the command line is made of.
-const CRATES: [&str; 5] = ["codegen", "macros", "runtime", "report", "cli"];
+const CRATES: [&str; 6] = ["codegen", "macros", "runtime", "report", "urdf", "cli"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -127,12 +127,13 @@ impl Copy {
         fs::write(&path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
 
-    /// Builds the command line without debug information and checks a model with it.
+    /// Builds the command line, quickly rather than well, and checks a model with it.
     fn check(&self, model: &str) -> Output {
         let target = self.folder.join("target");
         let built = Command::new(env!("CARGO"))
             .args(["build", "--offline", "--quiet", "--package", "hamel-cli"])
             .args(["--config", "profile.dev.debug=false"])
+            .args(["--config", "profile.dev.package.hamel-codegen.opt-level=0"])
             .current_dir(&self.folder)
             .env("CARGO_TARGET_DIR", &target)
             .env_remove("RUSTFLAGS")

@@ -1,20 +1,13 @@
 //! Axes and places of joints: exact unit vectors.
-//!
-//! Symbols are compared modulo p, where the root of most numbers does not exist. So a direction is
-//! divided by its length where that is rational, or a root modulo p; else it is replaced by a
-//! rational unit vector beside it, the image of rational numbers under the stereographic projection.
 
 use super::class;
 use super::value::Value;
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
-use crate::algebra::numeric::evaluate;
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::Span;
-use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{One, Signed, Zero};
+use num_traits::Signed;
 
 /// What a joint calls for its axis; no name of the language has blanks.
 pub const AXIS: &str = "the axis of a joint";
@@ -22,9 +15,6 @@ pub const AXIS: &str = "the axis of a joint";
 pub const PLACE: &str = "the place of a joint";
 /// What a planar joint calls for the two directions of its plane, as the columns of a 3×2 matrix.
 pub const PLANE: &str = "the plane of a joint";
-
-/// Cells by which a rational unit vector may be off, 2⁻⁵⁶: half a unit in the last place of f64.
-const BITS: u32 = 56;
 
 /// All of them.
 pub const CALLS: [&str; 3] = [AXIS, PLACE, PLANE];
@@ -95,74 +85,25 @@ fn unit(graph: &mut Graph, value: &Value) -> Result<Vec3, Refused> {
     if square == graph.one() {
         return Ok(axis);
     }
-    if let Some(number) = graph.as_rational(square) {
-        let length = match exact_root(&number) {
-            Some(length) => Some(graph.rational(&length)),
-            None if Fp::from_rational(&number).is_some_and(|image| image.sqrt().is_some()) => {
-                Some(graph.apply(Function::Sqrt, square))
-            }
-            None => None,
-        };
-        if let Some(length) = length {
-            let quotients = axis.map(|entry| graph.div(entry, length));
-            if let [Some(a), Some(b), Some(c)] = quotients {
-                return Ok([a, b, c]);
-            }
-        }
-    }
-    let mut symbols = vec![f64::NAN; graph.symbols().len()];
-    if let Some(first) = symbols.first_mut() {
-        *first = std::f64::consts::PI;
-    }
-    let numbers = evaluate(graph, &axis, &symbols);
-    match numbers.as_slice() {
-        &[a, b, c] => beside(graph, [a, b, c]),
-        _ => Err(NOT_FINITE),
-    }
+    let rational = graph.as_rational(square);
+    let length = match rational.as_ref().and_then(exact_root) {
+        Some(length) => graph.rational(&length),
+        None => graph.apply(Function::Sqrt, square),
+    };
+    let quotients = axis.map(|entry| graph.div(entry, length));
+    let [Some(a), Some(b), Some(c)] = quotients else {
+        return Err(Refused(
+            "the axis of a joint has no length",
+            "write a direction, such as `[0, 0, 1]`",
+        ));
+    };
+    Ok([a, b, c])
 }
-
-const NOT_FINITE: Refused = Refused(
-    "the axis of a joint is not finite",
-    "write a direction, such as `[0, 0, 1]`",
-);
 
 /// √ of a rational number that is a square.
 fn exact_root(number: &BigRational) -> Option<BigRational> {
     let root = BigRational::new(number.numer().sqrt(), number.denom().sqrt());
     (&root * &root == *number).then_some(root)
-}
-
-/// A rational unit vector beside a direction: with its largest entry as the pole, t of the other two
-/// and n = (2 t, 1 − |t|²)/(1 + |t|²).
-fn beside(graph: &mut Graph, direction: [f64; 3]) -> Result<Vec3, Refused> {
-    let scale = direction.iter().fold(0.0f64, |most, a| most.max(a.abs()));
-    let scaled = direction.map(|a| a / scale);
-    let length = scaled.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let n = scaled.map(|a| a / length);
-    let pole = (0..3).find(|&i| direction[i].abs() == scale).unwrap_or(2);
-    let (i, j) = ((pole + 1) % 3, (pole + 2) % 3);
-    let sign = n[pole].signum();
-    // Small entries are differences of 1 + |n| from 1 + 1: they are rounded where they are small.
-    let rational = |value: f64| {
-        let unit = BigRational::from_integer(BigInt::one() << BITS);
-        BigRational::from_float(value).map(|exact| (exact * &unit).round() / unit)
-    };
-    let ratio = |k: usize| rational(n[k] / (1.0 + n[pole].abs()));
-    let (Some(s), Some(t)) = (ratio(i), ratio(j)) else {
-        return Err(NOT_FINITE);
-    };
-    let one = BigRational::one();
-    let square = &s * &s + &t * &t;
-    let whole = &one + &square;
-    let two = &one + &one;
-    let mut entries = [&s, &s, &s].map(|_| BigRational::zero());
-    entries[i] = &two * &s / &whole;
-    entries[j] = &two * &t / &whole;
-    entries[pole] = (&one - &square) / &whole;
-    if sign < 0.0 {
-        entries[pole] = -entries[pole].abs();
-    }
-    Ok(entries.map(|entry| graph.rational(&entry)))
 }
 
 /// Two unit vectors that with the normal are a right-handed frame: the images of the coordinate
@@ -220,6 +161,8 @@ fn shortest(graph: &mut Graph, k: usize, negative: bool, n: Vec3) -> Mat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::fp::Fp;
+    use crate::algebra::numeric::evaluate;
 
     fn number(graph: &mut Graph, text: &str) -> Edge {
         let (n, d) = text.split_once('/').unwrap_or((text, "1"));

@@ -48,12 +48,16 @@ pub fn forward(
     for (index, link) in tree.links.iter().enumerate().rev() {
         for freedom in &link.freedoms {
             let (torque, force) = inertia[index].wrench(graph, freedom.angular, freedom.linear);
+            let &[(i, _)] = freedom.rate.as_slice() else {
+                return None;
+            };
             let pivot = {
-                let (a, b) = (
+                let terms = [
                     graph.dot(&freedom.angular, &torque),
                     graph.dot(&freedom.linear, &force),
-                );
-                graph.add(a, b)
+                    tree.armature[i],
+                ];
+                graph.sum(&terms)
             };
             let inverse = graph.div(graph.one(), pivot)?;
             guards.push(pivot);
@@ -63,9 +67,6 @@ pub fn forward(
                     graph.dot(&freedom.linear, &bias[index].force),
                 );
                 graph.add(a, b)
-            };
-            let &[(i, _)] = freedom.rate.as_slice() else {
-                return None;
             };
             let rest = graph.sub(load[i], felt);
             let share = (

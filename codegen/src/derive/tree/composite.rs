@@ -55,5 +55,8 @@ pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
             }
         }
     }
+    for (i, &armature) in tree.armature.iter().enumerate() {
+        matrix[i][i] = graph.add(matrix[i][i], armature);
+    }
     matrix
 }

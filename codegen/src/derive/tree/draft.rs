@@ -9,7 +9,7 @@ use crate::algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, identity3, multiply3, zero3,
 };
 use crate::derive::calculus::Calculus;
-use crate::model::{Body, Model};
+use crate::model::Model;
 
 /// A link whose frame may still be moved.
 #[derive(Clone, Debug)]
@@ -113,8 +113,7 @@ struct Place {
 
 /// The links of a model.
 pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
-    let zero = model.graph.zero();
-    if !model.particles.is_empty() || model.kinetic != zero || model.bodies.is_empty() {
+    if model.bodies.len() + model.particles.len() == 0 || has_more_inertia(model) {
         return None;
     }
     let mut links: Vec<Draft> = Vec::new();
@@ -158,17 +157,50 @@ pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
         });
     }
     for body in model.bodies.clone() {
-        load(&mut model.graph, &mut links, places.get(body.frame)?, &body);
+        let mass = Mass::of(&mut model.graph, &body);
+        load(&mut model.graph, &mut links, places.get(body.frame)?, &mass);
+    }
+    for particle in model.particles.clone() {
+        let (frame, position) = carrier(model, particle.position)?;
+        let mass = Mass::point(&model.graph, particle.mass).shifted(&mut model.graph, position);
+        load(&mut model.graph, &mut links, places.get(frame)?, &mass);
     }
     Some(links)
 }
 
-/// Adds a body to the link that its frame is part of.
-fn load(graph: &mut Graph, links: &mut [Draft], place: &Place, body: &Body) {
+/// Whether there is kinetic energy beside that of bodies, particles and armatures.
+fn has_more_inertia(model: &mut Model) -> bool {
+    let graph = &mut model.graph;
+    let half = graph.ratio(1, 2);
+    let mut rest = model.kinetic;
+    for (&xi, &armature) in model.xi.iter().zip(&model.armature) {
+        let factors = [half, armature, xi, xi];
+        let energy = factors
+            .into_iter()
+            .fold(graph.one(), |a, b| graph.mul(a, b));
+        rest = graph.sub(rest, energy);
+    }
+    rest != graph.zero()
+}
+
+/// A frame that a point is fixed to, and its place there.
+fn carrier(model: &mut Model, point: Vec3) -> Option<(usize, Vec3)> {
+    let frames = model.frames.clone();
+    frames.iter().enumerate().find_map(|(index, frame)| {
+        let graph = &mut model.graph;
+        let away: Vec3 = std::array::from_fn(|i| graph.sub(point[i], frame.position[i]));
+        let place = apply_transposed(graph, &frame.rotation, away);
+        let fixed = place.iter().all(|entry| graph.is_free(entry.node()));
+        fixed.then_some((index, place))
+    })
+}
+
+/// Adds what is fixed to a frame to the link that the frame is part of.
+fn load(graph: &mut Graph, links: &mut [Draft], place: &Place, mass: &Mass) {
     let Some(link) = place.link.and_then(|link| links.get_mut(link)) else {
         return;
     };
-    let mass = Mass::of(graph, body)
+    let mass = mass
         .turned(graph, &Turn::By(place.rotation))
         .shifted(graph, place.position);
     link.mass = link.mass.plus(graph, &mass);

@@ -211,5 +211,14 @@ pub fn inverse(
     gravity: Vec3,
 ) -> Vec<Edge> {
     let wrenches = wrenches(graph, tree, xi, xi_dot, gravity);
-    collect(graph, tree, &wrenches, xi.len())
+    let forces = collect(graph, tree, &wrenches, xi.len());
+    let rotors = tree.armature.iter().zip(xi_dot);
+    forces
+        .iter()
+        .zip(rotors)
+        .map(|(&force, (&armature, &rate))| {
+            let own = graph.mul(armature, rate);
+            graph.add(force, own)
+        })
+        .collect()
 }

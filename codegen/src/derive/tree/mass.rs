@@ -27,6 +27,14 @@ impl Mass {
         }
     }
 
+    /// That of a particle at the origin.
+    pub fn point(graph: &Graph, mass: Edge) -> Self {
+        Mass {
+            mass,
+            ..Mass::none(graph)
+        }
+    }
+
     /// That of a body, in its frame: S = ½ tr(Θ) I − Θ about the centre of mass, and shifted.
     pub fn of(graph: &mut Graph, body: &Body) -> Self {
         let theta = &body.inertia_com;

@@ -81,11 +81,13 @@ impl Link {
 pub struct Tree {
     /// The links.
     pub links: Vec<Link>,
+    /// Armatures: J of the force J ξ̇ⁱ that a velocity needs besides.
+    pub armature: Vec<Edge>,
 }
 
 impl Tree {
-    /// The tree of a model; `None` where not all of its inertia is that of bodies on frames, or where
-    /// a joint's rates are no constant combinations of ξ.
+    /// The tree of a model; `None` where not all of its inertia is that of armatures, and of bodies and
+    /// particles that are fixed to frames.
     pub fn of(model: &mut Model, calculus: &mut Calculus) -> Option<Tree> {
         let mut draft = draft::draft(model, calculus)?;
         reframe::reframe(&mut model.graph, &mut draft);
@@ -93,6 +95,7 @@ impl Tree {
         let links = draft.into_iter().map(|link| link.finish(&mut model.graph));
         Some(Tree {
             links: links.collect(),
+            armature: model.armature.clone(),
         })
     }
 
