@@ -134,11 +134,14 @@ def description(name, bodies):
     lines += ["    gravity [0, 0, -9.81];", f"    input tau: vec{total};"]
     at = 0
     for i, body in enumerate(bodies):
-        names = [f"v{i}[1]", f"v{i}[2]", f"v{i}[3]", f"w{i}[1]", f"w{i}[2]", f"w{i}[3]"]
-        for velocity in names if body.kind == "free" else [f"u{i}"]:
+        for velocity in [f"v{i}", f"w{i}"] if body.kind == "free" else []:
+            entries = ", ".join(f"tau[{at + k}]" for k in (1, 2, 3))
+            lines.append(f"    generalized force {velocity} = [{entries}];")
+            at += 3
+        if body.kind != "free":
             at += 1
-            lines.append(f"    generalized force {velocity} = tau[{at}];")
-    lines += ["    generate accel, inverse_dynamics;", "}", ""]
+            lines.append(f"    generalized force u{i} = tau[{at}];")
+    lines += ["}", ""]
     return "\n".join(lines)
 
 

@@ -4,8 +4,11 @@
 //! below the target folder. Without them these tests say so and end.
 
 mod common;
+#[path = "common/installed.rs"]
+mod installed;
 
 use common::{hamel, text};
+use installed::installed;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -14,17 +17,6 @@ use std::path::{Path, PathBuf};
 const AGREEMENT: f64 = 1e-9;
 /// Sums of a few masses, but for rounding.
 const ROUNDING: f64 = 1e-14;
-
-/// The folder with the robots, if they are installed.
-fn installed() -> Option<PathBuf> {
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent()?;
-    let libraries = std::fs::read_dir(target.join("robots/lib")).ok()?;
-    let folders = libraries.filter_map(|entry| {
-        let packages = entry.ok()?.path().join("site-packages");
-        Some(packages.join("cmeel.prefix/share/example-robot-data/robots"))
-    });
-    folders.into_iter().find(|folder| folder.is_dir())
-}
 
 /// A robot with its reference values.
 struct Robot {

@@ -147,7 +147,9 @@ fn commands_take_robots() {
 /// Inertias that are parameters give the numbers of those that are constants.
 #[test]
 fn parameters_change_no_number() {
-    let robot = scratch("params.urdf", CART);
+    // A base that moves by itself needs inertia.
+    let rail = r#"<link name="rail"><inertial><mass value="4"/><inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="1.5"/></inertial></link>"#;
+    let robot = scratch("params.urdf", &CART.replace(r#"<link name="rail"/>"#, rail));
     let state = r#"{"configuration": {"root_joint": {"position": [1, 2, 3]}, "hinge": 0.4},
         "velocity": {"root_joint": {"linear": [1, 0, 2], "angular": [0.1, 0.2, 0.3]}, "slide-x": 2},
         "force": [1, 2, 3, 4, 5, 6, 7, 8]}"#;

@@ -90,6 +90,7 @@ pub mod split;
 pub mod state;
 pub mod store;
 pub mod system;
+mod trig;
 #[cfg(feature = "wide")]
 pub mod wide;
 
