@@ -21,6 +21,7 @@
 //! | `linearize` | the motion nearby, in displacement coordinates | (12) |
 //! | `invariants` | claims of constancy along the motion, proved or refuted | |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
+//! | `tree` | links and joints: inverse dynamics, M, ξ̇ and slopes by recursion | |
 //! | `adviser` | other velocity coordinates for the same motion, and their cost | |
 //! | `assemble` | the program of all generated functions | |
 //! | `further` | momenta, the motion nearby and invariants as functions | |
