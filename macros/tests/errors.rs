@@ -3,6 +3,6 @@
 #[test]
 fn errors_are_placed_in_the_description() {
     let cases = trybuild::TestCases::new();
-    cases.pass("ui/right.rs");
-    cases.compile_fail("ui/wrong_*.rs");
+    cases.pass("tests/ui/right.rs");
+    cases.compile_fail("tests/ui/wrong_*.rs");
 }
