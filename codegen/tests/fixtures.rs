@@ -2,7 +2,7 @@
 //! published equations, a mass matrix derived by hand, another description, Newton and Euler.
 
 mod common;
-#[path = "common/tree.rs"]
+#[path = "common/tree/mod.rs"]
 mod tree;
 
 use common::{Random, difference, generated, value};

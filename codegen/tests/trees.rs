@@ -1,14 +1,21 @@
-//! Random trees of bodies: what is generated against Newton and Euler in numbers.
+//! Random trees of bodies: what is generated against Newton and Euler in numbers, and against the
+//! tables of M and Γ, KR18 (20) and (23).
 
 mod common;
-#[path = "common/tree.rs"]
+#[path = "common/tree/mod.rs"]
 mod tree;
 
 use common::{Random, difference, generated, value};
+use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::derive::levi_civita::{contracted, levi_civita};
+use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::generate::Generated;
 use tree::{Kind, Link, Tree, text};
 
 /// Roundings of a few thousand operations, forces of the order of 100.
 const CLOSE: f64 = 1e-10;
+/// The same where accelerations of light links at the end of a long chain are large.
+const LONG: f64 = 1e-8;
 /// States tried per tree.
 const STATES: usize = 3;
 
@@ -18,71 +25,230 @@ const SIMPLE: [Kind; 4] = [
     Kind::Continuous,
     Kind::Prismatic,
 ];
-const ALL: [Kind; 7] = [
+const ALL: [Kind; 12] = [
+    Kind::Revolute,
+    Kind::Revolute,
     Kind::Revolute,
     Kind::Continuous,
     Kind::Prismatic,
     Kind::Spherical,
+    Kind::Quaternion,
     Kind::Cylindrical,
+    Kind::Planar,
+    Kind::Universal,
     Kind::Free,
-    Kind::Revolute,
+    Kind::Fixed,
 ];
+const FUNCTIONS: &str =
+    "accel, inverse_dynamics, mass_matrix, bias, potential_force, energy, momentum";
 
-/// A tree of so many links agrees with Newton and Euler in F, M, the bias, ξ̇ and the energy.
-fn agrees(seed: u64, count: usize, kinds: &[Kind]) {
+/// A state, with an input and accelerations.
+struct State {
+    x: Vec<f64>,
+    xi: Vec<f64>,
+    u: Vec<f64>,
+    dot: Vec<f64>,
+}
+
+impl State {
+    fn random(random: &mut Random, of: &Generated) -> Self {
+        let program = &of.program;
+        State {
+            x: random.configuration(&program.blocks),
+            xi: random.numbers(program.n),
+            u: random.numbers(program.m),
+            dot: random.numbers(program.n),
+        }
+    }
+
+    fn value(&self, of: &Generated, name: &str) -> Vec<f64> {
+        value(of, name, [&self.x, &self.xi, &self.u, &self.dot])
+    }
+}
+
+fn plus(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// A random tree of so many links on at least one root.
+fn links(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
     let mut random = Random(seed);
-    let links: Vec<Link> = (0..count)
-        .map(|before| Link::random(&mut random, before, kinds))
-        .collect();
-    let text = text(&links);
+    let mut links: Vec<Link> = Vec::new();
+    while links.len() < count {
+        links.push(Link::random(&mut random, &links, kinds));
+    }
+    links
+}
+
+/// The same, but for links that would leave nothing to move.
+fn moving(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
+    let mut links = links(seed, count, kinds);
+    if links.iter().all(|link| link.kind == Kind::Fixed) {
+        links.push(Link::on(&mut Random(seed), &links, Kind::Revolute, Some(0)));
+    }
+    links
+}
+
+/// F, M, the bias, gravity and springs, ξ̇, momenta and the energy are those of Newton and Euler.
+fn obeys_newton(links: &[Link], seed: u64, close: f64) -> Generated {
+    let text = text(links, FUNCTIONS);
     let system = generated(&text);
-    let program = &system.program;
+    let n = system.program.n;
+    let mut random = Random(seed);
     for _ in 0..STATES {
-        let x = random.configuration(&program.blocks);
-        let (xi, dot) = (random.numbers(program.n), random.numbers(program.n));
-        let tree = Tree::new(&links, &x, &xi);
-        let still = vec![0.0; program.n];
-        let at = [x.as_slice(), &xi, &[], &dot];
+        let state = State::random(&mut random, &system);
+        let tree = Tree::new(links, &state.x, &state.xi);
+        let still = vec![0.0; n];
+        let of = |name: &str| state.value(&system, name);
         let same = |what: &str, found: &[f64], wanted: &[f64]| {
             let apart = difference(wanted, found);
-            assert!(apart < CLOSE, "seed {seed:#x}: {what} {apart:e} of\n{text}");
+            assert!(apart < close, "seed {seed:#x}: {what} {apart:e} of\n{text}");
         };
-        let of = |name: &str| value(&system, name, at);
+        let springs = tree.springs();
+        let whole = |dot: &[f64]| plus(&tree.needed(dot, 1.0), &springs);
         same(
             "inverse dynamics",
             &of("inverse_dynamics"),
-            &tree.needed(&dot, 1.0),
+            &whole(&state.dot),
         );
         let bias = tree.needed(&still, 0.0);
         same("bias", &of("bias"), &bias);
-        let weight: Vec<f64> = tree.needed(&still, 1.0);
-        let weight: Vec<f64> = weight.iter().zip(&bias).map(|(a, b)| a - b).collect();
-        same("gravity", &of("potential_force"), &weight);
+        let slope = minus(&whole(&still), &bias);
+        same("slope of the potential", &of("potential_force"), &slope);
         same("energy", &of("energy"), &[tree.energy()]);
         let mass = of("mass_matrix");
-        for i in 0..program.n {
+        for i in 0..n {
             let mut unit = still.clone();
             unit[i] = 1.0;
-            let column = tree.needed(&unit, 0.0);
-            let column: Vec<f64> = column.iter().zip(&bias).map(|(a, b)| a - b).collect();
-            let row = &mass[i * program.n..(i + 1) * program.n];
-            same("mass matrix", row, &column);
+            let column = minus(&tree.needed(&unit, 0.0), &bias);
+            same("mass matrix", &mass[i * n..(i + 1) * n], &column);
         }
-        // The motion that friction alone leaves.
-        same("motion", &tree.needed(&of("accel"), 1.0), &tree.friction());
+        let momentum = minus(&tree.needed(&state.xi, 0.0), &bias);
+        same("momentum", &of("momentum"), &momentum);
+        // Both sides of the equations of motion, relative to the larger of their terms.
+        let motion = of("accel");
+        let largest = |list: &[f64]| list.iter().fold(1.0, |most: f64, f| most.max(f.abs()));
+        let size = largest(&motion) * largest(&mass);
+        let left = minus(&whole(&motion), &tree.applied(state.u[0]));
+        let apart = largest(&left.iter().map(|f| 1.0 + f.abs()).collect::<Vec<_>>()) - 1.0;
+        assert!(
+            apart < close * size,
+            "seed {seed:#x}: motion {apart:e} of\n{text}"
+        );
+    }
+    system
+}
+
+/// M ξ̇ + Γ ξ ξ + ∂V, put together from the tables of M, γ and Γ, is what the recursion gives.
+fn obeys_the_tables(system: &Generated, seed: u64) {
+    let mut geometry = Geometry::new(&system.model).expect("velocities that determine the rates");
+    let (mass, connection) = (geometry.mass.clone(), geometry.connection.clone());
+    let dot = geometry.model.xi_dot.clone();
+    let (model, calculus) = (&mut geometry.model, &mut geometry.calculus);
+    let bias = contracted(model, &connection);
+    let potential = geometry.potential;
+    let whole = levi_civita(model, calculus, &mass, &bias, potential, &dot);
+    let mut random = Random(seed);
+    for _ in 0..STATES {
+        let state = State::random(&mut random, system);
+        let State { x, xi, u, dot } = &state;
+        let numbers = model.numbers(&[], x, xi, u, dot);
+        let same = |what: &str, name: &str, wanted: Vec<f64>| {
+            let apart = difference(&wanted, &state.value(system, name));
+            assert!(apart < CLOSE, "seed {seed:#x}: {what} {apart:e}");
+        };
+        let literal = |edges: &[_]| evaluate(&model.graph, edges, &numbers);
+        same("M ξ̇ + Γ ξ ξ + ∂V", "inverse_dynamics", literal(&whole));
+        same("Γ ξ ξ", "bias", literal(&bias));
+        same("M", "mass_matrix", literal(&mass.concat()));
     }
 }
 
 #[test]
 fn trees_of_one_freedom_a_joint() {
-    for (seed, count) in [(0x51, 2), (0x52, 3), (0x53, 4)] {
-        agrees(seed, count, &SIMPLE);
+    for (seed, count) in [(0x51, 2), (0x52, 3), (0x53, 4), (0x54, 6), (0x55, 8)] {
+        obeys_newton(&moving(seed, count, &SIMPLE), seed, CLOSE);
     }
 }
 
 #[test]
 fn trees_of_all_kinds() {
-    for (seed, count) in [(0xa1, 2), (0xa2, 2), (0xa3, 3)] {
-        agrees(seed, count, &ALL);
+    for (seed, count) in [(0xa1, 2), (0xa2, 2), (0xa3, 3), (0xa4, 4), (0xa5, 5)] {
+        obeys_newton(&moving(seed, count, &ALL), seed, CLOSE);
     }
+    for seed in 0xb0..0xbc {
+        obeys_newton(&moving(seed, 6, &ALL), seed, CLOSE);
+    }
+}
+
+/// Small enough for tables of n³ coefficients.
+#[test]
+fn trees_obey_the_tables_of_the_paper() {
+    for seed in 0xc0..0xc8 {
+        let count = 2 + (seed % 3) as usize;
+        let system = obeys_newton(&moving(seed, count, &ALL), seed, CLOSE);
+        obeys_the_tables(&system, seed);
+    }
+}
+
+/// Point masses are no links.
+#[test]
+fn trees_with_particles() {
+    for seed in 0xd0..0xd4 {
+        let mut random = Random(seed);
+        let links = moving(seed, 3, &ALL);
+        let links: Vec<Link> = links
+            .into_iter()
+            .map(|link| link.with_particle(&mut random))
+            .collect();
+        obeys_newton(&links, seed, CLOSE);
+    }
+}
+
+/// 32 links in a row.
+#[test]
+fn a_long_chain() {
+    let mut random = Random(0x32);
+    let mut links: Vec<Link> = Vec::new();
+    while links.len() < 32 {
+        let (kind, parent) = (SIMPLE[random.below(4)], links.len().checked_sub(1));
+        links.push(Link::on(&mut random, &links, kind, parent));
+    }
+    obeys_newton(&links, 0x32, LONG);
+}
+
+/// A floating trunk with a waist, two legs, two arms and a head: 38 freedoms.
+#[test]
+fn a_humanoid() {
+    use Kind::{Continuous, Free, Quaternion, Revolute, Spherical, Universal};
+    let limbs: [(usize, &[Kind]); 5] = [
+        (0, &[Universal, Revolute, Revolute, Universal]),
+        (0, &[Universal, Revolute, Revolute, Universal]),
+        (1, &[Quaternion, Revolute, Continuous, Revolute, Revolute]),
+        (1, &[Quaternion, Revolute, Continuous, Revolute, Revolute]),
+        (1, &[Revolute, Revolute, Revolute]),
+    ];
+    let mut random = Random(0x38);
+    let mut links: Vec<Link> = Vec::new();
+    let mut add = |kind: Kind, parent: Option<usize>| {
+        // Nothing follows here: 38 freedoms.
+        let mut link = Link::on(&mut random, &[], kind, parent);
+        link.follows = None;
+        links.push(link);
+        links.len() - 1
+    };
+    let trunk = add(Free, None);
+    add(Spherical, Some(trunk));
+    for (root, joints) in limbs {
+        let mut parent = root;
+        for &joint in joints {
+            parent = add(joint, Some(parent));
+        }
+    }
+    let system = obeys_newton(&links, 0x38, LONG);
+    assert_eq!(system.program.n, 38);
 }

@@ -1,4 +1,5 @@
 //! Generated systems evaluated at random states, for tests of descriptions.
+#![allow(dead_code, unused_imports)] // each test file uses a part
 
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::layout::Block;

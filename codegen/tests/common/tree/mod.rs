@@ -1,0 +1,241 @@
+//! Random trees of bodies on joints: their text, and their dynamics by Newton and Euler in numbers.
+#![allow(dead_code, unused_imports)] // each test file uses a part
+
+mod newton;
+mod spatial;
+mod text;
+
+use super::Random;
+pub use newton::Tree;
+pub use text::text;
+
+/// Acceleration of gravity.
+const GRAVITY: [f64; 3] = [0.5, -0.25, -9.81];
+
+/// How a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    Revolute,
+    Continuous,
+    Prismatic,
+    /// A rotation matrix.
+    Spherical,
+    /// A unit quaternion.
+    Quaternion,
+    Cylindrical,
+    Planar,
+    Universal,
+    Free,
+    Fixed,
+}
+
+/// A joint whose coordinate is a + b q + c q², where q is that of another one.
+#[derive(Clone, Debug)]
+pub struct Follow {
+    pub source: usize,
+    pub law: [f64; 3],
+}
+
+/// A joint with the body that it carries.
+#[derive(Clone, Debug)]
+pub struct Link {
+    pub kind: Kind,
+    /// The link that it stands on, the world where absent.
+    pub parent: Option<usize>,
+    /// What its coordinate follows.
+    pub follows: Option<Follow>,
+    axis: [f64; 3],
+    rpy: [f64; 3],
+    place: [f64; 3],
+    /// Turn and place of a further frame; the body, and now and then the next link, is on it.
+    user: Option<([f64; 3], [f64; 3])>,
+    /// It stands on the further frame of the link before.
+    far: bool,
+    mass: f64,
+    com: [f64; 3],
+    /// Diagonal of the inertia about the centre of mass, and its products.
+    inertia: [f64; 6],
+    /// A point mass beside the body.
+    particle: Option<(f64, [f64; 3])>,
+    damping: f64,
+    armature: f64,
+    stiffness: f64,
+    rest: f64,
+    /// Force of its drive for one unit of the input.
+    force: f64,
+    /// Force in the axes of the frame for one unit of the input, and where it acts.
+    push: Option<([f64; 3], [f64; 3])>,
+}
+
+/// A number of two decimals, so that text and test mean the same.
+fn short(number: f64) -> f64 {
+    (number * 100.0).round() / 100.0
+}
+
+fn three(random: &mut Random, size: f64) -> [f64; 3] {
+    [(); 3].map(|()| short(size * random.number()))
+}
+
+/// An axis across another one.
+fn second(axis: [f64; 3]) -> [f64; 3] {
+    match axis[1] {
+        0.0 => [0.0, 1.0, 0.0],
+        _ => [0.0, 0.0, 1.0],
+    }
+}
+
+impl Link {
+    /// A link on one of those before it, or on the world.
+    pub fn random(random: &mut Random, links: &[Link], kinds: &[Kind]) -> Self {
+        let before = links.len();
+        let kind = kinds[random.below(kinds.len())];
+        let branch = random.below(before + 1).max(before.saturating_sub(2));
+        Link::on(random, links, kind, branch.checked_sub(1))
+    }
+
+    /// A link of a kind on another one.
+    pub fn on(random: &mut Random, links: &[Link], kind: Kind, parent: Option<usize>) -> Self {
+        // Chains of coordinate axes, and now and then any direction.
+        let axis = match random.below(5) {
+            0 if kind != Kind::Planar => [0.6, 0.0, -0.8],
+            1 if kind != Kind::Planar => [0.0, -1.0, 0.0],
+            1 => [0.0, 1.0, 0.0],
+            2 => [1.0, 0.0, 0.0],
+            _ => [0.0, 0.0, 1.0],
+        };
+        let (rpy, place) = (three(random, 1.5), three(random, 0.5));
+        let (com, products) = (three(random, 0.3), three(random, 0.02));
+        let moments = [0.21, 0.32, 0.27].map(|m| m + short(0.05 * random.number()));
+        Link {
+            kind,
+            parent,
+            follows: None,
+            axis,
+            rpy: if rpy[0] < 0.0 { [0.0; 3] } else { rpy },
+            place,
+            user: (random.below(4) == 0).then(|| (three(random, 1.0), three(random, 0.2))),
+            far: random.below(2) == 0,
+            mass: short(1.5 + random.number()),
+            com,
+            inertia: [
+                moments[0],
+                moments[1],
+                moments[2],
+                products[0],
+                products[1],
+                products[2],
+            ],
+            particle: None,
+            damping: 0.0,
+            armature: 0.0,
+            stiffness: 0.0,
+            rest: 0.0,
+            force: 0.0,
+            push: None,
+        }
+        .driven(random, links)
+    }
+
+    /// The same with what its kind can have of friction, armature, springs and drives; now and then
+    /// it follows another joint.
+    fn driven(mut self, random: &mut Random, links: &[Link]) -> Self {
+        let straight = matches!(self.kind, Kind::Revolute | Kind::Prismatic);
+        let single = straight || self.kind == Kind::Continuous;
+        let leads = |link: &Link| {
+            matches!(link.kind, Kind::Revolute | Kind::Prismatic) && link.follows.is_none()
+        };
+        let leaders: Vec<usize> = (0..links.len()).filter(|&i| leads(&links[i])).collect();
+        if single && !leaders.is_empty() && random.below(4) == 0 {
+            let [a, b, c] = three(random, 1.0);
+            let source = leaders[random.below(leaders.len())];
+            let law = [a, b, if c > 0.0 { 0.0 } else { c }];
+            self.follows = Some(Follow { source, law });
+        }
+        let value = |random: &mut Random, most: f64, can: bool| {
+            let value = short(most * random.number()).max(0.0);
+            if can { value } else { 0.0 }
+        };
+        let own = self.follows.is_none();
+        let turning = matches!(self.kind, Kind::Spherical | Kind::Quaternion);
+        self.damping = value(random, 0.5, own && (single || turning));
+        self.armature = value(random, 0.2, own && single);
+        self.stiffness = value(random, 5.0, straight);
+        self.rest = short(random.number());
+        self.force = value(random, 2.0, own && single);
+        if random.below(4) == 0 {
+            self.push = Some((three(random, 3.0), three(random, 0.3)));
+        }
+        self
+    }
+
+    /// The same with a point mass.
+    pub fn with_particle(mut self, random: &mut Random) -> Self {
+        self.particle = Some((short(1.0 + 0.5 * random.number()), three(random, 0.4)));
+        self
+    }
+
+    /// A link about the third axis whose principal axes are those of its frame.
+    pub fn body(
+        kind: Kind,
+        parent: Option<usize>,
+        place: [f64; 3],
+        mass: f64,
+        com: [f64; 3],
+        [x, y, z]: [f64; 3],
+    ) -> Self {
+        Link {
+            kind,
+            parent,
+            follows: None,
+            axis: [0.0, 0.0, 1.0],
+            rpy: [0.0; 3],
+            place,
+            user: None,
+            far: false,
+            mass,
+            com,
+            inertia: [x, y, z, 0.0, 0.0, 0.0],
+            particle: None,
+            damping: 0.0,
+            armature: 0.0,
+            stiffness: 0.0,
+            rest: 0.0,
+            force: 0.0,
+            push: None,
+        }
+    }
+
+    /// Whether it stands on the further frame of the link before.
+    fn beyond(&self, links: &[Link]) -> bool {
+        self.far
+            && self
+                .parent
+                .is_some_and(|parent| links[parent].user.is_some())
+    }
+
+    /// Its entries in x.
+    fn coordinates(&self) -> usize {
+        match self.kind {
+            _ if self.follows.is_some() => 0,
+            Kind::Fixed => 0,
+            Kind::Revolute | Kind::Prismatic => 1,
+            Kind::Continuous | Kind::Cylindrical | Kind::Universal => 2,
+            Kind::Planar => 3,
+            Kind::Quaternion => 4,
+            Kind::Spherical => 9,
+            Kind::Free => 12,
+        }
+    }
+
+    /// Its velocities.
+    fn freedoms(&self) -> usize {
+        match self.kind {
+            _ if self.follows.is_some() => 0,
+            Kind::Fixed => 0,
+            Kind::Revolute | Kind::Prismatic | Kind::Continuous => 1,
+            Kind::Cylindrical | Kind::Universal => 2,
+            Kind::Spherical | Kind::Quaternion | Kind::Planar => 3,
+            Kind::Free => 6,
+        }
+    }
+}
