@@ -162,6 +162,63 @@ fn chain(links: usize) -> String {
     text + "gravity [0.5, -0.25, -9.81];\ngenerate inverse_dynamics, mass_matrix, accel;\n}\n"
 }
 
+/// Multibody systems of the literature, every parameter a run-time one.
+#[test]
+fn fixtures() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/models/multibody/");
+    let mut table = String::new();
+    for name in [
+        "furuta",
+        "double_spherical_pendulum",
+        "quadrotor_load",
+        "satellite_arm",
+        "tricopter",
+    ] {
+        let counts = counts(&format!("{folder}{name}.eom"), &[], "");
+        let _ = writeln!(table, "{name}");
+        for function in FUNCTIONS {
+            table += &row(&counts, function);
+        }
+        table.push('\n');
+    }
+    insta::assert_snapshot!(table);
+}
+
+/// A cart with n pendulums in a row, point masses at the ends of rods.
+fn cart(rods: usize) -> String {
+    let mut text = String::from(
+        "system Cart {\nparam g = 9.81, m0 = 2;\ninput u;\njoint cart: prismatic [1, 0, 0] moves f0 { force u; };\nbody on f0 { mass m0; }\n",
+    );
+    for i in 1..=rods {
+        let (before, length) = (i - 1, 0.75 + 0.125 * i as f64);
+        let place = match before {
+            0 => "0".to_string(),
+            _ => format!("-l{before}"),
+        };
+        let _ = writeln!(
+            text,
+            "param m{i} = 1, l{i} = {length};\n\
+             joint q{i}: revolute [0, -1, 0] on f{before} at pose(identity(3), [0, 0, {place}]) moves f{i};\n\
+             particle mass m{i} at [0, 0, -l{i}] on f{i};"
+        );
+    }
+    text + "gravity [0, 0, -g];\ngenerate inverse_dynamics, mass_matrix, accel;\n}\n"
+}
+
+#[test]
+fn carts_with_pendulums() {
+    let mut table = String::new();
+    for rods in 1..=10 {
+        let counts = counts("-", &[], &cart(rods));
+        let _ = writeln!(table, "{rods} rods");
+        for function in &FUNCTIONS[..3] {
+            table += &row(&counts, function);
+        }
+        table.push('\n');
+    }
+    insta::assert_snapshot!(table);
+}
+
 #[test]
 fn chains_grow_by_the_link() {
     let mut table = String::new();

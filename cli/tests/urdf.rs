@@ -167,6 +167,26 @@ fn parameters_change_no_number() {
     }
 }
 
+/// The damping of a joint that follows at three times the rate is felt nine times by its leader.
+#[test]
+fn dampers_of_joints_that_follow() {
+    let mimic = r#"<dynamics damping="0.2"/><mimic joint="slide-x" multiplier="-3" offset="1"/><parent link="cart"/><child link="rod"/>"#;
+    let both = r#"<parent link="cart"/><child link="rod"/>"#;
+    let robot = scratch(
+        "mimic.urdf",
+        &CART.replace(both, mimic).replace("continuous", "revolute"),
+    );
+    let found = eval(
+        &[&robot],
+        r#"{"configuration": {}, "velocity": {"slide-x": 2}}"#,
+    );
+    let force = number(&found["generalized_force"][0]);
+    assert!(
+        (force + (3.0 + 9.0 * 0.2) * 2.0).abs() < ROUNDING * 10.0,
+        "{force}"
+    );
+}
+
 /// Mistakes are underlined in the URDF, all at once.
 #[test]
 fn mistakes_are_shown_in_the_urdf() {

@@ -83,7 +83,7 @@ fn link(i: usize) -> (f64, f64) {
 #[test]
 fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
     let mut random = Random(0xca);
-    for n in [1, 2, 3] {
+    for n in 1..=10 {
         let system = generated(&cart_chain(n));
         for _ in 0..STATES {
             let (x, xi) = (random.numbers(n + 1), random.numbers(n + 1));
@@ -218,4 +218,171 @@ fn quadrotor_with_load_obeys_newton_and_euler() {
         let wrench = [0.0, 0.0, u[0], u[1], u[2], u[3], 0.0, 0.0, 0.0];
         assert!(difference(&tree.needed(&motion, 1.0), &wrench) < CLOSE);
     }
+}
+
+/// ν and n of every fixture.
+#[test]
+fn fixtures_have_their_sizes() {
+    for (name, size) in [
+        ("furuta", (2, 2)),
+        ("double_spherical_pendulum", (18, 6)),
+        ("quadrotor_load", (21, 9)),
+        ("tricopter", (30, 15)),
+        ("satellite_arm", (19, 13)),
+    ] {
+        let system = model(&format!("multibody/{name}"), "rate");
+        assert_eq!((system.program.nu, system.program.n), size, "{name}");
+    }
+}
+
+/// What a motion needs, and the motion under forces on joints, against Newton and Euler.
+fn obeys_newton_and_euler(
+    path: &str,
+    links: &[Link],
+    gravity: f64,
+    forces: impl Fn(&Tree<'_>, &[f64]) -> Vec<f64>,
+) {
+    let system = model(path, "accel, inverse_dynamics");
+    let program = &system.program;
+    let mut random = Random(0x5a7);
+    for _ in 0..STATES {
+        let x = random.configuration(&program.blocks);
+        let (xi, dot) = (random.numbers(program.n), random.numbers(program.n));
+        let u = random.numbers(program.m);
+        let mut tree = Tree::new(links, &x, &xi);
+        tree.gravity = [0.0, 0.0, -gravity];
+        let at = [x.as_slice(), &xi, &u, &dot];
+        let needed = value(&system, "inverse_dynamics", at);
+        assert!(
+            difference(&tree.needed(&dot, 1.0), &needed) < CLOSE,
+            "{path}"
+        );
+        // Light parts are fast: the forces are compared, relative to the largest inertia force.
+        let motion = value(&system, "accel", at);
+        let rest = tree.needed(&vec![0.0; program.n], 1.0);
+        let (whole, wanted) = (tree.needed(&motion, 1.0), forces(&tree, &u));
+        let inertial = whole
+            .iter()
+            .zip(&rest)
+            .fold(1.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        let apart = whole
+            .iter()
+            .zip(&wanted)
+            .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        assert!(apart < CLOSE * inertial, "{path}: {apart:e}");
+    }
+}
+
+#[test]
+fn satellite_with_an_arm_obeys_newton_and_euler() {
+    let arm = |parent, place, mass, com, inertia| {
+        Link::body(Kind::Revolute, Some(parent), place, mass, com, inertia)
+    };
+    let (y, o) = ([0.0, 1.0, 0.0], [0.0; 3]);
+    let links = [
+        Link::body(
+            Kind::Free,
+            None,
+            o,
+            120.0,
+            [0.02, 0.0, -0.05],
+            [12.0, 14.0, 11.0],
+        ),
+        arm(0, [0.5, 0.0, 0.2], 3.0, [0.0, 0.0, 0.1], [0.03, 0.03, 0.01]),
+        arm(
+            1,
+            [0.0, 0.0, 0.2],
+            4.0,
+            [0.0, 0.02, 0.15],
+            [0.05, 0.05, 0.01],
+        )
+        .about(y),
+        arm(
+            2,
+            [0.0, 0.0, 0.35],
+            3.0,
+            [0.02, 0.0, 0.15],
+            [0.04, 0.04, 0.01],
+        ),
+        arm(
+            3,
+            [0.05, 0.0, 0.3],
+            3.0,
+            [-0.02, 0.0, 0.15],
+            [0.04, 0.04, 0.01],
+        )
+        .about(y),
+        arm(
+            4,
+            [-0.05, 0.0, 0.35],
+            2.0,
+            [0.0, 0.02, 0.2],
+            [0.03, 0.03, 0.005],
+        ),
+        arm(
+            5,
+            [0.0, 0.0, 0.3],
+            1.5,
+            [0.04, 0.0, 0.0],
+            [0.004, 0.004, 0.003],
+        )
+        .about(y),
+        arm(
+            6,
+            [0.08, 0.0, 0.0],
+            1.0,
+            [0.0, 0.0, 0.08],
+            [0.002, 0.002, 0.001],
+        ),
+    ];
+    obeys_newton_and_euler("multibody/satellite_arm", &links, 0.0, |_, u| {
+        let mut forces = vec![0.0; 6];
+        forces.extend(u);
+        forces
+    });
+}
+
+/// Thrusts act along the third axes of the propellers, at their centres.
+#[test]
+fn tricopter_obeys_newton_and_euler() {
+    let circle = |parent, place, mass, com, inertia| {
+        Link::body(Kind::Continuous, Some(parent), place, mass, com, inertia)
+    };
+    let (o, first) = ([0.0; 3], [1.0, 0.0, 0.0]);
+    let third = 2.0 * std::f64::consts::PI / 3.0;
+    let mut links = vec![Link::body(
+        Kind::Free,
+        None,
+        o,
+        1.2,
+        o,
+        [0.012, 0.012, 0.02],
+    )];
+    for arm in 0..3 {
+        let tilt = circle(0, o, 0.08, [0.25, 0.0, 0.0], [0.0004; 3]).about(first);
+        links.push(tilt.turned(f64::from(arm) * third));
+    }
+    for arm in 1..=3 {
+        links.push(circle(
+            arm,
+            [0.25, 0.0, 0.04],
+            0.02,
+            o,
+            [0.00003, 0.00003, 0.00006],
+        ));
+    }
+    links.push(circle(0, [0.0, 0.0, -0.05], 0.0, o, o).about(first));
+    links.push(circle(7, o, 0.0, o, o).about([0.0, 1.0, 0.0]));
+    links.push(circle(8, o, 0.4, [0.0, 0.0, -0.8], [0.001; 3]));
+    obeys_newton_and_euler("multibody/tricopter", &links, 9.81, |tree, u| {
+        let mut thrusts = [[0.0; 3]; 10];
+        for prop in 0..3 {
+            thrusts[4 + prop][2] = u[6 + prop];
+        }
+        let mut forces = tree.pushed(&thrusts);
+        for (force, u) in forces[6..12].iter_mut().zip(u) {
+            *force += u;
+        }
+        forces
+    });
 }

@@ -188,8 +188,8 @@ fn trees_of_all_kinds() {
 /// Small enough for tables of n³ coefficients.
 #[test]
 fn trees_obey_the_tables_of_the_paper() {
-    for seed in 0xc0..0xc8 {
-        let count = 2 + (seed % 3) as usize;
+    for seed in 0xc0..0xc5 {
+        let count = 2 + (seed % 2) as usize;
         let system = obeys_newton(&moving(seed, count, &ALL), seed, CLOSE);
         obeys_the_tables(&system, seed);
     }

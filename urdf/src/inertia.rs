@@ -9,6 +9,9 @@ use crate::tree::Tree;
 /// moments are equal, and printed inertias have no more.
 const ROUNDING: f64 = 1e-6;
 
+/// Radii of gyration that no link has (m).
+const LARGE: f64 = 10.0;
+
 /// Refuses what moves without mass, and warns of inertias that no body has.
 pub(crate) fn check(
     robot: &Robot,
@@ -53,6 +56,7 @@ pub(crate) fn check(
             );
         }
     }
+    bare(robot, tree, plan, floating, warnings);
     if floating && !carries[tree.root] {
         errors.push(
             &robot.links[tree.root].name.range,
@@ -67,6 +71,33 @@ pub(crate) fn check(
             .filter(|inertial| moves && !inertial.is_zero())
         {
             physical(&link.name.name, inertial, warnings);
+        }
+    }
+}
+
+/// Warns of what moves by itself and is nowhere given an `<inertial>`: links that move rigidly
+/// together are one.
+fn bare(robot: &Robot, tree: &Tree, plan: &Plan, floating: bool, warnings: &mut Problems<'_>) {
+    let mut given: Vec<bool> = robot
+        .links
+        .iter()
+        .map(|link| link.inertial.is_some())
+        .collect();
+    let mut own = vec![floating; robot.links.len()];
+    for edge in tree.joints.iter().rev() {
+        let still = matches!(plan.motions[edge.joint], Motion::Fixed | Motion::Locked(_));
+        own[edge.child] = !still;
+        given[edge.parent] |= still && given[edge.child];
+    }
+    for (index, link) in robot.links.iter().enumerate() {
+        let moves = own[index] && (index != tree.root || floating);
+        if moves && !given[index] {
+            let name = &link.name.name;
+            warnings.push(
+                &link.name.range,
+                format!("`{name}` moves and has no `<inertial>`: it is taken to have no mass"),
+                "that is right for a frame between two joints; else give it one",
+            );
         }
     }
 }
@@ -86,6 +117,14 @@ fn physical(name: &str, inertial: &Inertial, warnings: &mut Problems<'_>) {
         return;
     }
     let [least, middle, most] = moments(entries);
+    let (mass, radius) = (inertial.mass.value, (most / inertial.mass.value).sqrt());
+    if mass > 0.0 && radius > LARGE {
+        warnings.push(
+            &inertial.inertia_range,
+            format!("the inertia of `{name}` is that of {mass} kg at a distance of {radius:.0} m"),
+            "inertias are in kg m²",
+        );
+    }
     let rounding = ROUNDING * most.abs().max(least.abs());
     if least < -rounding {
         warnings.push(

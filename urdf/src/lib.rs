@@ -64,6 +64,14 @@ pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
         &mut errors,
         &mut warnings,
     );
+    let moving = |motion: &plan::Motion| matches!(motion, plan::Motion::Free);
+    if !options.floating && !plan.motions.iter().any(moving) {
+        errors.push(
+            &read.robot.range,
+            "nothing of this robot moves",
+            "`--floating` lets its base move; joints move that are not fixed and not locked",
+        );
+    }
     if !errors.is_empty() {
         return Err(errors.sorted());
     }

@@ -56,6 +56,7 @@ fn wrong_files() {
         ("incomplete inertia", pendulum(&hinge(""), &BODY.replace("iyz='0' ", ""))),
         ("negative mass", pendulum(&hinge(""), &BODY.replace("value='1'", "value='-1'"))),
         ("nothing with mass", pendulum(&hinge(""), "")),
+        ("nothing that moves", pendulum(&hinge("").replace("revolute", "fixed"), BODY)),
         ("mimic of nothing", pendulum(&hinge("<mimic joint='k'/>"), BODY)),
         ("mimic of itself", pendulum(&hinge("<mimic joint='j'/>"), BODY)),
         ("several at once", pendulum(&hinge("<axis xyz='0 0 0'/>"), &BODY.replace("izz='1'", "izz='?'"))),
@@ -118,6 +119,59 @@ fn inertias_of_no_body() {
     insta::assert_snapshot!(report.join("\n"));
     // A thin rod is the limit of what a body can be.
     assert_eq!(warnings(&BODY.replace("izz='1'", "izz='0'")), "");
+}
+
+/// What is legal and not what was meant is warned of: misspelt names, other units, links that were
+/// forgotten.
+#[test]
+fn robots_that_look_wrong() {
+    let origin = |inside: &str| pendulum(&hinge(&format!("<origin {inside}/>")), BODY);
+    let two = format!(
+        "{}\n<link name='c'>{BODY}</link>\n<joint name='k' type='prismatic'><parent link='b'/><child link='c'/></joint>",
+        hinge("")
+    );
+    let cases = [
+        ("misspelt attribute", origin("xzy='0 0 1'")),
+        (
+            "misspelt element",
+            pendulum(&hinge("<orgin xyz='0 0 1'/>"), BODY),
+        ),
+        ("misspelt inertial", pendulum(&two, "<Inertial/>")),
+        (
+            "misspelt joint",
+            pendulum(&format!("{}\n<joints/>", hinge("")), BODY),
+        ),
+        (
+            "unknown properties",
+            pendulum(
+                &two.replace("<child", "<dynamics damping='1' viscous='2'/><child"),
+                BODY,
+            ),
+        ),
+        ("a link without inertia", pendulum(&two, "")),
+        ("degrees", origin("rpy='90 0 0'")),
+        ("millimetres", origin("xyz='0 0 350'")),
+        (
+            "inertia in kg mm²",
+            pendulum(
+                &hinge(""),
+                &BODY
+                    .replace("='1'", "='2000'")
+                    .replace("value='2000'", "value='1'"),
+            ),
+        ),
+    ];
+    let report = cases.iter().map(|(name, text)| {
+        let imported = import(text, &Options::default()).expect("legal");
+        let lines: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
+        assert!(!lines.is_empty(), "{name}");
+        format!("{name}\n{}", lines.join("\n"))
+    });
+    insta::assert_snapshot!(report.collect::<Vec<String>>().join("\n\n"));
+    // Frames between two joints, and the world, need no mass of their own beside what is fixed to them.
+    let fixed = two.replace("prismatic", "fixed");
+    let imported = import(&pendulum(&fixed, ""), &Options::default()).expect("legal");
+    assert_eq!(imported.warnings, []);
 }
 
 /// Texts that are cut anywhere, or damaged, are refused or read; nothing panics.

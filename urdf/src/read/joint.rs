@@ -15,6 +15,19 @@ const KINDS: [(&str, Kind); 6] = [
     ("floating", Kind::Floating),
 ];
 
+/// What stands in a joint.
+const ELEMENTS: [&str; 9] = [
+    "parent",
+    "child",
+    "origin",
+    "axis",
+    "dynamics",
+    "limit",
+    "mimic",
+    "calibration",
+    "safety_controller",
+];
+
 impl<'a> Reader<'a, '_, '_> {
     /// A joint; `None` where it cannot be read.
     pub(super) fn joint(&mut self, node: &Node<'_, 'a>) -> Option<Joint> {
@@ -32,17 +45,16 @@ impl<'a> Reader<'a, '_, '_> {
         let dynamics = self.child(node, "dynamics");
         let [damping, friction] = ["damping", "friction"]
             .map(|name| dynamics.and_then(|element| self.coefficient(&element, name)));
-        for attribute in dynamics.iter().flat_map(|element| element.attributes()) {
-            let name = attribute.name();
-            if !matches!(name, "damping" | "friction") {
-                self.warnings.push(
-                    &attribute.range(),
-                    format!("`{name}` is no property of `<dynamics>` in URDF, and is left out"),
-                    "add it to the description",
-                );
-            }
+        if let Some(element) = dynamics {
+            let known = ["damping", "friction"];
+            self.attributes(&element, &known, "add it to the description");
         }
+        self.elements(node, &ELEMENTS);
         let limit = self.child(node, "limit");
+        if let Some(element) = limit {
+            let known = ["lower", "upper", "velocity", "effort"];
+            self.attributes(&element, &known, "add it to the description");
+        }
         let [lower, upper, velocity, effort] = ["lower", "upper", "velocity", "effort"]
             .map(|name| limit.and_then(|element| self.optional(&element, name)));
         if let (Some(lower), Some(upper), Some(element)) = (&lower, &upper, limit)
@@ -130,6 +142,8 @@ impl<'a> Reader<'a, '_, '_> {
     }
 
     fn mimic(&mut self, element: &Node<'_, 'a>) -> Option<Follows> {
+        let known = ["joint", "multiplier", "offset"];
+        self.attributes(element, &known, "it is `multiplier` · source + `offset`");
         let source = self.name(element, "joint");
         let multiplier = match element.attribute_node("multiplier") {
             Some(_) => self.optional(element, "multiplier"),

@@ -2,6 +2,7 @@
 
 mod joint;
 mod link;
+mod strange;
 mod xml;
 
 use crate::angle::Rotation;
@@ -180,6 +181,7 @@ pub(crate) fn robot<'t>(
         errors,
         warnings,
         cleaned: Vec::new(),
+        strange: Vec::new(),
     };
     let name = reader.name(&root, "name");
     let mut robot = Robot {
@@ -195,6 +197,9 @@ pub(crate) fn robot<'t>(
             _ => {}
         }
     }
+    let known = ["link", "joint", "material", "transmission", "gazebo"];
+    reader.elements(&root, &known);
+    reader.tell();
     let cleaned = reader.cleaned;
     Some(Read { robot, cleaned })
 }

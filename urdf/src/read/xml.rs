@@ -1,5 +1,6 @@
 //! Elements, attributes and numbers of XML, with the place of what is missing or unreadable.
 
+use super::strange::Strange;
 use super::{Cleaned, Named, Origin};
 use crate::angle::{Angle, Rotation};
 use crate::decimal::Decimal;
@@ -55,6 +56,7 @@ pub(super) struct Reader<'a, 'p, 't> {
     pub(super) errors: &'p mut Problems<'t>,
     pub(super) warnings: &'p mut Problems<'t>,
     pub(super) cleaned: Vec<Cleaned>,
+    pub(super) strange: Vec<Strange>,
 }
 
 impl<'a> Reader<'a, '_, '_> {
@@ -179,12 +181,19 @@ impl<'a> Reader<'a, '_, '_> {
         let Some(element) = self.child(node, "origin") else {
             return Some(Origin::identity());
         };
+        self.attributes(
+            &element,
+            &["xyz", "rpy"],
+            "a pose is `<origin xyz=\"…\" rpy=\"…\"/>`",
+        );
         let mut origin = Origin::identity();
         let mut sound = true;
         if let Some(attribute) = element.attribute_node("xyz") {
             match self.vector(&attribute) {
                 Some(mut position) => {
-                    self.clean(&mut position, &attribute.range_value());
+                    let range = attribute.range_value();
+                    self.clean(&mut position, &range);
+                    self.units(&position, &range, false);
                     origin.position = position;
                 }
                 None => sound = false,
@@ -194,6 +203,7 @@ impl<'a> Reader<'a, '_, '_> {
             match self.vector(&attribute) {
                 Some(angles) => {
                     let range = attribute.range_value();
+                    self.units(&angles, &range, true);
                     origin.rotation = Rotation(angles.map(|angle| self.angle(&angle, &range)));
                 }
                 None => sound = false,

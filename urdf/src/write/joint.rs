@@ -52,6 +52,16 @@ impl Writer<'_> {
             }
             self.page.line(range, "};");
         }
+        if let (Motion::Follows(source, steps), Some(damping)) = (&motion, &joint.damping) {
+            let rate = format!("{}_dot", self.names.joints[*source]);
+            let factors: Vec<_> = steps
+                .iter()
+                .map(|(factor, _)| (factor.clone(), Decimal::zero()))
+                .collect();
+            let rate = linear(rate, &factors);
+            let damper = format!("damper coefficient {} on {rate};", damping.text);
+            self.page.line(range, &damper);
+        }
         if motion == Motion::Free {
             match joint.kind {
                 Kind::Floating => {
@@ -240,7 +250,8 @@ fn fields(joint: &Joint, motion: &Motion, name: &str) -> Vec<String> {
     if *motion == Motion::Free {
         fields.push(format!("force {name}_tau;"));
     }
-    if let Some(damping) = &joint.damping {
+    // What follows is damped by its leader, below.
+    if let (Some(damping), Motion::Free) = (&joint.damping, motion) {
         fields.push(format!("damping {};", damping.text));
     }
     let mut bounds = Vec::new();

@@ -205,6 +205,18 @@ impl Link {
         }
     }
 
+    /// The same about another axis of its place.
+    pub fn about(mut self, axis: [f64; 3]) -> Self {
+        self.axis = axis;
+        self
+    }
+
+    /// The same with its place turned about the third axis.
+    pub fn turned(mut self, yaw: f64) -> Self {
+        self.rpy = [0.0, 0.0, yaw];
+        self
+    }
+
     /// Whether it stands on the further frame of the link before.
     fn beyond(&self, links: &[Link]) -> bool {
         self.far

@@ -192,6 +192,13 @@ impl<'a> Tree<'a> {
         forces
     }
 
+    /// The generalised forces of forces at the origins of bodies, in the axes of each; links are bodies
+    /// where none has further frames or joints of several axes.
+    pub fn pushed(&self, forces: &[[f64; 3]]) -> Vec<f64> {
+        assert_eq!(forces.len(), self.elements.len());
+        self.collected(forces.iter().map(|&force| whole([0.0; 3], force)).collect())
+    }
+
     /// T + V.
     pub fn energy(&self) -> f64 {
         let mut frames: Vec<Pose> = Vec::new();
