@@ -41,6 +41,14 @@ const COSINE: [f64; 6] = [
     f64::from_bits(0x3E21_EE9E_BDB4_B1C4),
     f64::from_bits(0xBDA8_FAE9_BE88_38D4),
 ];
+/// (a, b, c, d) after 0 to 3 quarter turns: sin = a sin r + b cos r, cos = c cos r + d sin r. A branch would
+/// be guessed wrong half of the time. −0 keeps the sign of sin −0.
+const TURNED: [[f64; 4]; 4] = [
+    [1.0, -0.0, 1.0, 0.0],
+    [0.0, 1.0, 0.0, -1.0],
+    [-1.0, 0.0, -1.0, 0.0],
+    [0.0, -1.0, 0.0, 1.0],
+];
 
 /// (sin x, cos x), x in rad, of an angle up to 10⁶ rad; `None` of larger ones and of NaN.
 ///
@@ -56,40 +64,33 @@ pub(crate) fn sin_cos(x: f64) -> Option<(f64, f64)> {
     }
     let shifted = fused(x, TURNS, ROUND);
     let quadrant = shifted.to_bits();
-    let (r, rest) = reduce(x, shifted - ROUND);
+    let (r, lost) = reduce(x, shifted - ROUND);
     let z = r * r;
     let w = z * z;
-    let sine = fused(z * r, series(SINE, z, w), rest) + r;
+    let sine = r - fused(-(z * r), series(SINE, z, w), lost);
     // 1 − z/2 is rounded; what that loses comes back with the small terms.
     let most = fused(z, -0.5, 1.0);
-    let lost = fused(z, -0.5, 1.0 - most);
-    let cosine = fused(w, series(COSINE, z, w), fused(-r, rest, lost)) + most;
-    // A quarter turn swaps them, half a turn changes signs: by bits, because a branch would be guessed
-    // wrong half of the time.
-    let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
-    let swap = (sine ^ cosine) & (quadrant & 1).wrapping_neg();
-    let sign = |turns: u64| (turns & 2) << 62;
-    Some((
-        f64::from_bits(sine ^ swap ^ sign(quadrant)),
-        f64::from_bits(cosine ^ swap ^ sign(quadrant.wrapping_add(1))),
-    ))
+    let less = fused(z, -0.5, 1.0 - most);
+    let cosine = fused(w, series(COSINE, z, w), fused(r, lost, less)) + most;
+    let [a, b, c, d] = TURNED[(quadrant & 3) as usize];
+    Some((fused(b, cosine, a * sine), fused(d, sine, c * cosine)))
 }
 
-/// x − turns π/2 as r + rest, |rest| below the spacing of numbers at r.
+/// x − turns π/2 as r − lost, |lost| below the spacing of numbers at r.
 #[inline]
 fn reduce(x: f64, turns: f64) -> (f64, f64) {
     if FUSED {
         // Exact: a multiple of the spacing at x or at π/2, and less than 1.
         let close = fused(-turns, core::f64::consts::FRAC_PI_2, x);
         let r = fused(-turns, REST, close);
-        return (r, fused(-turns, REST, close - r));
+        return (r, fused(turns, REST, r - close));
     }
     let [a, b, c] = QUARTER.map(|part| turns * part);
     let first = x - a;
     let close = first - b;
-    let lost = c - ((first - close) - b);
-    let r = close - lost;
-    (r, (close - r) - lost)
+    let less = c - ((first - close) - b);
+    let r = close - less;
+    (r, less - (close - r))
 }
 
 /// Σ cᵢ zⁱ, w = z², in pairs.

@@ -2,7 +2,7 @@
 
 use cpu_time::ThreadTime;
 
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 12;
 const BATCHES: usize = 41;
 /// A batch takes about so long, in ns.
 const BATCH: f64 = 4e5;

@@ -1,9 +1,10 @@
 //! Nodes to statements.
 //!
-//! A product that is read once, by a sum, becomes one statement with it; sine and cosine of one
-//! angle become one statement; a guard follows the pivot that it checks.
+//! Sums become chains of fused products; sine and cosine of one angle become one statement; a guard
+//! follows the pivot that it checks.
 
 use super::places::{Place, Places, Time};
+use super::sums::sums;
 use crate::algebra::graph::{Edge, Function, Node, NodeId};
 use num_traits::Signed;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -86,8 +87,8 @@ pub fn lower(
     named: &FxHashSet<NodeId>,
 ) -> Body {
     let graph = places.graph();
-    let products = products(places, time, nodes, outputs.iter().chain(guards), named);
-    let fused: FxHashSet<NodeId> = products.values().map(|product| product.node()).collect();
+    let roots = outputs.iter().chain(guards);
+    let mut sums = sums(places, time, nodes, roots, named);
     let mut angles: FxHashMap<Edge, [Option<NodeId>; 2]> = FxHashMap::default();
     for &id in nodes {
         if let Node::Apply(function @ (Function::Sin | Function::Cos), angle) = graph.node(id) {
@@ -103,35 +104,36 @@ pub fn lower(
             _ => statements.push(check(pivot, guard)),
         }
     }
-    for &id in nodes {
+    let mut push = |statement: Statement| {
+        statements.push(statement);
+        for node in statement.defined() {
+            let pivots = checks.remove(&node).unwrap_or_default();
+            statements.extend(pivots.iter().map(|&pivot| check(pivot, guards[pivot])));
+        }
+    };
+    for (index, &id) in nodes.iter().enumerate() {
+        let mut results = [Some(id), None];
         let operation = match graph.node(id) {
-            Node::Constant(_) | Node::Symbol(_) => continue,
-            Node::Mul(..) if fused.contains(&id) => continue,
-            Node::Mul(a, b) => Operation::Multiply(a, b),
-            Node::Add(a, b) => match products.get(&id) {
-                Some(&product) => fuse(graph.node(product.node()), product, a, b),
-                None => Operation::Add(a, b),
-            },
-            Node::Div(a, b) => Operation::Divide(a, b),
-            Node::Apply(Function::Sin | Function::Cos, angle) => match angles.remove(&angle) {
-                Some(results) => {
-                    let operation = Operation::SinCos(angle);
-                    statements.push(Statement { operation, results });
-                    for node in results.into_iter().flatten() {
-                        let pivots = checks.remove(&node).unwrap_or_default();
-                        statements.extend(pivots.iter().map(|&pivot| check(pivot, guards[pivot])));
-                    }
-                    continue;
-                }
-                None => continue,
-            },
-            Node::Apply(function, a) => Operation::Apply(function, a),
-            Node::Atan2(y, x) => Operation::Atan2(y, x),
+            Node::Constant(_) | Node::Symbol(_) => None,
+            _ if sums.absorbed.contains(&id) => None,
+            Node::Mul(a, b) => Some(Operation::Multiply(a, b)),
+            Node::Add(a, b) => Some(Operation::Add(a, b)),
+            Node::Div(a, b) => Some(Operation::Divide(a, b)),
+            Node::Apply(Function::Sin | Function::Cos, angle) => {
+                angles.remove(&angle).map(|both| {
+                    results = both;
+                    Operation::SinCos(angle)
+                })
+            }
+            Node::Apply(function, a) => Some(Operation::Apply(function, a)),
+            Node::Atan2(y, x) => Some(Operation::Atan2(y, x)),
         };
-        let results = [Some(id), None];
-        statements.push(Statement { operation, results });
-        let pivots = checks.remove(&id).unwrap_or_default();
-        statements.extend(pivots.iter().map(|&pivot| check(pivot, guards[pivot])));
+        if let Some(operation) = operation {
+            push(Statement { operation, results });
+        }
+        for statement in sums.after.remove(&index).unwrap_or_default() {
+            push(statement);
+        }
     }
     Body {
         statements,
@@ -143,48 +145,5 @@ fn check(pivot: usize, guard: Edge) -> Statement {
     Statement {
         operation: Operation::Check(pivot, guard),
         results: [None, None],
-    }
-}
-
-/// The sums that take a product in, each with that product as it stands in the sum.
-fn products<'a>(
-    places: &Places,
-    time: Time,
-    nodes: &[NodeId],
-    roots: impl Iterator<Item = &'a Edge>,
-    named: &FxHashSet<NodeId>,
-) -> FxHashMap<NodeId, Edge> {
-    let graph = places.graph();
-    let mut uses: FxHashMap<NodeId, usize> = FxHashMap::default();
-    for edge in nodes.iter().flat_map(|&id| graph.node(id).children()) {
-        *uses.entry(edge.node()).or_default() += 1;
-    }
-    for root in roots {
-        *uses.entry(root.node()).or_default() += 1;
-    }
-    let is_free = |edge: Edge| {
-        let id = edge.node();
-        matches!(graph.node(id), Node::Mul(..))
-            && places.of(id, time) == Place::Temporary
-            && uses.get(&id) == Some(&1)
-            && !named.contains(&id)
-    };
-    let mut products = FxHashMap::default();
-    for &id in nodes {
-        if let Node::Add(a, b) = graph.node(id)
-            && let Some(product) = [b, a].into_iter().find(|&edge| is_free(edge))
-        {
-            products.insert(id, product);
-        }
-    }
-    products
-}
-
-/// a + b with one of them a product.
-fn fuse(node: Node, product: Edge, a: Edge, b: Edge) -> Operation {
-    let rest = if product == a { b } else { a };
-    match node {
-        Node::Mul(x, y) => Operation::Fused(x.signed(product.is_negative()), y, rest),
-        _ => Operation::Add(a, b),
     }
 }

@@ -36,6 +36,7 @@ mod parts;
 mod places;
 mod print;
 mod structure;
+mod sums;
 mod system;
 #[cfg(test)]
 mod tests;
