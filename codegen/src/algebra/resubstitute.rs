@@ -16,6 +16,11 @@ const LARGEST: usize = 400;
 /// Rebuilds the roots in `base`, a graph with the same symbols, with fewer operations where some can
 /// be saved; `None` where nothing was found.
 pub fn resubstitute(graph: &Graph, roots: &[Edge], base: &Graph) -> Option<(Graph, Vec<Edge>)> {
+    // Asked before the inverses of many values are taken.
+    let varying = |id: &&NodeId| !graph.is_free(**id);
+    if graph.reachable(roots).iter().filter(varying).count() > LARGEST {
+        return None;
+    }
     let mut network = Network::new(graph, roots);
     if network.alive(None).len() > LARGEST || !network.improve() {
         return None;

@@ -7,7 +7,7 @@ use super::calculus::Calculus;
 use super::invariants::quantity;
 use super::reference::Reference;
 use super::{energy, hamel_form};
-use crate::algebra::fp::Fp;
+use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::{evaluate_at, solve};
@@ -134,37 +134,41 @@ impl Slopes {
         let moving = slope(&along(&here.rate))?;
         let n = model.n();
         let xi_dot = solve(here.mass.clone(), here.force.clone())?;
+        // All columns at once, (h, δξ, δu) of random numbers: one wrong entry goes unnoticed with
+        // probability 1/p.
         let columns = 2 * n + u.len();
+        let mut random = Random::new(here.rate.iter().fold(columns as u64, |seed, rate| {
+            seed.rotate_left(7) ^ rate.bits()
+        }));
+        let nearby: Vec<Fp> = (0..columns).map(|_| random.element()).collect();
         let linear = value("linearize")?;
-        let column = |j: usize, rows: std::ops::Range<usize>| -> Vec<Fp> {
-            rows.map(|row| linear[row * columns + j]).collect()
-        };
-        for j in 0..columns {
-            let own: Vec<Fp> = here.a.iter().map(|row| row[j % n.max(1)]).collect();
-            // A ḣ = D(A ξ)[A h] − Ȧ h + A δξ.
-            let (changed, moved) = if j < n {
-                let changed = slope(&along(&own))?;
-                let moved: Vec<Fp> = (0..own.len())
-                    .map(|row| changed.rate[row] - moving.a[row][j])
-                    .collect();
-                (changed, moved)
-            } else if j < 2 * n {
-                (slope(&[(xi[j - n], Fp::ONE)])?, own)
-            } else {
-                (
-                    slope(&[(u[j - 2 * n], Fp::ONE)])?,
-                    vec![Fp::ZERO; own.len()],
-                )
-            };
-            if product(&here.a, &column(j, 0..n)) != moved {
-                return Some(Err("ḣ of the motion nearby".into()));
-            }
-            // M δξ̇ = δF − δM ξ̇.
-            let held = product(&changed.mass, &xi_dot);
-            let right: Vec<Fp> = (0..n).map(|i| changed.force[i] - held[i]).collect();
-            if product(&here.mass, &column(j, n..2 * n)) != right {
-                return Some(Err("δξ̇ of the motion nearby".into()));
-            }
+        let rows: Vec<Vec<Fp>> = linear.chunks(columns.max(1)).map(<[Fp]>::to_vec).collect();
+        let found = product(&rows, &nearby);
+        let (h, rest) = nearby.split_at(n);
+        let mut moved = along(&product(&here.a, h));
+        moved.extend(xi.iter().chain(&u).copied().zip(rest.iter().copied()));
+        let changed = slope(&moved)?;
+        // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
+        let turned = product(&moving.a, h);
+        let left: Vec<Fp> = changed
+            .rate
+            .iter()
+            .zip(&turned)
+            .map(|(&a, &b)| a - b)
+            .collect();
+        if product(&here.a, &found[..n]) != left {
+            return Some(Err("ḣ of the motion nearby".into()));
+        }
+        // M δξ̇ = δF − δM ξ̇.
+        let held = product(&changed.mass, &xi_dot);
+        let right: Vec<Fp> = changed
+            .force
+            .iter()
+            .zip(&held)
+            .map(|(&a, &b)| a - b)
+            .collect();
+        if product(&here.mass, &found[n..]) != right {
+            return Some(Err("δξ̇ of the motion nearby".into()));
         }
         Some(Ok(()))
     }
