@@ -1,6 +1,8 @@
 //! Time from a description's text to formatted code, all checks included.
 
 use hamel_codegen::builder::source;
+use hamel_codegen::urdf::{Options, import};
+use std::path::{Path, PathBuf};
 
 #[path = "../src/chain.rs"]
 mod chain;
@@ -21,4 +23,45 @@ fn parse_to_formatted_code(bencher: divan::Bencher, name: &str) {
 fn chains(bencher: divan::Bencher, links: usize) {
     let text = chain::chain(links);
     bencher.bench(|| source(divan::black_box(&text), "chain").expect("the chain is correct"));
+}
+
+/// Robots, and whether their base floats.
+const ROBOTS: [(&str, &str, bool); 3] = [
+    ("ur5", "ur_description/urdf/ur5_robot.urdf", false),
+    ("solo12", "solo_description/robots/solo12.urdf", true),
+    (
+        "anymal_b",
+        "anymal_b_simple_description/robots/anymal.urdf",
+        true,
+    ),
+];
+
+/// The folder with the robots, which `tests/robots/install.sh` installs below the target folder.
+fn installed() -> Option<PathBuf> {
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent()?;
+    let libraries = std::fs::read_dir(target.join("robots/lib")).ok()?;
+    let folders = libraries.filter_map(|entry| {
+        let packages = entry.ok()?.path().join("site-packages");
+        Some(packages.join("cmeel.prefix/share/example-robot-data/robots"))
+    });
+    folders.into_iter().find(|folder| folder.is_dir())
+}
+
+/// Robots from their URDF to formatted code of all functions; nothing where they are not installed.
+#[divan::bench(args = ROBOTS.map(|(name, ..)| name), sample_count = 3, sample_size = 1)]
+fn robots(bencher: divan::Bencher, robot: &str) {
+    let found = ROBOTS.iter().find(|(name, ..)| *name == robot);
+    let (Some(folder), Some((_, urdf, floating))) = (installed(), found) else {
+        return;
+    };
+    let text = std::fs::read_to_string(folder.join(urdf)).expect("the wheel has it");
+    let options = Options {
+        floating: *floating,
+        ..Options::default()
+    };
+    bencher.bench(|| {
+        let imported = import(divan::black_box(&text), &options, robot, false);
+        let description = imported.expect("a sound robot").text;
+        source(&description, robot).expect("the description is correct")
+    });
 }
