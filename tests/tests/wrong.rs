@@ -183,6 +183,25 @@ fn right_descriptions_are_accepted() {
         }",
         // An output of the name of the expression that it returns.
         &system("let speed = v; output speed = speed;"),
+        // A tree of links whose velocities constraints leave, with a platform that stretches as it goes.
+        "system F {
+            param r = 0.1, b = 0.2;
+            coord x, y, q: S1, ql, qr;
+            velocity u, v, w, wl, wr;
+            rate x = q.c * u - q.s * v;
+            rate y = q.c * v;
+            rate q = w;
+            rate ql = wl;
+            rate qr = wr;
+            nonholonomic w = r * wl;
+            nonholonomic u + b * w = r * wr;
+            frame platform = pose(rotz(q), [x, y, 0]);
+            frame left on platform = pose(roty(ql), [0, b, 0]);
+            frame right on platform = pose(roty(qr), [0, b, 0]);
+            body on platform { mass 9; com [0.05, 0, 0]; inertia diag(0, 0, 0.3) about com; }
+            body on left { mass 0.5; inertia diag(1, 3, 1); }
+            body on right { mass 0.5; inertia diag(1, 3, 1); }
+        }",
         // A kinetic energy that is quadratic only after cancelling.
         &system("kinetic v^3 / v + (v + x)^2 - x * (2 * v + x);"),
     ] {

@@ -60,6 +60,11 @@ impl Fp {
         self.0 ^ self.1.wrapping_mul(0x9e37_79b9_7f4a_7c15)
     }
 
+    /// Whether it is an element of F_p.
+    pub fn is_prime(self) -> bool {
+        self.1 == 0
+    }
+
     /// Which of ±self stands for both: whether it is the other one.
     pub fn is_negative(self) -> bool {
         let leading = if self.0 == 0 { self.1 } else { self.0 };

@@ -80,6 +80,8 @@ impl Geometry {
         for frame in &mut free.frames {
             frame.rotation = frame.rotation.map(|row| vec3(carry(&row)));
             frame.position = vec3(carry(&frame.position));
+            let (turn, shift) = frame.relative;
+            frame.relative = (turn.map(|row| vec3(carry(&row))), vec3(carry(&shift)));
         }
         for body in &mut free.bodies {
             body.mass = carry(&[body.mass])[0];

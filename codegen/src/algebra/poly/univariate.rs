@@ -1,37 +1,49 @@
-//! Roots in F_p of a univariate polynomial f = Σ f_k x^k, by Cantor and Zassenhaus.
+//! Roots of a univariate polynomial f = Σ f_k x^k in the field of its coefficients, F_p or F_p(i), by
+//! Cantor and Zassenhaus.
 //!
-//! gcd(f, x^p − x) = Π (x − r) over the roots r in F_p; it is split by gcd with
-//! (x + a)^{(p−1)/2} − 1 for random a, which has each root with probability ½.
+//! gcd(f, x^q − x) = Π (x − r) over the roots r in the field of q elements; it is split by gcd with
+//! (x + a)^{(q−1)/2} − 1 for random a, which has each root with probability ½.
 
 use crate::algebra::fp::{Fp, P, Random};
 
-/// The distinct roots of Σ f_k x^k in F_p, ascending; none for the zero polynomial.
+/// The distinct roots of Σ f_k x^k, ascending; none for the zero polynomial.
 pub fn roots(coefficients: &[Fp], random: &mut Random) -> Vec<Fp> {
     let f = monic(coefficients.to_vec());
     if f.len() < 2 {
         return Vec::new();
     }
     let x = vec![Fp::ZERO, Fp::ONE];
-    let frobenius = power(x.clone(), P, &f);
+    let whole = f.iter().any(|coefficient| !coefficient.is_prime());
+    let mut frobenius = power(x.clone(), P, &f);
+    if whole {
+        frobenius = power(frobenius, P, &f);
+    }
     let mut result = Vec::new();
-    split(gcd(f, subtract(frobenius, &x)), random, &mut result);
+    let product = gcd(f, subtract(frobenius, &x));
+    split(product, whole, random, &mut result);
     result.sort_unstable();
     result
 }
 
 /// Collects the roots of a monic product of distinct linear factors.
-fn split(f: Vec<Fp>, random: &mut Random, result: &mut Vec<Fp>) {
+fn split(f: Vec<Fp>, whole: bool, random: &mut Random, result: &mut Vec<Fp>) {
     match f.as_slice() {
         [] | [_] => {}
         [constant, _] => result.push(-*constant),
         _ => loop {
-            let shifted = vec![random.element(), Fp::ONE];
-            let half = power(shifted, (P - 1) / 2, &f);
+            let mut shift = random.element();
+            if whole {
+                shift = shift + Fp::I * random.element();
+            }
+            let mut half = power(vec![shift, Fp::ONE], (P - 1) / 2, &f);
+            if whole {
+                half = power(half, P + 1, &f);
+            }
             let factor = gcd(f.clone(), subtract(half, &[Fp::ONE]));
             if factor.len() > 1 && factor.len() < f.len() {
                 let (cofactor, _) = divide(f, &factor);
-                split(factor, random, result);
-                split(cofactor, random, result);
+                split(factor, whole, random, result);
+                split(cofactor, whole, random, result);
                 return;
             }
         },
@@ -129,6 +141,27 @@ mod tests {
             expected.sort_unstable();
             prop_assert_eq!(roots(&f, &mut random), expected);
         }
+    }
+
+    /// x² − z for z outside of F_p, and (x − a)(x − b)(x − c) for such a, b, c.
+    #[test]
+    fn roots_beyond_the_prime_field_are_found() {
+        let mut random = Random::new(3);
+        let mut number = || random.element() + Fp::I * random.element();
+        let (a, b, c) = (number(), number(), number());
+        let f = [-(a * b * c), a * b + b * c + c * a, -(a + b + c), Fp::ONE];
+        let mut expected = vec![a, b, c];
+        expected.sort_unstable();
+        assert_eq!(roots(&f, &mut Random::new(4)), expected);
+        let mut squares = 0;
+        for _ in 0..40 {
+            let z = number();
+            let found = roots(&[-z, Fp::ZERO, Fp::ONE], &mut Random::new(5));
+            assert!(found.iter().all(|&root| root * root == z));
+            assert_eq!(found.len(), if z.sqrt().is_some() { 2 } else { 0 });
+            squares += found.len() / 2;
+        }
+        assert!(squares > 8 && squares < 32);
     }
 
     #[test]

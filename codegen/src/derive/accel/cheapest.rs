@@ -27,11 +27,12 @@ pub fn cheapest(mut computations: Vec<Computation>, into: &mut Graph, model: &Mo
         let best = (0..roots.len()).min_by_key(cost).unwrap_or(0);
         rebuild(&computations[best].graph, into, &roots[best])
     };
-    let whole = pick(|parts| parts.inverse_dynamics.clone().unwrap_or_default());
-    let momentum = pick(|parts| parts.momentum.clone().unwrap_or_default());
+    // The short ones first: what others share with them is then computed as they do.
     let mass = pick(|parts| parts.mass.concat());
-    let inertia = pick(|parts| parts.inertia.clone());
+    let momentum = pick(|parts| parts.momentum.clone().unwrap_or_default());
     let conservative = pick(|parts| parts.conservative.clone());
+    let inertia = pick(|parts| parts.inertia.clone());
+    let whole = pick(|parts| parts.inverse_dynamics.clone().unwrap_or_default());
     let Computation { graph, parts } = &computations[0];
     let mut found = Parts {
         mass: mass

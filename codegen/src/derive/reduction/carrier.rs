@@ -111,6 +111,8 @@ impl Carrier {
         for frame in &mut model.frames {
             frame.rotation = frame.rotation.map(|row| self.three(row));
             frame.position = self.three(frame.position);
+            let (turn, shift) = frame.relative;
+            frame.relative = (turn.map(|row| self.three(row)), self.three(shift));
         }
         for body in &mut model.bodies {
             body.mass = self.one(body.mass);
