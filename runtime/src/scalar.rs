@@ -198,11 +198,13 @@ pub(crate) fn epsilon<S: Scalar>() -> S {
 /// chain of dependent operations of Horner's rule.
 #[inline]
 pub(crate) fn series<S: Scalar>(z: S, coefficients: [f64; 7]) -> S {
-    let [c0, c1, c2, c3, c4, c5, c6] = coefficients.map(S::from_f64);
+    // Not `map`, which is a call for lanes.
+    let of = S::from_f64;
+    let [c0, c1, c2, c3, c4, c5, c6] = coefficients;
     let z2 = z * z;
-    let low = c2.mul_add(z, c1);
-    let middle = c4.mul_add(z, c3);
-    let high = c6.mul_add(z, c5);
+    let low = of(c2).mul_add(z, of(c1));
+    let middle = of(c4).mul_add(z, of(c3));
+    let high = of(c6).mul_add(z, of(c5));
     let rest = high.mul_add(z2 * z2, middle.mul_add(z2, low));
-    rest.mul_add(z, c0)
+    rest.mul_add(z, of(c0))
 }

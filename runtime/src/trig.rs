@@ -1,4 +1,4 @@
-//! Sine and cosine of one angle, in line.
+//! Sine and cosine of one angle, in line, and of lanes.
 //!
 //! Half of what the forward dynamics of a pendulum costs is a call of the C library, which nothing
 //! else overlaps. Here both come from one reduction, without branches and in parallel, by the same
@@ -62,47 +62,80 @@ pub(crate) fn sin_cos(x: f64) -> Option<(f64, f64)> {
     if !near {
         return None;
     }
-    let shifted = fused(x, TURNS, ROUND);
+    let shifted = Scalar::mul_add(x, TURNS, ROUND);
     let quadrant = shifted.to_bits();
-    let (r, lost) = reduce(x, shifted - ROUND);
+    let (sine, cosine) = first_quarter(reduce(x, shifted - ROUND));
+    let [a, b, c, d] = TURNED[(quadrant & 3) as usize];
+    Some((
+        Scalar::mul_add(b, cosine, a * sine),
+        Scalar::mul_add(d, sine, c * cosine),
+    ))
+}
+
+/// (sin x, cos x) of angles up to 10⁶ rad in all lanes, each as that of one number; of further ones it is
+/// not a number or anything.
+///
+/// Quarter turns are counted in numbers: machines without 64-bit conversions take them lane by lane.
+#[cfg(feature = "wide")]
+#[inline]
+pub(crate) fn of_lanes<S: Scalar>(x: S) -> (S, S) {
+    let of = S::from_f64;
+    let round = |value: S| value + of(ROUND) - of(ROUND);
+    let turns = x.mul_add(of(TURNS), of(ROUND)) - of(ROUND);
+    let (sine, cosine) = first_quarter(reduce(x, turns));
+    // 1/2 where the number of quarter turns is odd, and where that of half turns is, else 0.
+    let pairs = turns * of(0.5);
+    let odd = (pairs - round(pairs)).abs();
+    let halves = (pairs - odd) * of(0.5);
+    let half = (halves - round(halves)).abs();
+    let sign = half.mul_add(of(-4.0), of(1.0));
+    let other = odd.mul_add(of(-4.0), of(1.0)) * sign;
+    (
+        odd.select_lt(of(0.25), sine, cosine) * sign,
+        odd.select_lt(of(0.25), cosine, sine) * other,
+    )
+}
+
+/// (sin, cos) of r − lost, |r| ≤ π/4.
+#[inline]
+fn first_quarter<S: Scalar>((r, lost): (S, S)) -> (S, S) {
+    let (one, half) = (S::from_f64(1.0), S::from_f64(-0.5));
     let z = r * r;
     let w = z * z;
-    let sine = r - fused(-(z * r), series(SINE, z, w), lost);
+    let sine = r - (-(z * r)).mul_add(series(SINE, z, w), lost);
     // 1 − z/2 is rounded; what that loses comes back with the small terms.
-    let most = fused(z, -0.5, 1.0);
-    let less = fused(z, -0.5, 1.0 - most);
-    let cosine = fused(w, series(COSINE, z, w), fused(r, lost, less)) + most;
-    let [a, b, c, d] = TURNED[(quadrant & 3) as usize];
-    Some((fused(b, cosine, a * sine), fused(d, sine, c * cosine)))
+    let most = z.mul_add(half, one);
+    let less = z.mul_add(half, one - most);
+    let cosine = w.mul_add(series(COSINE, z, w), r.mul_add(lost, less)) + most;
+    (sine, cosine)
 }
 
 /// x − turns π/2 as r − lost, |lost| below the spacing of numbers at r.
 #[inline]
-fn reduce(x: f64, turns: f64) -> (f64, f64) {
+fn reduce<S: Scalar>(x: S, turns: S) -> (S, S) {
     if FUSED {
         // Exact: a multiple of the spacing at x or at π/2, and less than 1.
-        let close = fused(-turns, core::f64::consts::FRAC_PI_2, x);
-        let r = fused(-turns, REST, close);
-        return (r, fused(turns, REST, r - close));
+        let close = (-turns).mul_add(S::from_f64(core::f64::consts::FRAC_PI_2), x);
+        let r = (-turns).mul_add(S::from_f64(REST), close);
+        return (r, turns.mul_add(S::from_f64(REST), r - close));
     }
-    let [a, b, c] = QUARTER.map(|part| turns * part);
-    let first = x - a;
-    let close = first - b;
-    let less = c - ((first - close) - b);
+    let [high, middle, low] = QUARTER;
+    let part = turns * S::from_f64(middle);
+    let first = x - turns * S::from_f64(high);
+    let close = first - part;
+    let less = turns * S::from_f64(low) - ((first - close) - part);
     let r = close - less;
     (r, less - (close - r))
 }
 
 /// Σ cᵢ zⁱ, w = z², in pairs.
 #[inline]
-fn series(c: [f64; 6], z: f64, w: f64) -> f64 {
+fn series<S: Scalar>(c: [f64; 6], z: S, w: S) -> S {
+    // Not `map`, which is a call for lanes.
+    let of = S::from_f64;
     let [a, b, c, d, e, f] = c;
-    let (low, middle, high) = (fused(b, z, a), fused(d, z, c), fused(f, z, e));
-    fused(fused(high, w, middle), w, low)
-}
-
-/// a b + c as generated code computes it.
-#[inline]
-fn fused(a: f64, b: f64, c: f64) -> f64 {
-    Scalar::mul_add(a, b, c)
+    let low = of(b).mul_add(z, of(a));
+    let middle = of(d).mul_add(z, of(c));
+    let high = of(f).mul_add(z, of(e));
+    high.mul_add(w, middle).mul_add(w, low)
 }

@@ -5,9 +5,10 @@
 //! without them a vector is a pair of numbers on x86-64.
 //!
 //! Sums, products, quotients, fused products (with the feature `std`) and roots are rounded as those of
-//! the element are, so that a lane without other functions is equal to the run of the element to the bit. The other functions are
+//! the element are, and so are sine and cosine of `f64`, so that a lane without other functions is equal
+//! to the run of the element to the bit. The other functions are
 //! the polynomials of `wide` (after A. Fog's vector class library and S. Moshier's Cephes): sin and cos
-//! to 1 ε, exp, ln and atan2 to 4 ε relative, ε the spacing of numbers at 1. Where these do not hold, the
+//! of `f32` to 1 ε, exp, ln and atan2 to 4 ε relative, ε the spacing of numbers at 1. Where these do not hold, the
 //! function of the element is taken in the lanes concerned: angles beyond 10⁶ rad (`f32`: 4000 rad),
 //! logarithms of subnormal numbers and of what is not positive, directions to infinite points.
 
@@ -17,7 +18,7 @@ use crate::lanes::Lanes;
 use crate::scalar::Scalar;
 
 macro_rules! lanes {
-    ($($vector:ident: $count:literal of $float:ident, $farthest:literal;)*) => {$(
+    ($($vector:ident: $count:literal of $float:ident, $farthest:literal, $both:expr;)*) => {$(
         impl Scalar for $vector {
             const EPSILON: f64 = <$float as Scalar>::EPSILON;
 
@@ -28,14 +29,19 @@ macro_rules! lanes {
 
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
-                let (sine, cosine) = $vector::sin_cos(self);
+                #[cold]
+                #[inline(never)]
+                fn lane_by_lane(angles: $vector) -> ($vector, $vector) {
+                    let each = angles.to_array().map(Scalar::sin_cos);
+                    (
+                        $vector::new(each.map(|(sine, _)| sine)),
+                        $vector::new(each.map(|(_, cosine)| cosine)),
+                    )
+                }
+                let (sine, cosine) = $both(self);
                 let far = self.abs().simd_gt(Self::splat($farthest));
                 if far.any() {
-                    let each = self.to_array().map(Scalar::sin_cos);
-                    let exact = (
-                        Self::new(each.map(|(sine, _)| sine)),
-                        Self::new(each.map(|(_, cosine)| cosine)),
-                    );
+                    let exact = lane_by_lane(self);
                     (far.select(exact.0, sine), far.select(exact.1, cosine))
                 } else {
                     (sine, cosine)
@@ -133,8 +139,8 @@ macro_rules! lanes {
 }
 
 lanes! {
-    f64x4: 4 of f64, 1e6;
-    f64x8: 8 of f64, 1e6;
-    f32x8: 8 of f32, 4e3;
-    f32x16: 16 of f32, 4e3;
+    f64x4: 4 of f64, 1e6, crate::trig::of_lanes;
+    f64x8: 8 of f64, 1e6, crate::trig::of_lanes;
+    f32x8: 8 of f32, 4e3, f32x8::sin_cos;
+    f32x16: 16 of f32, 4e3, f32x16::sin_cos;
 }

@@ -223,3 +223,16 @@ fn adaptive_steps_serve_the_worst_lane() -> Result<(), StepError> {
     }
     Ok(())
 }
+
+/// Without `std` a lane may round its fused products once where a number rounds twice.
+#[cfg(feature = "std")]
+#[test]
+fn sine_and_cosine_of_lanes_are_those_of_numbers() {
+    for k in 0..40_000_i32 {
+        let angle = |lane: usize| f64::from(k - 20_000) * (0.1 + 5.0 * lane as f64);
+        let (sine, cosine) = Scalar::sin_cos(f64x8::from_lanes(angle));
+        for (lane, both) in sine.lanes().into_iter().zip(cosine.lanes()).enumerate() {
+            assert_eq!(both, Scalar::sin_cos(angle(lane)), "{}", angle(lane));
+        }
+    }
+}
