@@ -26,6 +26,9 @@ use solve::{Plan, solve};
 /// Models with more velocities than this get one route and one order of elimination.
 const SMALL: usize = 8;
 
+/// Trees whose M and Γ ξ ξ take fewer operations as they are traced get all routes, however long they are.
+const FEW: usize = 400;
+
 /// Graphs with more nodes get two orders of elimination and no further plans.
 const LARGE: usize = 3000;
 
@@ -60,7 +63,14 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     let recursion = Recursion::of(&given);
     if let Some(recursion) = &recursion {
         recursion.search(&mut best);
-        if model.n() > SMALL || recursion.is_long() {
+        // What moves in a plane is short for longer.
+        let plain = |variant: &Variant| {
+            let (traced, parts) = trace(&given, *variant);
+            let roots = [parts.mass.concat(), parts.inertia].concat();
+            count(&traced.graph, &roots).flops() < FEW
+        };
+        let short = || !recursion.is_long() || variants(model, false).iter().any(plain);
+        if model.n() > SMALL || !short() {
             let mut best = best?;
             let parts = cheapest(vec![recursion.parts()], &mut best.graph, model);
             return Some((best, parts));
