@@ -5,7 +5,8 @@
 //! | `names` | every generated identifier |
 //! | `number` | decimal literals |
 //! | `places` | where a value is found: argument, parameter, kept constant, temporary |
-//! | `lower` | nodes to statements: fused products, pairs of sine and cosine, guards |
+//! | `lower` | nodes to statements: pairs of sine and cosine, guards |
+//! | `sums` | sums as chains of fused products |
 //! | `chunk` | statements to functions of bounded size, values that cross them to slots |
 //! | `locals` | names of the values of one function |
 //! | `print` | a statement as text |

@@ -70,6 +70,10 @@ pub fn is_hoisted(graph: &Graph, id: NodeId) -> bool {
 
 /// The nodes that vary at run time, in depth-first order of the results: a value is computed
 /// shortly before it is needed.
+///
+/// Other orders gain nothing, because LLVM makes its own: for UR5, Solo12 and a chain of 32 links this one
+/// takes 156, 526 and 1906 ns; the greatest need of registers first 155, 523, 1855; the fewest live values
+/// first 158, 518, 1935; by depth from the arguments 150, 607, 1933, from the results 151, 558, 1917.
 pub fn body(graph: &Graph, roots: &[Edge]) -> Vec<NodeId> {
     let mut order = Vec::new();
     let mut seen = rustc_hash::FxHashSet::default();

@@ -1,5 +1,5 @@
-//! Forward dynamics of a spatial chain of 20 links with run-time parameters: more than 20,000
-//! statements in one function, cut into parts that rustc bears with debug information on.
+//! Forward dynamics of a spatial chain of 16 links with run-time parameters, and its derivatives: more
+//! than 20,000 statements, cut into parts that rustc bears with debug information on.
 
 include!(concat!(env!("OUT_DIR"), "/chain.rs"));
 
@@ -17,25 +17,55 @@ mod tests {
         assert!(text.matches("let ").count() > 20_000);
     }
 
-    /// A chain that hangs straight down at rest with its masses on the line stays there; here the
-    /// law is reflection in time: accelerations are even in the velocities, exactly.
-    #[test]
-    fn accelerations_are_even_in_the_velocities() {
-        let chain = Chain::<f64>::default();
-        let x: [f64; 40] = std::array::from_fn(|i| {
+    fn state() -> ([f64; 32], [f64; 16]) {
+        let x = std::array::from_fn(|i| {
             let angle = 0.3 * (1.0 + (i / 2) as f64).sin();
             if i % 2 == 0 { angle.cos() } else { angle.sin() }
         });
-        let xi: [f64; 20] = std::array::from_fn(|i| (2.0 + i as f64).cos());
-        let forward = chain.accel(&x, &xi, &[]).expect("the chain has inertia");
-        let backward = chain
-            .accel(&x, &xi.map(|rate| -rate), &[])
-            .expect("the chain has inertia");
-        for (a, b) in forward.iter().zip(&backward) {
-            assert!(
-                a.is_finite() && (a - b).abs() <= ROUNDING * (1.0 + a.abs()),
-                "{a} and {b}"
-            );
+        (x, std::array::from_fn(|i| (2.0 + i as f64).cos()))
+    }
+
+    fn accel(x: &[f64; 32], xi: &[f64; 16]) -> [f64; 16] {
+        let found = Chain::<f64>::default().accel(x, xi, &[]);
+        found.expect("the chain has inertia")
+    }
+
+    fn is_near(a: f64, b: f64) -> bool {
+        a.is_finite() && (a - b).abs() <= ROUNDING * (1.0 + a.abs())
+    }
+
+    /// Reflection in time: accelerations are even in the velocities, exactly.
+    #[test]
+    fn accelerations_are_even_in_the_velocities() {
+        let (x, xi) = state();
+        let (forward, backward) = (accel(&x, &xi), accel(&x, &xi.map(|rate| -rate)));
+        for (&a, &b) in forward.iter().zip(&backward) {
+            assert!(is_near(a, b), "{a} and {b}");
+        }
+    }
+
+    /// Accelerations are quadratic in the velocities, so that half the difference of two states is the
+    /// derivative, exactly; ξ̇ and ξ are the second halves of rows and columns.
+    #[test]
+    fn derivatives_by_velocities_are_differences() {
+        let (x, xi) = state();
+        let found = Chain::<f64>::default().linearize(&x, &xi, &[]);
+        let found = found.expect("the chain has inertia");
+        for column in 0..16 {
+            let moved = |step: f64| {
+                let mut xi = xi;
+                xi[column] += step;
+                accel(&x, &xi)
+            };
+            let (ahead, behind) = (moved(1.0), moved(-1.0));
+            for row in 0..16 {
+                let difference = 0.5 * (ahead[row] - behind[row]);
+                let derivative = found[16 + row][16 + column];
+                assert!(
+                    is_near(difference, derivative),
+                    "{difference} and {derivative}"
+                );
+            }
         }
     }
 }
