@@ -3,7 +3,7 @@
 //! as an expression.
 //!
 //! With symbols x(s, t) that have ∂x/∂s = x₁, ∂x/∂t = x₂ and ∂²x/∂s∂t = x₁₂,
-//! f₁₂ = D²f [x₁, x₂] + Df [x₁₂].
+//! f₁₂ = D²f [x₁, x₂] + Df(x₁₂).
 
 use super::fp::Fp;
 use super::graph::Function;
