@@ -52,32 +52,41 @@ pub fn sums<'a>(
         if !matches!(graph.node(root), Node::Add(..)) || !sums.absorbed.insert(root) {
             continue;
         }
-        let (mut terms, mut names) = (Vec::new(), vec![root]);
-        let mut stack = vec![Edge::of(root)];
-        while let Some(edge) = stack.pop() {
-            let id = edge.node();
-            match graph.node(id) {
-                Node::Add(a, b) if id == root || single(id) => {
-                    if id != root {
-                        names.push(id);
+        let flatten = |whole: bool| {
+            let (mut terms, mut names, mut absorbed) = (Vec::new(), vec![root], Vec::new());
+            let mut stack = vec![Edge::of(root)];
+            while let Some(edge) = stack.pop() {
+                let id = edge.node();
+                let at = index.get(&id).copied();
+                match graph.node(id) {
+                    Node::Add(a, b) if id == root || whole && single(id) => {
+                        if id != root {
+                            names.push(id);
+                        }
+                        absorbed.push(id);
+                        let sign = edge.is_negative();
+                        stack.extend([b.signed(sign), a.signed(sign)]);
                     }
-                    sums.absorbed.insert(id);
-                    let sign = edge.is_negative();
-                    stack.extend([b.signed(sign), a.signed(sign)]);
-                }
-                Node::Mul(a, b) if single(id) => {
-                    sums.absorbed.insert(id);
-                    let product = Some([a.signed(edge.is_negative()), b]);
-                    let at = index.get(&id).copied();
-                    terms.push(Term { edge, product, at });
-                }
-                _ => {
-                    let at = index.get(&id).copied();
-                    let product = None;
-                    terms.push(Term { edge, product, at });
+                    Node::Mul(a, b) if single(id) => {
+                        absorbed.push(id);
+                        let product = Some([a.signed(edge.is_negative()), b]);
+                        terms.push(Term { edge, product, at });
+                    }
+                    _ => {
+                        let product = None;
+                        terms.push(Term { edge, product, at });
+                    }
                 }
             }
+            (terms, names, absorbed)
+        };
+        // A difference of sums that share a term would add it and take it away again.
+        let (mut terms, mut names, mut absorbed) = flatten(true);
+        let edges: FxHashSet<Edge> = terms.iter().map(|term| term.edge).collect();
+        if terms.iter().any(|term| edges.contains(&-term.edge)) {
+            (terms, names, absorbed) = flatten(false);
         }
+        sums.absorbed.extend(absorbed);
         // What is read stands before its readers.
         for (at, statement) in chain(terms, names, root_at).into_iter().rev() {
             sums.after.entry(at).or_default().insert(0, statement);
