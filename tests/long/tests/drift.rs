@@ -89,7 +89,7 @@ fn run<Sys: Watched, M: Method<Sys>>(system: &Sys, method: M, h: f64, steps: u32
     };
     let mut state = State::start(system);
     let ((e0, t0), l0) = (energy(&state), momentum(&state));
-    let size = |v| so3::dot(v, v).sqrt();
+    let size = |v: so3::Vector<f64>| so3::dot(v, v).sqrt();
     let scale = t0 + body.m * size(body.g) * size(body.s);
     let length = size(l0);
     let heavy = body.m > 0.0;
