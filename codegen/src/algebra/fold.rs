@@ -4,8 +4,12 @@
 use super::fp::Fp;
 use super::graph::{Graph, LANES};
 use super::node::{Edge, Function, Node, NodeId};
+use num_integer::Integer;
 use num_rational::BigRational;
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+/// Nodes that are looked at for the rational factor of an expression.
+const CONTENT_STEPS: usize = 1 << 12;
 
 impl Graph {
     /// √ of a rational square.
@@ -136,6 +140,45 @@ impl Graph {
             (_, 2) => -self.apply(cos, rest),
             (_, _) => self.apply(sin, rest),
         })
+    }
+
+    /// What a lane needs to know of a function's argument besides its value: the linear form of an
+    /// argument with a group law; of a square root the rational factor of its argument, nothing if
+    /// the argument is a number that is not rational and positive.
+    pub fn form(&self, function: Function, argument: Edge) -> Vec<(NodeId, BigRational)> {
+        match function {
+            Function::Sin | Function::Cos | Function::Exp => self.linear_form(argument),
+            Function::Sqrt => {
+                let number = self.as_rational(argument);
+                let is_number = self.class(argument.node()) == 0;
+                if is_number && !number.is_some_and(|number| number.is_positive()) {
+                    return Vec::new();
+                }
+                vec![(
+                    argument.node(),
+                    self.content(argument, &mut CONTENT_STEPS.clone()),
+                )]
+            }
+            Function::Log | Function::Atan2 => Vec::new(),
+        }
+    }
+
+    /// A positive rational factor of an expression, the same however it is grouped.
+    fn content(&self, edge: Edge, steps: &mut usize) -> BigRational {
+        *steps = steps.saturating_sub(1);
+        if *steps == 0 {
+            return BigRational::one();
+        }
+        match self.node(edge.node()) {
+            Node::Constant(index) => self.constant(index).abs(),
+            Node::Mul(a, b) => self.content(a, steps) * self.content(b, steps),
+            Node::Div(a, b) => self.content(a, steps) / self.content(b, steps),
+            Node::Add(a, b) => {
+                let (a, b) = (self.content(a, steps), self.content(b, steps));
+                BigRational::new(a.numer().gcd(b.numer()), a.denom().lcm(b.denom()))
+            }
+            Node::Symbol(_) | Node::Apply(..) | Node::Atan2(..) => BigRational::one(),
+        }
     }
 
     /// The argument of a function with a group law, as Σ coefficient · atom.

@@ -2,12 +2,15 @@
 //!
 //! Every node carries its value at two points of the constraint variety X. Equal values are one
 //! node, so "equal on X" is node identity; zero and small rationals are recognised as constants.
+//! Where square roots take part, real samples have to agree, too (`shadow`).
 //! An edge is a node with a sign, so negation costs nothing and a − b, b − a are one node.
 //! Children stand before parents.
 
 use super::fp::Fp;
 use super::lane::Lane;
 pub use super::node::{Edge, Function, Node, NodeId, Symbol};
+use super::reals::Reals;
+use super::shadow::Shadow;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -26,6 +29,7 @@ pub struct Graph {
     constants: Vec<BigRational>,
     symbols: Vec<Symbol>,
     lanes: [Lane; LANES],
+    shadow: Shadow,
     /// Class of the symbols that are constant at run time; products and sums of these are kept
     /// together so that they can be computed once.
     free_class: u8,
@@ -44,6 +48,7 @@ impl Graph {
             constants: Vec::new(),
             symbols: Vec::new(),
             lanes,
+            shadow: Shadow::default(),
             free_class,
         };
         // Node 0 is the number 0, node 1 the number 1.
@@ -58,6 +63,24 @@ impl Graph {
         let mut graph = Graph::new(0, self.free_class);
         graph.lanes = std::array::from_fn(|lane| self.lanes[lane].fresh());
         graph
+    }
+
+    /// Takes roots of non-squares in F_p(i); for when no point avoids them.
+    pub fn set_lenient(&mut self, lenient: bool) {
+        self.lanes
+            .iter_mut()
+            .for_each(|lane| lane.lenient = lenient);
+    }
+
+    /// Gives the symbols real values, in order of creation; without them roots of expressions are
+    /// told apart modulo p alone.
+    pub fn set_reals(&mut self, reals: Vec<Reals>) {
+        self.shadow.set(reals);
+    }
+
+    /// The real values of a symbol.
+    pub fn reals(&self, symbol: usize) -> Reals {
+        self.shadow.symbol(symbol)
     }
 
     /// The number 0.
@@ -189,7 +212,7 @@ impl Graph {
         }
         let value = lanewise(self.value(a), self.value(b), |x, y| x + y);
         let class = self.class(a.node()) | self.class(b.node());
-        if let Some(known) = self.known(value, class) {
+        if let Some(known) = self.known(Node::Add(a, b), value, class) {
             return known;
         }
         if let Some(factored) = self.factor(a, b) {
@@ -236,7 +259,7 @@ impl Graph {
         }
         let value = lanewise(self.value(a), self.value(b), |x, y| x * y);
         let class = self.class(a.node()) | self.class(b.node());
-        if let Some(known) = self.known(value, class) {
+        if let Some(known) = self.known(Node::Mul(a, b), value, class) {
             return known.signed(negative);
         }
         if let Some(regrouped) = self.regroup(a, b, Node::Mul as fn(Edge, Edge) -> Node) {
@@ -264,7 +287,7 @@ impl Graph {
             value[lane] = self.value(a)[lane] * self.value(b)[lane].inv()?;
         }
         let class = self.class(a.node()) | self.class(b.node());
-        if let Some(known) = self.known(value, class) {
+        if let Some(known) = self.known(Node::Div(a, b), value, class) {
             return Some(known.signed(negative));
         }
         // Divide by run-time constants once: x / p = x · (1/p).
@@ -292,10 +315,7 @@ impl Graph {
         if let Some(exact) = exact {
             return exact;
         }
-        let form = match function {
-            Function::Sin | Function::Cos | Function::Exp => self.linear_form(argument),
-            _ => Vec::new(),
-        };
+        let form = self.form(function, argument);
         if matches!(function, Function::Sin | Function::Cos)
             && let Some(turned) = self.without_right_angles(function, argument, &form)
         {
@@ -314,9 +334,10 @@ impl Graph {
             _ => value,
         };
         let class = self.class(argument.node());
-        let edge = match self.known(value, class) {
+        let node = Node::Apply(function, argument);
+        let edge = match self.known(node, value, class) {
             Some(known) => known,
-            None => self.push(Node::Apply(function, argument), value, class),
+            None => self.push(node, value, class),
         };
         edge.signed(negative)
     }
@@ -328,9 +349,10 @@ impl Graph {
             self.lanes[lane].opaque(Function::Atan2, ys[lane], xs[lane])
         });
         let class = self.class(y.node()) | self.class(x.node());
-        match self.known(value, class) {
+        let node = Node::Atan2(y, x);
+        match self.known(node, value, class) {
             Some(known) => known,
-            None => self.push(Node::Atan2(y, x), value, class),
+            None => self.push(node, value, class),
         }
     }
 
@@ -386,18 +408,27 @@ impl Graph {
             .collect()
     }
 
-    /// A node with this value, or the small rational that it is; an expression that is constant at
-    /// run time does not give way to one that is not.
-    fn known(&mut self, value: [Fp; LANES], class: u8) -> Option<Edge> {
-        if let Some(edge) = self.lookup(value) {
-            let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
-            return (!improves).then_some(edge);
-        }
-        if value.iter().any(|v| *v != value[0]) {
-            return None;
-        }
-        let (n, d) = value[0].to_small_rational(29)?;
-        is_plain(n, d).then(|| self.ratio(n, d))
+    /// A node with the value of another one, or the small rational that it is; an expression that is
+    /// constant at run time does not give way to one that is not, nor any to what real samples say
+    /// is another number.
+    fn known(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Option<Edge> {
+        let known = match self.lookup(value) {
+            Some(edge) => {
+                let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
+                (!improves).then_some(edge)?
+            }
+            None => {
+                if value.iter().any(|v| *v != value[0]) {
+                    return None;
+                }
+                let (n, d) = value[0].to_small_rational(29)?;
+                is_plain(n, d).then(|| self.ratio(n, d))?
+            }
+        };
+        (!self
+            .shadow
+            .disputes(&self.nodes, &self.constants, node, known))
+        .then_some(known)
     }
 
     /// A node that later expressions do not merge with.
@@ -407,6 +438,7 @@ impl Graph {
             .children()
             .fold(0, |class, child| class | self.class(child.node()));
         self.nodes.push(node);
+        self.shadow.follow(node);
         self.values.push([Fp::ZERO; LANES]);
         self.classes.push(class);
         Edge::of(id)
@@ -420,6 +452,7 @@ impl Graph {
     fn push(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Edge {
         let id = self.nodes.len() as NodeId;
         self.nodes.push(node);
+        self.shadow.follow(node);
         self.values.push(value);
         self.classes.push(class);
         let (key, negative) = canonical(value);

@@ -3,15 +3,17 @@
 //! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a
 //! random point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that
 //! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
-//! exp is treated likewise.
+//! exp is treated likewise. Square roots keep the laws of positive numbers (`roots`).
 
 use super::fp::{Fp, P, Random};
 use super::graph::Function;
+use super::roots;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
-/// Σ coefficient · atom, the argument of a function with a group law; atoms by their values.
+/// Σ coefficient · atom, the argument of a function with a group law; atoms by their values. Of a
+/// square root: the rational factor of its argument (`Graph::form`).
 pub type LinearForm = Vec<(Fp, BigRational)>;
 
 /// The part of an angle that gets a random circle point: halves, thirds, quarters and sixths of an
@@ -26,6 +28,8 @@ pub struct Lane {
     symbols: Vec<Fp>,
     /// Set when a square root was asked of a non-square: the point should be chosen anew.
     pub stuck: bool,
+    /// Whether roots of non-squares are taken in F_p(i), where √a √b may be −√(ab).
+    pub lenient: bool,
 }
 
 impl Lane {
@@ -35,12 +39,16 @@ impl Lane {
             seed,
             symbols: Vec::new(),
             stuck: false,
+            lenient: false,
         }
     }
 
     /// The same functions, without symbols.
     pub fn fresh(&self) -> Self {
-        Lane::new(self.seed)
+        Lane {
+            lenient: self.lenient,
+            ..Lane::new(self.seed)
+        }
     }
 
     /// Adds the next symbol.
@@ -60,21 +68,29 @@ impl Lane {
         self.symbols[index]
     }
 
-    /// Value of a function of one argument; `form` is the argument's linear form.
+    /// Value of a function of one argument; `form` is `Graph::form` of the argument.
     pub fn function(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
         match function {
             Function::Sin => self.angle(form).1,
             Function::Cos => self.angle(form).0,
             Function::Exp => self.exp(form),
-            Function::Sqrt => match argument.sqrt() {
-                Some(root) => root,
-                None => {
-                    self.stuck = true;
-                    self.opaque(function, argument, Fp::ZERO)
-                }
-            },
+            Function::Sqrt => self.root(argument, form).unwrap_or_else(|| {
+                self.stuck = true;
+                self.opaque(function, argument, Fp::ZERO)
+            }),
             Function::Log | Function::Atan2 => self.opaque(function, argument, Fp::ZERO),
         }
+    }
+
+    /// √(c e) = √c √e with the factor c of the form; a number without a form has any root.
+    fn root(&self, argument: Fp, form: &LinearForm) -> Option<Fp> {
+        let Some((_, factor)) = form.first() else {
+            return argument.sqrt();
+        };
+        let rest = argument * Fp::from_rational(factor)?.inv()?;
+        let root = roots::principal(rest);
+        let root = root.or_else(|| self.lenient.then(|| rest.sqrt())?)?;
+        Some(roots::of_rational(factor)? * root)
     }
 
     /// A value without any law but equality of arguments.
@@ -153,7 +169,10 @@ pub fn circle_point(random: &mut Random) -> (Fp, Fp) {
 
 /// Cosine and sine of π/12, (√3 ± 1) √2 / 4.
 fn twelfth() -> (Fp, Fp) {
-    let root = |n| Fp::new(n).sqrt().unwrap_or(Fp::ONE);
+    let root = |n: i64| {
+        let number = BigRational::from_integer(BigInt::from(n));
+        roots::of_rational(&number).unwrap_or(Fp::ONE)
+    };
     let quarter = Fp::new(4).inv().unwrap_or(Fp::ONE) * root(2);
     ((root(3) + Fp::ONE) * quarter, (root(3) - Fp::ONE) * quarter)
 }

@@ -14,7 +14,10 @@ pub mod linear;
 pub mod node;
 pub mod numeric;
 pub mod poly;
+pub mod reals;
 pub mod resubstitute;
+mod roots;
+mod shadow;
 pub mod tangent;
 pub mod tape;
 #[cfg(test)]

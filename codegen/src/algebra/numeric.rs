@@ -56,11 +56,8 @@ pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec
             Node::Mul(a, b) => read(&values, a) * read(&values, b),
             Node::Div(a, b) => read(&values, a) * read(&values, b).inv()?,
             Node::Apply(function, a) => {
-                let form = match function {
-                    Function::Sin | Function::Cos | Function::Exp => graph.linear_form(a),
-                    _ => Vec::new(),
-                };
-                let form = form
+                let form = graph
+                    .form(function, a)
                     .into_iter()
                     .map(|(atom, c)| (values[atom as usize], c))
                     .collect();

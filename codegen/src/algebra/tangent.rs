@@ -52,13 +52,11 @@ pub fn tangent_at(
             }
             Node::Apply(function, a) => {
                 let (argument, slope) = read(&values, a);
-                let form: Vec<_> = match function {
-                    Function::Sin | Function::Cos | Function::Exp => graph.linear_form(a),
-                    _ => Vec::new(),
-                }
-                .into_iter()
-                .map(|(atom, c)| (values[atom as usize].0, c))
-                .collect();
+                let form: Vec<_> = graph
+                    .form(function, a)
+                    .into_iter()
+                    .map(|(atom, c)| (values[atom as usize].0, c))
+                    .collect();
                 let value = lane.function(function, argument, &form);
                 let factor = match function {
                     Function::Sin => lane.function(Function::Cos, argument, &form),

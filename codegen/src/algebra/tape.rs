@@ -66,13 +66,10 @@ impl Tape {
                 Node::Div(a, b) => Step::Div(operand(a), operand(b)),
                 Node::Atan2(y, x) => Step::Atan2(operand(y), operand(x)),
                 Node::Apply(function, a) => {
-                    let form = match function {
-                        Function::Sin | Function::Cos | Function::Exp => graph.linear_form(a),
-                        _ => Vec::new(),
-                    };
                     // The number 1 is the atom of constant angles.
                     let place = |atom: u32| (atom != 1).then(|| places[atom as usize]);
-                    let form = form.into_iter().map(|(atom, c)| (place(atom), c));
+                    let form = graph.form(function, a).into_iter();
+                    let form = form.map(|(atom, c)| (place(atom), c));
                     Step::Apply(function, operand(a), form.collect())
                 }
             })

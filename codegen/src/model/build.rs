@@ -7,7 +7,8 @@ use super::names::Names;
 use super::scope::Scope;
 use super::variety::Variety;
 use super::{
-    Model, class, closure, defaults, dynamics, invariants, joints, kinematics, pfaffian, start,
+    Model, class, closure, defaults, dynamics, invariants, joints, kinematics, pfaffian, samples,
+    start,
 };
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
@@ -82,7 +83,9 @@ impl<'a> Reading<'a> {
             std::array::from_fn(|lane| lanes[lane][count - 1])
         };
         let next = &mut next as &mut NextValue;
+        graph.set_lenient(variety.points.lenient);
         let declared = declare(system, &mut graph, next, &mut scope, &mut report);
+        graph.set_reals(samples::sample(&variety.points, &variety.phi, seed));
         Reading {
             system,
             variety,

@@ -5,7 +5,7 @@ use super::layout::{blocks, entry_names};
 use super::scope::{NameKind, Scope};
 use super::start::Start;
 use super::value::Value;
-use super::{Coordinate, Group, class};
+use super::{Coordinate, Group, class, samples};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, LANES};
 use crate::diagnostics::{Diagnostic, Report};
@@ -57,6 +57,7 @@ pub fn declare(
     let mut declared = Declared::default();
     next(graph);
     graph.symbol("pi", 0, [Fp::PI; LANES]);
+    graph.set_reals(samples::pi());
     for item in &system.items {
         if let ItemKind::Const(list) = &item.kind {
             for declaration in list {

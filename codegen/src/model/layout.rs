@@ -5,6 +5,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::lane::circle_point;
 use crate::algebra::linear::{multiply3, transpose3};
 use crate::syntax::ast::CoordKind;
+use std::ops::{Add, Mul, Sub};
 
 /// A block of x with a chart of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,32 +101,32 @@ pub fn sample(block: Block, random: &mut Random) -> Vec<Fp> {
             }
         },
         Block::Rotation => loop {
-            // R(q)/|q|² of any quaternion q.
-            let [w, x, y, z]: [Fp; 4] = std::array::from_fn(|_| random.element());
-            let Some(scale) = (w * w + x * x + y * y + z * z).inv() else {
-                continue;
-            };
-            let two = Fp::new(2);
-            let rows = [
-                [
-                    w * w + x * x - y * y - z * z,
-                    two * (x * y - w * z),
-                    two * (x * z + w * y),
-                ],
-                [
-                    two * (x * y + w * z),
-                    w * w - x * x + y * y - z * z,
-                    two * (y * z - w * x),
-                ],
-                [
-                    two * (x * z - w * y),
-                    two * (y * z + w * x),
-                    w * w - x * x - y * y + z * z,
-                ],
-            ];
-            return rows.iter().flatten().map(|&entry| entry * scale).collect();
+            let q: [Fp; 4] = std::array::from_fn(|_| random.element());
+            let square = q.iter().fold(Fp::ZERO, |sum, &entry| sum + entry * entry);
+            if let Some(scale) = square.inv() {
+                let entries = rotation(q, Fp::new(2)).into_iter();
+                return entries.map(|entry| entry * scale).collect();
+            }
         },
     }
+}
+
+/// |q|² R(q) of a quaternion, scalar first, by rows; `two` is the number 2.
+pub fn rotation<T>([w, x, y, z]: [T; 4], two: T) -> Vec<T>
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+{
+    vec![
+        w * w + x * x - y * y - z * z,
+        two * (x * y - w * z),
+        two * (x * z + w * y),
+        two * (x * y + w * z),
+        w * w - x * x + y * y - z * z,
+        two * (y * z - w * x),
+        two * (x * z - w * y),
+        two * (y * z + w * x),
+        w * w - x * x - y * y + z * z,
+    ]
 }
 
 /// φ of a block, and how each row reads; only to be called in a graph with unconstrained points.

@@ -34,6 +34,7 @@ pub mod points;
 mod rates;
 mod relations;
 pub mod rotations;
+mod samples;
 pub mod scope;
 mod start;
 mod tangency;

@@ -9,6 +9,8 @@ use crate::algebra::numeric::evaluate;
 
 /// Steps from one first guess.
 const STEPS: usize = 200;
+/// Steps where another point will do as well.
+const FEW_STEPS: usize = 40;
 /// Largest |φ| of a configuration.
 const CLOSE: f64 = 1e-12;
 /// First guesses at random, beyond the start and its neighbours along each coordinate.
@@ -23,38 +25,21 @@ pub enum Nearest {
     Nowhere(f64),
 }
 
-/// φ, ∂φ/∂x and the numbers of the parameters.
-struct Equations {
+/// φ and ∂φ/∂x, to be solved for x.
+pub struct Equations {
     graph: Graph,
     phi: Vec<Edge>,
     slopes: Vec<Edge>,
-    numbers: Vec<f64>,
     first: usize,
+    dimension: usize,
 }
 
 /// Looks for x with φ(x) = 0 near a start; `numbers` are those of all symbols there.
 pub fn nearest(points: &Points, phi: &[(Edge, String)], numbers: &[f64], x: &[f64]) -> Nearest {
-    let mut graph = points.free.clone();
-    let mut columns: Vec<Derivation> = (0..x.len())
-        .map(|alpha| Derivation::new([(graph.symbols()[points.first + alpha].node, graph.one())]))
-        .collect();
-    let rows: Vec<Edge> = phi.iter().map(|(row, _)| *row).collect();
-    let mut slopes = Vec::new();
-    for &row in &rows {
-        for column in &mut columns {
-            slopes.push(column.of(&mut graph, row));
-        }
-    }
-    let equations = Equations {
-        graph,
-        phi: rows,
-        slopes,
-        numbers: numbers.to_vec(),
-        first: points.first,
-    };
+    let equations = Equations::new(points, phi);
     let mut least = f64::INFINITY;
     for guess in guesses(x) {
-        let (found, residual) = equations.descend(guess);
+        let (found, residual) = equations.descend(guess, numbers, STEPS);
         if residual <= CLOSE {
             return Nearest::Found(found);
         }
@@ -78,21 +63,52 @@ fn guesses(x: &[f64]) -> Vec<Vec<f64>> {
 }
 
 impl Equations {
-    fn at(&self, edges: &[Edge], x: &[f64]) -> Vec<f64> {
-        let mut numbers = self.numbers.clone();
+    /// φ and its slopes.
+    pub fn new(points: &Points, phi: &[(Edge, String)]) -> Self {
+        let mut graph = points.free.clone();
+        let mut columns: Vec<Derivation> = (0..points.dimension())
+            .map(|alpha| {
+                Derivation::new([(graph.symbols()[points.first + alpha].node, graph.one())])
+            })
+            .collect();
+        let rows: Vec<Edge> = phi.iter().map(|(row, _)| *row).collect();
+        let mut slopes = Vec::new();
+        for &row in &rows {
+            for column in &mut columns {
+                slopes.push(column.of(&mut graph, row));
+            }
+        }
+        Equations {
+            graph,
+            phi: rows,
+            slopes,
+            first: points.first,
+            dimension: points.dimension(),
+        }
+    }
+
+    /// x with φ(x) = 0 near that of some values of all symbols, if Newton's method finds it soon.
+    pub fn near(&self, numbers: &[f64]) -> Option<Vec<f64>> {
+        let x = numbers.get(self.first..self.first + self.dimension)?;
+        let (x, residual) = self.descend(x.to_vec(), numbers, FEW_STEPS);
+        (residual <= CLOSE).then_some(x)
+    }
+
+    fn at(&self, edges: &[Edge], numbers: &[f64], x: &[f64]) -> Vec<f64> {
+        let mut numbers = numbers.to_vec();
         numbers[self.first..self.first + x.len()].copy_from_slice(x);
         evaluate(&self.graph, edges, &numbers)
     }
 
     /// Newton's method from a guess: where it ends, and max |φ| there.
-    fn descend(&self, mut x: Vec<f64>) -> (Vec<f64>, f64) {
-        let mut phi = self.at(&self.phi, &x);
+    fn descend(&self, mut x: Vec<f64>, numbers: &[f64], steps: usize) -> (Vec<f64>, f64) {
+        let mut phi = self.at(&self.phi, numbers, &x);
         let mut damping = 1e-6;
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             if largest(&phi) <= CLOSE {
                 break;
             }
-            let slopes = self.at(&self.slopes, &x);
+            let slopes = self.at(&self.slopes, numbers, &x);
             let rows: Vec<&[f64]> = slopes.chunks(x.len()).collect();
             let mut gram: Vec<Vec<f64>> = rows
                 .iter()
@@ -111,7 +127,7 @@ impl Equations {
                     .zip(*row)
                     .for_each(|(x, slope)| *x -= factor * slope);
             }
-            let after = self.at(&self.phi, &next);
+            let after = self.at(&self.phi, numbers, &next);
             if dot(&after, &after) < dot(&phi, &phi) {
                 (x, phi) = (next, after);
                 damping = (damping * 0.1).max(1e-15);

@@ -14,6 +14,8 @@ use rustc_hash::FxHashMap;
 
 /// Points tried until all square roots have values; each root halves the chance.
 const TRIES: usize = 4000;
+/// Those after which roots of non-squares are allowed.
+const STRICT_TRIES: usize = 300;
 /// Systems of constraints without a solution before giving up.
 const FAILURES: usize = 3;
 /// Largest degree of a constraint in the coordinates.
@@ -36,6 +38,8 @@ pub struct Points {
     pub symbols: usize,
     /// Square roots that need values at every point, in `free`.
     radicals: Vec<Edge>,
+    /// Whether points with roots in F_p were too rare, so that those in F_p(i) have to do.
+    pub lenient: bool,
 }
 
 impl Points {
@@ -49,13 +53,19 @@ impl Points {
             first,
             symbols,
             radicals: Vec::new(),
+            lenient: false,
         }
+    }
+
+    /// Number of entries of x.
+    pub fn dimension(&self) -> usize {
+        self.blocks.iter().map(|block| block.len()).sum()
     }
 
     /// Values of all symbols at a random point of X, where functions have the values of the lane
     /// with this seed; `None` where no point was found.
     pub fn choose(&self, random: &mut Random, seed: u64) -> Option<Vec<Fp>> {
-        self.choose_where(random, seed, &|_| Some(()))
+        self.choose_where(random, seed, TRIES, &|_| Some(()))
     }
 
     /// The same where `set` has changed values of parameters and inputs before the coordinates were
@@ -64,10 +74,11 @@ impl Points {
         &self,
         random: &mut Random,
         seed: u64,
+        tries: usize,
         set: &dyn Fn(&mut Vec<Fp>) -> Option<()>,
     ) -> Option<Vec<Fp>> {
         let mut failures = 0;
-        for _ in 0..TRIES {
+        for _ in 0..tries {
             let mut values = self.unconstrained(random);
             if set(&mut values).is_none() {
                 continue;
@@ -114,7 +125,7 @@ impl Points {
 
     fn has_roots(&self, values: &[Fp], seed: u64) -> bool {
         self.radicals.is_empty()
-            || evaluate_at(&self.free, &self.radicals, &mut lane_of(values, seed)).is_some()
+            || evaluate_at(&self.free, &self.radicals, &mut self.lane_of(values, seed)).is_some()
     }
 
     /// From now on, chooses points at which the square roots of another graph have values.
@@ -125,6 +136,13 @@ impl Points {
             .map(Edge::of)
             .collect();
         self.radicals = copy(graph, &mut self.free, &roots);
+        let mut random = Random::new(0x57_1c_7);
+        let mut found = |seed| {
+            let anything = |_: &mut Vec<Fp>| Some(());
+            self.choose_where(&mut random, seed, STRICT_TRIES, &anything)
+                .is_some()
+        };
+        self.lenient |= !self.radicals.is_empty() && !(found(1) && found(2));
     }
 
     /// The user's constraints as polynomials in the coordinates.
@@ -175,7 +193,7 @@ impl Points {
             .filter(|&&id| !moves(id))
             .map(|&id| Edge::of(id))
             .collect();
-        let numbers = evaluate_at(graph, &fixed, &mut lane_of(values, seed))?;
+        let numbers = evaluate_at(graph, &fixed, &mut self.lane_of(values, seed))?;
         let constants = fixed
             .iter()
             .zip(numbers)
@@ -212,20 +230,29 @@ impl Points {
     pub fn lane_where(&self, seed: u64, graph: &Graph, set: &[(usize, Edge)]) -> Option<Lane> {
         let edges: Vec<Edge> = set.iter().map(|(_, edge)| *edge).collect();
         let impose = |values: &mut Vec<Fp>| {
-            let imposed = evaluate_at(graph, &edges, &mut lane_of(values, seed))?;
+            let imposed = evaluate_at(graph, &edges, &mut self.lane_of(values, seed))?;
             for ((symbol, _), value) in set.iter().zip(imposed) {
                 *values.get_mut(*symbol)? = value;
             }
             Some(())
         };
-        let values = self.choose_where(&mut Random::new(seed ^ 0x0b5e), seed, &impose)?;
-        Some(lane_of(&values, seed))
+        let values = self.choose_where(&mut Random::new(seed ^ 0x0b5e), seed, TRIES, &impose)?;
+        Some(self.lane_of(&values, seed))
     }
 
     /// A lane at a fresh point.
     pub fn lane(&self, seed: u64) -> Option<Lane> {
         let values = self.choose(&mut Random::new(seed ^ 0x0b5e), seed)?;
-        Some(lane_of(&values, seed))
+        Some(self.lane_of(&values, seed))
+    }
+
+    fn lane_of(&self, values: &[Fp], seed: u64) -> Lane {
+        let mut lane = Lane::new(seed);
+        lane.lenient = self.lenient;
+        for &value in values {
+            lane.push_symbol(value);
+        }
+        lane
     }
 }
 
@@ -233,12 +260,4 @@ impl Points {
 pub fn lane_seed(graph_seed: u64, lane: usize) -> u64 {
     debug_assert!(lane < LANES);
     graph_seed.wrapping_mul(31).wrapping_add(lane as u64)
-}
-
-fn lane_of(values: &[Fp], seed: u64) -> Lane {
-    let mut lane = Lane::new(seed);
-    for &value in values {
-        lane.push_symbol(value);
-    }
-    lane
 }

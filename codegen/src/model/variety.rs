@@ -6,6 +6,7 @@ use super::expression::Evaluator;
 use super::layout::{Block, blocks, constraint};
 use super::names::Names;
 use super::points::{HIGHEST_DEGREE, Points, lane_seed};
+use super::samples;
 use super::scope::Scope;
 use super::value::Value;
 use crate::algebra::fp::{Fp, Random};
@@ -47,6 +48,7 @@ impl Variety {
         let mut scope = Scope::new(system, true);
         let mut silent = Report::new();
         let declared = declare(system, &mut graph, &mut next, &mut scope, &mut silent);
+        graph.set_reals(samples::anywhere(graph.symbols().len(), seed));
         Names::read(system, &mut graph, &mut scope, &mut silent);
         let (mut rows, mut read, mut complete) = (Vec::new(), Vec::new(), !declared.faulty);
         for (index, item) in system.items.iter().enumerate() {

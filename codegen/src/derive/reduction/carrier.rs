@@ -289,6 +289,7 @@ fn restricted(
     let mut images = Vec::new();
     let (mut velocity, mut acceleration, mut momentum) = (0, 0, 0);
     let mut solved = Vec::new();
+    let mut reals = Vec::new();
     for (index, symbol) in from.symbols().iter().enumerate() {
         let counter = match symbol.class {
             class::VELOCITY => Some((&mut velocity, xi)),
@@ -307,7 +308,9 @@ fn restricted(
         }
         let value = from.value(Edge::of(symbol.node));
         images.push(graph.symbol(&symbol.name, symbol.class, value));
+        reals.push(from.reals(index));
     }
+    graph.set_reals(reals);
     // What was solved for is written in symbols that stay.
     let expressions: Vec<Edge> = solved.iter().map(|(_, edge)| *edge).collect();
     let made = map_symbols(&full.graph, &mut graph, &expressions, &images);

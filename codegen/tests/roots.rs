@@ -1,0 +1,180 @@
+//! Square roots have the sign of real roots: √ of products, of sums of roots and of squares, of
+//! numbers, parameters and coordinates, in whatever order they are written.
+
+mod common;
+
+use common::{Random, generated, value};
+use hamel_codegen::generate::Generated;
+
+/// Roundings of a few operations, some of which cancel.
+const CLOSE: f64 = 1e-13;
+
+/// An expression of parameters a, b and coordinates x, y, and its value.
+type Case = (&'static str, fn([f64; 4]) -> f64);
+
+const NUMBERS: [Case; 18] = [
+    ("sqrt(3) * sqrt(7)", |_| 21_f64.sqrt()),
+    ("sqrt(21)", |_| 21_f64.sqrt()),
+    ("sqrt(5) * sqrt(7)", |_| 35_f64.sqrt()),
+    ("sqrt(35)", |_| 35_f64.sqrt()),
+    ("sqrt(3 / 7) - sqrt(21) / 7 + 1", |_| 1.0),
+    ("sqrt(5 - 2 * sqrt(6))", |_| 3_f64.sqrt() - 2_f64.sqrt()),
+    ("sqrt(3) - sqrt(2)", |_| 3_f64.sqrt() - 2_f64.sqrt()),
+    ("sqrt(2) - sqrt(3)", |_| 2_f64.sqrt() - 3_f64.sqrt()),
+    ("sqrt(2 - sqrt(3))", |_| (2.0 - 3_f64.sqrt()).sqrt()),
+    ("(sqrt(6) - sqrt(2)) / 2", |_| {
+        (6_f64.sqrt() - 2_f64.sqrt()) / 2.0
+    }),
+    ("(sqrt(2) - sqrt(6)) / 2", |_| {
+        (2_f64.sqrt() - 6_f64.sqrt()) / 2.0
+    }),
+    ("sqrt(sqrt(2) - 1) * sqrt(sqrt(2) + 1)", |_| 1.0),
+    ("tan(pi / 12) + sqrt(3)", |_| 2.0),
+    ("sin(7 * pi / 12)", |_| {
+        (7.0 * std::f64::consts::PI / 12.0).sin()
+    }),
+    ("sqrt(10 - 2 * sqrt(5)) / 4", |_| {
+        (std::f64::consts::PI / 5.0).sin()
+    }),
+    ("sqrt(2 * pi) - sqrt(2) * sqrt(pi)", |_| 0.0),
+    (
+        "(sqrt(4099) * sqrt(4111) - sqrt(4099 * 4111)) / 4096",
+        |_| 0.0,
+    ),
+    ("sqrt(1 / 2) * sqrt(8)", |_| 2.0),
+];
+
+const EXPRESSIONS: [Case; 16] = [
+    ("sqrt(a) * sqrt(b)", |[a, b, ..]| (a * b).sqrt()),
+    ("sqrt(a * b)", |[a, b, ..]| (a * b).sqrt()),
+    ("sqrt(3 * a) * sqrt(7 * b)", |[a, b, ..]| {
+        (21.0 * a * b).sqrt()
+    }),
+    ("sqrt(21 * a * b)", |[a, b, ..]| (21.0 * a * b).sqrt()),
+    ("sqrt(3 * a + 3 * b)", |[a, b, ..]| (3.0 * (a + b)).sqrt()),
+    ("sqrt(a + b) * sqrt(3)", |[a, b, ..]| (3.0 * (a + b)).sqrt()),
+    ("sqrt(a / b)", |[a, b, ..]| (a / b).sqrt()),
+    ("sqrt(a) / sqrt(b)", |[a, b, ..]| (a / b).sqrt()),
+    ("sqrt(a + b + 2 * sqrt(a * b))", |[a, b, ..]| {
+        a.sqrt() + b.sqrt()
+    }),
+    ("sqrt(a) + sqrt(b)", |[a, b, ..]| a.sqrt() + b.sqrt()),
+    ("sqrt(a + b - 2 * sqrt(a * b))", |[a, b, ..]| {
+        (a.sqrt() - b.sqrt()).abs()
+    }),
+    ("sqrt(a) - sqrt(b)", |[a, b, ..]| a.sqrt() - b.sqrt()),
+    ("sqrt(x^2 + 2 * x + 1)", |[_, _, x, _]| (x + 1.0).abs()),
+    ("(x + 1) * y", |[_, _, x, y]| (x + 1.0) * y),
+    ("y * sqrt((x + 1)^2)", |[_, _, x, y]| y * (x + 1.0).abs()),
+    ("sqrt(x^2 * y^2) + x * y", |[_, _, x, y]| {
+        (x * y).abs() + x * y
+    }),
+];
+
+/// A point with these outputs, the last one first where asked.
+fn outputs(cases: &[Case], reversed: bool) {
+    let order: Vec<&Case> = if reversed {
+        cases.iter().rev().collect()
+    } else {
+        cases.iter().collect()
+    };
+    let lines: String = order
+        .iter()
+        .enumerate()
+        .map(|(index, (text, _))| format!("output o{index} = {text};\n"))
+        .collect();
+    let of = generated(&format!(
+        "system Roots {{
+            coord x, y; velocity v, w; rate x = v; rate y = w;
+            param a = 2, b = 3;
+            particle mass 1 at [x, y, 0];
+            {lines}
+        }}"
+    ));
+    let mut random = Random(11);
+    for _ in 0..8 {
+        let x: Vec<f64> = random.numbers(2).iter().map(|x| 4.0 * x).collect();
+        for (index, (text, expected)) in order.iter().enumerate() {
+            let found = output(&of, &format!("o{index}"), &x);
+            let expected = expected([2.0, 3.0, x[0], x[1]]);
+            let error = (found - expected).abs();
+            assert!(
+                error <= CLOSE * (1.0 + expected.abs()),
+                "{text} is {expected}, not {found}"
+            );
+        }
+    }
+}
+
+/// An output at a configuration, at rest.
+fn output(of: &Generated, name: &str, x: &[f64]) -> f64 {
+    let rest = vec![0.0; of.active.xi.len()];
+    value(of, name, [x, &rest, &[], &[]])[0]
+}
+
+#[test]
+fn of_numbers() {
+    outputs(&NUMBERS, false);
+    outputs(&NUMBERS, true);
+}
+
+#[test]
+fn of_parameters_and_coordinates() {
+    outputs(&EXPRESSIONS, false);
+    outputs(&EXPRESSIONS, true);
+}
+
+#[test]
+fn on_a_circle_and_on_a_loop() {
+    // |s| of a circle, and the distance of a slider that a rod keeps apart: both change sign.
+    let of = generated(
+        "system Crank {
+            coord q: S1, x;
+            param r = 0.4, l = 1;
+            constraint (x - r * q.c)^2 + r^2 * q.s^2 = l^2;
+            velocity w = rate(q);
+            particle mass 1 at [x, 0, 0];
+            kinetic w^2 / 2;
+            start x = 1.4;
+            output a = sqrt(1 - q.c^2); output b = q.s;
+            output d = sqrt(l^2 - r^2 * q.s^2); output e = x - r * q.c;
+        }",
+    );
+    for angle in [-2.5_f64, -0.7, 0.4, 1.9] {
+        let (s, c) = angle.sin_cos();
+        for side in [-1.0, 1.0] {
+            let rod = (1.0 - 0.16 * s * s).sqrt();
+            let x = [c, s, 0.4 * c + side * rod];
+            let expected = [("a", s.abs()), ("b", s), ("d", rod), ("e", side * rod)];
+            for (name, expected) in expected {
+                let found = output(&of, name, &x);
+                assert!((found - expected).abs() <= CLOSE, "{found} for {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn many_roots_and_roots_of_both_signs_have_points() {
+    let outputs: String = (1..16)
+        .map(|k| format!("output o{k} = sqrt(x + {k} * y) + sqrt(a - {k} * b);\n"))
+        .collect();
+    let of = generated(&format!(
+        "system Many {{
+            coord x, y; velocity v, w; rate x = v; rate y = w;
+            param a = 40, b = 2;
+            particle mass 1 at [x, y, 0];
+            output e = sqrt(a - b); output h = sqrt(b - a + 2 * a);
+            output g = sqrt(x - y) * sqrt(y - x + 10);
+            {outputs}
+        }}"
+    ));
+    let x = [3.0, 1.0];
+    assert!((output(&of, "g", &x) - 4.0).abs() < CLOSE);
+    for k in 1..16 {
+        let found = output(&of, &format!("o{k}"), &x);
+        let k = f64::from(k);
+        let expected = (3.0 + k).sqrt() + (40.0 - 2.0 * k).sqrt();
+        assert!((found - expected).abs() < CLOSE * expected);
+    }
+}
