@@ -6,6 +6,8 @@
 //! An edge is a node with a sign, so negation costs nothing and a − b, b − a are one node.
 //! Children stand before parents.
 
+mod merge;
+
 use super::fp::Fp;
 use super::lane::Lane;
 pub use super::node::{Edge, Function, Node, NodeId, Symbol};
@@ -407,88 +409,10 @@ impl Graph {
             .filter(|&id| seen[id as usize])
             .collect()
     }
-
-    /// A node with the value of another one, or the small rational that it is; an expression that is
-    /// constant at run time does not give way to one that is not, nor any to what real samples say
-    /// is another number.
-    fn known(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Option<Edge> {
-        let known = match self.lookup(value) {
-            Some(edge) => {
-                let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
-                (!improves).then_some(edge)?
-            }
-            None => {
-                if value.iter().any(|v| *v != value[0]) {
-                    return None;
-                }
-                let (n, d) = value[0].to_small_rational(29)?;
-                is_plain(n, d).then(|| self.ratio(n, d))?
-            }
-        };
-        (!self
-            .shadow
-            .disputes(&self.nodes, &self.constants, node, known))
-        .then_some(known)
-    }
-
-    /// A node that later expressions do not merge with.
-    pub(super) fn push_unmerged(&mut self, node: Node) -> Edge {
-        let id = self.nodes.len() as NodeId;
-        let class = node
-            .children()
-            .fold(0, |class, child| class | self.class(child.node()));
-        self.nodes.push(node);
-        self.shadow.follow(node);
-        self.values.push([Fp::ZERO; LANES]);
-        self.classes.push(class);
-        Edge::of(id)
-    }
-
-    pub(super) fn lookup(&self, value: [Fp; LANES]) -> Option<Edge> {
-        let (key, negative) = canonical(value);
-        self.by_value.get(&key).map(|edge| edge.signed(negative))
-    }
-
-    fn push(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Edge {
-        let id = self.nodes.len() as NodeId;
-        self.nodes.push(node);
-        self.shadow.follow(node);
-        self.values.push(value);
-        self.classes.push(class);
-        let (key, negative) = canonical(value);
-        let edge = Edge::of(id).signed(negative);
-        let known = *self.by_value.entry(key).or_insert(edge);
-        if !self.is_free(known.node()) && self.is_free(id) {
-            self.by_value.insert(key, edge);
-        }
-        Edge::of(id)
-    }
-}
-
-/// Whether n/d is a fraction that descriptions lead to: small, or with a decimal-like denominator.
-/// A number that is irrational, and so the same at both points, is one of these by chance only once
-/// in a million.
-fn is_plain(n: i64, d: i64) -> bool {
-    let mut rest = d;
-    for factor in [2, 3, 5, 7] {
-        while rest % factor == 0 {
-            rest /= factor;
-        }
-    }
-    rest == 1 || (n.abs() < 1 << 16 && d < 1 << 16)
 }
 
 fn ordered(a: Edge, b: Edge) -> (Edge, Edge) {
     if a <= b { (a, b) } else { (b, a) }
-}
-
-/// The representative of {v, −v}, and whether v is its negative.
-fn canonical(value: [Fp; LANES]) -> ([Fp; LANES], bool) {
-    let negative = value
-        .iter()
-        .find(|v| !v.is_zero())
-        .is_some_and(|v| v.is_negative());
-    (if negative { value.map(|v| -v) } else { value }, negative)
 }
 
 fn lanewise(a: [Fp; LANES], b: [Fp; LANES], f: impl Fn(Fp, Fp) -> Fp) -> [Fp; LANES] {

@@ -72,15 +72,50 @@ pub fn substitute(graph: &mut Graph, edges: &[Edge], set: &[(usize, Edge)]) -> V
 /// variety, such as φ itself, whose value on X would make it the number 0.
 pub fn copy(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
     carry(from, into, edges, same_symbol, |into, node, a, b| {
-        let node = match node {
-            Node::Add(..) => Node::Add(a, b),
-            Node::Mul(..) => Node::Mul(a.abs(), b.abs()),
-            Node::Div(..) => Node::Div(a.abs(), b.abs()),
-            Node::Apply(function, _) => Node::Apply(function, a),
-            Node::Atan2(..) => Node::Atan2(a, b),
-            Node::Constant(_) | Node::Symbol(_) => return a,
-        };
-        into.push_unmerged(node)
+        let negative = a.is_negative() ^ b.is_negative();
+        match node {
+            Node::Add(..) => into.push_unmerged(Node::Add(a, b)),
+            Node::Mul(..) => {
+                let product = Node::Mul(a.abs(), b.abs());
+                into.push_unmerged(product).signed(negative)
+            }
+            Node::Div(..) => {
+                let quotient = Node::Div(a.abs(), b.abs());
+                into.push_unmerged(quotient).signed(negative)
+            }
+            Node::Apply(function, _) => into.push_unmerged(Node::Apply(function, a)),
+            Node::Atan2(..) => into.push_unmerged(Node::Atan2(a, b)),
+            Node::Constant(_) | Node::Symbol(_) => a,
+        }
+    })
+}
+
+/// Builds the expressions again as they are computed there, whatever in the other graph has the same
+/// values: what another function computes at length is not taken over. What is constant at run time
+/// merges, as it is computed once for all functions.
+pub fn graft(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
+    carry(from, into, edges, same_symbol, |into, node, a, b| {
+        if into.is_free(a.node()) && into.is_free(b.node()) {
+            return merged(into, node, a, b);
+        }
+        let negative = a.is_negative() ^ b.is_negative();
+        match node {
+            // The positive operand first, as sums are built.
+            Node::Add(..) if a.is_negative() && b.is_negative() => {
+                -into.push_apart(Node::Add(-a, -b))
+            }
+            Node::Add(..) if a.is_negative() => into.push_apart(Node::Add(b, a)),
+            Node::Add(..) => into.push_apart(Node::Add(a, b)),
+            Node::Mul(..) => {
+                let product = Node::Mul(a.abs(), b.abs());
+                into.push_apart(product).signed(negative)
+            }
+            Node::Div(..) => {
+                let quotient = Node::Div(a.abs(), b.abs());
+                into.push_apart(quotient).signed(negative)
+            }
+            other => merged(into, other, a, b),
+        }
     })
 }
 

@@ -35,6 +35,7 @@ pub mod adviser;
 pub mod assemble;
 pub mod calculus;
 pub mod check;
+pub mod choice;
 pub mod commutation;
 pub mod complement;
 pub mod connection;

@@ -1,10 +1,11 @@
 //! Of each function the cheapest of several computations.
 
+use super::LARGE;
 use super::parts::Parts;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
+use crate::derive::choice::Choice;
 use crate::model::Model;
-use crate::program::count::count;
 
 /// A computation of M and forces, in a graph of its own.
 pub struct Computation {
@@ -14,44 +15,65 @@ pub struct Computation {
     pub parts: Parts,
 }
 
-/// Of each function the cheapest of these computations, counted where nothing else has been built; those of
-/// M ξ and M ξ̇ + Γ ξ ξ + ∂V may also be put together from the others. Loads are those of the first.
-pub fn cheapest(mut computations: Vec<Computation>, into: &mut Graph, model: &Model) -> Parts {
-    for Computation { graph, parts } in &mut computations {
-        parts.momentum = Some(parts.momentum_of(graph, model));
-        parts.inverse_dynamics = Some(parts.whole(graph, model));
+/// What a computation says of a function, built in its graph where it has to be put together.
+type Function = fn(&Parts, &mut Graph, &Model) -> Vec<Edge>;
+
+/// Of each function the cheapest of these computations, each as it was traced and as what it becomes
+/// where ξ̇ is computed already; those of M ξ and M ξ̇ + Γ ξ ξ + ∂V may also be put together from the
+/// cheapest others. Loads are those of the first; `None` without any.
+pub fn cheapest(computations: &[Computation], into: &mut Graph, model: &Model) -> Option<Parts> {
+    let first = computations.first()?;
+    let rows = |entries: Vec<Edge>| entries.chunks(model.n()).map(<[Edge]>::to_vec).collect();
+    let mass = all(computations, into, model, |parts, _, _| parts.mass.concat());
+    let inertia = all(computations, into, model, |parts, _, _| {
+        parts.inertia.clone()
+    });
+    let conservative = all(computations, into, model, |parts, _, _| {
+        parts.conservative.clone()
+    });
+    let mut graph = model.graph.clone();
+    let composed = Parts {
+        mass: rows(mass.take(&mut graph)),
+        inertia: inertia.take(&mut graph),
+        conservative: conservative.take(&mut graph),
+        ..Parts::default()
+    };
+    let products = composed.momentum_of(&mut graph, model);
+    let sums = composed.whole(&mut graph, model);
+    let mut momentum = all(computations, into, model, |parts, graph, model| {
+        parts.momentum_of(graph, model)
+    });
+    momentum.offer(&graph, products);
+    let mut whole = all(computations, into, model, |parts, graph, model| {
+        parts.whole(graph, model)
+    });
+    whole.offer(&graph, sums);
+    Some(Parts {
+        mass: rows(mass.take(into)),
+        inertia: inertia.take(into),
+        conservative: conservative.take(into),
+        momentum: Some(momentum.take(into)),
+        inverse_dynamics: Some(whole.take(into)),
+        ..first.parts.rebuilt(&first.graph, into)
+    })
+}
+
+fn all<'a>(
+    computations: &'a [Computation],
+    around: &Graph,
+    model: &Model,
+    of: Function,
+) -> Choice<'a> {
+    let mut choice = Choice::new();
+    for Computation { graph, parts } in computations {
+        let mut own = graph.clone();
+        let roots = of(parts, &mut own, model);
+        if around.len() < LARGE {
+            let mut merged = around.clone();
+            let roots = rebuild(&own, &mut merged, &roots);
+            choice.offer_own(merged, roots);
+        }
+        choice.offer_own(own, roots);
     }
-    let mut pick = |of: fn(&Parts) -> Vec<Edge>| -> Vec<Edge> {
-        let roots: Vec<Vec<Edge>> = computations.iter().map(|c| of(&c.parts)).collect();
-        let cost = |i: &usize| count(&computations[*i].graph, &roots[*i]).weight();
-        let best = (0..roots.len()).min_by_key(cost).unwrap_or(0);
-        rebuild(&computations[best].graph, into, &roots[best])
-    };
-    // The short ones first: what others share with them is then computed as they do.
-    let mass = pick(|parts| parts.mass.concat());
-    let momentum = pick(|parts| parts.momentum.clone().unwrap_or_default());
-    let conservative = pick(|parts| parts.conservative.clone());
-    let inertia = pick(|parts| parts.inertia.clone());
-    let whole = pick(|parts| parts.inverse_dynamics.clone().unwrap_or_default());
-    let Computation { graph, parts } = &computations[0];
-    let mut found = Parts {
-        mass: mass
-            .chunks(inertia.len().max(1))
-            .map(<[Edge]>::to_vec)
-            .collect(),
-        inertia,
-        conservative,
-        inverse_dynamics: None,
-        momentum: None,
-        ..parts.rebuilt(graph, into)
-    };
-    let cheaper = |graph: &Graph, a: Vec<Edge>, b: Vec<Edge>| {
-        let weight = |roots: &[Edge]| count(graph, roots).weight();
-        if weight(&b) < weight(&a) { b } else { a }
-    };
-    let products = found.momentum_of(into, model);
-    let sums = found.whole(into, model);
-    found.momentum = Some(cheaper(into, momentum, products));
-    found.inverse_dynamics = Some(cheaper(into, whole, sums));
-    found
+    choice
 }

@@ -72,7 +72,7 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
         let short = || !recursion.is_long() || variants(model, false).iter().any(plain);
         if model.n() > SMALL || !short() {
             let mut best = best?;
-            let parts = cheapest(vec![recursion.parts()], &mut best.graph, model);
+            let parts = cheapest(&[recursion.parts()], &mut best.graph, model)?;
             return Some((best, parts));
         }
     }
@@ -91,10 +91,13 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
     let parts = match recursion {
         Some(recursion) => {
             let graph = traced.graph;
-            let both = vec![Computation { graph, parts }, recursion.parts()];
-            cheapest(both, &mut best.graph, model)
+            let both = [Computation { graph, parts }, recursion.parts()];
+            cheapest(&both, &mut best.graph, model)?
         }
-        None => parts.rebuilt(&traced.graph, &mut best.graph),
+        None => {
+            let graph = traced.graph;
+            cheapest(&[Computation { graph, parts }], &mut best.graph, model)?
+        }
     };
     Some((best, parts))
 }

@@ -5,7 +5,7 @@
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3, add3, apply3, cross, scale3, zero3};
-use crate::algebra::transplant::rebuild;
+use crate::algebra::transplant::graft;
 use crate::derive::calculus::{Calculus, into_frame};
 use crate::derive::commutation::gamma;
 use crate::derive::connection::quadratic;
@@ -42,7 +42,7 @@ impl Parts {
 
     /// The same in another graph.
     pub fn rebuilt(&self, from: &Graph, into: &mut Graph) -> Parts {
-        let mut vector = |v: &[Edge]| rebuild(from, into, v);
+        let mut vector = |v: &[Edge]| graft(from, into, v);
         Parts {
             mass: self.mass.iter().map(|row| vector(row)).collect(),
             groups: self.groups.iter().map(|group| vector(group)).collect(),

@@ -1,0 +1,105 @@
+//! Which node an expression gets: one that is there already, or a new one.
+
+use super::{Edge, Graph, LANES, Node, NodeId, lanewise};
+use crate::algebra::fp::Fp;
+
+impl Graph {
+    /// A node with the value of another one, or the small rational that it is; an expression that is
+    /// constant at run time does not give way to one that is not, nor any to what real samples say
+    /// is another number.
+    pub(super) fn known(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Option<Edge> {
+        let known = match self.lookup(value) {
+            Some(edge) => {
+                let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
+                (!improves).then_some(edge)?
+            }
+            None => {
+                if value.iter().any(|v| *v != value[0]) {
+                    return None;
+                }
+                let (n, d) = value[0].to_small_rational(29)?;
+                is_plain(n, d).then(|| self.ratio(n, d))?
+            }
+        };
+        (!self
+            .shadow
+            .disputes(&self.nodes, &self.constants, node, known))
+        .then_some(known)
+    }
+
+    /// A node that later expressions do not merge with.
+    pub(in crate::algebra) fn push_unmerged(&mut self, node: Node) -> Edge {
+        let id = self.nodes.len() as NodeId;
+        let class = node
+            .children()
+            .fold(0, |class, child| class | self.class(child.node()));
+        self.nodes.push(node);
+        self.shadow.follow(node);
+        self.values.push([Fp::ZERO; LANES]);
+        self.classes.push(class);
+        Edge::of(id)
+    }
+
+    /// A sum, product or quotient that does not merge with what has its value but is computed in
+    /// another way.
+    pub(in crate::algebra) fn push_apart(&mut self, node: Node) -> Edge {
+        let value = |edge: Edge| self.value(edge);
+        let value = match node {
+            Node::Add(a, b) => lanewise(value(a), value(b), |x, y| x + y),
+            Node::Mul(a, b) => lanewise(value(a), value(b), |x, y| x * y),
+            Node::Div(a, b) => lanewise(value(a), value(b), |x, y| x * y.inv().unwrap_or(y)),
+            _ => return self.push_unmerged(node),
+        };
+        match self.lookup(value) {
+            Some(edge) if self.node(edge.node()) == node => edge,
+            _ => {
+                let class = node
+                    .children()
+                    .fold(0, |c, child| c | self.class(child.node()));
+                self.push(node, value, class)
+            }
+        }
+    }
+
+    pub(in crate::algebra) fn lookup(&self, value: [Fp; LANES]) -> Option<Edge> {
+        let (key, negative) = canonical(value);
+        self.by_value.get(&key).map(|edge| edge.signed(negative))
+    }
+
+    pub(super) fn push(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Edge {
+        let id = self.nodes.len() as NodeId;
+        self.nodes.push(node);
+        self.shadow.follow(node);
+        self.values.push(value);
+        self.classes.push(class);
+        let (key, negative) = canonical(value);
+        let edge = Edge::of(id).signed(negative);
+        let known = *self.by_value.entry(key).or_insert(edge);
+        if !self.is_free(known.node()) && self.is_free(id) {
+            self.by_value.insert(key, edge);
+        }
+        Edge::of(id)
+    }
+}
+
+/// Whether n/d is a fraction that descriptions lead to: small, or with a decimal-like denominator.
+/// A number that is irrational, and so the same at both points, is one of these by chance only once
+/// in a million.
+fn is_plain(n: i64, d: i64) -> bool {
+    let mut rest = d;
+    for factor in [2, 3, 5, 7] {
+        while rest % factor == 0 {
+            rest /= factor;
+        }
+    }
+    rest == 1 || (n.abs() < 1 << 16 && d < 1 << 16)
+}
+
+/// The representative of {v, −v}, and whether v is its negative.
+fn canonical(value: [Fp; LANES]) -> ([Fp; LANES], bool) {
+    let negative = value
+        .iter()
+        .find(|v| !v.is_zero())
+        .is_some_and(|v| v.is_negative());
+    (if negative { value.map(|v| -v) } else { value }, negative)
+}

@@ -1,0 +1,54 @@
+//! Of several computations of the same values the cheapest.
+
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::transplant::graft;
+use crate::program::count::count;
+use std::borrow::Cow;
+
+/// The cheapest computation so far, in the graph that it was built in: what other functions compute
+/// at length does not lengthen it.
+#[derive(Default)]
+pub struct Choice<'a> {
+    best: Option<Computed<'a>>,
+}
+
+struct Computed<'a> {
+    weight: usize,
+    graph: Cow<'a, Graph>,
+    roots: Vec<Edge>,
+}
+
+impl<'a> Choice<'a> {
+    /// No computation yet.
+    pub fn new() -> Self {
+        Choice::default()
+    }
+
+    /// One more computation, in a graph that others share.
+    pub fn offer(&mut self, graph: &'a Graph, roots: Vec<Edge>) {
+        let weight = count(graph, &roots).weight();
+        self.keep(weight, Cow::Borrowed(graph), roots);
+    }
+
+    /// One more computation, in a graph of its own.
+    pub fn offer_own(&mut self, graph: Graph, roots: Vec<Edge>) {
+        let weight = count(&graph, &roots).weight();
+        self.keep(weight, Cow::Owned(graph), roots);
+    }
+
+    fn keep(&mut self, weight: usize, graph: Cow<'a, Graph>, roots: Vec<Edge>) {
+        if self.best.as_ref().is_none_or(|best| weight < best.weight) {
+            self.best = Some(Computed {
+                weight,
+                graph,
+                roots,
+            });
+        }
+    }
+
+    /// The cheapest, in another graph as it stands; nothing where nothing was offered.
+    pub fn take(&self, into: &mut Graph) -> Vec<Edge> {
+        let best = self.best.as_ref();
+        best.map_or_else(Vec::new, |best| graft(&best.graph, into, &best.roots))
+    }
+}
