@@ -1,8 +1,10 @@
 //! The program of a model: every function that is emitted, validated before it leaves.
 
+use super::accel::cheapest::Computation;
 use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
+use super::choice::Choice;
 use super::multipliers::multipliers;
 use super::reduction::Reduction;
 use super::structure::{self, Found};
@@ -33,7 +35,7 @@ pub fn assemble(
         let mass = inertia::mass_matrix(&mut reference, &mut calculus);
         inertia::positive_definite(model, &reference.graph, &mass)?;
     }
-    let Some((chosen, parts)) = accel(model) else {
+    let Some((chosen, computed)) = accel(model) else {
         return Err(Diagnostic::new(
             model.span,
             "the mass matrix is singular for every configuration",
@@ -41,10 +43,10 @@ pub fn assemble(
         .help("every velocity needs inertia: check masses and inertias"));
     };
     if model.n() > MOST_LITERAL {
-        inertia::positive_definite(model, &chosen.graph, &parts.mass)?;
+        inertia::positive_definite(model, &computed.graph, &computed.parts.mass)?;
     }
     let potential = energy::potential(&mut reference);
-    let mut builder = Builder::new(model, chosen, parts);
+    let mut builder = Builder::new(model, chosen, computed);
     builder.kinematics();
     builder.dynamics(&reference.graph, potential);
     builder.momentum();
@@ -59,7 +61,8 @@ pub fn assemble(
         builder.constraint_force(full, reduction);
         builder.projections();
     }
-    let found = structure::analyse(full, model, &builder.graph, &builder.parts);
+    let Computation { graph, parts } = builder.shared();
+    let found = structure::analyse(full, model, &graph, &parts);
     let structure = builder.splitting(found)?;
     let program = builder.finish(structure);
     match reduction {
@@ -89,8 +92,8 @@ pub(super) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(model: &'a Model, chosen: Acceleration, parts: Parts) -> Self {
-        let mut graph = chosen.graph.clone();
+    fn new(model: &'a Model, chosen: Acceleration, computed: Computation) -> Self {
+        let Computation { mut graph, parts } = computed;
         let kinematic_guards = rebuild(&model.graph, &mut graph, &model.completion.pivots);
         Builder {
             model,
@@ -101,6 +104,13 @@ impl<'a> Builder<'a> {
             kinematic_guards,
             split_guards: Vec::new(),
         }
+    }
+
+    /// M and forces in a graph where nothing but ξ̇ is computed, sharing what they can with it.
+    pub(super) fn shared(&self) -> Computation {
+        let mut graph = self.chosen.graph.clone();
+        let parts = self.parts.shared(&self.graph, &mut graph);
+        Computation { graph, parts }
     }
 
     pub(super) fn push(
@@ -256,9 +266,19 @@ impl<'a> Builder<'a> {
         if self.model.overconstrained {
             return;
         }
-        let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut self.graph) else {
-            return;
-        };
+        let mut choice = Choice::new();
+        let contexts = [self.shared().graph, self.graph.clone()];
+        for mut graph in contexts.into_iter().chain([self.chosen.graph.clone()]) {
+            let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut graph) else {
+                return;
+            };
+            let pivots = self.chosen.pivots.iter().copied();
+            let pivots = pivots.filter(|pivot| !graph.is_free(pivot.node()));
+            let roots = outputs.into_iter().chain(pivots).collect();
+            choice.offer_own(graph, roots);
+        }
+        let mut outputs = choice.take(&mut self.graph);
+        outputs.truncate(full.constraints.len());
         let guards = self.guards();
         self.functions.push(Function {
             name: "constraint_force".into(),

@@ -1,9 +1,12 @@
 //! Of several computations of the same values the cheapest.
 
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::transplant::graft;
+use crate::algebra::transplant::{graft, rebuild};
 use crate::program::count::count;
 use std::borrow::Cow;
+
+/// Where more is computed it is not tried what a computation becomes.
+const LARGE: usize = 3000;
 
 /// The cheapest computation so far, in the graph that it was built in: what other functions compute
 /// at length does not lengthen it.
@@ -34,6 +37,16 @@ impl<'a> Choice<'a> {
     pub fn offer_own(&mut self, graph: Graph, roots: Vec<Edge>) {
         let weight = count(&graph, &roots).weight();
         self.keep(weight, Cow::Owned(graph), roots);
+    }
+
+    /// One more computation, as it stands and as what it becomes where other things are computed already.
+    pub fn offer_both(&mut self, graph: Graph, roots: Vec<Edge>, around: &Graph) {
+        if around.len() < LARGE {
+            let mut merged = around.clone();
+            let roots = rebuild(&graph, &mut merged, &roots);
+            self.offer_own(merged, roots);
+        }
+        self.offer_own(graph, roots);
     }
 
     fn keep(&mut self, weight: usize, graph: Cow<'a, Graph>, roots: Vec<Edge>) {

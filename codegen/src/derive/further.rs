@@ -2,6 +2,7 @@
 
 use super::assemble::{Builder, shape_of};
 use super::calculus::Calculus;
+use super::choice::Choice;
 use super::invariants::quantity;
 use super::linearize::{Displacements, Motion, linearize};
 use super::momentum;
@@ -34,15 +35,27 @@ impl Builder<'_> {
             return;
         }
         let p = &self.model.momenta;
-        if let Some(solution) = momentum::velocity(&mut self.graph, &self.parts, p) {
+        let shared = self.shared();
+        let contexts = [(&self.graph, &self.parts), (&shared.graph, &shared.parts)];
+        let found = contexts.map(|(graph, parts)| momentum::velocity(graph, parts, p));
+        let cheapest = found.into_iter().flatten().min_by_key(|(cost, ..)| *cost);
+        if let Some((_, graph, solution)) = cheapest {
+            let mut choice = Choice::new();
+            choice.offer_both(
+                graph,
+                [solution.xi_dot, solution.pivots].concat(),
+                &shared.graph,
+            );
+            let mut xi = choice.take(&mut self.graph);
+            let pivots = xi.split_off(n);
             let varying = |edge: &Edge| !self.graph.is_free(edge.node());
-            let guards = solution.pivots.into_iter().filter(varying).collect();
+            let guards = pivots.into_iter().filter(varying).collect();
             self.functions.push(Function {
                 name: "velocity_of_momentum".into(),
                 docs: vec!["Velocity coordinates of a generalised momentum, ξ = M⁻¹ p.".into()],
                 arguments: vec![Coordinates, Momenta],
                 shape: Shape::Vector(n),
-                outputs: solution.xi_dot,
+                outputs: xi,
                 guards,
                 fallible: true,
             });

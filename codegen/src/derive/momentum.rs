@@ -102,8 +102,9 @@ fn traced_rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
     .collect()
 }
 
-/// M⁻¹ p with the cheapest elimination; `None` where M is singular everywhere.
-pub fn velocity(graph: &mut Graph, parts: &Parts, p: &[Edge]) -> Option<Solution> {
+/// M⁻¹ p with the cheapest elimination, its cost and the graph where it is; `None` where M is singular
+/// everywhere.
+pub fn velocity(graph: &Graph, parts: &Parts, p: &[Edge]) -> Option<(usize, Graph, Solution)> {
     let parts = Parts {
         mass: parts.mass.clone(),
         groups: vec![p.to_vec()],
@@ -125,9 +126,5 @@ pub fn velocity(graph: &mut Graph, parts: &Parts, p: &[Edge]) -> Option<Solution
             best = Some((cost, own, solution));
         }
     }
-    let (_, own, solution) = best?;
-    Some(Solution {
-        xi_dot: rebuild(&own, graph, &solution.xi_dot),
-        pivots: rebuild(&own, graph, &solution.pivots),
-    })
+    best
 }

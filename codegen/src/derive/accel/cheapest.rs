@@ -1,13 +1,12 @@
 //! Of each function the cheapest of several computations.
 
-use super::LARGE;
 use super::parts::Parts;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::transplant::rebuild;
 use crate::derive::choice::Choice;
 use crate::model::Model;
 
 /// A computation of M and forces, in a graph of its own.
+#[derive(Clone, Debug)]
 pub struct Computation {
     /// The graph.
     pub graph: Graph,
@@ -20,15 +19,24 @@ type Function = fn(&Parts, &mut Graph, &Model) -> Vec<Edge>;
 
 /// Of each function the cheapest of these computations, each as it was traced and as what it becomes
 /// where ξ̇ is computed already; those of M ξ and M ξ̇ + Γ ξ ξ + ∂V may also be put together from the
-/// cheapest others. Loads are those of the first; `None` without any.
-pub fn cheapest(computations: &[Computation], into: &mut Graph, model: &Model) -> Option<Parts> {
+/// cheapest others. All are in a copy of the graph `chosen` where ξ̇ is. Loads are those of the first;
+/// `None` without any.
+pub fn cheapest(
+    computations: &[Computation],
+    chosen: &Graph,
+    model: &Model,
+) -> Option<Computation> {
+    let mut around = chosen.clone();
+    let into = &mut around;
     let first = computations.first()?;
     let rows = |entries: Vec<Edge>| entries.chunks(model.n()).map(<[Edge]>::to_vec).collect();
-    let mass = all(computations, into, model, |parts, _, _| parts.mass.concat());
-    let inertia = all(computations, into, model, |parts, _, _| {
+    let mass = all(computations, chosen, model, |parts, _, _| {
+        parts.mass.concat()
+    });
+    let inertia = all(computations, chosen, model, |parts, _, _| {
         parts.inertia.clone()
     });
-    let conservative = all(computations, into, model, |parts, _, _| {
+    let conservative = all(computations, chosen, model, |parts, _, _| {
         parts.conservative.clone()
     });
     let mut graph = model.graph.clone();
@@ -40,21 +48,25 @@ pub fn cheapest(computations: &[Computation], into: &mut Graph, model: &Model) -
     };
     let products = composed.momentum_of(&mut graph, model);
     let sums = composed.whole(&mut graph, model);
-    let mut momentum = all(computations, into, model, |parts, graph, model| {
+    let mut momentum = all(computations, chosen, model, |parts, graph, model| {
         parts.momentum_of(graph, model)
     });
     momentum.offer(&graph, products);
-    let mut whole = all(computations, into, model, |parts, graph, model| {
+    let mut whole = all(computations, chosen, model, |parts, graph, model| {
         parts.whole(graph, model)
     });
     whole.offer(&graph, sums);
-    Some(Parts {
+    let parts = Parts {
         mass: rows(mass.take(into)),
         inertia: inertia.take(into),
         conservative: conservative.take(into),
         momentum: Some(momentum.take(into)),
         inverse_dynamics: Some(whole.take(into)),
-        ..first.parts.rebuilt(&first.graph, into)
+        ..first.parts.grafted(&first.graph, into)
+    };
+    Some(Computation {
+        graph: around,
+        parts,
     })
 }
 
@@ -68,12 +80,7 @@ fn all<'a>(
     for Computation { graph, parts } in computations {
         let mut own = graph.clone();
         let roots = of(parts, &mut own, model);
-        if around.len() < LARGE {
-            let mut merged = around.clone();
-            let roots = rebuild(&own, &mut merged, &roots);
-            choice.offer_own(merged, roots);
-        }
-        choice.offer_own(own, roots);
+        choice.offer_both(own, roots, around);
     }
     choice
 }

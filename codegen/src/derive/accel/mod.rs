@@ -53,8 +53,8 @@ pub struct Acceleration {
     pub route: String,
 }
 
-/// The cheapest computation of ξ̇, and M and the right-hand sides as they were traced, in its graph.
-pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
+/// The cheapest computation of ξ̇; M and the forces as each is cheapest, in a graph where ξ̇ is, too.
+pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
     let mut best: Option<Acceleration> = None;
     let given = Setting::given(model);
     if !model.constraints.is_empty() {
@@ -71,9 +71,9 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
         };
         let short = || !recursion.is_long() || variants(model, false).iter().any(plain);
         if model.n() > SMALL || !short() {
-            let mut best = best?;
-            let parts = cheapest(&[recursion.parts()], &mut best.graph, model)?;
-            return Some((best, parts));
+            let best = best?;
+            let computed = cheapest(&[recursion.parts()], &best.graph, model)?;
+            return Some((best, computed));
         }
     }
     let variant = search(&given, &mut best)?;
@@ -86,24 +86,17 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Parts)> {
             keep(&mut best, candidate);
         }
     }
-    let mut best = polished(best?, model);
+    let best = polished(best?, model);
     let (traced, parts) = trace(&given, variant);
-    let parts = match recursion {
-        Some(recursion) => {
-            let graph = traced.graph;
-            let both = [Computation { graph, parts }, recursion.parts()];
-            cheapest(&both, &mut best.graph, model)?
-        }
-        None => {
-            let graph = traced.graph;
-            cheapest(&[Computation { graph, parts }], &mut best.graph, model)?
-        }
-    };
-    Some((best, parts))
+    let graph = traced.graph;
+    let mut computations = vec![Computation { graph, parts }];
+    computations.extend(recursion.map(|recursion| recursion.parts()));
+    let computed = cheapest(&computations, &best.graph, model)?;
+    Some((best, computed))
 }
 
 /// The cheapest computation with multipliers.
-fn constrained(setting: &Setting) -> Option<(Acceleration, Parts)> {
+fn constrained(setting: &Setting) -> Option<(Acceleration, Computation)> {
     let n = setting.model.n();
     let rows: Vec<Vec<Edge>> = setting
         .model
@@ -168,7 +161,9 @@ fn constrained(setting: &Setting) -> Option<(Acceleration, Parts)> {
             best = Some((acceleration, parts.clone()));
         }
     }
-    best
+    let (best, parts) = best?;
+    let graph = best.graph.clone();
+    Some((best, Computation { graph, parts }))
 }
 
 /// The chosen computation after resubstitution.

@@ -5,7 +5,7 @@
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3, add3, apply3, cross, scale3, zero3};
-use crate::algebra::transplant::graft;
+use crate::algebra::transplant::{graft, rebuild};
 use crate::derive::calculus::{Calculus, into_frame};
 use crate::derive::commutation::gamma;
 use crate::derive::connection::quadratic;
@@ -40,9 +40,17 @@ impl Parts {
             .collect()
     }
 
-    /// The same in another graph.
-    pub fn rebuilt(&self, from: &Graph, into: &mut Graph) -> Parts {
-        let mut vector = |v: &[Edge]| graft(from, into, v);
+    /// The same in another graph, as they are computed here.
+    pub fn grafted(&self, from: &Graph, into: &mut Graph) -> Parts {
+        self.carried(|edges| graft(from, into, edges))
+    }
+
+    /// The same in another graph, sharing what is computed there.
+    pub fn shared(&self, from: &Graph, into: &mut Graph) -> Parts {
+        self.carried(|edges| rebuild(from, into, edges))
+    }
+
+    fn carried(&self, mut vector: impl FnMut(&[Edge]) -> Vec<Edge>) -> Parts {
         Parts {
             mass: self.mass.iter().map(|row| vector(row)).collect(),
             groups: self.groups.iter().map(|group| vector(group)).collect(),
