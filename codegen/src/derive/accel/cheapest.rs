@@ -1,7 +1,9 @@
 //! Of each function the cheapest of several computations.
 
+use super::LARGE;
 use super::parts::Parts;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::transplant::rebuild;
 use crate::derive::choice::Choice;
 use crate::model::Model;
 
@@ -14,31 +16,45 @@ pub struct Computation {
     pub parts: Parts,
 }
 
-/// What a computation says of a function, built in its graph where it has to be put together.
-type Function = fn(&Parts, &mut Graph, &Model) -> Vec<Edge>;
+/// M, −Γ ξ ξ, −∂V, M ξ and M ξ̇ + Γ ξ ξ + ∂V.
+type Functions = [Vec<Edge>; 5];
 
 /// Of each function the cheapest of these computations, each as it was traced and as what it becomes
 /// where ξ̇ is computed already; those of M ξ and M ξ̇ + Γ ξ ξ + ∂V may also be put together from the
 /// cheapest others. All are in a copy of the graph `chosen` where ξ̇ is. Loads are those of the first;
 /// `None` without any.
 pub fn cheapest(
-    computations: &[Computation],
+    mut computations: Vec<Computation>,
     chosen: &Graph,
     model: &Model,
 ) -> Option<Computation> {
-    let mut around = chosen.clone();
-    let into = &mut around;
-    let first = computations.first()?;
+    let functions: Vec<Functions> = computations
+        .iter_mut()
+        .map(|Computation { graph, parts }| functions(parts, graph, model))
+        .collect();
+    let merged: Vec<(Graph, Functions)> = computations
+        .iter()
+        .zip(&functions)
+        .filter(|_| chosen.len() < LARGE)
+        .map(|(Computation { graph, .. }, functions)| {
+            let mut merged = chosen.clone();
+            let functions = functions.each_ref();
+            let functions = functions.map(|roots| rebuild(graph, &mut merged, roots));
+            (merged, functions)
+        })
+        .collect();
+    let mut choices: [Choice; 5] = std::array::from_fn(|_| Choice::new());
+    let traced = computations.iter().map(|computation| &computation.graph);
+    let all = traced
+        .zip(&functions)
+        .chain(merged.iter().map(|(graph, functions)| (graph, functions)));
+    for (graph, functions) in all {
+        for (choice, roots) in choices.iter_mut().zip(functions) {
+            choice.offer(graph, roots.clone());
+        }
+    }
     let rows = |entries: Vec<Edge>| entries.chunks(model.n()).map(<[Edge]>::to_vec).collect();
-    let mass = all(computations, chosen, model, |parts, _, _| {
-        parts.mass.concat()
-    });
-    let inertia = all(computations, chosen, model, |parts, _, _| {
-        parts.inertia.clone()
-    });
-    let conservative = all(computations, chosen, model, |parts, _, _| {
-        parts.conservative.clone()
-    });
+    let [mass, inertia, conservative, mut momentum, mut whole] = choices;
     let mut graph = model.graph.clone();
     let composed = Parts {
         mass: rows(mass.take(&mut graph)),
@@ -48,14 +64,11 @@ pub fn cheapest(
     };
     let products = composed.momentum_of(&mut graph, model);
     let sums = composed.whole(&mut graph, model);
-    let mut momentum = all(computations, chosen, model, |parts, graph, model| {
-        parts.momentum_of(graph, model)
-    });
     momentum.offer(&graph, products);
-    let mut whole = all(computations, chosen, model, |parts, graph, model| {
-        parts.whole(graph, model)
-    });
     whole.offer(&graph, sums);
+    let mut around = chosen.clone();
+    let into = &mut around;
+    let first = computations.first()?;
     let parts = Parts {
         mass: rows(mass.take(into)),
         inertia: inertia.take(into),
@@ -70,17 +83,12 @@ pub fn cheapest(
     })
 }
 
-fn all<'a>(
-    computations: &'a [Computation],
-    around: &Graph,
-    model: &Model,
-    of: Function,
-) -> Choice<'a> {
-    let mut choice = Choice::new();
-    for Computation { graph, parts } in computations {
-        let mut own = graph.clone();
-        let roots = of(parts, &mut own, model);
-        choice.offer_both(own, roots, around);
-    }
-    choice
+fn functions(parts: &Parts, graph: &mut Graph, model: &Model) -> Functions {
+    [
+        parts.mass.concat(),
+        parts.inertia.clone(),
+        parts.conservative.clone(),
+        parts.momentum_of(graph, model),
+        parts.whole(graph, model),
+    ]
 }

@@ -72,7 +72,7 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
         let short = || !recursion.is_long() || variants(model, false).iter().any(plain);
         if model.n() > SMALL || !short() {
             let best = best?;
-            let computed = cheapest(&[recursion.parts()], &best.graph, model)?;
+            let computed = cheapest(vec![recursion.parts()], &best.graph, model)?;
             return Some((best, computed));
         }
     }
@@ -91,7 +91,7 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
     let graph = traced.graph;
     let mut computations = vec![Computation { graph, parts }];
     computations.extend(recursion.map(|recursion| recursion.parts()));
-    let computed = cheapest(&computations, &best.graph, model)?;
+    let computed = cheapest(computations, &best.graph, model)?;
     Some((best, computed))
 }
 
