@@ -1,5 +1,6 @@
 //! Functions beside the equations of motion: momenta, the motion nearby, invariants.
 
+use super::accel::cheapest::Computation;
 use super::assemble::{Builder, shape_of};
 use super::calculus::Calculus;
 use super::choice::Choice;
@@ -8,7 +9,7 @@ use super::linearize::{Displacements, Motion, linearize};
 use super::momentum;
 use super::reduction::Reduction;
 use crate::algebra::graph::Edge;
-use crate::algebra::transplant::rebuild;
+use crate::algebra::transplant::{graft, rebuild};
 use crate::model::Model;
 use crate::model::invariants::Quantity;
 use crate::program::{Argument, Function, Shape};
@@ -64,21 +65,22 @@ impl Builder<'_> {
 
     /// [A B] of the motion nearby.
     pub(super) fn linearize(&mut self, full: &Model, reduction: Option<&Reduction>) {
-        let Some(nearby) = Displacements::new(full, reduction, &mut self.graph) else {
+        let Computation { mut graph, parts } = self.shared();
+        let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
             return;
         };
-        let right = self.parts.right(&mut self.graph);
+        let right = parts.right(&mut graph);
         let motion = Motion {
-            graph: &self.graph,
+            graph: &graph,
             xi_dot: &self.chosen.xi_dot,
             nearby,
             // With multipliers M F is not the right-hand side.
-            implicit: (self.model.constraints.is_empty()).then_some((&self.parts.mass, &right)),
+            implicit: (self.model.constraints.is_empty()).then_some((&parts.mass, &right)),
         };
         let linear = linearize(self.model, &motion);
         let rows = linear.rows.len();
         let columns = linear.rows.first().map_or(0, Vec::len);
-        let outputs = rebuild(&linear.graph, &mut self.graph, &linear.rows.concat());
+        let outputs = graft(&linear.graph, &mut self.graph, &linear.rows.concat());
         let varying = |edge: &Edge| !self.graph.is_free(edge.node());
         self.functions.push(Function {
             name: "linearize".into(),
