@@ -23,7 +23,14 @@ impl Builder<'_> {
         }
         let n = self.model.n();
         if self.model.wants("momentum_rate") {
-            let rate = momentum::rate(self.model, &mut self.graph, &self.parts);
+            let Computation { mut graph, parts } = self.shared();
+            let mut choice = Choice::new();
+            let rate = momentum::rate(self.model, &mut graph, &parts);
+            choice.offer_own(graph, rate);
+            let mut graph = self.graph.clone();
+            let rate = momentum::rate(self.model, &mut graph, &self.parts);
+            choice.offer_own(graph, rate);
+            let rate = choice.take(&mut self.graph);
             self.push(
                 "momentum_rate",
                 &["Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a))."],

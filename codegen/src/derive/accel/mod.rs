@@ -27,7 +27,7 @@ use solve::{Plan, solve};
 const SMALL: usize = 8;
 
 /// Trees whose M and Γ ξ ξ take fewer operations as they are traced get all routes, however long they are.
-const FEW: usize = 400;
+const FEW: usize = 1000;
 
 /// Graphs with more nodes get two orders of elimination and no further plans.
 const LARGE: usize = 3000;
@@ -87,9 +87,18 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
         }
     }
     let best = polished(best?, model);
-    let (traced, parts) = trace(&given, variant);
-    let graph = traced.graph;
-    let mut computations = vec![Computation { graph, parts }];
+    let mut traced = vec![variant];
+    if model.n() <= SMALL {
+        let others = variants(model, true).into_iter();
+        traced.extend(others.filter(|other| *other != variant));
+    }
+    let mut computations: Vec<Computation> = traced
+        .into_iter()
+        .map(|variant| {
+            let (Model { graph, .. }, parts) = trace(&given, variant);
+            Computation { graph, parts }
+        })
+        .collect();
     computations.extend(recursion.map(|recursion| recursion.parts()));
     let computed = cheapest(computations, &best.graph, model)?;
     Some((best, computed))
