@@ -28,8 +28,8 @@ impl Wrench {
     /// k times the wrench.
     pub fn scaled(&self, graph: &mut Graph, k: Edge) -> Self {
         Wrench {
-            force: scale3(graph, k, self.force),
             torque: scale3(graph, k, self.torque),
+            force: scale3(graph, k, self.force),
         }
     }
 }
