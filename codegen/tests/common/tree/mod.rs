@@ -1,11 +1,13 @@
 //! Random trees of bodies on joints: their text, and their dynamics by Newton and Euler in numbers.
 #![allow(dead_code, unused_imports)] // each test file uses a part
 
+mod humanoid;
 mod newton;
 mod spatial;
 mod text;
 
 use super::Random;
+pub use humanoid::humanoid;
 pub use newton::Tree;
 pub use text::text;
 
