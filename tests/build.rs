@@ -1,12 +1,15 @@
-//! The build script's door: every model of `models/` becomes a module of this crate.
+//! The build script's door: every model of `models/` and `models/multibody/` becomes a module of this crate.
 
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=models");
-    let mut paths: Vec<PathBuf> = std::fs::read_dir("models")?
-        .map(|entry| entry.map(|e| e.path()))
-        .collect::<Result<_, _>>()?;
+    let mut paths: Vec<PathBuf> = Vec::new();
+    for folder in ["models", "models/multibody"] {
+        for entry in std::fs::read_dir(folder)? {
+            paths.push(entry?.path());
+        }
+    }
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "eom"));
     paths.sort();
     let mut builder = hamel_codegen::Builder::new();
@@ -18,7 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .to_string_lossy()
             .into_owned();
         modules.push_str(&format!(
-            "/// Generated from `models/{stem}.eom`.\npub mod {stem} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{stem}.rs\"));\n}}\n"
+            "/// Generated from `{}`.\npub mod {stem} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{stem}.rs\"));\n}}\n",
+            path.display()
         ));
         builder = builder.file(path);
     }

@@ -224,6 +224,7 @@ fn quadrotor_with_load_obeys_newton_and_euler() {
 #[test]
 fn fixtures_have_their_sizes() {
     for (name, size) in [
+        ("cart_rods", (4, 4)),
         ("furuta", (2, 2)),
         ("double_spherical_pendulum", (18, 6)),
         ("quadrotor_load", (21, 9)),

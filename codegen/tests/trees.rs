@@ -10,7 +10,7 @@ use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::derive::levi_civita::{contracted, levi_civita};
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::Generated;
-use tree::{Kind, Link, Tree, text};
+use tree::{Kind, Link, Tree, humanoid, text};
 
 /// Roundings of a few thousand operations, forces of the order of 100.
 const CLOSE: f64 = 1e-10;
@@ -221,34 +221,8 @@ fn a_long_chain() {
     obeys_newton(&links, 0x32, LONG);
 }
 
-/// A floating trunk with a waist, two legs, two arms and a head: 38 freedoms.
 #[test]
 fn a_humanoid() {
-    use Kind::{Continuous, Free, Quaternion, Revolute, Spherical, Universal};
-    let limbs: [(usize, &[Kind]); 5] = [
-        (0, &[Universal, Revolute, Revolute, Universal]),
-        (0, &[Universal, Revolute, Revolute, Universal]),
-        (1, &[Quaternion, Revolute, Continuous, Revolute, Revolute]),
-        (1, &[Quaternion, Revolute, Continuous, Revolute, Revolute]),
-        (1, &[Revolute, Revolute, Revolute]),
-    ];
-    let mut random = Random(0x38);
-    let mut links: Vec<Link> = Vec::new();
-    let mut add = |kind: Kind, parent: Option<usize>| {
-        // Nothing follows here: 38 freedoms.
-        let mut link = Link::on(&mut random, &[], kind, parent);
-        link.follows = None;
-        links.push(link);
-        links.len() - 1
-    };
-    let trunk = add(Free, None);
-    add(Spherical, Some(trunk));
-    for (root, joints) in limbs {
-        let mut parent = root;
-        for &joint in joints {
-            parent = add(joint, Some(parent));
-        }
-    }
-    let system = obeys_newton(&links, 0x38, LONG);
+    let system = obeys_newton(&humanoid(), 0x38, LONG);
     assert_eq!(system.program.n, 38);
 }

@@ -2,10 +2,11 @@
 
 use hamel_codegen::builder::source;
 use hamel_codegen::urdf::{Options, import};
-use std::path::{Path, PathBuf};
 
 #[path = "../src/chain.rs"]
 mod chain;
+#[path = "../../cli/tests/common/installed.rs"]
+mod installed;
 
 fn main() {
     divan::main();
@@ -36,22 +37,11 @@ const ROBOTS: [(&str, &str, bool); 3] = [
     ),
 ];
 
-/// The folder with the robots, which `tests/robots/install.sh` installs below the target folder.
-fn installed() -> Option<PathBuf> {
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent()?;
-    let libraries = std::fs::read_dir(target.join("robots/lib")).ok()?;
-    let folders = libraries.filter_map(|entry| {
-        let packages = entry.ok()?.path().join("site-packages");
-        Some(packages.join("cmeel.prefix/share/example-robot-data/robots"))
-    });
-    folders.into_iter().find(|folder| folder.is_dir())
-}
-
 /// Robots from their URDF to formatted code of all functions; nothing where they are not installed.
 #[divan::bench(args = ROBOTS.map(|(name, ..)| name), sample_count = 3, sample_size = 1)]
 fn robots(bencher: divan::Bencher, robot: &str) {
     let found = ROBOTS.iter().find(|(name, ..)| *name == robot);
-    let (Some(folder), Some((_, urdf, floating))) = (installed(), found) else {
+    let (Some(folder), Some((_, urdf, floating))) = (installed::installed(), found) else {
         return;
     };
     let text = std::fs::read_to_string(folder.join(urdf)).expect("the wheel has it");

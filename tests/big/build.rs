@@ -1,15 +1,29 @@
-//! Writes the description of a chain of 16 links and generates its code, derivatives included.
+//! Writes descriptions of a chain of 16 links and of a tree of the size of a humanoid robot, and generates
+//! their code: that of the chain with its derivatives.
 
+use common::Random;
 use std::path::PathBuf;
 
 #[path = "../src/chain.rs"]
 mod chain;
+#[path = "../../codegen/tests/common/mod.rs"]
+mod common;
+#[path = "../../codegen/tests/common/tree/mod.rs"]
+mod tree;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=../src/chain.rs");
-    let path = PathBuf::from(std::env::var("OUT_DIR")?).join("chain.eom");
-    let text = chain::chain(16).replace("accel, rate;", "accel, rate, linearize;");
-    std::fs::write(&path, text)?;
-    hamel_codegen::Builder::new().file(path).generate()?;
+    println!("cargo:rerun-if-changed=../../codegen/tests/common");
+    let folder = PathBuf::from(std::env::var("OUT_DIR")?);
+    let chain = chain::chain(16).replace("accel, rate;", "accel, rate, linearize;");
+    let humanoid = tree::text(&tree::humanoid(), "accel, inverse_dynamics");
+    let humanoid = humanoid.replacen("system Tree", "/// 38 freedoms.\npub system Humanoid", 1);
+    let mut builder = hamel_codegen::Builder::new();
+    for (name, text) in [("chain", chain), ("humanoid", humanoid)] {
+        let path = folder.join(name).with_extension("eom");
+        std::fs::write(&path, text)?;
+        builder = builder.file(path);
+    }
+    builder.generate()?;
     Ok(())
 }

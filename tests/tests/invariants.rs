@@ -6,10 +6,14 @@ use hamel::{State, System, integrate};
 use hamel_codegen::builder::source;
 use hamel_codegen::derive::check::{Identity, Verdict, check};
 use hamel_codegen::generate::from_text;
+use hamel_tests::cart_rods::CartRods;
+use hamel_tests::double_spherical_pendulum::DoubleSphericalPendulum;
 use hamel_tests::euler_top_quaternion::EulerTop;
 use hamel_tests::free_body_momenta::FreeBodyMomenta;
 use hamel_tests::kovalevskaya_top::KovalevskayaTop;
 use hamel_tests::lagrange_top::LagrangeTop;
+use hamel_tests::quadrotor_load::QuadrotorLoad;
+use hamel_tests::satellite_arm::SatelliteArm;
 use hamel_tests::spherical_pendulum::SphericalPendulum;
 use std::path::Path;
 
@@ -111,10 +115,21 @@ fn drift<Sys>(system: &Sys, watched: impl Fn(&Sys, &Sys::Coordinates, &Sys::Velo
 where
     Sys: System<Scalar = f64>,
 {
+    driven(system, system.zero_inputs(), watched);
+}
+
+/// The same under inputs that stay as they are.
+fn driven<Sys>(
+    system: &Sys,
+    inputs: Sys::Inputs,
+    watched: impl Fn(&Sys, &Sys::Coordinates, &Sys::Velocities) -> Vec<f64>,
+) where
+    Sys: System<Scalar = f64>,
+{
     let mut state = State::start(system);
     let first = watched(system, &state.x, &state.xi);
     let mut worst = vec![0.0_f64; first.len()];
-    let none = |_, _: &_, _: &_| system.zero_inputs();
+    let inputs = |_, _: &_, _: &_| inputs.clone();
     let observe = |state: &State<Sys>| {
         for (worst, (now, first)) in worst
             .iter_mut()
@@ -123,7 +138,16 @@ where
             *worst = worst.max((now - first).abs() / first.abs().max(1.0));
         }
     };
-    integrate(system, General::Rkmk4, &mut state, 5e-4, 2.0, none, observe).expect("a run");
+    integrate(
+        system,
+        General::Rkmk4,
+        &mut state,
+        5e-4,
+        2.0,
+        inputs,
+        observe,
+    )
+    .expect("a run");
     for worst in worst {
         assert!(worst < DRIFT, "{worst:e}");
     }
@@ -164,5 +188,24 @@ fn generated_functions_watch_the_invariants() {
         let mut watched = s.angular_momentum(x, xi).to_vec();
         watched.extend([s.energy(x, xi), s.sphere(x, xi)]);
         watched
+    });
+    drift(&CartRods::<f64>::default(), |s, x, xi| {
+        vec![s.energy(x, xi), s.p(x, xi)]
+    });
+    drift(&DoubleSphericalPendulum::<f64>::default(), |s, x, xi| {
+        vec![s.energy(x, xi)]
+    });
+    drift(&QuadrotorLoad::<f64>::default(), |s, x, xi| {
+        vec![s.energy(x, xi)]
+    });
+}
+
+/// What acts between links changes neither momentum nor angular momentum of all.
+#[test]
+fn an_arm_at_work_keeps_the_momenta_of_its_satellite() {
+    let torques = [2.0, -1.5, 1.0, 0.8, -0.3, 0.05, 0.01];
+    driven(&SatelliteArm::<f64>::default(), torques, |s, x, xi| {
+        let momenta = [s.linear_momentum(x, xi), s.angular_momentum(x, xi)];
+        momenta.concat()
     });
 }

@@ -18,8 +18,11 @@ const DIFFERENCE: f64 = 1e-7;
 
 fn models() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
-    let entries = std::fs::read_dir(folder).expect("models");
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("entry").path()).collect();
+    let files = |folder: &Path| std::fs::read_dir(folder).expect("models");
+    let mut paths: Vec<PathBuf> = files(&folder)
+        .chain(files(&folder.join("multibody")))
+        .map(|entry| entry.expect("entry").path())
+        .collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "eom"));
     paths.sort();
     assert!(paths.len() > 20, "the models have gone");

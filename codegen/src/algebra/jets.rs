@@ -184,20 +184,14 @@ impl Tape {
                     return still(result);
                 }
                 // f′ and f″.
-                let (one, two) = match function {
-                    Function::Sin => (lane.function(Function::Cos, argument, &form), -result),
-                    Function::Cos => (-lane.function(Function::Sin, argument, &form), -result),
-                    Function::Exp => (result, result),
-                    Function::Log => {
-                        let inverse = argument.inv()?;
-                        (inverse, -(inverse * inverse))
-                    }
-                    Function::Sqrt => {
-                        let slope = (result + result).inv()?;
-                        (slope, -(slope * (argument + argument).inv()?))
-                    }
+                let one = lane.slope(*function, argument, &form, result)?;
+                let two = match function {
+                    Function::Sin | Function::Cos => -result,
+                    Function::Exp => result,
+                    Function::Log => -(one * one),
+                    Function::Sqrt => -(one * (argument + argument).inv()?),
                     // Two arguments: its own step.
-                    Function::Atan2 => (Fp::ZERO, Fp::ZERO),
+                    Function::Atan2 => Fp::ZERO,
                 };
                 let bent = two * first(a);
                 let columns =

@@ -82,6 +82,25 @@ impl Lane {
         }
     }
 
+    /// f′ of a function of one argument with its value there; `None` where it has none. `Atan2` has two
+    /// arguments and is a node of its own.
+    pub fn slope(
+        &mut self,
+        function: Function,
+        argument: Fp,
+        form: &LinearForm,
+        value: Fp,
+    ) -> Option<Fp> {
+        Some(match function {
+            Function::Sin => self.function(Function::Cos, argument, form),
+            Function::Cos => -self.function(Function::Sin, argument, form),
+            Function::Exp => value,
+            Function::Log => argument.inv()?,
+            Function::Sqrt => (value + value).inv()?,
+            Function::Atan2 => Fp::ZERO,
+        })
+    }
+
     /// √(c e) = √c √e with the factor c of the form; a number without a form has any root.
     fn root(&self, argument: Fp, form: &LinearForm) -> Option<Fp> {
         let Some((_, factor)) = form.first() else {

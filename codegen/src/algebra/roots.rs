@@ -51,7 +51,7 @@ fn split(mut n: u64, first: u32) -> (u64, Fp) {
     let mut root = Fp::ONE;
     let mut prime = u64::from(first);
     while prime < u64::from(LARGEST_PRIME) && n > 1 {
-        while n % prime == 0 {
+        while n.is_multiple_of(prime) {
             n /= prime;
             root = root * chosen(prime);
         }

@@ -58,15 +58,7 @@ pub fn tangent_at(
                     .map(|(atom, c)| (values[atom as usize].0, c))
                     .collect();
                 let value = lane.function(function, argument, &form);
-                let factor = match function {
-                    Function::Sin => lane.function(Function::Cos, argument, &form),
-                    Function::Cos => -lane.function(Function::Sin, argument, &form),
-                    Function::Exp => value,
-                    Function::Log => argument.inv()?,
-                    Function::Sqrt => (value + value).inv()?,
-                    // Two arguments: its own node.
-                    Function::Atan2 => Fp::ZERO,
-                };
+                let factor = lane.slope(function, argument, &form, value)?;
                 (value, factor * slope)
             }
             Node::Atan2(y, x) => {

@@ -2,11 +2,10 @@
 
 use proc_macro2::Delimiter;
 
-use super::MAX_ERRORS;
 use super::ast::{About, Body, ItemKind, Span};
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
-use super::parse::docs;
+use super::parse::fields;
 use super::suggest::closest;
 use crate::diagnostics::Diagnostic;
 
@@ -41,7 +40,7 @@ pub(super) fn body(cursor: &mut Cursor<'_>) -> Parsed<Body> {
     if !cursor.eat_open(Delimiter::Brace) {
         return Err(cursor.unexpected("`{`"));
     }
-    let mut fields = Fields {
+    let mut given = Fields {
         body: Body {
             frame,
             mass: None,
@@ -50,27 +49,8 @@ pub(super) fn body(cursor: &mut Cursor<'_>) -> Parsed<Body> {
         },
         seen: [None; 3],
     };
-    while cursor.errors.len() < MAX_ERRORS {
-        let mut mark = cursor.mark();
-        let parsed = docs(cursor).and_then(|_| {
-            mark = cursor.mark();
-            if cursor.is_end() {
-                Ok(false)
-            } else {
-                fields.parse(cursor).map(|()| true)
-            }
-        });
-        match parsed {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(error) => {
-                cursor.errors.push(error);
-                cursor.recover(mark);
-            }
-        }
-    }
-    cursor.expect_close(Delimiter::Brace, false)?;
-    Ok(fields.body)
+    fields(cursor, |cursor| given.parse(cursor))?;
+    Ok(given.body)
 }
 
 /// A body so far.

@@ -2,11 +2,10 @@
 
 use proc_macro2::Delimiter;
 
-use super::MAX_ERRORS;
 use super::ast::{Expr, Ident, Joint, JointField, JointKind, Span};
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
-use super::parse::docs;
+use super::parse::fields;
 use super::suggest::closest;
 use crate::diagnostics::Diagnostic;
 
@@ -132,14 +131,13 @@ pub(super) fn joint(cursor: &mut Cursor<'_>) -> Parsed<Joint> {
     } else {
         None
     };
-    let fields = if cursor.is_open(Delimiter::Brace) {
-        let fields = fields(cursor)?;
+    let mut given = Vec::new();
+    if cursor.eat_open(Delimiter::Brace) {
+        fields(cursor, |cursor| field(cursor, &mut given))?;
         cursor.eat_punct(';');
-        fields
     } else {
         cursor.end(follows.is_some())?;
-        Vec::new()
-    };
+    }
     Ok(Joint {
         name,
         kind,
@@ -148,7 +146,7 @@ pub(super) fn joint(cursor: &mut Cursor<'_>) -> Parsed<Joint> {
         at,
         moves,
         follows,
-        fields,
+        fields: given,
     })
 }
 
@@ -210,33 +208,7 @@ fn at_end(cursor: &Cursor<'_>) -> bool {
         || cursor.is_end()
 }
 
-/// `{ damping d; limit a to b; }`, in any order and each at most once.
-fn fields(cursor: &mut Cursor<'_>) -> Parsed<Vec<(JointField, Span, Vec<Expr>)>> {
-    cursor.eat_open(Delimiter::Brace);
-    let mut fields = Vec::new();
-    while cursor.errors.len() < MAX_ERRORS {
-        let mut mark = cursor.mark();
-        let parsed = docs(cursor).and_then(|_| {
-            mark = cursor.mark();
-            if cursor.is_end() {
-                Ok(false)
-            } else {
-                field(cursor, &mut fields).map(|()| true)
-            }
-        });
-        match parsed {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(error) => {
-                cursor.errors.push(error);
-                cursor.recover(mark);
-            }
-        }
-    }
-    cursor.expect_close(Delimiter::Brace, false)?;
-    Ok(fields)
-}
-
+/// One of `{ damping d; limit a to b; }`, in any order and each at most once.
 fn field(cursor: &mut Cursor<'_>, fields: &mut Vec<(JointField, Span, Vec<Expr>)>) -> Parsed<()> {
     let span = cursor.here();
     let Some(&(name, field, form)) = FIELDS.iter().find(|(name, ..)| cursor.is_word(name)) else {

@@ -86,6 +86,33 @@ fn items(cursor: &mut Cursor<'_>) -> Vec<Item> {
     items
 }
 
+/// The fields up to the closing brace, each read by `field`; faulty ones are reported and left out.
+pub(super) fn fields(
+    cursor: &mut Cursor<'_>,
+    mut field: impl FnMut(&mut Cursor<'_>) -> Parsed<()>,
+) -> Parsed<()> {
+    while cursor.errors.len() < MAX_ERRORS {
+        let mut mark = cursor.mark();
+        let parsed = docs(cursor).and_then(|_| {
+            mark = cursor.mark();
+            if cursor.is_end() {
+                Ok(false)
+            } else {
+                field(cursor).map(|()| true)
+            }
+        });
+        match parsed {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(error) => {
+                cursor.errors.push(error);
+                cursor.recover(mark);
+            }
+        }
+    }
+    cursor.expect_close(Delimiter::Brace, false)
+}
+
 /// The lines of the doc comments that stand here.
 pub(super) fn docs(cursor: &mut Cursor<'_>) -> Parsed<Vec<String>> {
     let mut lines = Vec::new();

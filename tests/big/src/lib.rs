@@ -1,7 +1,13 @@
 //! Forward dynamics of a spatial chain of 16 links with run-time parameters, and its derivatives: more
-//! than 20,000 statements, cut into parts that rustc bears with debug information on.
+//! than 20,000 statements, cut into parts that rustc bears with debug information on. Beside it a tree of
+//! the size of a humanoid robot.
 
 include!(concat!(env!("OUT_DIR"), "/chain.rs"));
+
+/// A floating trunk with a waist, two legs, two arms and a head.
+pub mod humanoid {
+    include!(concat!(env!("OUT_DIR"), "/humanoid.rs"));
+}
 
 #[cfg(test)]
 mod tests {

@@ -43,7 +43,7 @@ fn mass_matrix_is_symmetric_and_positive_definite() {
 fn kinetic_energy_momentum_and_mass_matrix_agree() {
     everywhere(|point| {
         let m_xi = times(&point.mass(point.x()), point.xi());
-        let momentum = point.momentum();
+        let momentum = point.momentum(point.x(), point.xi());
         let bound = ROUNDING * largest(&m_xi).max(1.0);
         assert_close(point.label(), &momentum, &m_xi, bound);
         let t = point.kinetic(point.x());
@@ -52,6 +52,20 @@ fn kinetic_energy_momentum_and_mass_matrix_agree() {
         let v = point.potential(point.x());
         let bound = ROUNDING * t.max(v.abs());
         assert_close(point.label(), &[point.energy()], &[t + v], bound);
+    });
+}
+
+/// M⁻¹ p is ξ, without M.
+#[test]
+fn velocities_are_those_of_their_momenta() {
+    everywhere(|point| {
+        let xi = point.xi();
+        let back = point.velocity_of(&point.momentum(point.x(), xi));
+        let m = point.mass(point.x());
+        // Compared as momenta, so that what M does to roundings does not matter.
+        let change = times(&m, &plus(&back, -1.0, xi));
+        let bound = ROUNDING * largest(&times(&m, xi)).max(1.0);
+        assert_close(point.label(), &change, &vec![0.0; xi.len()], bound);
     });
 }
 
@@ -146,6 +160,21 @@ fn power_balance() {
         // since the motion's derivatives grow with powers of its speeds.
         let bound = 100.0 * DIFFERENCE * scale.max(power.abs());
         assert_close(point.label(), &energy_dot, &[power], bound);
+    });
+}
+
+/// ṗ is the slope of p along (ẋ, ξ̇).
+#[test]
+fn momentum_rate_is_the_rate_of_the_momentum() {
+    everywhere(|point| {
+        let rate = point.momentum_rate();
+        let (x, xi) = (point.x(), point.xi());
+        let (x_dot, xi_dot) = (point.rate(x, xi), point.accel());
+        let along = derivative(|s| point.momentum(&plus(x, s, &x_dot), &plus(xi, s, &xi_dot)));
+        // M ξ̇ and what is left of it.
+        let inertia = largest(&times(&point.mass(x), &xi_dot));
+        let scale = inertia.max(point.kinetic(x)).max(1.0);
+        assert_close(point.label(), &rate, &along, 10.0 * DIFFERENCE * scale);
     });
 }
 

@@ -8,6 +8,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// States tried per system and law.
 const STATES: u64 = 24;
+/// Accelerations above this (SI units) halve the inputs, at most so often: motions are to be smooth at the
+/// steps of differences.
+const FASTEST: f64 = 1e3;
+const HALVINGS: usize = 12;
 /// f32 against f64: 6e-8 of rounding times the operations and the condition of M.
 const SINGLE: f64 = 1e-4;
 
@@ -26,7 +30,9 @@ pub trait Point {
     fn mass(&self, x: &[f64]) -> Vec<Vec<f64>>;
     fn bias(&self) -> Vec<f64>;
     fn slope(&self) -> Vec<f64>;
-    fn momentum(&self) -> Vec<f64>;
+    fn momentum(&self, x: &[f64], xi: &[f64]) -> Vec<f64>;
+    fn momentum_rate(&self) -> Vec<f64>;
+    fn velocity_of(&self, momentum: &[f64]) -> Vec<f64>;
     fn needed(&self, xi_dot: &[f64]) -> Vec<f64>;
     fn kinetic(&self, x: &[f64]) -> f64;
     fn potential(&self, x: &[f64]) -> f64;
@@ -89,6 +95,14 @@ impl<Sys: System<Scalar = f64> + Default> At<Sys> {
         };
         let mut inputs = system.zero_inputs();
         random.fill(inputs.as_mut(), 2.0);
+        // Light parts are pushed lightly.
+        for _ in 0..HALVINGS {
+            let accel = system.accel(&state.x, &state.xi, &inputs);
+            if accel.is_ok_and(|accel| largest(accel.as_ref()) <= FASTEST) {
+                break;
+            }
+            inputs.as_mut().iter_mut().for_each(|u| *u *= 0.5);
+        }
         let label = format!("{name}, seed {seed}");
         Self {
             label,
@@ -192,8 +206,16 @@ macro_rules! models {
             fn slope(&self) -> Vec<f64> {
                 self.system.potential_force(&self.state.x).to_vec()
             }
-            fn momentum(&self) -> Vec<f64> {
-                self.system.momentum(&self.state.x, &self.state.xi).to_vec()
+            fn momentum(&self, x: &[f64], xi: &[f64]) -> Vec<f64> {
+                self.system.momentum(&array(x), &array(xi)).to_vec()
+            }
+            fn momentum_rate(&self) -> Vec<f64> {
+                let State { x, xi, .. } = &self.state;
+                self.system.momentum_rate(x, xi, &self.inputs).to_vec()
+            }
+            fn velocity_of(&self, momentum: &[f64]) -> Vec<f64> {
+                let xi = self.system.velocity_of_momentum(&self.state.x, &array(momentum));
+                xi.expect(&self.label).to_vec()
             }
             fn needed(&self, xi_dot: &[f64]) -> Vec<f64> {
                 let State { x, xi, .. } = &self.state;
@@ -255,8 +277,10 @@ models! {
     benchmark_top::BenchmarkTop,
     body_with_rotor::BodyWithRotor,
     cart_pole::CartPole,
+    cart_rods::CartRods,
     double_pendulum_angles::DoublePendulum,
     double_pendulum_circles::CircleDoublePendulum,
+    double_spherical_pendulum::DoubleSphericalPendulum,
     drone::Drone,
     elastic_pendulum::ElasticPendulum,
     euler_top_quaternion::EulerTop,
@@ -269,6 +293,7 @@ models! {
     free_body_rows::FreeBodyRows,
     free_body_world::WorldBody,
     free_body_world_velocity::WorldVelocityBody,
+    furuta::Furuta,
     gyrostat::Gyrostat,
     heavy_top::HeavyTop,
     heavy_top_axis::AxisTop,
@@ -286,9 +311,11 @@ models! {
     planar_world::PlanarWorld,
     polar_particle::PolarParticle,
     principal_axes::PrincipalAxes,
+    quadrotor_load::QuadrotorLoad,
     rod_particles::RodParticles,
     rod_particles_rows::RodParticlesRows,
     satellite::Satellite,
+    satellite_arm::SatelliteArm,
     six_particles::SixParticles,
     slider_crank::SliderCrank,
     spherical_angles::SphericalAngles,
@@ -298,14 +325,16 @@ models! {
     spinning_particles::SpinningParticles,
     spring_chain::SpringChain,
     suspended_body::SuspendedBody,
+    tricopter::Tricopter,
     two_bodies::TwoBodies,
 }
 
 #[test]
 fn no_model_is_left_out() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/models");
-    let mut stems: Vec<String> = std::fs::read_dir(folder)
-        .expect("models")
+    let files = |folder: String| std::fs::read_dir(folder).expect("models");
+    let mut stems: Vec<String> = files(folder.to_owned())
+        .chain(files(format!("{folder}/multibody")))
         .map(|entry| entry.expect("an entry").path())
         .filter(|path| path.extension().is_some_and(|e| e == "eom"))
         .filter(|path| {

@@ -153,9 +153,7 @@ impl Recursion {
         };
         Computation { graph, parts }
     }
-}
 
-impl Recursion {
     /// ∂(f − M ξ̇ − Γ ξ ξ − ∂V) along displacements, velocities and inputs at constant ξ̇: n rows of
     /// 2 n + m, in `into`, where ξ̇ is F. `None` where a joint varies with x.
     pub fn slopes(&self, into: &mut Graph, rates: &[Edge]) -> Option<Vec<Vec<Edge>>> {

@@ -10,6 +10,7 @@ use super::{Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3, add3, cross, identity3, scale3, zero3};
 use crate::derive::accel::solve::Solution;
+use crate::model::rotations::hat;
 
 /// Torque = J α + H a, force = Hᵀ α + M a.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +23,7 @@ struct Inertia {
 /// How a freedom was eliminated.
 struct Pivot {
     /// The wrench of one unit of its acceleration, over the pivot.
-    share: (Vec3, Vec3),
+    share: Wrench,
     /// 1 / pivot.
     inverse: Edge,
     /// What is left of its force.
@@ -47,37 +48,20 @@ pub fn forward(
     let mut guards = Vec::new();
     for (index, link) in tree.links.iter().enumerate().rev() {
         for freedom in &link.freedoms {
-            let (torque, force) = inertia[index].wrench(graph, freedom.angular, freedom.linear);
+            let whole = inertia[index].wrench(graph, freedom.angular, freedom.linear);
             let &[(i, _)] = freedom.rate.as_slice() else {
                 return None;
             };
-            let pivot = {
-                let terms = [
-                    graph.dot(&freedom.angular, &torque),
-                    graph.dot(&freedom.linear, &force),
-                    tree.armature[i],
-                ];
-                graph.sum(&terms)
-            };
+            let own = freedom.felt(graph, &whole);
+            let pivot = graph.add(own, tree.armature[i]);
             let inverse = graph.div(graph.one(), pivot)?;
             guards.push(pivot);
-            let felt = {
-                let (a, b) = (
-                    graph.dot(&freedom.angular, &bias[index].torque),
-                    graph.dot(&freedom.linear, &bias[index].force),
-                );
-                graph.add(a, b)
-            };
+            let felt = freedom.felt(graph, &bias[index]);
             let rest = graph.sub(load[i], felt);
-            let share = (
-                scale3(graph, inverse, torque),
-                scale3(graph, inverse, force),
-            );
-            inertia[index].reduce(graph, (torque, force), share);
-            let wrench = &mut bias[index];
-            let (t, f) = (scale3(graph, rest, share.0), scale3(graph, rest, share.1));
-            wrench.torque = add3(graph, wrench.torque, t);
-            wrench.force = add3(graph, wrench.force, f);
+            let share = whole.scaled(graph, inverse);
+            inertia[index].reduce(graph, &whole, &share);
+            let yielded = share.scaled(graph, rest);
+            bias[index] = bias[index].plus(graph, &yielded);
             pivots[index].push(Pivot {
                 share,
                 inverse,
@@ -88,9 +72,7 @@ pub fn forward(
             let moved = inertia[index].carried(graph, link);
             inertia[parent].add(graph, &moved);
             let moved = carried(graph, link, &bias[index]);
-            let sum = &mut bias[parent];
-            sum.torque = add3(graph, sum.torque, moved.torque);
-            sum.force = add3(graph, sum.force, moved.force);
+            bias[parent] = bias[parent].plus(graph, &moved);
         }
     }
     let mut xi_dot = vec![zero; load.len()];
@@ -104,8 +86,8 @@ pub fn forward(
         for (freedom, pivot) in link.freedoms.iter().zip(&pivots[index]).rev() {
             let own = graph.mul(pivot.rest, pivot.inverse);
             let (t, f) = (
-                graph.dot(&pivot.share.0, &motion.0),
-                graph.dot(&pivot.share.1, &motion.1),
+                graph.dot(&pivot.share.torque, &motion.0),
+                graph.dot(&pivot.share.force, &motion.1),
             );
             let carried = graph.add(t, f);
             let rate = graph.sub(own, carried);
@@ -128,27 +110,16 @@ pub fn forward(
 
 impl Inertia {
     fn rigid(graph: &mut Graph, mass: &Mass) -> Self {
-        let zero = graph.zero();
-        let s = &mass.second;
-        let [x, y, z] = mass.first;
-        let j = std::array::from_fn(|i| {
-            std::array::from_fn(|k| {
-                if i == k {
-                    graph.add(s[(i + 1) % 3][(i + 1) % 3], s[(i + 2) % 3][(i + 2) % 3])
-                } else {
-                    -s[i][k]
-                }
-            })
-        });
+        let j = mass.inertia(graph);
         let identity = identity3(graph);
         Inertia {
             j,
-            h: [[zero, -z, y], [z, zero, -x], [-y, x, zero]],
+            h: hat(graph, mass.first),
             m: identity.map(|row| row.map(|entry| graph.mul(entry, mass.mass))),
         }
     }
 
-    fn wrench(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> (Vec3, Vec3) {
+    fn wrench(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> Wrench {
         let torque = std::array::from_fn(|i| {
             let (x, y) = (graph.dot(&self.j[i], &alpha), graph.dot(&self.h[i], &a));
             graph.add(x, y)
@@ -158,22 +129,22 @@ impl Inertia {
             let (x, y) = (graph.dot(&column, &alpha), graph.dot(&self.m[i], &a));
             graph.add(x, y)
         });
-        (torque, force)
+        Wrench { force, torque }
     }
 
     /// Less the part that the freedom yields.
-    fn reduce(&mut self, graph: &mut Graph, whole: (Vec3, Vec3), share: (Vec3, Vec3)) {
+    fn reduce(&mut self, graph: &mut Graph, whole: &Wrench, share: &Wrench) {
         for i in 0..3 {
             for k in 0..3 {
                 if k <= i {
-                    let product = graph.mul(whole.0[i], share.0[k]);
+                    let product = graph.mul(whole.torque[i], share.torque[k]);
                     self.j[i][k] = graph.sub(self.j[i][k], product);
                     self.j[k][i] = self.j[i][k];
-                    let product = graph.mul(whole.1[i], share.1[k]);
+                    let product = graph.mul(whole.force[i], share.force[k]);
                     self.m[i][k] = graph.sub(self.m[i][k], product);
                     self.m[k][i] = self.m[i][k];
                 }
-                let product = graph.mul(whole.0[i], share.1[k]);
+                let product = graph.mul(whole.torque[i], share.force[k]);
                 self.h[i][k] = graph.sub(self.h[i][k], product);
             }
         }

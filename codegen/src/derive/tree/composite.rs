@@ -11,11 +11,7 @@ pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
     for (index, link) in tree.links.iter().enumerate().rev() {
         if let Some(parent) = link.parent {
-            let mut moved = composite[index];
-            for turn in link.turns.iter().rev() {
-                moved = moved.turned(graph, turn);
-            }
-            let moved = moved.shifted(graph, link.position);
+            let moved = composite[index].carried(graph, link);
             composite[parent] = composite[parent].plus(graph, &moved);
         }
     }
@@ -33,9 +29,7 @@ pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
                     &link.freedoms[..]
                 };
                 for (other_place, other) in others.iter().enumerate() {
-                    let turn = graph.dot(&other.angular, &wrench.torque);
-                    let push = graph.dot(&other.linear, &wrench.force);
-                    let entry = graph.add(turn, push);
+                    let entry = other.felt(graph, &wrench);
                     let itself = here == index && other_place == place;
                     for &(i, k) in &freedom.rate {
                         for &(j, l) in &other.rate {

@@ -16,6 +16,24 @@ pub struct Wrench {
     pub torque: Vec3,
 }
 
+impl Wrench {
+    /// Both together.
+    pub fn plus(&self, graph: &mut Graph, other: &Wrench) -> Self {
+        Wrench {
+            force: add3(graph, self.force, other.force),
+            torque: add3(graph, self.torque, other.torque),
+        }
+    }
+
+    /// k times the wrench.
+    pub fn scaled(&self, graph: &mut Graph, k: Edge) -> Self {
+        Wrench {
+            torque: scale3(graph, k, self.torque),
+            force: scale3(graph, k, self.force),
+        }
+    }
+}
+
 /// A link's motion in its axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
@@ -171,11 +189,7 @@ pub fn collect(graph: &mut Graph, tree: &Tree, wrenches: &[Wrench], n: usize) ->
     for (index, link) in tree.links.iter().enumerate().rev() {
         let total = totals[index];
         for freedom in &link.freedoms {
-            let (turn, push) = (
-                graph.dot(&freedom.angular, &total.torque),
-                graph.dot(&freedom.linear, &total.force),
-            );
-            let force = graph.add(turn, push);
+            let force = freedom.felt(graph, &total);
             for &(i, k) in &freedom.rate {
                 let share = graph.mul(k, force);
                 forces[i] = graph.add(forces[i], share);
@@ -183,9 +197,7 @@ pub fn collect(graph: &mut Graph, tree: &Tree, wrenches: &[Wrench], n: usize) ->
         }
         if let Some(parent) = link.parent {
             let carried = carried(graph, link, &total);
-            let sum = &mut totals[parent];
-            sum.force = add3(graph, sum.force, carried.force);
-            sum.torque = add3(graph, sum.torque, carried.torque);
+            totals[parent] = totals[parent].plus(graph, &carried);
         }
     }
     forces

@@ -1,6 +1,7 @@
 //! Mass, first and second moments of a link about the origin of its frame: m, h = ∫ r dm and
 //! S = ∫ r rᵀ dm; Θ = tr(S) I − S.
 
+use super::Link;
 use super::turn::Turn;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3, add3, cross, scale3, zero3};
@@ -87,6 +88,13 @@ impl Mass {
         }
     }
 
+    /// That of a link as one of the link before.
+    pub fn carried(&self, graph: &mut Graph, link: &Link) -> Self {
+        let turns = link.turns.iter().rev();
+        let turned = turns.fold(*self, |mass, turn| mass.turned(graph, turn));
+        turned.shifted(graph, link.position)
+    }
+
     /// Both together.
     pub fn plus(&self, graph: &mut Graph, other: &Mass) -> Self {
         Mass {
@@ -107,6 +115,20 @@ impl Mass {
         let lever = cross(graph, self.first, a);
         let spin = self.spun(graph, alpha);
         (add3(graph, push, swing), add3(graph, spin, lever))
+    }
+
+    /// Θ = tr(S) I − S.
+    pub fn inertia(&self, graph: &mut Graph) -> Mat3 {
+        let s = &self.second;
+        std::array::from_fn(|i| {
+            std::array::from_fn(|k| {
+                if i == k {
+                    graph.add(s[(i + 1) % 3][(i + 1) % 3], s[(i + 2) % 3][(i + 2) % 3])
+                } else {
+                    -s[i][k]
+                }
+            })
+        })
     }
 
     /// Θ α = tr(S) α − S α.

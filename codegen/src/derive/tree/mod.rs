@@ -22,6 +22,7 @@ use super::calculus::Calculus;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::Vec3;
 use crate::model::Model;
+use inverse::Wrench;
 use mass::Mass;
 use turn::Turn;
 
@@ -41,6 +42,13 @@ impl Freedom {
     pub fn rate_of(&self, graph: &mut Graph, v: &[Edge]) -> Edge {
         let terms: Vec<Edge> = self.rate.iter().map(|&(i, k)| graph.mul(k, v[i])).collect();
         graph.sum(&terms)
+    }
+
+    /// The force that the freedom feels of a wrench on its link: the power at a unit of its rate.
+    pub fn felt(&self, graph: &mut Graph, wrench: &Wrench) -> Edge {
+        let turn = graph.dot(&self.angular, &wrench.torque);
+        let push = graph.dot(&self.linear, &wrench.force);
+        graph.add(turn, push)
     }
 }
 

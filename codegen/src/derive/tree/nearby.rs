@@ -13,6 +13,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, cross, multiply3, scale3, zero3,
 };
+use crate::model::rotations::hat;
 
 /// ∂f/∂h and ∂f/∂ξ of the force f that ξ̇ needs.
 pub struct Slopes {
@@ -70,14 +71,10 @@ pub fn slopes(
             let moved =
                 answers[index].carried(graph, link, &masses[index], &motions[index], before);
             answers[parent] = answers[parent].plus(graph, &moved);
-            let mut mass = masses[index];
-            for turn in link.turns.iter().rev() {
-                mass = mass.turned(graph, turn);
-            }
-            let mass = mass.shifted(graph, link.position);
+            let mass = masses[index].carried(graph, link);
             masses[parent] = masses[parent].plus(graph, &mass);
             let total = carried(graph, link, &totals[index]);
-            totals[parent] = sum(graph, &totals[parent], &total);
+            totals[parent] = totals[parent].plus(graph, &total);
         }
     }
     let mut slopes = Slopes {
@@ -135,29 +132,14 @@ pub fn slopes(
                 wrenches = wrenches.map(|wrench| carried(graph, &tree.links[here], &wrench));
                 for other in &tree.links[parent].freedoms {
                     let (j, _) = *other.rate.first()?;
-                    slopes.displacement[j][i] = felt(graph, other, &wrenches[0]);
-                    slopes.velocity[j][i] = felt(graph, other, &wrenches[1]);
+                    slopes.displacement[j][i] = other.felt(graph, &wrenches[0]);
+                    slopes.velocity[j][i] = other.felt(graph, &wrenches[1]);
                 }
                 here = parent;
             }
         }
     }
     Some(slopes)
-}
-
-fn sum(graph: &mut Graph, a: &Wrench, b: &Wrench) -> Wrench {
-    Wrench {
-        force: add3(graph, a.force, b.force),
-        torque: add3(graph, a.torque, b.torque),
-    }
-}
-
-fn felt(graph: &mut Graph, freedom: &Freedom, wrench: &Wrench) -> Edge {
-    let (turn, push) = (
-        graph.dot(&freedom.angular, &wrench.torque),
-        graph.dot(&freedom.linear, &wrench.force),
-    );
-    graph.add(turn, push)
 }
 
 /// The wrench turns and moves along with the joint: e × f, e × n + l × f.
@@ -169,7 +151,7 @@ fn follow(graph: &mut Graph, change: &Wrench, freedom: &Freedom, total: &Wrench)
         force,
         torque: add3(graph, torque, lever),
     };
-    sum(graph, change, &turned)
+    change.plus(graph, &turned)
 }
 
 /// What the link before does, as seen from a link that is displaced.
@@ -246,16 +228,6 @@ impl Variation {
     }
 }
 
-/// The matrix of x ↦ a × x.
-fn hat(graph: &Graph, a: Vec3) -> Mat3 {
-    let zero = graph.zero();
-    [
-        [zero, -a[2], a[1]],
-        [a[2], zero, -a[0]],
-        [-a[1], a[0], zero],
-    ]
-}
-
 fn plus(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Mat3 {
     std::array::from_fn(|i| add3(graph, a[i], b[i]))
 }
@@ -279,7 +251,7 @@ impl Response {
         });
         let momentum = mass.spun(graph, omega);
         let spin = hat(graph, omega);
-        let theta = theta(graph, mass);
+        let theta = mass.inertia(graph);
         let turned = multiply3(graph, &spin, &theta);
         let back = hat(graph, momentum);
         let torque =
@@ -301,10 +273,12 @@ impl Response {
             apply3(graph, &self.force, by.omega),
             apply3(graph, &self.torque, by.omega),
         );
-        Wrench {
-            force: add3(graph, force, push),
-            torque: add3(graph, torque, turn),
-        }
+        let whole = Wrench { force, torque };
+        let own = Wrench {
+            force: push,
+            torque: turn,
+        };
+        whole.plus(graph, &own)
     }
 
     /// Of the link before, whose δω is also a δα and δa of this one.
@@ -362,18 +336,4 @@ impl Response {
             force,
         }
     }
-}
-
-/// Θ = tr(S) I − S.
-fn theta(graph: &mut Graph, mass: &Mass) -> Mat3 {
-    let s = &mass.second;
-    std::array::from_fn(|i| {
-        std::array::from_fn(|k| {
-            if i == k {
-                graph.add(s[(i + 1) % 3][(i + 1) % 3], s[(i + 2) % 3][(i + 2) % 3])
-            } else {
-                -s[i][k]
-            }
-        })
-    })
 }

@@ -1,11 +1,13 @@
 //! Random trees of bodies on joints: their text, and their dynamics by Newton and Euler in numbers.
 #![allow(dead_code, unused_imports)] // each test file uses a part
 
+mod humanoid;
 mod newton;
 mod spatial;
 mod text;
 
 use super::Random;
+pub use humanoid::humanoid;
 pub use newton::Tree;
 pub use text::text;
 
@@ -106,32 +108,18 @@ impl Link {
         let (rpy, place) = (three(random, 1.5), three(random, 0.5));
         let (com, products) = (three(random, 0.3), three(random, 0.02));
         let moments = [0.21, 0.32, 0.27].map(|m| m + short(0.05 * random.number()));
+        let user = (random.below(4) == 0).then(|| (three(random, 1.0), three(random, 0.2)));
+        let far = random.below(2) == 0;
+        let mass = short(1.5 + random.number());
+        let [yz, xz, xy] = products;
+        let body = Link::body(kind, parent, place, mass, com, moments);
         Link {
-            kind,
-            parent,
-            follows: None,
             axis,
             rpy: if rpy[0] < 0.0 { [0.0; 3] } else { rpy },
-            place,
-            user: (random.below(4) == 0).then(|| (three(random, 1.0), three(random, 0.2))),
-            far: random.below(2) == 0,
-            mass: short(1.5 + random.number()),
-            com,
-            inertia: [
-                moments[0],
-                moments[1],
-                moments[2],
-                products[0],
-                products[1],
-                products[2],
-            ],
-            particle: None,
-            damping: 0.0,
-            armature: 0.0,
-            stiffness: 0.0,
-            rest: 0.0,
-            force: 0.0,
-            push: None,
+            user,
+            far,
+            inertia: [moments[0], moments[1], moments[2], yz, xz, xy],
+            ..body
         }
         .driven(random, links)
     }
