@@ -17,7 +17,7 @@ use crate::so3::{self, Matrix, Vector};
 use crate::split::Split;
 use crate::state::State;
 
-/// Order 2, two evaluations of forces a step; symplectic, keeps R P and the energy of a free body.
+/// Order 2, one evaluation of forces a step of a run; symplectic, keeps R P and the energy of a free body.
 ///
 /// A steady spin gets a phase error of order (h|ω|)², so that splitting is more accurate; this is the
 /// variational reference. Beyond h|ω| of about 1.5 the equation for f has no solution:
@@ -44,7 +44,22 @@ impl<Sys: Split + ?Sized> Method<Sys> for Lgvi {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        strang(system, state, h, self, inputs)?.ok_or(StepError::NotConverged {
+        self.follow(system, state, h, inputs, &mut None)
+    }
+
+    #[inline]
+    fn follow<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<Sys::Chart>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        strang(system, state, h, self, inputs, force)?.ok_or(StepError::NotConverged {
             time: state.t,
             iterations: ITERATIONS,
         })

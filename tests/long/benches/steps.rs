@@ -108,8 +108,8 @@ fn to_nine_digits(bencher: Bencher, case: &str, until: f64, n: u32) {
     let h = until / f64::from(n);
     bencher.bench_local(|| {
         let mut state = State::start(&top);
-        let count = black_box(u64::from(n));
-        let outcome = method.run(&top, &mut state, h, count, &|_, _, _| [], |_| {});
+        let h = black_box(h);
+        let outcome = hamel::integrate(&top, method, &mut state, h, until, |_, _, _| [], |_| {});
         black_box(outcome.is_ok());
         state
     });
