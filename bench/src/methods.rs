@@ -1,12 +1,14 @@
 //! The table of methods: one line each, in tables by what they need of a system.
 
+use hamel::adaptive::Adaptive;
 use hamel::methods::{
     BackwardEuler, Buss, Cf4, ForwardEuler, Gauss4, Gauss6, Lgvi, Rk4, Rk4Added, Rk4Projected,
     Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Slide, Splitting, free,
 };
 use hamel::{Canonical, Split, System};
 use hamel_report::data::Kind;
-use hamel_report::problem::{Entry, Outcome, Problem, Watch};
+use hamel_report::entry::{Entry, Outcome, Watch};
+use hamel_report::problem::Problem;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -23,11 +25,15 @@ where
     Sys: System<Scalar = f64>,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
-    table! { problem;
+    let mut entries = table! { problem;
         "rkmk4" Method Rkmk4;
         "cf4" Method Cf4;
         "rkmk54" Method Rkmk54;
         "rkmk8" Method Rkmk8;
+    };
+    entries.push(problem.controlled("rkmk54 adaptive", 5, Adaptive::rkmk54));
+    entries.push(problem.controlled("rkmk8 adaptive", 8, Adaptive::rkmk8));
+    entries.extend(table! { problem;
         "rk4" Baseline Rk4 { lambda: 0.0 };
         "rk4, λ = 10/s" Baseline Rk4 { lambda: 10.0 };
         "rk4-projected" Baseline Rk4Projected;
@@ -35,7 +41,8 @@ where
         "euler" Baseline ForwardEuler;
         "semi-implicit-euler" Baseline SemiImplicitEuler;
         "backward-euler" Baseline BackwardEuler;
-    }
+    });
+    entries
 }
 
 /// Methods that step momenta.
@@ -103,6 +110,7 @@ where
                 evaluations: Some(0),
                 error: end.as_ref().map_or(f64::NAN, |end| problem.judge(end)),
                 failure: end.err().map(|error| error.to_string()),
+                statistics: None,
             }
         },
         move |steps, part| {

@@ -101,8 +101,7 @@ impl<Sys: Split + ?Sized> Method<Sys> for Buss {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        strang(system, state, h, self, inputs, force)?
-            .ok_or(StepError::NonFinite { time: state.t })
+        strang(system, state, h, self, inputs, force)?.ok_or(StepError::NonFinite { time: state.t })
     }
 }
 

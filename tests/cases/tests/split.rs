@@ -142,8 +142,16 @@ fn the_sleeping_top_stays_asleep() {
     let watch = |state: &hamel::State<LagrangeTop<f64>>| {
         tilt = tilt.max(state.x[2].hypot(state.x[5]));
     };
-    hamel::integrate(&case.system, method, &mut state, STEP, case.until, none, watch)
-        .expect("a run");
+    hamel::integrate(
+        &case.system,
+        method,
+        &mut state,
+        STEP,
+        case.until,
+        none,
+        watch,
+    )
+    .expect("a run");
     assert!(tilt <= 7.2e-6, "{tilt:e}");
     let error = case.error_at(case.until, &state);
     assert!(error <= 1e-10, "{error:e}");
