@@ -7,6 +7,14 @@ use std::fmt::Write;
 /// The error at which methods are compared.
 pub const TARGET: f64 = 1e-9;
 
+/// The entry of a comparison that runs as `auto` does: methods that can choose their steps do.
+pub fn entry(method: &str) -> String {
+    match method {
+        "rkmk54" | "rkmk8" => format!("{method} adaptive"),
+        other => other.to_string(),
+    }
+}
+
 /// The wall time in µs in which a method reaches the [`TARGET`].
 pub fn micros(method: &MethodRuns) -> Work {
     work(&method.runs, TARGET, |run: &MethodRun| {

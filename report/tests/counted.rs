@@ -148,8 +148,10 @@ fn none(_: f64, _: &[f64; 2], _: &[f64; 1]) -> [f64; 0] {
     []
 }
 
+type Inputs = fn(f64, &[f64; 2], &[f64; 1]) -> [f64; 0];
+
 /// The pendulum up to t = 1, whose error is how far ξ is from 7.
-fn problem() -> Problem<'static, Pendulum, fn(f64, &[f64; 2], &[f64; 1]) -> [f64; 0]> {
+fn problem() -> Problem<'static, Pendulum, Inputs> {
     let (x, xi) = PENDULUM.start();
     Problem {
         system: Counted::new(&PENDULUM),

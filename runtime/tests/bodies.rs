@@ -184,7 +184,9 @@ fn a_step_of_zero_changes_nothing() {
         }
     }
     assert!(there_and_back(&top, &Lgvi, 0.0, 1) < 2e-15);
+    assert!(there_and_back(&top, &Gauss4, 0.0, 1) < 2e-15);
     assert!(there_and_back(&top, &Gauss6, 0.0, 1) < 2e-15);
+    assert!(there_and_back(&top, &Slide, 0.0, 1) < 2e-15);
     assert!(there_and_back(&top, &Buss::Fourth, 0.0, 1) < 2e-15);
     assert!(there_and_back(&Spin(top), &Free, 0.0, 1) < 2e-15);
 }
@@ -238,6 +240,93 @@ fn steps_beyond_convergence_are_errors() {
             matches!(refused, Err(StepError::NotConverged { .. })),
             "{refused:?}"
         );
+    }
+}
+
+/// Steps of any method for bodies that are far too long, or none at all.
+fn overstep<Sys, M>(system: &Sys, method: &M) -> u32
+where
+    Sys: System<Scalar = f64>,
+    M: Method<Sys>,
+{
+    let none = |_, _: &_, _: &_| system.zero_inputs();
+    let mut refused = 0;
+    for h in [1.0, 1e3, 1e80, 1e160, 1e300, f64::INFINITY, f64::NAN] {
+        let mut state = State::start(system);
+        for _ in 0..20 {
+            let outcome = hamel::step(system, method, &mut state, h, &none);
+            // A step is taken whole or not at all.
+            assert!(state.is_finite(), "h = {h}");
+            match outcome {
+                Ok(()) => assert!(system.constraint_norm(&state.x) < 1e-13, "h = {h}"),
+                Err(StepError::NonFinite { .. } | StepError::NotConverged { .. }) => {
+                    refused += 1;
+                    break;
+                }
+                Err(other) => panic!("h = {h}: {other}"),
+            }
+        }
+    }
+    refused
+}
+
+#[test]
+fn steps_far_too_long_end_on_the_manifold_or_in_a_typed_error() {
+    // Infinite steps and steps of NaN are refused by all of them.
+    for case in ["heavy-top-benchmark-150", "kovalevskaya-top"] {
+        let mut body = Reference::read(case).body();
+        for stretch in [1.0, 1.3] {
+            body.inertia[0] *= stretch;
+            let top = Top(body.clone());
+            for scheme in SCHEMES {
+                for flow in [Flow::Exact, Flow::Turns, Flow::Pair, Flow::Axes] {
+                    let method = Splitting::with_flow(&top, scheme, flow);
+                    assert!(overstep(&top, &method) >= 2, "{scheme:?} {flow:?}");
+                }
+            }
+            assert!(overstep(&top, &Lgvi) >= 2);
+            assert!(overstep(&top, &Gauss4) >= 2);
+            assert!(overstep(&top, &Gauss6) >= 2);
+            assert!(overstep(&top, &Slide) >= 2);
+            for method in [
+                Buss::First,
+                Buss::Second,
+                Buss::AugmentedSecond,
+                Buss::Fourth,
+            ] {
+                assert!(overstep(&top, &method) >= 2, "{method:?}");
+            }
+            assert!(overstep(&Spin(top), &Free) >= 2);
+        }
+    }
+}
+
+/// At rest and without torque nothing moves, by any method and for any symmetry.
+#[test]
+fn spherical_and_symmetric_bodies_at_rest_or_hardly_moving_stay() {
+    let double = Reference::read("free-dzhanibekov-1e-3").body();
+    for moments in [[2.0; 3], [2.0, 2.0, 1.0], [1.0, 1.7, 2.4]] {
+        for velocity in [0.0, 5e-324, 1e-310, 1e-160] {
+            let mut body = double.clone();
+            for axis in 0..3 {
+                body.inertia[4 * axis] = moments[axis];
+            }
+            body.w0 = [velocity, -velocity, velocity];
+            let spin = Spin(Top(body.clone()));
+            let stays = |x: [f64; 9]| {
+                assert!(distance(x, body.r0) < 1e-15, "{moments:?} {velocity:e}");
+            };
+            for scheme in SCHEMES {
+                let method = Splitting::new(&spin, scheme);
+                stays(run(&spin, method, 10.0, 10).expect("a run").x);
+            }
+            stays(run(&spin, Free, 10.0, 10).expect("a run").x);
+            stays(run(&spin, Lgvi, 10.0, 10).expect("a run").x);
+            stays(run(&spin, Slide, 10.0, 10).expect("a run").x);
+            stays(run(&spin, Buss::Fourth, 10.0, 10).expect("a run").x);
+            stays(run(&spin, Gauss4, 10.0, 10).expect("a run").x);
+            stays(run(&spin, Gauss6, 10.0, 10).expect("a run").x);
+        }
     }
 }
 

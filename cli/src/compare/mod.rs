@@ -15,6 +15,7 @@ use hamel::adaptive::Adaptive;
 use hamel::methods::General;
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::program::structure::Structure;
+use hamel_report::auto;
 use hamel_report::counted::Counted;
 use hamel_report::data::{Case, Choice, Kind, Machine, Report};
 use hamel_report::entry::Entry;
@@ -268,7 +269,7 @@ fn best(methods: &[Named]) -> &Named {
 fn choice(structure: &Structure) -> Choice {
     let choice = choose(structure, None);
     Choice {
-        method: choice.method.into(),
+        method: auto::entry(choice.method),
         reason: choice.reason.into(),
     }
 }
