@@ -301,7 +301,8 @@ fn steps_far_too_long_end_on_the_manifold_or_in_a_typed_error() {
     }
 }
 
-/// At rest and without torque nothing moves, by any method and for any symmetry.
+/// At rest and without torque nothing moves, by any method and for any symmetry. The closed form of a body
+/// without symmetry takes R apart and builds it again, up to 110 times here, to a last place each.
 #[test]
 fn spherical_and_symmetric_bodies_at_rest_or_hardly_moving_stay() {
     let double = Reference::read("free-dzhanibekov-1e-3").body();
@@ -313,19 +314,23 @@ fn spherical_and_symmetric_bodies_at_rest_or_hardly_moving_stay() {
             }
             body.w0 = [velocity, -velocity, velocity];
             let spin = Spin(Top(body.clone()));
-            let stays = |x: [f64; 9]| {
-                assert!(distance(x, body.r0) < 1e-15, "{moments:?} {velocity:e}");
+            let stays = |name: &str, state: Result<State<Spin<Top<f64>>>, StepError>| {
+                let off = distance(state.expect(name).x, body.r0);
+                assert!(
+                    off < 110.0 * f64::EPSILON,
+                    "{name} {moments:?} {velocity:e}: {off:e}"
+                );
             };
             for scheme in SCHEMES {
                 let method = Splitting::new(&spin, scheme);
-                stays(run(&spin, method, 10.0, 10).expect("a run").x);
+                stays(&format!("{scheme:?}"), run(&spin, method, 10.0, 10));
             }
-            stays(run(&spin, Free, 10.0, 10).expect("a run").x);
-            stays(run(&spin, Lgvi, 10.0, 10).expect("a run").x);
-            stays(run(&spin, Slide, 10.0, 10).expect("a run").x);
-            stays(run(&spin, Buss::Fourth, 10.0, 10).expect("a run").x);
-            stays(run(&spin, Gauss4, 10.0, 10).expect("a run").x);
-            stays(run(&spin, Gauss6, 10.0, 10).expect("a run").x);
+            stays("free", run(&spin, Free, 10.0, 10));
+            stays("LGVI", run(&spin, Lgvi, 10.0, 10));
+            stays("slide", run(&spin, Slide, 10.0, 10));
+            stays("Buss", run(&spin, Buss::Fourth, 10.0, 10));
+            stays("Gauss 4", run(&spin, Gauss4, 10.0, 10));
+            stays("Gauss 6", run(&spin, Gauss6, 10.0, 10));
         }
     }
 }
