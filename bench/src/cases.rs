@@ -8,6 +8,7 @@ use hamel::{Canonical, Split, State, System, so3};
 use hamel_cases::case::Inputs;
 use hamel_cases::models::CHOICES;
 use hamel_cases::{Case, Measure, bodies, mechanisms};
+use hamel_report::auto;
 use hamel_report::counted::Counted;
 use hamel_report::data::{self, Choice, Drift};
 use hamel_report::problem::{Problem, Quantities};
@@ -194,7 +195,7 @@ impl Job {
             title: solution.text("title").to_string(),
             reference: "a solution in 240-bit arithmetic".into(),
             auto: choice.map(|(_, method, reason)| Choice {
-                method: (*method).into(),
+                method: auto::entry(method),
                 reason: (*reason).into(),
             }),
             ..data::Case::default()

@@ -6,7 +6,7 @@ use hamel_bench::output;
 use hamel_bench::peers::{Peers, mujoco};
 use hamel_bench::runner::{BenchError, Effort};
 use hamel_report::data::{Machine, Report};
-use hamel_report::json;
+use hamel_report::{auto, json};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -93,6 +93,9 @@ fn run(arguments: &Arguments) -> Result<(), BenchError> {
 fn written(report: &Report, arguments: &Arguments, root: &Path) -> Result<(), BenchError> {
     for path in output::write(report, &arguments.out)? {
         anstream::println!("wrote {}", path.display());
+    }
+    if let Some(verdict) = auto::verdict(report) {
+        anstream::println!("{verdict}");
     }
     if arguments.cases.is_empty() {
         output::rewrite(report, &root.join("README.md"))?;

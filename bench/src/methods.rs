@@ -1,13 +1,14 @@
 //! The table of methods: one line each, in tables by what they need of a system.
 
+use hamel::adaptive::Adaptive;
 use hamel::methods::{
     BackwardEuler, Buss, Cf4, ForwardEuler, Gauss4, Gauss6, Lgvi, Rk4, Rk4Added, Rk4Projected,
     Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Slide, Splitting, free,
 };
-use hamel::{Canonical, Split, State, System};
-use hamel_report::counted::Counted;
+use hamel::{Canonical, Split, System};
 use hamel_report::data::Kind;
-use hamel_report::problem::{Entry, Outcome, Problem, Watch};
+use hamel_report::entry::{Entry, Outcome, Watch};
+use hamel_report::problem::Problem;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -24,11 +25,15 @@ where
     Sys: System<Scalar = f64>,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
-    table! { problem;
+    let mut entries = table! { problem;
         "rkmk4" Method Rkmk4;
         "cf4" Method Cf4;
         "rkmk54" Method Rkmk54;
         "rkmk8" Method Rkmk8;
+    };
+    entries.push(problem.controlled("rkmk54 adaptive", 5, Adaptive::rkmk54));
+    entries.push(problem.controlled("rkmk8 adaptive", 8, Adaptive::rkmk8));
+    entries.extend(table! { problem;
         "rk4" Baseline Rk4 { lambda: 0.0 };
         "rk4, λ = 10/s" Baseline Rk4 { lambda: 10.0 };
         "rk4-projected" Baseline Rk4Projected;
@@ -36,7 +41,8 @@ where
         "euler" Baseline ForwardEuler;
         "semi-implicit-euler" Baseline SemiImplicitEuler;
         "backward-euler" Baseline BackwardEuler;
-    }
+    });
+    entries
 }
 
 /// Methods that step momenta.
@@ -57,13 +63,14 @@ where
     Sys: Split<Scalar = f64>,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
-    let mut entries = vec![
-        kicked(problem, "splitting2", Scheme::Strang),
-        kicked(problem, "splitting", Scheme::Nystrom4),
-        kicked(problem, "splitting6", Scheme::Nystrom6),
-        kicked(problem, "suzuki", Scheme::Suzuki4),
-        kicked(problem, "kahan-li", Scheme::KahanLi6),
-    ];
+    let kicks = |scheme| Splitting::new(&problem.system, scheme);
+    let mut entries = table! { problem;
+        "splitting2" Method kicks(Scheme::Strang);
+        "splitting" Method kicks(Scheme::Nystrom4);
+        "splitting6" Method kicks(Scheme::Nystrom6);
+        "suzuki" Method kicks(Scheme::Suzuki4);
+        "kahan-li" Method kicks(Scheme::KahanLi6);
+    };
     if Sys::FREE {
         entries.push(closed(problem));
     }
@@ -76,46 +83,6 @@ where
         "buss4" Baseline Buss::Fourth;
     });
     entries
-}
-
-/// Splitting, with the force at the end of a step used for the start of the next.
-fn kicked<'p, 'a, Sys, U>(problem: &'p Problem<'a, Sys, U>, name: &str, scheme: Scheme) -> Entry<'p>
-where
-    Sys: Split<Scalar = f64>,
-    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-{
-    let method = Splitting::new(&problem.system, scheme);
-    let run = move |steps: u64, until: f64, part: u64, watch: &mut dyn FnMut(&State<_>)| {
-        let mut state = problem.start();
-        let h = until / steps as f64;
-        method
-            .run(&problem.system, &mut state, h, part, &problem.inputs, watch)
-            .map(|()| state)
-    };
-    Entry::new(
-        name,
-        Kind::Method,
-        Some(scheme.order()),
-        move |steps, until, watch: Watch| {
-            problem.system.reset();
-            let deviation = problem.deviation();
-            let state = run(steps, until, steps, &mut |state: &State<
-                Counted<'a, Sys>,
-            >| {
-                watch(deviation(&state.x, &state.xi));
-            });
-            Outcome {
-                evaluations: Some(problem.system.evaluations()),
-                error: state.as_ref().map_or(f64::NAN, |end| problem.judge(end)),
-                failure: state.err().map(|error| error.to_string()),
-            }
-        },
-        move |steps, part| {
-            let begin = Instant::now();
-            black_box(run(steps, problem.until, part, &mut |_| {}).ok()?);
-            Some(begin.elapsed().as_secs_f64())
-        },
-    )
 }
 
 /// The closed form: one evaluation, whatever the number of steps.
@@ -143,6 +110,7 @@ where
                 evaluations: Some(0),
                 error: end.as_ref().map_or(f64::NAN, |end| problem.judge(end)),
                 failure: end.err().map(|error| error.to_string()),
+                statistics: None,
             }
         },
         move |steps, part| {

@@ -10,7 +10,8 @@ mod rapier;
 use crate::runner::{BenchError, Runner};
 use hamel::System;
 use hamel_report::data::{Case, MethodRuns, Missing, Peer};
-use hamel_report::problem::{Entry, Problem};
+use hamel_report::entry::Entry;
+use hamel_report::problem::Problem;
 use serde::Deserialize;
 
 /// What other programs gave.

@@ -3,14 +3,18 @@
 use crate::peers::Peers;
 use hamel_report::data::{Case, Drift, Kind};
 use hamel_report::drift::drift;
+use hamel_report::entry::Entry;
 use hamel_report::measure::{Plan, measure};
-use hamel_report::problem::Entry;
 use hamel_report::solution::{Solution, SolutionError};
 use std::fmt;
 
 /// A number of steps that is doubled again and again.
 const COARSEST: u64 = 10;
 const DOUBLINGS: u32 = 14;
+/// Errors that steps may make where they are chosen by it.
+const TOLERANCES: [f64; 11] = [
+    1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13,
+];
 /// Every timing takes at least so long, in s.
 const LEAST: f64 = 3e-4;
 /// Errors below this are rounding.
@@ -66,6 +70,7 @@ impl Runner<'_> {
     pub fn entries(&mut self, entries: &[Entry], long: Option<f64>) {
         let plan = Plan {
             steps: Plan::doublings(COARSEST, DOUBLINGS),
+            tolerances: TOLERANCES.to_vec(),
             repeats: self.effort.repeats,
             least: LEAST,
             floor: FLOOR,
@@ -78,7 +83,8 @@ impl Runner<'_> {
         if let (Some(step), true) = (long, self.effort.long) {
             let ours = entries.iter().filter(|entry| entry.kind != Kind::Peer);
             for entry in ours {
-                self.drifts.push(drift(&self.case.name, entry, step, LONG));
+                self.drifts
+                    .extend(drift(&self.case.name, entry, step, LONG));
             }
         }
     }

@@ -305,4 +305,23 @@ where
             Stepper::Buss(method) => method.step(system, state, h, inputs),
         }
     }
+
+    fn follow<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<Sys::Chart>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Vec<f64>, &Vec<f64>) -> Sys::Inputs,
+    {
+        match self {
+            Stepper::Splitting(method) => method.follow(system, state, h, inputs, force),
+            Stepper::Lgvi => Lgvi.follow(system, state, h, inputs, force),
+            Stepper::Buss(method) => method.follow(system, state, h, inputs, force),
+            _ => self.step(system, state, h, inputs),
+        }
+    }
 }

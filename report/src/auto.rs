@@ -1,10 +1,19 @@
 //! How good the method is that the structure of a system chooses.
 
-use crate::data::{Case, Kind, MethodRun, MethodRuns};
+use crate::data::{Case, Kind, MethodRun, MethodRuns, Report};
 use crate::work::{Work, work};
+use std::fmt::Write;
 
 /// The error at which methods are compared.
 pub const TARGET: f64 = 1e-9;
+
+/// The entry of a comparison that runs as `auto` does: methods that can choose their steps do.
+pub fn entry(method: &str) -> String {
+    match method {
+        "rkmk54" | "rkmk8" => format!("{method} adaptive"),
+        other => other.to_string(),
+    }
+}
 
 /// The wall time in µs in which a method reaches the [`TARGET`].
 pub fn micros(method: &MethodRuns) -> Work {
@@ -35,10 +44,62 @@ pub fn ratio(case: &Case) -> Option<f64> {
     Some(micros(chosen).value()? / best.value()?)
 }
 
+/// The chosen method may take so many times the time of the fastest.
+pub const BAR: f64 = 2.0;
+
+/// How the choices did over all cases, in words: which, if any, are beyond the [`BAR`], and which cannot be
+/// judged. `None` where nothing was chosen.
+pub fn verdict(report: &Report) -> Option<String> {
+    let chosen: Vec<&Case> = report
+        .cases
+        .iter()
+        .filter(|case| case.auto.is_some())
+        .collect();
+    if chosen.is_empty() {
+        return None;
+    }
+    let judged: Vec<(&Case, f64)> = chosen
+        .iter()
+        .filter_map(|case| Some((*case, ratio(case)?)))
+        .collect();
+    let mut text = match judged.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((worst, most)) => format!(
+            "To an error of {TARGET:.0e} the method that `auto` takes needs at most {most:.1} times the time of the \
+             fastest method measured, over {} of {} cases; the most is that of {}.",
+            judged.len(),
+            chosen.len(),
+            worst.name
+        ),
+        None => format!("No case was brought to an error of {TARGET:.0e} by the method of `auto`."),
+    };
+    let beyond = judged.iter().filter(|(_, ratio)| *ratio > BAR);
+    let beyond: Vec<&str> = beyond.map(|(case, _)| case.name.as_str()).collect();
+    let _ = match beyond[..] {
+        [] => write!(text, " It is never more than {BAR} times slower."),
+        _ => write!(
+            text,
+            " It is more than {BAR} times slower in: {}.",
+            beyond.join(", ")
+        ),
+    };
+    for case in chosen.iter().filter(|case| ratio(case).is_none()) {
+        let why = match fastest(case) {
+            None => "no method",
+            Some(_) => "other methods, but not that of `auto`,",
+        };
+        let _ = write!(
+            text,
+            " {}: {why} reached {TARGET:.0e} where times were measured.",
+            case.name
+        );
+    }
+    Some(text)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{fastest, ratio};
-    use crate::data::{Case, Choice, Kind, MethodRun, MethodRuns};
+    use super::{fastest, ratio, verdict};
+    use crate::data::{Case, Choice, Kind, MethodRun, MethodRuns, Report};
 
     fn method(name: &str, kind: Kind, seconds: f64) -> MethodRuns {
         let run = |steps: u64, error: f64| MethodRun {
@@ -55,9 +116,10 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_baseline_is_not_the_fastest_and_the_ratio_is_of_times() {
-        let case = Case {
+    /// A slow method beside a fast one, the slow one chosen.
+    fn case(name: &str, slow: f64) -> Case {
+        Case {
+            name: name.into(),
             auto: Some(Choice {
                 method: "slow".into(),
                 reason: String::new(),
@@ -65,16 +127,55 @@ mod tests {
             methods: vec![
                 method("baseline", Kind::Baseline, 1e-7),
                 method("fast", Kind::Method, 1e-6),
-                method("slow", Kind::Method, 3e-6),
+                method("slow", Kind::Method, slow),
             ],
             ..Case::default()
-        };
+        }
+    }
+
+    #[test]
+    fn a_baseline_is_not_the_fastest_and_the_ratio_is_of_times() {
+        let case = case("top", 3e-6);
         assert_eq!(
             fastest(&case).map(|(method, _)| &*method.method),
             Some("fast")
         );
         let ratio = ratio(&case).expect("both got there");
         assert!((ratio - 3.0).abs() < 1e-12, "{ratio}");
+    }
+
+    #[test]
+    fn the_verdict_names_what_is_too_slow_and_what_cannot_be_judged() {
+        let of = |cases: Vec<Case>| {
+            verdict(&Report {
+                cases,
+                ..Report::default()
+            })
+        };
+        assert_eq!(of(vec![Case::default()]), None);
+        let good = of(vec![case("a", 1.5e-6), case("b", 1e-6)]).expect("a verdict");
+        assert!(good.contains("at most 1.5 times"), "{good}");
+        assert!(
+            good.contains("2 of 2 cases; the most is that of a."),
+            "{good}"
+        );
+        assert!(good.contains("never more than 2 times"), "{good}");
+        let mut far = case("far", 1e-6);
+        for method in &mut far.methods {
+            method.runs.truncate(1);
+        }
+        let mut lame = case("lame", 1e-6);
+        lame.methods[2].runs.truncate(1);
+        let bad = of(vec![case("a", 1.5e-6), case("slow", 3e-6), far, lame]).expect("a verdict");
+        for part in [
+            "at most 3.0 times",
+            "2 of 4 cases",
+            "more than 2 times slower in: slow.",
+            "far: no method reached",
+            "lame: other methods, but not that of `auto`, reached",
+        ] {
+            assert!(bad.contains(part), "{part}: {bad}");
+        }
     }
 
     #[test]

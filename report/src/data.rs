@@ -1,5 +1,6 @@
 //! The results of a comparison, as they stand in JSON.
 
+use crate::entry::Division;
 use serde::{Deserialize, Serialize};
 
 /// A whole report.
@@ -107,6 +108,12 @@ pub struct MethodRuns {
 pub struct MethodRun {
     /// Number of steps.
     pub steps: u64,
+    /// The error that a step may make, where steps are chosen by it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// Attempts at steps whose error was too large.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rejected: Option<u64>,
     /// Evaluations of forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub evaluations: Option<u64>,
@@ -131,6 +138,12 @@ pub struct MethodRun {
 }
 
 impl MethodRun {
+    /// How the run was divided into steps.
+    pub fn division(&self) -> Division {
+        let steps = Division::Steps(self.steps);
+        self.tolerance.map_or(steps, Division::Tolerance)
+    }
+
     /// Wall time of a step in s.
     pub fn seconds_per_step(&self) -> Option<f64> {
         self.seconds.map(|seconds| seconds / self.steps as f64)

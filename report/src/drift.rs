@@ -1,29 +1,34 @@
 //! Long runs: whether what is conserved drifts away, or only swings.
 
 use crate::data::{Drift, kept};
-use crate::problem::{Entry, Worst};
+use crate::entry::{Division, Entry, Worst};
 
 /// Windows of a run.
 pub const WINDOWS: u64 = 100;
 
-/// Runs so many steps of one length, and keeps the largest deviations of each window.
-pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Drift {
+/// Runs so many steps of one length, and keeps the largest deviations of each window; `None` for a method
+/// that chooses its steps.
+pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Option<Drift> {
     let length = (steps / WINDOWS).max(1);
     let mut worst = Worst::default();
     let mut window = Worst::default();
     let mut energy = Vec::new();
     // The first state is the start itself.
     let mut count = 0_u64;
-    let outcome = entry.run(steps, step * steps as f64, &mut |deviation| {
-        worst.take(deviation);
-        window.take(deviation);
-        if count > 0 && count.is_multiple_of(length) {
-            energy.extend(kept(window.energy));
-            window = Worst::default();
-        }
-        count += 1;
-    });
-    Drift {
+    let outcome = entry.run(
+        Division::Steps(steps),
+        step * steps as f64,
+        &mut |deviation| {
+            worst.take(deviation);
+            window.take(deviation);
+            if count > 0 && count.is_multiple_of(length) {
+                energy.extend(kept(window.energy));
+                window = Worst::default();
+            }
+            count += 1;
+        },
+    )?;
+    Some(Drift {
         case: case.to_string(),
         method: entry.method.clone(),
         step,
@@ -32,14 +37,14 @@ pub fn drift(case: &str, entry: &Entry, step: f64, steps: u64) -> Drift {
         momentum: kept(worst.momentum),
         defect: kept(worst.defect),
         failure: outcome.failure,
-    }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::drift;
     use crate::data::Kind;
-    use crate::problem::{Deviation, Entry, Outcome};
+    use crate::entry::{Deviation, Entry, Outcome};
 
     #[test]
     fn windows_hold_their_largest_deviations() {
@@ -56,10 +61,11 @@ mod tests {
                 evaluations: None,
                 error: 0.0,
                 failure: None,
+                statistics: None,
             }
         };
         let entry = Entry::new("m", Kind::Method, None, run, |_, _| None);
-        let drift = drift("c", &entry, 0.1, 200);
+        let drift = drift("c", &entry, 0.1, 200).expect("equal steps");
         assert_eq!(drift.energy.len(), 100);
         assert_eq!(drift.energy[..2], [2.0, 4.0]);
         assert_eq!((drift.momentum, drift.defect), (Some(0.5), None));

@@ -3,8 +3,10 @@
 //! | module | owns |
 //! |---|---|
 //! | [`auto`] | how good the chosen method is |
+//! | [`controlled`] | runs by error control as a table |
 //! | [`counted`] | a system that counts the evaluations of its forces |
-//! | [`problem`] | one system with its start, its errors and what it conserves; methods as [`Entry`](problem::Entry) |
+//! | [`problem`] | one system with its start, its errors and what it conserves |
+//! | [`entry`] | a method on a problem, in equal steps or by error control |
 //! | [`measure`] | the loop: errors and drifts once, times interleaved and as medians |
 //! | [`drift`] | one long run of one method |
 //! | [`solution`] | reference solutions as files |
@@ -21,9 +23,11 @@
 //! `maud` (MIT or Apache-2.0), which escapes whatever is inserted.
 
 pub mod auto;
+pub mod controlled;
 pub mod counted;
 pub mod data;
 pub mod drift;
+pub mod entry;
 pub mod json;
 pub mod markdown;
 pub mod measure;

@@ -1,9 +1,9 @@
 //! Reports as Markdown tables.
 
-use crate::auto;
 use crate::data::{Case, Kind, MethodRun, MethodRuns, Report};
 use crate::number::{digits, error, grouped, short};
 use crate::work::{TARGETS, Work, work};
+use crate::{auto, controlled};
 use std::fmt::Write;
 
 /// The whole report; `picture` gives the file of a case's picture, where there is one.
@@ -24,6 +24,9 @@ pub fn write(report: &Report, picture: impl Fn(&Case) -> Option<String>) -> Stri
             let _ = writeln!(text, "# {}\n{}", peer.name, peer.start);
         }
         text.push_str("```\n");
+    }
+    if let Some(verdict) = auto::verdict(report) {
+        let _ = write!(text, "\n## What `auto` takes\n\n{verdict}\n");
     }
     for entry in &report.cases {
         let _ = write!(text, "\n## {}\n\n", cell(&entry.title));
@@ -130,6 +133,13 @@ pub fn case(case: &Case) -> String {
     table(&mut text, &head);
     for method in &case.methods {
         row(&mut text, &best(method, case.until, timed));
+    }
+    if let Some((head, rows)) = controlled::table(case) {
+        text.push('\n');
+        table(&mut text, &head);
+        for cells in rows {
+            row(&mut text, &cells);
+        }
     }
     for missing in &case.missing {
         let _ = write!(

@@ -4,21 +4,24 @@
 //! noisy, in phases longer than a run. Every method is therefore timed once at every step before any
 //! is timed again, and the median of the repeats is kept; ratios of such medians are steadier than
 //! the times themselves. What is timed is the first steps of a run, at most [`PART`] of them, and the
-//! time of the run is that in proportion: a long run would be interrupted too often to be timed.
+//! time of the run is that in proportion (of steps, or of evaluations where steps differ): a long run would
+//! be interrupted too often to be timed.
 
 use crate::data::{Case, MethodRun, MethodRuns, kept};
-use crate::problem::{Entry, Worst};
+use crate::entry::{Division, Entry, Worst};
 
 /// How to measure.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Numbers of steps, ascending.
     pub steps: Vec<u64>,
+    /// Tolerances of methods that choose their steps, descending.
+    pub tolerances: Vec<f64>,
     /// How often each run is timed; 0 for no times at all.
     pub repeats: u32,
     /// A run is repeated within one timing until it has taken so long, in s.
     pub least: f64,
-    /// A method is not run with shorter steps once its error is below this, or is no longer
+    /// A method is not run more finely once its error is below this, or is no longer
     /// reduced: what follows is rounding.
     pub floor: f64,
 }
@@ -64,7 +67,7 @@ pub fn measure(case: &mut Case, entries: &[Entry], plan: &Plan, tick: &mut dyn F
             step(tick);
             for (run, times) in method.runs.iter().zip(times) {
                 if run.failure.is_none() {
-                    times.extend(time(entry, run.steps, plan.least));
+                    times.extend(time(entry, run, plan.least));
                 }
             }
         }
@@ -77,16 +80,28 @@ pub fn measure(case: &mut Case, entries: &[Entry], plan: &Plan, tick: &mut dyn F
     case.methods.extend(methods);
 }
 
-/// One watched run for each number of steps.
+/// One watched run for each number of steps, or each tolerance.
 fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
     let mut runs: Vec<MethodRun> = Vec::new();
     let mut stalled = 0;
     let mut last = f64::INFINITY;
-    for &steps in &plan.steps {
+    for division in entry.divisions(&plan.steps, &plan.tolerances) {
         let mut worst = Worst::default();
-        let outcome = entry.run(steps, until, &mut |deviation| worst.take(deviation));
+        let Some(outcome) = entry.run(division, until, &mut |deviation| worst.take(deviation))
+        else {
+            continue;
+        };
+        let (steps, tolerance) = match division {
+            Division::Steps(steps) => (steps, None),
+            Division::Tolerance(tolerance) => {
+                let taken = outcome.statistics.map_or(0, |counts| counts.accepted);
+                (taken, Some(tolerance))
+            }
+        };
         runs.push(MethodRun {
             steps,
+            tolerance,
+            rejected: outcome.statistics.map(|counts| counts.rejected),
             evaluations: outcome.evaluations.filter(|_| outcome.failure.is_none()),
             error: kept(outcome.error),
             energy: kept(worst.energy),
@@ -111,18 +126,17 @@ fn errors(entry: &Entry, until: f64, plan: &Plan) -> Vec<MethodRun> {
 }
 
 /// The mean time of as many runs as fill the least time, from that of their first steps.
-fn time(entry: &Entry, steps: u64, least: f64) -> Option<f64> {
-    let part = steps.min(PART);
-    let (mut sum, mut count) = (0.0, 0.0);
+fn time(entry: &Entry, run: &MethodRun, least: f64) -> Option<f64> {
+    let (mut sum, mut whole, mut count) = (0.0, 0.0, 0.0);
     while sum < least {
-        sum += entry.clock(steps, part)?;
-        count += 1.0;
+        let (seconds, all) = entry.clock(run, PART)?;
+        (sum, whole, count) = (sum + seconds, whole + all, count + 1.0);
         // A clock that does not advance must not hold up the rest.
         if count > 1e5 {
             break;
         }
     }
-    (count > 0.0).then_some(sum / count * (steps as f64 / part as f64))
+    (count > 0.0).then_some(whole / count)
 }
 
 /// The middle value, or the mean of the two in the middle.
@@ -141,7 +155,8 @@ pub fn median(mut values: Vec<f64>) -> Option<f64> {
 mod tests {
     use super::{Plan, measure, median};
     use crate::data::{Case, Kind};
-    use crate::problem::{Deviation, Entry, Outcome};
+    use crate::entry::{Deviation, Entry, Outcome};
+    use hamel::adaptive::Statistics;
 
     /// A method with error = floor + hᵖ, whose clock says 1 µs a step.
     fn entry<'a>(name: &str, p: i32, floor: f64) -> Entry<'a> {
@@ -162,6 +177,7 @@ mod tests {
                     evaluations: Some(3 * steps),
                     error: floor + (steps as f64).powi(-p),
                     failure: (steps == 1).then(|| "too long".to_string()),
+                    statistics: None,
                 }
             },
             |_, part| Some(part as f64 * 1e-6),
@@ -173,6 +189,7 @@ mod tests {
         let entries = [entry("a", 4, 0.0), entry("b", 4, 1e-7)];
         let plan = Plan {
             steps: Plan::doublings(1, 12),
+            tolerances: Vec::new(),
             repeats: 3,
             least: 1e-3,
             floor: 1e-9,
@@ -201,6 +218,54 @@ mod tests {
         assert_eq!(a.runs[0].failure.as_deref(), Some("too long"));
         assert_eq!(ticks.len(), 8);
         assert_eq!(ticks.last(), Some(&(7, 8)));
+    }
+
+    #[test]
+    fn the_time_of_a_controlled_run_is_in_proportion_of_evaluations() {
+        // 1/tolerance steps of which every tenth is tried twice, 5 evaluations an attempt, 1 µs an evaluation;
+        // 3 evaluations before the first step.
+        let evaluations = |steps: u64| 3 + 5 * (steps + steps / 10);
+        let run = move |tolerance: f64, _: f64, watch: crate::entry::Watch| {
+            watch(Deviation {
+                energy: tolerance,
+                momentum: f64::NAN,
+                defect: 0.0,
+            });
+            let accepted = (1.0 / tolerance).round() as u64;
+            let evaluations = evaluations(accepted);
+            Outcome {
+                evaluations: Some(evaluations),
+                error: 7.0 * tolerance,
+                failure: None,
+                statistics: Some(Statistics {
+                    accepted,
+                    rejected: accepted / 10,
+                    evaluations,
+                }),
+            }
+        };
+        let clock = move |tolerance: f64, part: f64| {
+            let count = evaluations((part / tolerance).round() as u64);
+            Some((count as f64 * 1e-6, count))
+        };
+        let entries = [Entry::controlled("pair", 5, run, clock)];
+        let plan = Plan {
+            steps: vec![1, 2],
+            tolerances: vec![1e-2, 1e-4, 1e-6],
+            repeats: 1,
+            least: 1e-6,
+            floor: 1e-3,
+        };
+        let mut case = Case::default();
+        measure(&mut case, &entries, &plan, &mut |_, _| ());
+        let runs = &case.methods[0].runs;
+        // The error 7e-4 is below the floor.
+        let tolerances: Vec<_> = runs.iter().map(|run| run.tolerance).collect();
+        assert_eq!(tolerances, [Some(1e-2), Some(1e-4)]);
+        assert_eq!((runs[1].steps, runs[1].rejected), (10_000, Some(1000)));
+        assert_eq!(runs[1].evaluations, Some(55_003));
+        assert_eq!(runs[1].energy, Some(1e-4));
+        assert_eq!(runs[1].seconds, Some(5.5e-2));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use crate::markdown::{how, name, worked};
 use crate::number::short;
 use crate::plot::{Figure, sheet};
 use crate::work::{TARGETS, work};
+use crate::{auto, controlled};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A picture with a name of its own.
@@ -52,6 +53,10 @@ pub fn write(report: &Report, figures: &[Option<Figure>], further: &[Picture]) -
                         }
                     }
                     (peers(report))
+                    @if let Some(verdict) = auto::verdict(report) {
+                        h2 { "What auto takes" }
+                        p { (verdict) }
+                    }
                     @for (index, case) in report.cases.iter().enumerate() {
                         (section(case, figure(index)))
                     }
@@ -99,6 +104,7 @@ fn section(case: &Case, figure: Option<&Figure>) -> Markup {
             }
             @if let Some(figure) = figure { (PreEscaped(figure.inline())) }
             (summary(case))
+            (tolerances(case))
             @for missing in &case.missing {
                 p.soft { code { (missing.method) } " was not run: " (missing.why) "." }
             }
@@ -127,6 +133,21 @@ fn summary(case: &Case) -> Markup {
                         @for target in TARGETS { td { (worked(work(&method.runs, target, evaluations))) } }
                         @for target in TARGETS { td { (worked(work(&method.runs, target, micros))) } }
                     }
+                }
+            }
+        }
+    }
+}
+
+/// What tolerances lead to, where methods choose their steps.
+fn tolerances(case: &Case) -> Markup {
+    html! {
+        @if let Some((head, rows)) = controlled::table(case) {
+            table {
+                caption { "steps chosen by their error" }
+                thead { tr { @for cell in &head { th scope="col" { (cell) } } } }
+                tbody {
+                    @for row in &rows { tr { @for cell in row { td { (cell) } } } }
                 }
             }
         }

@@ -1,8 +1,9 @@
-//! One motion to be computed, and methods that compute it.
+//! One motion to be computed, by methods in equal steps or by error control.
 
 use crate::counted::Counted;
 use crate::data::Kind;
-use crate::solution::largest;
+use crate::entry::{Deviation, Entry, Outcome, Watch};
+use hamel::adaptive::{Adaptive, Report};
 use hamel::{Method, State, StepError, System, integrate};
 use std::hint::black_box;
 use std::time::Instant;
@@ -34,80 +35,6 @@ pub type Judge<'a> = Box<dyn Fn(&[f64], &[f64]) -> f64 + 'a>;
 
 /// Numbers of (x, ξ).
 pub type Quantities<'a> = Box<dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a>;
-
-/// How far a state is from what is constant, relative.
-#[derive(Clone, Copy, Debug)]
-pub struct Deviation {
-    /// |T + V − E₀| over max(|E₀|, T₀), or over 1 where that is zero; NaN where nothing is conserved.
-    pub energy: f64,
-    /// Norm of the change of the momenta over their norm, or over 1 where that is zero; NaN where
-    /// there are none.
-    pub momentum: f64,
-    /// max |φ(x)|
-    pub defect: f64,
-}
-
-/// What a run came to.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// Evaluations of forces, where they can be counted.
-    pub evaluations: Option<u64>,
-    /// The error at the end; NaN where it was not reached.
-    pub error: f64,
-    /// Why the run ended early.
-    pub failure: Option<String>,
-}
-
-/// Called with every state after the first.
-pub type Watch<'w> = &'w mut dyn FnMut(Deviation);
-
-/// A run of so many steps up to a time, watched.
-type Run<'a> = Box<dyn Fn(u64, f64, Watch) -> Outcome + 'a>;
-
-/// The wall time of the first ones (second argument) of so many steps (first argument), unwatched, in
-/// s; `None` where it fails.
-type Clock<'a> = Box<dyn Fn(u64, u64) -> Option<f64> + 'a>;
-
-/// One method on one problem.
-pub struct Entry<'a> {
-    /// The method's name.
-    pub method: String,
-    /// What it is here.
-    pub kind: Kind,
-    /// Its order, where it has one.
-    pub order: Option<u32>,
-    run: Run<'a>,
-    clock: Clock<'a>,
-}
-
-impl<'a> Entry<'a> {
-    /// A method of any origin.
-    pub fn new(
-        method: &str,
-        kind: Kind,
-        order: Option<u32>,
-        run: impl Fn(u64, f64, Watch) -> Outcome + 'a,
-        clock: impl Fn(u64, u64) -> Option<f64> + 'a,
-    ) -> Self {
-        Entry {
-            method: method.to_string(),
-            kind,
-            order,
-            run: Box::new(run),
-            clock: Box::new(clock),
-        }
-    }
-
-    /// Runs so many steps up to a time, and shows every state.
-    pub fn run(&self, steps: u64, until: f64, watch: Watch) -> Outcome {
-        (self.run)(steps, until, watch)
-    }
-
-    /// The wall time of the first `part` of so many steps, in s.
-    pub fn clock(&self, steps: u64, part: u64) -> Option<f64> {
-        (self.clock)(steps, part)
-    }
-}
 
 impl<'a, Sys, U> Problem<'a, Sys, U>
 where
@@ -147,6 +74,30 @@ where
                 self.steps(&other, &mut state, part, until, |_| {}).ok()?;
                 black_box(&state);
                 Some(begin.elapsed().as_secs_f64())
+            },
+        )
+    }
+
+    /// This problem by a pair whose steps a tolerance chooses.
+    pub fn controlled<'p, const M: usize, const D: usize>(
+        &'p self,
+        name: &str,
+        order: u32,
+        pair: fn(f64) -> Adaptive<M, D>,
+    ) -> Entry<'p> {
+        Entry::controlled(
+            name,
+            order,
+            move |tolerance, until, watch| self.watched_by(&pair(tolerance), until, watch),
+            move |tolerance, part| {
+                let begin = Instant::now();
+                let mut state = black_box(self.start());
+                let until = self.until * part;
+                let statistics = pair(tolerance)
+                    .run(&self.system, &mut state, until, &self.inputs)
+                    .ok()?;
+                black_box(&state);
+                Some((begin.elapsed().as_secs_f64(), statistics.evaluations))
             },
         )
     }
@@ -196,6 +147,38 @@ where
                 f64::NAN
             },
             failure: result.err().map(|error| error.to_string()),
+            statistics: None,
+        }
+    }
+
+    /// Two runs of the same steps: one shows them, for which dense output may evaluate more, and one counts.
+    fn watched_by<const M: usize, const D: usize>(
+        &self,
+        method: &Adaptive<M, D>,
+        until: f64,
+        watch: Watch,
+    ) -> Outcome {
+        let deviation = self.deviation();
+        let shown = |report: Report<'_, Counted<'a, Sys>, D>| {
+            if let Report::Step(step) = report {
+                watch(deviation(&step.end().x, &step.end().xi));
+            }
+        };
+        let mut state = self.start();
+        // What fails here fails below as well.
+        let _ = method.integrate(&self.system, &mut state, until, &self.inputs, &[], shown);
+        let mut state = self.start();
+        self.system.reset();
+        let result = method.run(&self.system, &mut state, until, &self.inputs);
+        Outcome {
+            evaluations: Some(self.system.evaluations()),
+            error: if result.is_ok() {
+                self.judge(&state)
+            } else {
+                f64::NAN
+            },
+            failure: result.err().map(|error| error.to_string()),
+            statistics: result.ok(),
         }
     }
 
@@ -233,26 +216,6 @@ where
         let mut state = self.start();
         self.steps(method, &mut state, steps, self.until, |_| {})?;
         Ok((state.x.as_ref().to_vec(), state.xi.as_ref().to_vec()))
-    }
-}
-
-/// Largest deviations of a run so far.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Worst {
-    /// Of the energy.
-    pub energy: f64,
-    /// Of the momenta.
-    pub momentum: f64,
-    /// Of φ.
-    pub defect: f64,
-}
-
-impl Worst {
-    /// Takes a state into account; what is NaN stays so.
-    pub fn take(&mut self, deviation: Deviation) {
-        self.energy = largest([self.energy, deviation.energy]);
-        self.momentum = largest([self.momentum, deviation.momentum]);
-        self.defect = largest([self.defect, deviation.defect]);
     }
 }
 

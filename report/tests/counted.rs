@@ -1,10 +1,12 @@
 //! Counts are exact, and the wrapper changes nothing.
 
+use hamel::adaptive::Adaptive;
 use hamel::methods::{General, Rkmk4};
 use hamel::{Block, Canonical, Singular, Split, State, System, integrate, s1};
 use hamel_report::counted::Counted;
 use hamel_report::data::Kind;
-use hamel_report::problem::{Problem, Worst};
+use hamel_report::entry::{Division, Worst};
+use hamel_report::problem::Problem;
 
 /// A pendulum, l θ̈ = −g sin θ, on the circle.
 struct Pendulum {
@@ -142,31 +144,74 @@ fn runs_are_those_of_the_system_itself() {
     assert_eq!(counted.evaluations(), 400);
 }
 
-#[test]
-fn a_problem_gives_error_drift_and_count() {
+fn none(_: f64, _: &[f64; 2], _: &[f64; 1]) -> [f64; 0] {
+    []
+}
+
+type Inputs = fn(f64, &[f64; 2], &[f64; 1]) -> [f64; 0];
+
+/// The pendulum up to t = 1, whose error is how far ξ is from 7.
+fn problem() -> Problem<'static, Pendulum, Inputs> {
     let (x, xi) = PENDULUM.start();
-    let problem = Problem {
+    Problem {
         system: Counted::new(&PENDULUM),
         x,
         xi,
         until: 1.0,
-        inputs: |_, _: &_, _: &_| [],
+        inputs: none,
         error: Box::new(|_, xi| (xi[0] - 7.0).abs()),
         momenta: Box::new(|_, _| Vec::new()),
         conservative: true,
-    };
+    }
+}
+
+#[test]
+fn a_problem_gives_error_drift_and_count() {
+    let problem = problem();
     let entry = problem.by("rkmk4", Kind::Method, General::Rkmk4);
     let (_, end) = problem.end(&Rkmk4, 50).expect("a run");
     let mut worst = Worst::default();
     let mut states = 0;
-    let outcome = entry.run(50, 1.0, &mut |deviation| {
+    let watch = &mut |deviation| {
         worst.take(deviation);
         states += 1;
-    });
+    };
+    let outcome = entry
+        .run(Division::Steps(50), 1.0, watch)
+        .expect("equal steps");
     assert_eq!((outcome.evaluations, states), (Some(200), 51));
     assert_eq!(outcome.error, (end[0] - 7.0).abs());
     // The energy of RKMK4 at h = 0.02 changes by some 1e-6; there are no momenta.
     assert!(worst.energy > 0.0 && worst.energy < 1e-5, "{worst:?}");
     assert!(worst.momentum.is_nan() && worst.defect < 1e-15, "{worst:?}");
     assert_eq!(entry.order, Some(4));
+}
+
+#[test]
+fn runs_by_error_control_count_what_they_evaluate_and_refuse() {
+    const TOLERANCE: f64 = 1e-10;
+    let problem = problem();
+    let (order, controlled) = (8, problem.controlled("rkmk8", 8, Adaptive::rkmk8));
+    let mut state = State::start(&PENDULUM);
+    let alone = Adaptive::rkmk8(TOLERANCE)
+        .run(&PENDULUM, &mut state, 1.0, none)
+        .expect("a run");
+    let mut states = 0;
+    let outcome = controlled
+        .run(Division::Tolerance(TOLERANCE), 1.0, &mut |_| states += 1)
+        .expect("a tolerance");
+    assert_eq!(outcome.statistics, Some(alone));
+    assert_eq!(outcome.evaluations, Some(alone.evaluations));
+    assert_eq!(
+        (states, outcome.error),
+        (alone.accepted, (state.xi[0] - 7.0).abs())
+    );
+    assert_eq!(controlled.order, Some(order));
+    // A tolerance is no number of steps, for either kind of method.
+    let equal = problem.by("rkmk4", Kind::Method, Rkmk4);
+    let (steps, tolerance) = (Division::Steps(9), Division::Tolerance(TOLERANCE));
+    assert!(controlled.run(steps, 1.0, &mut |_| {}).is_none());
+    assert!(equal.run(tolerance, 1.0, &mut |_| {}).is_none());
+    assert_eq!(equal.divisions(&[9], &[TOLERANCE]), [steps]);
+    assert_eq!(controlled.divisions(&[9], &[TOLERANCE]), [tolerance]);
 }

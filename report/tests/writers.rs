@@ -17,7 +17,7 @@ fn report() -> Report {
         momentum: None,
         defect: Some(0.0),
         seconds: Some(1e-6 * steps as f64),
-        failure: None,
+        ..MethodRun::default()
     };
     let failed = MethodRun {
         steps: 10,

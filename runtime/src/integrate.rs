@@ -65,7 +65,8 @@ where
 /// The count of steps is |until − t| / |length| rounded up (a ratio within 1e-9 of a whole number is
 /// taken as that number), so that all steps are equal, the method keeps its order, and the last state
 /// is at `until` exactly. `inputs(t, x, ξ)` gives u and is called at the points that the method
-/// visits; `observe` is called with the first state and after every step.
+/// visits; `observe` is called with the first state and after every step. What a method evaluates at the end
+/// of a step and at the start of the next is evaluated once ([`Method::follow`]).
 ///
 /// # Errors
 /// [`StepError`]; `state` is then the last valid one, at which `observe` was called last.
@@ -91,8 +92,14 @@ where
     }
     let grid = Grid::new(state.t, until, length)?;
     observe(state);
+    let mut force = None;
     for index in 1..=grid.count {
-        step(system, &method, state, grid.step(), &inputs)?;
+        let next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
+        let (next, moved) = projected(system, next)?;
+        if moved {
+            force = None;
+        }
+        *state = next;
         state.t = grid.time(index);
         observe(state);
     }

@@ -3,6 +3,10 @@
 //! Lists shorter than the blocks say are treated up to the last complete block; a longer list keeps
 //! its tail. The integrators compare lengths before a step and return
 //! [`StepError::Shape`](crate::StepError::Shape).
+//!
+//! What moves x is inlined by force, down to the entries: the kinds of blocks are constants of a generated
+//! system, and a call passes matrices through memory, which costs a step of `Rkmk4` more than its
+//! accelerations.
 
 use crate::scalar::Scalar;
 use crate::store::add_scaled;
@@ -23,7 +27,7 @@ pub fn chart(blocks: &[Block]) -> usize {
 
 /// Moves x along the chart vector u: x + u (flat), turned by u (circle), q ⊗ exp(u) (quaternion),
 /// R exp(û) (rotation).
-#[inline]
+#[inline(always)]
 pub fn retract<S: Scalar>(blocks: &[Block], x: &mut [S], u: &[S]) {
     let (mut x, mut u) = (x, u);
     for block in blocks {
@@ -57,7 +61,7 @@ pub fn retract<S: Scalar>(blocks: &[Block], x: &mut [S], u: &[S]) {
 
 /// w ← u̇, the rate of the chart vector u at which x, moved along u, has the chart rate w:
 /// [`so3::dexpinv`] on quaternions and rotations; w itself elsewhere.
-#[inline]
+#[inline(always)]
 pub fn dexpinv<S: Scalar>(blocks: &[Block], u: &[S], w: &mut [S]) {
     let (mut u, mut w) = (u, w);
     for block in blocks {
@@ -78,7 +82,7 @@ pub fn dexpinv<S: Scalar>(blocks: &[Block], u: &[S], w: &mut [S]) {
 
 /// Removes what rounding adds across the manifold: unit norm (circle, quaternion), one Newton polar
 /// step (rotation). Flat blocks keep their values.
-#[inline]
+#[inline(always)]
 pub fn normalise<S: Scalar>(blocks: &[Block], x: &mut [S]) {
     let mut x = x;
     for block in blocks {

@@ -12,7 +12,7 @@ pub fn rate<S: Scalar>(p: Circle<S>, theta_dot: S) -> Circle<S> {
 }
 
 /// (cos u, sin u), u in rad.
-#[inline]
+#[inline(always)]
 pub fn exp<S: Scalar>(u: S) -> Circle<S> {
     let (sine, cosine) = u.sin_cos();
     [cosine, sine]
@@ -25,14 +25,14 @@ pub fn log<S: Scalar>(p: Circle<S>) -> S {
 }
 
 /// The point turned by u.
-#[inline]
+#[inline(always)]
 pub fn retract<S: Scalar>(p: Circle<S>, u: S) -> Circle<S> {
     let [c, s] = exp(u);
     [p[0] * c - p[1] * s, p[1] * c + p[0] * s]
 }
 
 /// p / |p|; NaN for p = 0.
-#[inline]
+#[inline(always)]
 pub fn normalise<S: Scalar>(p: Circle<S>) -> Circle<S> {
     let norm = squared_norm(p).sqrt();
     p.map(|component| component / norm)
@@ -51,7 +51,7 @@ pub fn defect<S: Scalar>(p: Circle<S>) -> S {
     (squared_norm(p) - S::from_f64(1.0)).abs()
 }
 
-#[inline]
+#[inline(always)]
 fn squared_norm<S: Scalar>(p: Circle<S>) -> S {
     p[0].mul_add(p[0], p[1] * p[1])
 }

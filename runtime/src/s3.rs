@@ -46,7 +46,7 @@ const TWICE_ARCTANGENT_RATIO: [f64; 7] = [
 pub type Quaternion<S> = [S; 4];
 
 /// The Hamilton product p ⊗ q.
-#[inline]
+#[inline(always)]
 pub fn product<S: Scalar>(p: Quaternion<S>, q: Quaternion<S>) -> Quaternion<S> {
     [
         p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
@@ -64,7 +64,7 @@ pub fn rate<S: Scalar>(q: Quaternion<S>, w: Vector<S>) -> Quaternion<S> {
 }
 
 /// The rotation by t = |u| about u: (cos(t/2), sin(t/2)/t u).
-#[inline]
+#[inline(always)]
 pub fn exp<S: Scalar>(u: Vector<S>) -> Quaternion<S> {
     let t2 = u[0].mul_add(u[0], u[1].mul_add(u[1], u[2] * u[2]));
     let [cosine, a] = by_series(t2, [HALF_COSINE, HALF_SINE_RATIO], || {
@@ -92,7 +92,7 @@ pub fn log<S: Scalar>(q: Quaternion<S>) -> Vector<S> {
 }
 
 /// The matrix of a unit quaternion.
-#[inline]
+#[inline(always)]
 pub fn to_matrix<S: Scalar>(q: Quaternion<S>) -> Matrix<S> {
     let (one, two) = (S::from_f64(1.0), S::from_f64(2.0));
     let [w, x, y, z] = q;
@@ -154,13 +154,13 @@ pub fn from_matrix<S: Scalar>(r: Matrix<S>) -> Quaternion<S> {
 }
 
 /// q ⊗ exp(u): q turned by u in its own (body) axes.
-#[inline]
+#[inline(always)]
 pub fn retract<S: Scalar>(q: Quaternion<S>, u: Vector<S>) -> Quaternion<S> {
     product(q, exp(u))
 }
 
 /// q / |q|; NaN for q = 0.
-#[inline]
+#[inline(always)]
 pub fn normalise<S: Scalar>(q: Quaternion<S>) -> Quaternion<S> {
     let norm = squared_norm(q).sqrt();
     q.map(|component| component / norm)
@@ -179,7 +179,7 @@ pub fn defect<S: Scalar>(q: Quaternion<S>) -> S {
     (squared_norm(q) - S::from_f64(1.0)).abs()
 }
 
-#[inline]
+#[inline(always)]
 fn squared_norm<S: Scalar>(q: Quaternion<S>) -> S {
     q[0].mul_add(q[0], q[1].mul_add(q[1], q[2].mul_add(q[2], q[3] * q[3])))
 }

@@ -55,7 +55,7 @@ const COTANGENT_RATIO: [f64; 7] = [
 
 /// Functions of t² by their series where all lanes allow it; elsewhere by `closed`, whose value is
 /// replaced by the series in the lanes with small t².
-#[inline]
+#[inline(always)]
 pub(crate) fn by_series<S: Scalar, const N: usize>(
     t2: S,
     coefficients: [[f64; 7]; N],
@@ -82,13 +82,13 @@ pub fn identity<S: Scalar>() -> Matrix<S> {
 }
 
 /// a · b
-#[inline]
+#[inline(always)]
 pub fn dot<S: Scalar>(a: Vector<S>, b: Vector<S>) -> S {
     a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
 }
 
 /// a × b = â b
-#[inline]
+#[inline(always)]
 pub fn cross<S: Scalar>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
     [
         a[1].mul_add(b[2], -(a[2] * b[1])),
@@ -105,7 +105,7 @@ pub fn hat<S: Scalar>(a: Vector<S>) -> Matrix<S> {
 }
 
 /// A B
-#[inline]
+#[inline(always)]
 pub fn product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
     from_fn(|k| {
         let (i, j) = (k / 3, k % 3);
@@ -117,7 +117,7 @@ pub fn product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
 }
 
 /// Aᵀ B
-#[inline]
+#[inline(always)]
 pub fn transpose_product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
     from_fn(|k| {
         let (i, j) = (k / 3, k % 3);
@@ -126,13 +126,13 @@ pub fn transpose_product<S: Scalar>(a: Matrix<S>, b: Matrix<S>) -> Matrix<S> {
 }
 
 /// A b; for a rotation, a vector of body axes in world axes.
-#[inline]
+#[inline(always)]
 pub fn apply<S: Scalar>(a: Matrix<S>, b: Vector<S>) -> Vector<S> {
     from_fn(|i| dot([a[3 * i], a[3 * i + 1], a[3 * i + 2]], b))
 }
 
 /// Aᵀ b; for a rotation, a vector of world axes in body axes.
-#[inline]
+#[inline(always)]
 pub fn apply_transpose<S: Scalar>(a: Matrix<S>, b: Vector<S>) -> Vector<S> {
     from_fn(|i| dot([a[i], a[3 + i], a[6 + i]], b))
 }
@@ -146,7 +146,7 @@ pub fn rate<S: Scalar>(r: Matrix<S>, w: Vector<S>) -> Matrix<S> {
 /// The rotation by |u| about u: exp(û) = I + a û + b û², a = sin t / t, b = 2 sin²(t/2) / t².
 ///
 /// b is not formed as (1 − cos t) / t², which cancels.
-#[inline]
+#[inline(always)]
 pub fn exp<S: Scalar>(u: Vector<S>) -> Matrix<S> {
     let t2 = dot(u, u);
     let [a, b] = by_series(t2, [SINE_RATIO, VERSINE_RATIO], || {
@@ -155,23 +155,35 @@ pub fn exp<S: Scalar>(u: Vector<S>) -> Matrix<S> {
         let twice_ratio = S::from_f64(2.0) * sine / t;
         [twice_ratio * cosine, twice_ratio * sine / t]
     });
+    of_parts(a, b, u)
+}
 
-    // û² = u uᵀ − t² I, with the diagonal written out: no difference of nearly equal squares.
+/// cay(f) = I + 2/(1 + f·f) (f̂ + f̂²), the rotation by 2 atan|f| about f.
+#[inline(always)]
+pub fn cayley<S: Scalar>(f: Vector<S>) -> Matrix<S> {
+    let factor = S::from_f64(2.0) / (S::from_f64(1.0) + dot(f, f));
+    of_parts(factor, factor, f)
+}
+
+/// I + a û + b û², for a rotation.
+///
+/// û² = u uᵀ − t² I, with the diagonal written out: no difference of nearly equal squares.
+#[inline(always)]
+fn of_parts<S: Scalar>(a: S, b: S, [x, y, z]: Vector<S>) -> Matrix<S> {
     let one = S::from_f64(1.0);
-    let [x, y, z] = u;
-    let (xx, yy, zz) = (x * x, y * y, z * z);
-    let (bxy, bxz, byz) = (b * x * y, b * x * z, b * y * z);
+    let (bx, by) = (b * x, b * y);
     let (ax, ay, az) = (a * x, a * y, a * z);
+    let (xx, yy, zz) = (x * x, y * y, z * z);
     [
-        one - b * (yy + zz),
-        bxy - az,
-        bxz + ay,
-        bxy + az,
-        one - b * (zz + xx),
-        byz - ax,
-        bxz - ay,
-        byz + ax,
-        one - b * (xx + yy),
+        (-b).mul_add(yy + zz, one),
+        bx.mul_add(y, -az),
+        bx.mul_add(z, ay),
+        bx.mul_add(y, az),
+        (-b).mul_add(zz + xx, one),
+        by.mul_add(z, -ax),
+        bx.mul_add(z, -ay),
+        by.mul_add(z, ax),
+        (-b).mul_add(xx + yy, one),
     ]
 }
 
@@ -185,7 +197,7 @@ pub fn log<S: Scalar>(r: Matrix<S>) -> Vector<S> {
 
 /// u̇ of R = R₀ exp(û) when R turns with ω (body axes):
 /// u̇ = ω + ½ u × ω + c u × (u × ω), c = (1 − (t/2) cot(t/2)) / t². Singular at t = 2π.
-#[inline]
+#[inline(always)]
 pub fn dexpinv<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S> {
     let t2 = dot(u, u);
     let half = S::from_f64(0.5);
@@ -200,20 +212,24 @@ pub fn dexpinv<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S> {
 }
 
 /// R exp(û): R turned by u in its own (body) axes.
-#[inline]
+#[inline(always)]
 pub fn retract<S: Scalar>(r: Matrix<S>, u: Vector<S>) -> Matrix<S> {
     product(r, exp(u))
 }
 
 /// One Newton step towards the nearest rotation, R (3 I − RᵀR) / 2: squares the defect RᵀR − I.
-#[inline]
+#[inline(always)]
 pub fn polar<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
-    let c = correction(r);
-    from_fn(|k| r[k] + c[k])
+    let d = gram_defect(r).map(|entry| S::from_f64(-0.5) * entry);
+    from_fn(|k| {
+        let (i, j) = (k / 3, k % 3);
+        let sum = r[3 * i + 1].mul_add(d[3 + j], r[3 * i + 2].mul_add(d[6 + j], r[k]));
+        r[3 * i].mul_add(d[j], sum)
+    })
 }
 
 /// −R (RᵀR − I) / 2, the term −Ψ φ of KR18 (8) for RᵀR = I.
-#[inline]
+#[inline(always)]
 pub fn correction<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
     let half = S::from_f64(0.5);
     product(r, gram_defect(r)).map(|entry| -(half * entry))
@@ -230,7 +246,7 @@ pub fn defect<S: Scalar>(r: Matrix<S>) -> S {
 }
 
 /// RᵀR − I
-#[inline]
+#[inline(always)]
 fn gram_defect<S: Scalar>(r: Matrix<S>) -> Matrix<S> {
     let mut gram = transpose_product(r, r);
     for i in 0..3 {

@@ -18,27 +18,19 @@ const SCHEMES: [Scheme; 5] = [
     Scheme::Nystrom6,
 ];
 
-/// Runs with the force at the end of a step used again; the error of R and the evaluations.
+/// The error of R at the end of a run, and the evaluations.
 fn evaluated(case: &str, scheme: Scheme, until: f64, n: u32) -> (f64, u32) {
     let reference = Reference::read(case);
     let top = Top(reference.body());
     let mut state = State::start(&top);
     // Inputs are asked for once an evaluation.
     let count = Cell::new(0);
-    let inputs = |_, _: &_, _: &_| {
+    let inputs = |_: f64, _: &_, _: &_| {
         count.set(count.get() + 1);
         []
     };
-    Splitting::new(&top, scheme)
-        .run(
-            &top,
-            &mut state,
-            until / f64::from(n),
-            u64::from(n),
-            &inputs,
-            |_| {},
-        )
-        .expect(case);
+    let (method, h) = (Splitting::new(&top, scheme), until / f64::from(n));
+    hamel::integrate(&top, method, &mut state, h, until, inputs, |_| {}).expect(case);
     (distance(state.x, reference.sample(until, "R")), count.get())
 }
 
@@ -69,16 +61,40 @@ fn fast_top_and_kovalevskaya_top_within_their_evaluations() {
     }
 }
 
+/// Runs of 50 steps: the force at the end of a step is that at the start of the next, to the bit.
 #[test]
-fn using_the_last_force_again_changes_rounding_only() -> Result<(), StepError> {
-    let top = Top(Reference::read("kovalevskaya-top").body());
-    for scheme in SCHEMES {
-        let method = Splitting::new(&top, scheme);
-        let stepped = run(&top, method, 2.0, 50)?;
-        let mut state = State::start(&top);
-        method.run(&top, &mut state, 0.04, 50, &|_, _, _| [], |_| {})?;
-        assert!((state.t - 2.0).abs() < 1e-14);
-        assert!(distance(state.x, stepped.x) < 1e-13, "{scheme:?}");
+fn a_run_evaluates_the_force_between_two_steps_once() -> Result<(), StepError> {
+    fn compare<M: Method<Top<f64>> + Copy>(
+        top: &Top<f64>,
+        method: M,
+        drifts: u32,
+    ) -> Result<(), StepError> {
+        const STEPS: u32 = 50;
+        let count = Cell::new(0);
+        let inputs = |_: f64, _: &_, _: &_| {
+            count.set(count.get() + 1);
+            []
+        };
+        let mut together = State::start(top);
+        hamel::integrate(top, method, &mut together, 0.04, 2.0, inputs, |_| {})?;
+        assert_eq!(count.take(), STEPS * drifts + 1);
+        let mut stepped = State::start(top);
+        for _ in 0..STEPS {
+            hamel::step(top, method, &mut stepped, 0.04, &inputs)?;
+        }
+        assert_eq!(count.get(), STEPS * (drifts + 1));
+        assert_eq!((together.x, together.xi), (stepped.x, stepped.xi));
+        Ok(())
+    }
+    let mut body = Reference::read("kovalevskaya-top").body();
+    for inertia in [2.0, 1.7] {
+        body.inertia[4] = inertia;
+        let top = Top(body.clone());
+        for scheme in SCHEMES {
+            compare(&top, Splitting::new(&top, scheme), scheme.drifts() as u32)?;
+        }
+        compare(&top, Lgvi, 1)?;
+        compare(&top, Buss::Fourth, 1)?;
     }
     Ok(())
 }
@@ -168,7 +184,9 @@ fn a_step_of_zero_changes_nothing() {
         }
     }
     assert!(there_and_back(&top, &Lgvi, 0.0, 1) < 2e-15);
+    assert!(there_and_back(&top, &Gauss4, 0.0, 1) < 2e-15);
     assert!(there_and_back(&top, &Gauss6, 0.0, 1) < 2e-15);
+    assert!(there_and_back(&top, &Slide, 0.0, 1) < 2e-15);
     assert!(there_and_back(&top, &Buss::Fourth, 0.0, 1) < 2e-15);
     assert!(there_and_back(&Spin(top), &Free, 0.0, 1) < 2e-15);
 }
@@ -222,6 +240,98 @@ fn steps_beyond_convergence_are_errors() {
             matches!(refused, Err(StepError::NotConverged { .. })),
             "{refused:?}"
         );
+    }
+}
+
+/// Steps of any method for bodies that are far too long, or none at all.
+fn overstep<Sys, M>(system: &Sys, method: &M) -> u32
+where
+    Sys: System<Scalar = f64>,
+    M: Method<Sys>,
+{
+    let none = |_, _: &_, _: &_| system.zero_inputs();
+    let mut refused = 0;
+    for h in [1.0, 1e3, 1e80, 1e160, 1e300, f64::INFINITY, f64::NAN] {
+        let mut state = State::start(system);
+        for _ in 0..20 {
+            let outcome = hamel::step(system, method, &mut state, h, &none);
+            // A step is taken whole or not at all.
+            assert!(state.is_finite(), "h = {h}");
+            match outcome {
+                Ok(()) => assert!(system.constraint_norm(&state.x) < 1e-13, "h = {h}"),
+                Err(StepError::NonFinite { .. } | StepError::NotConverged { .. }) => {
+                    refused += 1;
+                    break;
+                }
+                Err(other) => panic!("h = {h}: {other}"),
+            }
+        }
+    }
+    refused
+}
+
+#[test]
+fn steps_far_too_long_end_on_the_manifold_or_in_a_typed_error() {
+    // Infinite steps and steps of NaN are refused by all of them.
+    for case in ["heavy-top-benchmark-150", "kovalevskaya-top"] {
+        let mut body = Reference::read(case).body();
+        for stretch in [1.0, 1.3] {
+            body.inertia[0] *= stretch;
+            let top = Top(body.clone());
+            for scheme in SCHEMES {
+                for flow in [Flow::Exact, Flow::Turns, Flow::Pair, Flow::Axes] {
+                    let method = Splitting::with_flow(&top, scheme, flow);
+                    assert!(overstep(&top, &method) >= 2, "{scheme:?} {flow:?}");
+                }
+            }
+            assert!(overstep(&top, &Lgvi) >= 2);
+            assert!(overstep(&top, &Gauss4) >= 2);
+            assert!(overstep(&top, &Gauss6) >= 2);
+            assert!(overstep(&top, &Slide) >= 2);
+            for method in [
+                Buss::First,
+                Buss::Second,
+                Buss::AugmentedSecond,
+                Buss::Fourth,
+            ] {
+                assert!(overstep(&top, &method) >= 2, "{method:?}");
+            }
+            assert!(overstep(&Spin(top), &Free) >= 2);
+        }
+    }
+}
+
+/// At rest and without torque nothing moves, by any method and for any symmetry. The closed form of a body
+/// without symmetry takes R apart and builds it again, up to 110 times here, to a last place each.
+#[test]
+fn spherical_and_symmetric_bodies_at_rest_or_hardly_moving_stay() {
+    let double = Reference::read("free-dzhanibekov-1e-3").body();
+    for moments in [[2.0; 3], [2.0, 2.0, 1.0], [1.0, 1.7, 2.4]] {
+        for velocity in [0.0, 5e-324, 1e-310, 1e-160] {
+            let mut body = double.clone();
+            for axis in 0..3 {
+                body.inertia[4 * axis] = moments[axis];
+            }
+            body.w0 = [velocity, -velocity, velocity];
+            let spin = Spin(Top(body.clone()));
+            let stays = |name: &str, state: Result<State<Spin<Top<f64>>>, StepError>| {
+                let off = distance(state.expect(name).x, body.r0);
+                assert!(
+                    off < 110.0 * f64::EPSILON,
+                    "{name} {moments:?} {velocity:e}: {off:e}"
+                );
+            };
+            for scheme in SCHEMES {
+                let method = Splitting::new(&spin, scheme);
+                stays(&format!("{scheme:?}"), run(&spin, method, 10.0, 10));
+            }
+            stays("free", run(&spin, Free, 10.0, 10));
+            stays("LGVI", run(&spin, Lgvi, 10.0, 10));
+            stays("slide", run(&spin, Slide, 10.0, 10));
+            stays("Buss", run(&spin, Buss::Fourth, 10.0, 10));
+            stays("Gauss 4", run(&spin, Gauss4, 10.0, 10));
+            stays("Gauss 6", run(&spin, Gauss6, 10.0, 10));
+        }
     }
 }
 

@@ -74,6 +74,49 @@ fn log_at_half_a_turn_gives_either_sign() {
     }
 }
 
+/// Matrices and quaternions of half turns to the bit: no rounding leaves the angle below π.
+#[test]
+fn exact_half_turns_have_logarithms_of_length_pi() {
+    for axis in 0..3 {
+        let mut r = so3::identity().map(|entry: f64| -entry);
+        r[4 * axis] = 1.0;
+        let mut expected = [0.0; 3];
+        expected[axis] = PI;
+        assert_eq!(so3::log(r).map(f64::abs), expected);
+    }
+    for n in AXES {
+        // 2 n nᵀ − I, and (0, n).
+        let r = std::array::from_fn(|k| {
+            let (i, j) = (k / 3, k % 3);
+            2.0 * n[i] * n[j] - if i == j { 1.0 } else { 0.0 }
+        });
+        let by_unit = s3::log([0.0, n[0], n[1], n[2]]);
+        assert!(largest(&by_unit, &n.map(|n| PI * n)) < 1e-15, "{by_unit:?}");
+        let back = so3::log(r);
+        assert!((norm(back) - PI).abs() < 1e-15, "{back:?}");
+        assert!(largest(&so3::exp(back), &r) < 1e-15, "{back:?}");
+        // The rate of the rotation vector is finite there: parallel to n it is that of the angle.
+        let rate = so3::dexpinv(n.map(|n| PI * n), n);
+        assert!(largest(&rate, &n) < 1e-15, "{rate:?}");
+    }
+}
+
+#[test]
+fn cayley_turns_by_twice_the_arctangent() {
+    for axis in AXES {
+        for angle in ANGLES.into_iter().filter(|angle| *angle < 3.1) {
+            let f = axis.map(|a| a * (0.5 * angle).tan());
+            let r = so3::cayley(f);
+            assert!(
+                largest(&r, &so3::exp(axis.map(|a| a * angle))) < 2e-15,
+                "{f:?}"
+            );
+            assert!(so3::defect(r) < ORTHONORMAL);
+        }
+    }
+    assert_eq!(so3::cayley([0.0; 3]), so3::identity());
+}
+
 #[test]
 fn log_of_long_turns_and_of_the_antipode() {
     let u = AXES[4].map(|a| a * (2.0 * PI - 0.5));

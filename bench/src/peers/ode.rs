@@ -3,7 +3,8 @@
 
 use hamel::System;
 use hamel_report::data::Kind;
-use hamel_report::problem::{Deviation, Entry, Outcome, Problem};
+use hamel_report::entry::{Deviation, Entry, Outcome};
+use hamel_report::problem::Problem;
 use ode_solvers::{Rk4, SVector};
 use std::hint::black_box;
 use std::time::Instant;
@@ -78,6 +79,7 @@ where
                 evaluations,
                 error: end.map_or(f64::NAN, |(x, xi)| (problem.error)(&x, &xi)),
                 failure: result.err(),
+                statistics: None,
             }
         },
         move |steps, part| {

@@ -3,7 +3,8 @@
 use crate::runner::{BenchError, Runner, rows};
 use hamel::{System, so3};
 use hamel_report::data::Kind;
-use hamel_report::problem::{Deviation, Entry, Outcome, Problem};
+use hamel_report::entry::{Deviation, Entry, Outcome};
+use hamel_report::problem::Problem;
 use rapier3d_f64::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
@@ -69,6 +70,7 @@ where
                 evaluations: Some(steps),
                 error,
                 failure: (!error.is_finite()).then(|| "not finite".to_string()),
+                statistics: None,
             }
         },
         move |steps, part| {

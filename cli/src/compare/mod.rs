@@ -5,18 +5,22 @@ mod write;
 
 use crate::failure::{Failure, print};
 use crate::interpreted::{Interpreted, constant_singular};
-use crate::method::{self, Named};
+use crate::method::{self, Named, Stepper};
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
 use hamel::Method;
+use hamel::adaptive::Adaptive;
+use hamel::methods::General;
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::program::structure::Structure;
+use hamel_report::auto;
 use hamel_report::counted::Counted;
 use hamel_report::data::{Case, Choice, Kind, Machine, Report};
+use hamel_report::entry::Entry;
 use hamel_report::measure::{Plan, measure};
-use hamel_report::problem::{Entry, Problem};
+use hamel_report::problem::Problem;
 use hamel_report::solution::{Solution, relative};
 use indicatif::{ProgressBar, ProgressStyle};
 use reference::Fields;
@@ -26,6 +30,8 @@ use std::path::{Path, PathBuf};
 const UNTIL: f64 = 10.0;
 /// Numbers of steps where --steps is left out.
 const STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
+/// Errors that steps may make, for methods that can choose them.
+const TOLERANCES: [f64; 8] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 /// Timings of each run, and how long each takes at least (s).
 const REPEATS: u32 = 3;
 const LEAST: f64 = 1e-3;
@@ -39,7 +45,7 @@ const FINER: u64 = 4;
 /// Errors are measured against a reference solution, or against a much finer run of the best method.
 /// The equations are interpreted: compare times with each other only. T + V is constant without inputs,
 /// dissipation and other loads that do work; `momentum` is the drift of the invariants that the
-/// description claims.
+/// description claims. rkmk54 and rkmk8 are run in equal steps, and with tolerances of 1e-4 to 1e-11.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel compare heavy_top.eom --until 5
@@ -208,12 +214,28 @@ fn compare(
             problem.error = Box::new(move |a, b| relative(a, &x).max(relative(b, &xi)));
         }
     }
-    let entries: Vec<Entry> = methods
-        .iter()
-        .map(|named| problem.by(named.name, named.kind, named.stepper.clone()))
-        .collect();
+    let mut entries: Vec<Entry> = Vec::new();
+    for Named {
+        name,
+        kind,
+        stepper,
+    } in &methods
+    {
+        entries.push(problem.by(name, *kind, stepper.clone()));
+        let adaptive = format!("{name} adaptive");
+        match stepper {
+            Stepper::General(General::Rkmk54) => {
+                entries.push(problem.controlled(&adaptive, 5, Adaptive::rkmk54));
+            }
+            Stepper::General(General::Rkmk8) => {
+                entries.push(problem.controlled(&adaptive, 8, Adaptive::rkmk8));
+            }
+            _ => {}
+        }
+    }
     let plan = Plan {
         steps,
+        tolerances: TOLERANCES.to_vec(),
         repeats: REPEATS,
         least: LEAST,
         floor: FLOOR,
@@ -247,7 +269,7 @@ fn best(methods: &[Named]) -> &Named {
 fn choice(structure: &Structure) -> Choice {
     let choice = choose(structure, None);
     Choice {
-        method: choice.method.into(),
+        method: auto::entry(choice.method),
         reason: choice.reason.into(),
     }
 }

@@ -188,7 +188,7 @@ fn tolerance(arguments: &Arguments, chosen: &Chosen) -> Result<Option<f64>, Fail
             "--tol goes with --method rkmk54 and rkmk8, which choose their steps; {} takes --step",
             chosen.name
         ))),
-        None if chosen.name == "rkmk54" && chosen.reason.is_some() && arguments.step.is_none() => {
+        None if adapts && chosen.reason.is_some() && arguments.step.is_none() => {
             Ok(Some(TOLERANCE))
         }
         tol => Ok(tol),

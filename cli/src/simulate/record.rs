@@ -131,7 +131,11 @@ impl<'a> Run<'a> {
         };
         let bar = progress(plan.steps);
         let mut steps = 0;
-        let observe = |state: &State<Interpreted>| {
+        let observe = |state: &State<Interpreted>, place: Place| {
+            if place == Place::Within {
+                track.push(Sample::of(system, state));
+                return;
+            }
             monitor.observe(system, state);
             if steps % plan.every == 0 {
                 samples.push(Sample::of(system, state));
@@ -197,35 +201,60 @@ impl<'a> Run<'a> {
     }
 }
 
+/// Where an observed state is.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    /// At the start, or at the end of a step.
+    End,
+    /// Between, for plots: steps chosen by their error may be few.
+    Within,
+}
+
+/// Shows the end of a step that a tolerance has chosen, and before it what a plot needs of its path.
+fn show<const D: usize>(
+    report: Report<'_, Interpreted, D>,
+    spacing: f64,
+    observe: &mut impl FnMut(&State<Interpreted>, Place),
+) {
+    let Report::Step(step) = report else {
+        return;
+    };
+    let (from, to) = (step.start().t, step.end().t);
+    let parts = ((to - from) / spacing).ceil();
+    for part in 1..parts as u64 {
+        let t = from + (to - from) * (part as f64 / parts);
+        observe(&step.at(t), Place::Within);
+    }
+    observe(step.end(), Place::End);
+}
+
 /// The run from the start to its end, in equal steps or in those that a tolerance asks for.
 fn advance(
     system: &Interpreted,
     plan: &Plan,
     state: &mut State<Interpreted>,
-    mut observe: impl FnMut(&State<Interpreted>),
+    mut observe: impl FnMut(&State<Interpreted>, Place),
 ) -> Result<(), StepError> {
     let inputs = |_, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
         let method = &plan.method.stepper;
+        let observe = |state: &State<Interpreted>| observe(state, Place::End);
         return integrate(
             system, method, state, plan.step, plan.until, inputs, observe,
         );
     };
-    observe(state);
+    observe(state, Place::End);
     let until = plan.until;
+    let spacing = until / POINTS as f64;
     let outcome = match general {
         General::Rkmk8 => {
             Adaptive::rkmk8(tolerance).integrate(system, state, until, inputs, &[], |report| {
-                if let Report::Step(step) = report {
-                    observe(step.end());
-                }
+                show(report, spacing, &mut observe);
             })
         }
         _ => Adaptive::rkmk54(tolerance).integrate(system, state, until, inputs, &[], |report| {
-            if let Report::Step(step) = report {
-                observe(step.end());
-            }
+            show(report, spacing, &mut observe);
         }),
     };
     outcome.map(|_| ())

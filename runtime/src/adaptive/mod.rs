@@ -237,8 +237,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         }
     }
 
-    /// The loop of attempts. `accept` sees every step (if `dense`, complete with its path) and may
-    /// shorten it and end the run.
+    /// The loop of attempts. If `dense`, `accept` sees every step, complete with its path, and may shorten it
+    /// and end the run.
     fn drive<Sys, U>(
         &self,
         system: &Sys,
@@ -311,10 +311,13 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             if is_last {
                 end.t = until;
             }
-            let (end, moved) = projected(system, end)?;
-            let mut step = Step::new(system, state, end, h, &stages, self.pair, change);
-            let stopped_by = accept(&mut step)?;
-            let end = step.end;
+            let (mut end, moved) = projected(system, end)?;
+            let mut stopped_by = None;
+            if dense {
+                let mut step = Step::new(system, state, end, h, &stages, self.pair, change);
+                stopped_by = accept(&mut step)?;
+                end = step.end;
+            }
             *state = end;
             statistics.accepted += 1;
             if stopped_by.is_some() {

@@ -20,8 +20,11 @@ pub trait Attitude<S: Scalar>: Copy {
     /// Turned by a rotation matrix.
     fn turned_by_matrix(self, f: Matrix<S>) -> Self;
 
-    /// Turned about body axis `axis` by the angle whose half has this sine and cosine.
-    fn turned_about(self, axis: usize, half: SineCosine<S>) -> Self;
+    /// Turned by cay(f): by 2 atan|f| about f.
+    fn turned_by_cayley(self, f: Vector<S>) -> Self;
+
+    /// Turned about body axis `axis` by an angle in rad, with the sine and cosine of that.
+    fn turned_about(self, axis: usize, angle: S) -> (Self, SineCosine<S>);
 }
 
 /// Sine and cosine of an angle.
@@ -101,8 +104,13 @@ impl<S: Scalar> Attitude<S> for Matrix<S> {
     }
 
     #[inline(always)]
-    fn turned_about(self, axis: usize, half: SineCosine<S>) -> Self {
-        let angle = half.doubled();
+    fn turned_by_cayley(self, f: Vector<S>) -> Self {
+        so3::product(self, so3::cayley(f))
+    }
+
+    #[inline(always)]
+    fn turned_about(self, axis: usize, angle: S) -> (Self, SineCosine<S>) {
+        let angle = SineCosine::of(angle);
         let mut r = self;
         for row in 0..3 {
             let mut entries: Vector<S> = from_fn(|column| r[3 * row + column]);
@@ -111,7 +119,7 @@ impl<S: Scalar> Attitude<S> for Matrix<S> {
                 r[3 * row + column] = entries[column];
             }
         }
-        r
+        (r, angle)
     }
 }
 
@@ -138,7 +146,15 @@ impl<S: Scalar> Attitude<S> for s3::Quaternion<S> {
     }
 
     #[inline(always)]
-    fn turned_about(self, axis: usize, half: SineCosine<S>) -> Self {
+    fn turned_by_cayley(self, f: Vector<S>) -> Self {
+        let one = S::from_f64(1.0);
+        let norm = (one + so3::dot(f, f)).sqrt();
+        s3::product(self, [one, f[0], f[1], f[2]]).map(|entry| entry / norm)
+    }
+
+    #[inline(always)]
+    fn turned_about(self, axis: usize, angle: S) -> (Self, SineCosine<S>) {
+        let half = SineCosine::of(S::from_f64(0.5) * angle);
         let (b, c) = others(axis);
         let (along, beside, across) = (1 + axis, 1 + b, 1 + c);
         let mut q = self;
@@ -146,6 +162,6 @@ impl<S: Scalar> Attitude<S> for s3::Quaternion<S> {
         q[along] = half.cosine * self[along] + half.sine * self[0];
         q[beside] = half.cosine * self[beside] + half.sine * self[across];
         q[across] = half.cosine * self[across] - half.sine * self[beside];
-        q
+        (q, half.doubled())
     }
 }

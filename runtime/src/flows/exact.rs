@@ -15,7 +15,7 @@
 
 use core::array::from_fn;
 
-use crate::flows::attitude::{Attitude, SineCosine};
+use crate::flows::attitude::Attitude;
 use crate::flows::jacobi::{Jacobi, Mean};
 use crate::flows::nodes::{self, Angle};
 use crate::scalar::Scalar;
@@ -174,7 +174,7 @@ impl<S: Scalar> Motion<S> {
         let reference: Vector<S> =
             from_fn(|i| zero.select_lt(self.by_first, self.names[0][i], self.names[2][i]));
         let (before, after) = (frame(reference, self.unit), frame(reference, unit));
-        let turned = before.turned_about(2, SineCosine::of(S::from_f64(0.5) * angle));
+        let (turned, _) = before.turned_about(2, angle);
         let transposed: Matrix<S> = from_fn(|k| after[3 * (k % 3) + k / 3]);
         let f = so3::product(turned, transposed);
         (f, unit.map(|component| self.length * component))

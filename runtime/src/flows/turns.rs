@@ -4,7 +4,7 @@
 //! R. McLachlan 1993; S. Reich, Physica D 76 (1994) 375; J. Touma, J. Wisdom, Astron. J. 107 (1994)
 //! 1189.
 
-use crate::flows::attitude::{Attitude, SineCosine, others};
+use crate::flows::attitude::{Attitude, others};
 use crate::scalar::Scalar;
 use crate::so3::Vector;
 
@@ -88,9 +88,9 @@ pub fn pair<S: Scalar, A: Attitude<S>>(
 /// A turn by `rate` P_axis about a principal axis.
 #[inline(always)]
 fn about<S: Scalar, A: Attitude<S>>(attitude: A, p: &mut Vector<S>, axis: usize, rate: S) -> A {
-    let half = SineCosine::of(S::from_f64(0.5) * rate * p[axis]);
-    half.doubled().turn_back(axis, p);
-    attitude.turned_about(axis, half)
+    let (turned, angle) = attitude.turned_about(axis, rate * p[axis]);
+    angle.turn_back(axis, p);
+    turned
 }
 
 /// The axis beside the two moments whose inverses are closest, in all lanes; the third otherwise.

@@ -41,6 +41,7 @@ fn after<Sys: Split + ?Sized>(
     }
     let mut phase = Phase::new(system, start)?;
     phase.drift(h, &Flow::Exact);
+    phase.arrive();
     phase.state(h)
 }
 

@@ -17,7 +17,7 @@ use crate::so3::{self, Matrix, Vector};
 use crate::split::Split;
 use crate::state::State;
 
-/// Order 2, two evaluations of forces a step; symplectic, keeps R P and the energy of a free body.
+/// Order 2, one evaluation of forces a step of a run; symplectic, keeps R P and the energy of a free body.
 ///
 /// A steady spin gets a phase error of order (h|ω|)², so that splitting is more accurate; this is the
 /// variational reference. Beyond h|ω| of about 1.5 the equation for f has no solution:
@@ -44,7 +44,22 @@ impl<Sys: Split + ?Sized> Method<Sys> for Lgvi {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        strang(system, state, h, self, inputs)?.ok_or(StepError::NotConverged {
+        self.follow(system, state, h, inputs, &mut None)
+    }
+
+    #[inline]
+    fn follow<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<Sys::Chart>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        strang(system, state, h, self, inputs, force)?.ok_or(StepError::NotConverged {
             time: state.t,
             iterations: ITERATIONS,
         })
@@ -63,10 +78,8 @@ impl Drift for Lgvi {
         let own = rotor.to_principal(*p);
         let f = solve(rotor.moments, own.map(|p| h * p))?;
         let f = rotor.to_body(f);
-        let one = S::from_f64(1.0);
-        let norm = (one + so3::dot(f, f)).sqrt();
         *p = turned_back(f, *p);
-        Some(attitude.turned_by([one / norm, f[0] / norm, f[1] / norm, f[2] / norm]))
+        Some(attitude.turned_by_cayley(f))
     }
 }
 
@@ -79,23 +92,30 @@ fn turned_back<S: Scalar>(f: Vector<S>, p: Vector<S>) -> Vector<S> {
     from_fn(|i| p[i] + factor * (twice[i] - once[i]))
 }
 
-/// f of (1 + f·f)/2 a = J f + f × J f, from f = J⁻¹ a/2; `None` without convergence in all lanes.
+/// f of (1 + f·f)/2 a = J f + f × J f; `None` without convergence in all lanes.
+///
+/// From f₀ = J⁻¹ a/2 by one step of J f₁ = (1 + f₀·f₀)/2 a − f₀ × J f₀, which leaves one of Newton's out.
 #[inline]
 fn solve<S: Scalar>(j: Vector<S>, a: Vector<S>) -> Option<Vector<S>> {
     let (half, one) = (S::from_f64(0.5), S::from_f64(1.0));
     let epsilon = epsilon::<S>();
-    let mut f: Vector<S> = from_fn(|i| half * a[i] / j[i]);
+    let inverse = j.map(|j| one / j);
+    let moved: Vector<S> = a.map(|a| half * a);
+    let first: Vector<S> = from_fn(|i| inverse[i] * moved[i]);
+    let (more, across) = (so3::dot(first, first), so3::cross(first, moved));
+    let mut f: Vector<S> = from_fn(|i| inverse[i] * (more.mul_add(moved[i], moved[i]) - across[i]));
     for _ in 0..ITERATIONS {
         let jf: Vector<S> = from_fn(|i| j[i] * f[i]);
         let fjf = so3::cross(f, jf);
         let factor = half * (one + so3::dot(f, f));
-        let residual: Vector<S> = from_fn(|i| jf[i] + fjf[i] - factor * a[i]);
+        let residual: Vector<S> = from_fn(|i| (-factor).mul_add(a[i], jf[i] + fjf[i]));
         // a fᵀ − J + (J f)^ − f̂ J
         let (hat_jf, hat_f) = (so3::hat(jf), so3::hat(f));
         let slope: Matrix<S> = from_fn(|k| {
             let (row, column) = (k / 3, k % 3);
             let own = if row == column { j[row] } else { S::default() };
-            a[row] * f[column] - own + hat_jf[k] - hat_f[k] * j[column]
+            let turned = hat_jf[k] - hat_f[k] * j[column];
+            a[row].mul_add(f[column], turned - own)
         });
         let change = cramer(slope, residual);
         f = from_fn(|i| f[i] + change[i]);
@@ -113,9 +133,6 @@ fn solve<S: Scalar>(j: Vector<S>, a: Vector<S>) -> Option<Vector<S>> {
 fn cramer<S: Scalar>(m: Matrix<S>, b: Vector<S>) -> Vector<S> {
     let [m0, m1, m2]: [Vector<S>; 3] = from_fn(|row| from_fn(|column| m[3 * row + column]));
     let columns = [so3::cross(m1, m2), so3::cross(m2, m0), so3::cross(m0, m1)];
-    let determinant = so3::dot(m0, columns[0]);
-    from_fn(|i| {
-        let sum = columns[0][i] * b[0] + columns[1][i] * b[1] + columns[2][i] * b[2];
-        sum / determinant
-    })
+    let inverse = S::from_f64(1.0) / so3::dot(m0, columns[0]);
+    from_fn(|i| inverse * so3::dot(columns.map(|column| column[i]), b))
 }

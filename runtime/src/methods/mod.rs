@@ -83,6 +83,30 @@ pub trait Method<Sys: System + ?Sized> {
     ) -> Result<State<Sys>, StepError>
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs;
+
+    /// A [`step`](Self::step) that follows another of the same run. `force` is the force at its start, where
+    /// the step before has left it, and takes the one at its end: a method that evaluates both does so once
+    /// for two steps. Others leave it alone.
+    ///
+    /// `force` has to be `None` for the first step, and after the state was moved by anything else.
+    ///
+    /// # Errors
+    /// Those of [`step`](Self::step).
+    #[inline]
+    fn follow<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<Sys::Chart>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let _ = force;
+        self.step(system, state, h, inputs)
+    }
 }
 
 impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
@@ -102,6 +126,21 @@ impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         (**self).step(system, state, h, inputs)
+    }
+
+    #[inline]
+    fn follow<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<Sys::Chart>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        (**self).follow(system, state, h, inputs, force)
     }
 }
 

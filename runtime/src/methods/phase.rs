@@ -136,12 +136,16 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         Some(())
     }
 
-    /// The state after a step of length `h`, back on the manifold.
+    /// Back on the manifold from what rounding did, where the step ends.
+    #[inline(always)]
+    pub(crate) fn arrive(&mut self) {
+        manifold::normalise(self.system.blocks(), self.y.as_mut());
+    }
+
+    /// The state after a step of length `h`, which has arrived.
     #[inline(always)]
     pub(crate) fn state(&self, h: f64) -> Result<State<Sys>, StepError> {
-        let mut y = self.y.clone();
-        manifold::normalise(self.system.blocks(), y.as_mut());
-        let x = self.system.uncentre(&y);
+        let x = self.system.uncentre(&self.y);
         let xi = self.system.velocities(&x, &self.p);
         let t = self.start + h;
         let next = State { t, x, xi };
@@ -153,7 +157,8 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     }
 }
 
-/// A kick of h/2, free motion, a kick of h/2: order 2, symmetric, and symplectic with the flow.
+/// A kick of h/2, free motion, a kick of h/2: order 2, symmetric, and symplectic with the flow. `force` is
+/// that of [`Method::follow`](crate::Method::follow).
 #[inline(always)]
 pub(crate) fn strang<Sys, D, U>(
     system: &Sys,
@@ -161,6 +166,7 @@ pub(crate) fn strang<Sys, D, U>(
     h: f64,
     drift: &D,
     inputs: &U,
+    force: &mut Option<Sys::Chart>,
 ) -> Result<Option<State<Sys>>, StepError>
 where
     Sys: Split + ?Sized,
@@ -168,10 +174,15 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let mut phase = Phase::new(system, state)?;
-    phase.kick(0.5 * h, inputs);
+    let first = force.take().unwrap_or_else(|| phase.force(inputs));
+    phase.push(0.5 * h, &first);
     if phase.drift(h, drift).is_none() {
         return Ok(None);
     }
-    phase.kick(0.5 * h, inputs);
-    phase.state(h).map(Some)
+    phase.arrive();
+    let last = phase.force(inputs);
+    phase.push(0.5 * h, &last);
+    let next = phase.state(h)?;
+    *force = Some(last);
+    Ok(Some(next))
 }

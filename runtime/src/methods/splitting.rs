@@ -17,9 +17,9 @@ use crate::state::State;
 /// Order 2, 4 or 6; for systems that implement [`Split`].
 ///
 /// A step evaluates the forces [`Scheme::drifts`] + 1 times, the last of them at the point where the
-/// next step starts; [`run`](Self::run) uses that one again. Torques that depend on velocities are not of
-/// this form: u is taken at the momenta of the moment of each kick, so that inputs depending on ξ lower
-/// the order.
+/// next step starts: a run by [`integrate`](crate::integrate()) uses that one again. Torques that depend on
+/// velocities are not of this form: u is taken at the momenta of the moment of a kick, so that inputs
+/// depending on ξ lower the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Splitting {
     /// The composition.
@@ -51,62 +51,6 @@ impl Splitting {
             exact: rotors.as_ref().iter().all(|rotor| flow.is_exact(rotor)),
         }
     }
-
-    /// Moves `state` by `count` steps of length `h` and calls `observe` after each; the force at the end of
-    /// one is that at the start of the next, [`Scheme::drifts`] evaluations a step and one more.
-    ///
-    /// # Errors
-    /// [`StepError::NonFinite`], [`StepError::Shape`]; `state` is then the last valid one.
-    pub fn run<Sys, U, O>(
-        &self,
-        system: &Sys,
-        state: &mut State<Sys>,
-        h: f64,
-        count: u64,
-        inputs: &U,
-        mut observe: O,
-    ) -> Result<(), StepError>
-    where
-        Sys: Split + ?Sized,
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-        O: FnMut(&State<Sys>),
-    {
-        let start = state.t;
-        let mut force = None;
-        for index in 1..=count {
-            let (mut next, last) = self.advance(system, state, h, force, inputs)?;
-            next.t = start + h * index as f64;
-            *state = next;
-            force = Some(last);
-            observe(state);
-        }
-        Ok(())
-    }
-
-    /// One step, with the force at its start where that is known; and the force at its end.
-    #[inline]
-    fn advance<Sys, U>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        h: f64,
-        force: Option<Sys::Chart>,
-        inputs: &U,
-    ) -> Result<(State<Sys>, Sys::Chart), StepError>
-    where
-        Sys: Split + ?Sized,
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
-        let mut phase = Phase::new(system, state)?;
-        let mut force = force.unwrap_or_else(|| phase.force(inputs));
-        phase.push(self.scheme.kick(0) * h, &force);
-        for index in 0..self.scheme.drifts() {
-            phase.drift(self.scheme.drift(index) * h, &self.flow);
-            force = phase.force(inputs);
-            phase.push(self.scheme.kick(index + 1) * h, &force);
-        }
-        Ok((phase.state(h)?, force))
-    }
 }
 
 impl<Sys: Split + ?Sized> Method<Sys> for Splitting {
@@ -129,7 +73,34 @@ impl<Sys: Split + ?Sized> Method<Sys> for Splitting {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        self.advance(system, state, h, None, inputs)
-            .map(|(next, _)| next)
+        self.follow(system, state, h, inputs, &mut None)
+    }
+
+    #[inline]
+    fn follow<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<Sys::Chart>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        let mut phase = Phase::new(system, state)?;
+        let mut last = force.take().unwrap_or_else(|| phase.force(inputs));
+        phase.push(self.scheme.kick(0) * h, &last);
+        for index in 0..self.scheme.drifts() {
+            phase.drift(self.scheme.drift(index) * h, &self.flow);
+            if index + 1 == self.scheme.drifts() {
+                phase.arrive();
+            }
+            last = phase.force(inputs);
+            phase.push(self.scheme.kick(index + 1) * h, &last);
+        }
+        let next = phase.state(h)?;
+        *force = Some(last);
+        Ok(next)
     }
 }

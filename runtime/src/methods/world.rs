@@ -60,6 +60,7 @@ impl<Sys: Split + ?Sized> Method<Sys> for Slide {
         let mut phase = Phase::new(system, state)?;
         // A turn in closed form, which always has a value.
         let _ = phase.drift(h, &Buss::First);
+        phase.arrive();
         phase.kick(h, inputs);
         phase.state(h)
     }
@@ -85,7 +86,22 @@ impl<Sys: Split + ?Sized> Method<Sys> for Buss {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        strang(system, state, h, self, inputs)?.ok_or(StepError::NonFinite { time: state.t })
+        self.follow(system, state, h, inputs, &mut None)
+    }
+
+    #[inline]
+    fn follow<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<Sys::Chart>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        strang(system, state, h, self, inputs, force)?.ok_or(StepError::NonFinite { time: state.t })
     }
 }
 

@@ -97,24 +97,15 @@ impl<Sys: System<Scalar = f64>> Case<Sys> {
         Ok((state, count.get()))
     }
 
-    /// The same by splitting, with forces at the ends of steps used twice.
+    /// The same by splitting.
     ///
     /// # Errors
-    /// Those of [`Splitting::run`].
+    /// Those of [`integrate`].
     pub fn split(&self, scheme: Scheme, until: f64, n: u32) -> Result<(State<Sys>, u64), StepError>
     where
         Sys: Split,
     {
-        let mut state = self.start.clone();
-        let count = Cell::new(0);
-        let inputs = |t: f64, x: &_, xi: &_| {
-            count.set(count.get() + 1);
-            (self.inputs)(t, x, xi)
-        };
-        let length = until / f64::from(n);
-        let method = Splitting::new(&self.system, scheme);
-        method.run(&self.system, &mut state, length, n.into(), &inputs, |_| {})?;
-        Ok((state, count.get()))
+        self.counted(Splitting::new(&self.system, scheme), until, n)
     }
 
     /// The error at the end of the case, [`error_at`](Self::error_at).

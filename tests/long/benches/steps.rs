@@ -1,4 +1,5 @@
-//! The time of one step of every method for bodies, on a heavy top written by hand.
+//! The time of one step of every method for bodies: on the generated top of the benchmark of 150 rad/s, in
+//! steps of 0.075 rad, and on tops written by hand, whose moments may all differ.
 //!
 //! Ratios between rows are what counts; the step of `Rkmk4` stands beside the four accelerations and four
 //! exponentials that no method of its kind can do without. Run with
@@ -6,8 +7,11 @@
 
 use divan::{Bencher, black_box};
 use hamel::flows::Flow;
-use hamel::methods::{Buss, Free, Gauss4, Gauss6, Lgvi, Rkmk4, Scheme, Slide, Splitting};
+use hamel::methods::{
+    Buss, Cf4, Free, Gauss4, Gauss6, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, Slide, Splitting,
+};
 use hamel::{Method, State, System, so3};
+use hamel_cases::bodies::benchmark_top;
 use hamel_tests_long::common::{Body, QuaternionTop, Reference, Spin, Top};
 
 /// Steps of one measurement: the state moves on, so that nothing is computed once for all.
@@ -38,22 +42,52 @@ fn top(moments: [f64; 3]) -> Top<f64> {
     Top(body(moments))
 }
 
-/// Steps of a run at h = 5 ms.
-fn steps<Sys: System<Inputs = [f64; 0]>>(bencher: Bencher, system: &Sys, method: impl Method<Sys>) {
+/// Length of steps of the tops written by hand, and of the benchmark.
+const STEP: f64 = 5e-3;
+const BENCHMARK_STEP: f64 = 5e-4;
+
+fn none<X, V>(_: f64, _: &X, _: &V) -> [f64; 0] {
+    []
+}
+
+/// Steps of a run.
+fn steps<Sys: System<Inputs = [f64; 0]>>(
+    bencher: Bencher,
+    system: &Sys,
+    start: &State<Sys>,
+    step: f64,
+    method: impl Method<Sys>,
+) {
+    let until = step * STEPS as f64;
     bencher
         .counter(STEPS)
-        .with_inputs(|| State::start(system))
+        .with_inputs(|| start.clone())
         .bench_local_values(|mut state| {
-            for _ in 0..STEPS {
-                let stepped = hamel::step(system, &method, &mut state, black_box(5e-3), &none);
-                black_box(stepped.is_ok());
+            let step = black_box(step);
+            let run = hamel::integrate(system, &method, &mut state, step, until, none, |_| {});
+            black_box(run.is_ok());
+            state
+        });
+}
+
+/// What a step of a method of order 4 in the chart cannot do without, four times a step.
+fn least<Sys>(bencher: Bencher, system: &Sys, start: &State<Sys>, step: f64)
+where
+    Sys: System<Scalar = f64, Coordinates = [f64; 9], Velocities = [f64; 3], Inputs = [f64; 0]>,
+{
+    bencher
+        .counter(STEPS)
+        .with_inputs(|| start.clone())
+        .bench_local_values(|mut state| {
+            let step = black_box(0.25 * step);
+            for _ in 0..4 * STEPS {
+                if let Ok(rate) = system.accel(&state.x, &state.xi, &[]) {
+                    state.x = so3::retract(state.x, state.xi.map(|w| step * w));
+                    state.xi = std::array::from_fn(|i| state.xi[i] + step * rate[i]);
+                }
             }
             state
         });
-
-    fn none<X, V>(_: f64, _: &X, _: &V) -> [f64; 0] {
-        []
-    }
 }
 
 macro_rules! benches {
@@ -64,9 +98,39 @@ macro_rules! benches {
             let $top = &system;
             let _ = $top;
             let method = $method;
-            steps(bencher, &system, method);
+            steps(bencher, &system, &State::start(&system), STEP, method);
         }
     )*};
+}
+
+macro_rules! benchmark {
+    ($($name:ident: |$top:ident| $method:expr;)*) => {$(
+        #[divan::bench(sample_count = SAMPLES)]
+        fn $name(bencher: Bencher) {
+            let case = benchmark_top();
+            let $top = &case.system;
+            let _ = $top;
+            steps(bencher, &case.system, &case.start, BENCHMARK_STEP, $method);
+        }
+    )*};
+}
+
+benchmark! {
+    benchmark_rkmk4: |top| Rkmk4;
+    benchmark_cf4: |top| Cf4;
+    benchmark_rkmk54: |top| Rkmk54;
+    benchmark_rkmk8: |top| Rkmk8;
+    benchmark_axes: |top| Splitting::with_flow(top, Scheme::Strang, Flow::Axes);
+    benchmark_symmetric: |top| Splitting::new(top, Scheme::Strang);
+    benchmark_nystrom6: |top| Splitting::new(top, Scheme::Nystrom6);
+    benchmark_lgvi: |top| Lgvi;
+    benchmark_gauss4: |top| Gauss4;
+}
+
+#[divan::bench(sample_count = SAMPLES)]
+fn benchmark_four_accelerations_and_exponentials(bencher: Bencher) {
+    let case = benchmark_top();
+    least(bencher, &case.system, &case.start, BENCHMARK_STEP);
 }
 
 benches! {
@@ -108,8 +172,8 @@ fn to_nine_digits(bencher: Bencher, case: &str, until: f64, n: u32) {
     let h = until / f64::from(n);
     bencher.bench_local(|| {
         let mut state = State::start(&top);
-        let count = black_box(u64::from(n));
-        let outcome = method.run(&top, &mut state, h, count, &|_, _, _| [], |_| {});
+        let h = black_box(h);
+        let outcome = hamel::integrate(&top, method, &mut state, h, until, none, |_| {});
         black_box(outcome.is_ok());
         state
     });
@@ -133,21 +197,8 @@ fn kovalevskaya_top_to_1e_9(bencher: Bencher) {
     to_nine_digits(bencher, "kovalevskaya-top", 20.0, 120);
 }
 
-/// What a step of `Rkmk4` cannot do without.
 #[divan::bench(sample_count = SAMPLES)]
 fn four_accelerations_and_exponentials(bencher: Bencher) {
     let top = top(ASYMMETRIC);
-    bencher
-        .counter(STEPS)
-        .with_inputs(|| State::start(&top))
-        .bench_local_values(|state| {
-            let (mut x, mut xi) = (state.x, state.xi);
-            for _ in 0..4 * STEPS {
-                if let Ok(rate) = top.accel(black_box(&x), black_box(&xi), &[]) {
-                    xi = std::array::from_fn(|i| xi[i] + 1e-3 * rate[i]);
-                    x = so3::retract(x, xi.map(|w| 1e-3 * w));
-                }
-            }
-            (x, xi)
-        });
+    least(bencher, &top, &State::start(&top), STEP);
 }

@@ -1,0 +1,84 @@
+//! Runs whose steps are chosen by their error, as a table: what a tolerance leads to.
+
+use crate::data::{Case, MethodRun, MethodRuns};
+use crate::number::{error, grouped};
+
+/// The tolerances of the table, as far as they were measured.
+const SHOWN: [f64; 4] = [1e-5, 1e-7, 1e-9, 1e-11];
+
+/// Heading and rows: for every method error, steps and refused attempts at each tolerance; `None` where no
+/// method of the case chooses its steps.
+pub fn table(case: &Case) -> Option<(Vec<String>, Vec<Vec<String>>)> {
+    let of = |method: &&MethodRuns| method.runs.iter().any(|run| run.tolerance.is_some());
+    let methods: Vec<&MethodRuns> = case.methods.iter().filter(of).collect();
+    if methods.is_empty() {
+        return None;
+    }
+    let mut head = vec!["tolerance".to_string()];
+    for method in &methods {
+        head.push(format!("{}: error", method.method));
+        head.extend(["steps".to_string(), "refused".into()]);
+    }
+    let row = |tolerance: f64| {
+        let mut cells = vec![format!("{tolerance:.0e}")];
+        for method in &methods {
+            let with = |run: &&MethodRun| run.tolerance == Some(tolerance);
+            cells.extend(counts(method.runs.iter().find(with)));
+        }
+        cells
+    };
+    Some((head, SHOWN.map(row).to_vec()))
+}
+
+/// Error, steps, refused attempts.
+fn counts(run: Option<&MethodRun>) -> [String; 3] {
+    let none = || "-".to_string();
+    let Some(run) = run else {
+        return [none(), none(), none()];
+    };
+    if let Some(why) = &run.failure {
+        return [why.clone(), none(), none()];
+    }
+    [
+        run.error.map_or_else(none, error),
+        grouped(run.steps),
+        run.rejected.map_or_else(none, grouped),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::table;
+    use crate::data::{Case, Kind, MethodRun, MethodRuns};
+
+    #[test]
+    fn a_row_for_every_tolerance_that_is_shown() {
+        let run = |tolerance: f64| MethodRun {
+            steps: 1200,
+            tolerance: Some(tolerance),
+            rejected: Some(3),
+            error: Some(40.0 * tolerance),
+            ..MethodRun::default()
+        };
+        let method = |name: &str, runs: Vec<MethodRun>| MethodRuns {
+            method: name.into(),
+            kind: Kind::Method,
+            order: Some(5),
+            runs,
+        };
+        let mut case = Case {
+            methods: vec![method("equal", vec![MethodRun::default()])],
+            ..Case::default()
+        };
+        assert_eq!(table(&case), None);
+        let mut runs = [1e-5, 1e-6, 1e-7].map(run).to_vec();
+        runs[2].failure = Some("too small".into());
+        case.methods.push(method("pair", runs));
+        let (head, rows) = table(&case).expect("a table");
+        assert_eq!(head, ["tolerance", "pair: error", "steps", "refused"]);
+        assert_eq!(rows[0], ["1e-5", "4.0e-4", "1 200", "3"]);
+        assert_eq!(rows[1], ["1e-7", "too small", "-", "-"]);
+        assert_eq!(rows[2], ["1e-9", "-", "-", "-"]);
+        assert_eq!(rows.len(), 4);
+    }
+}
