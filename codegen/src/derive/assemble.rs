@@ -4,7 +4,7 @@ use super::accel::cheapest::Computation;
 use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
-use super::choice::Choice;
+use super::candidates::Candidates;
 use super::multipliers::multipliers;
 use super::reduction::Reduction;
 use super::structure::{self, Found};
@@ -266,7 +266,7 @@ impl<'a> Builder<'a> {
         if self.model.overconstrained {
             return;
         }
-        let mut choice = Choice::new();
+        let mut candidates = Candidates::new();
         let contexts = [self.shared().graph, self.graph.clone()];
         for mut graph in contexts.into_iter().chain([self.chosen.graph.clone()]) {
             let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut graph) else {
@@ -275,9 +275,9 @@ impl<'a> Builder<'a> {
             let pivots = self.chosen.pivots.iter().copied();
             let pivots = pivots.filter(|pivot| !graph.is_free(pivot.node()));
             let roots = outputs.into_iter().chain(pivots).collect();
-            choice.offer_own(graph, roots);
+            candidates.offer_own(graph, roots);
         }
-        let mut outputs = choice.take(&mut self.graph);
+        let mut outputs = candidates.cheapest(&mut self.graph);
         outputs.truncate(full.constraints.len());
         let guards = self.guards();
         self.functions.push(Function {

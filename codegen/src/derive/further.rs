@@ -3,7 +3,7 @@
 use super::accel::cheapest::Computation;
 use super::assemble::{Builder, shape_of};
 use super::calculus::Calculus;
-use super::choice::Choice;
+use super::candidates::Candidates;
 use super::invariants::quantity;
 use super::linearize::{Displacements, Motion, linearize};
 use super::momentum;
@@ -24,13 +24,13 @@ impl Builder<'_> {
         let n = self.model.n();
         if self.model.wants("momentum_rate") {
             let Computation { mut graph, parts } = self.shared();
-            let mut choice = Choice::new();
+            let mut candidates = Candidates::new();
             let rate = momentum::rate(self.model, &mut graph, &parts);
-            choice.offer_own(graph, rate);
+            candidates.offer_own(graph, rate);
             let mut graph = self.graph.clone();
             let rate = momentum::rate(self.model, &mut graph, &self.parts);
-            choice.offer_own(graph, rate);
-            let rate = choice.take(&mut self.graph);
+            candidates.offer_own(graph, rate);
+            let rate = candidates.cheapest(&mut self.graph);
             self.push(
                 "momentum_rate",
                 &["Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a))."],
@@ -48,13 +48,13 @@ impl Builder<'_> {
         let found = contexts.map(|(graph, parts)| momentum::velocity(graph, parts, p));
         let cheapest = found.into_iter().flatten().min_by_key(|(cost, ..)| *cost);
         if let Some((_, graph, solution)) = cheapest {
-            let mut choice = Choice::new();
-            choice.offer_both(
+            let mut candidates = Candidates::new();
+            candidates.offer_both(
                 graph,
                 [solution.xi_dot, solution.pivots].concat(),
                 &shared.graph,
             );
-            let mut xi = choice.take(&mut self.graph);
+            let mut xi = candidates.cheapest(&mut self.graph);
             let pivots = xi.split_off(n);
             let varying = |edge: &Edge| !self.graph.is_free(edge.node());
             let guards = pivots.into_iter().filter(varying).collect();

@@ -4,7 +4,7 @@ use super::LARGE;
 use super::parts::Parts;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
-use crate::derive::choice::Choice;
+use crate::derive::candidates::Candidates;
 use crate::model::Model;
 
 /// A computation of M and forces, in a graph of its own.
@@ -43,23 +43,23 @@ pub fn cheapest(
             (merged, functions)
         })
         .collect();
-    let mut choices: [Choice; 5] = std::array::from_fn(|_| Choice::new());
+    let mut all: [Candidates; 5] = std::array::from_fn(|_| Candidates::new());
     let traced = computations.iter().map(|computation| &computation.graph);
-    let all = traced
+    let computed = traced
         .zip(&functions)
         .chain(merged.iter().map(|(graph, functions)| (graph, functions)));
-    for (graph, functions) in all {
-        for (choice, roots) in choices.iter_mut().zip(functions) {
-            choice.offer(graph, roots.clone());
+    for (graph, functions) in computed {
+        for (candidates, roots) in all.iter_mut().zip(functions) {
+            candidates.offer(graph, roots.clone());
         }
     }
     let rows = |entries: Vec<Edge>| entries.chunks(model.n()).map(<[Edge]>::to_vec).collect();
-    let [mass, inertia, conservative, mut momentum, mut whole] = choices;
+    let [mass, inertia, conservative, mut momentum, mut whole] = all;
     let mut graph = model.graph.clone();
     let composed = Parts {
-        mass: rows(mass.take(&mut graph)),
-        inertia: inertia.take(&mut graph),
-        conservative: conservative.take(&mut graph),
+        mass: rows(mass.cheapest(&mut graph)),
+        inertia: inertia.cheapest(&mut graph),
+        conservative: conservative.cheapest(&mut graph),
         ..Parts::default()
     };
     let products = composed.momentum_of(&mut graph, model);
@@ -70,11 +70,11 @@ pub fn cheapest(
     let into = &mut around;
     let first = computations.first()?;
     let parts = Parts {
-        mass: rows(mass.take(into)),
-        inertia: inertia.take(into),
-        conservative: conservative.take(into),
-        momentum: Some(momentum.take(into)),
-        inverse_dynamics: Some(whole.take(into)),
+        mass: rows(mass.cheapest(into)),
+        inertia: inertia.cheapest(into),
+        conservative: conservative.cheapest(into),
+        momentum: Some(momentum.cheapest(into)),
+        inverse_dynamics: Some(whole.cheapest(into)),
         ..first.parts.grafted(&first.graph, into)
     };
     Some(Computation {

@@ -11,7 +11,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, multiply, solve_symmetric, transpose};
 use crate::algebra::transplant::rebuild;
 use crate::derive::assemble::Builder;
-use crate::derive::choice::Choice;
+use crate::derive::candidates::Candidates;
 use crate::model::class;
 use crate::program::count::count;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
@@ -224,9 +224,9 @@ impl Functions {
         ];
         for (name, docs, arguments, shape, outputs) in table {
             let Some(outputs) = outputs else { continue };
-            let mut choice = Choice::new();
-            choice.offer_both(self.graph.clone(), outputs.clone(), &builder.graph);
-            let outputs = choice.take(&mut builder.graph);
+            let mut candidates = Candidates::new();
+            candidates.offer_both(self.graph.clone(), outputs.clone(), &builder.graph);
+            let outputs = candidates.cheapest(&mut builder.graph);
             builder.push(name, docs, arguments, shape, outputs);
         }
         rebuild(&self.graph, &mut builder.graph, &self.pivots)

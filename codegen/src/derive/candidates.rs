@@ -11,7 +11,7 @@ const LARGE: usize = 3000;
 /// The cheapest computation so far, in the graph that it was built in: what other functions compute
 /// at length does not lengthen it.
 #[derive(Default)]
-pub struct Choice<'a> {
+pub struct Candidates<'a> {
     best: Option<Computed<'a>>,
 }
 
@@ -21,10 +21,10 @@ struct Computed<'a> {
     roots: Vec<Edge>,
 }
 
-impl<'a> Choice<'a> {
+impl<'a> Candidates<'a> {
     /// No computation yet.
     pub fn new() -> Self {
-        Choice::default()
+        Candidates::default()
     }
 
     /// One more computation, in a graph that others share.
@@ -60,7 +60,7 @@ impl<'a> Choice<'a> {
     }
 
     /// The cheapest, in another graph as it stands; nothing where nothing was offered.
-    pub fn take(&self, into: &mut Graph) -> Vec<Edge> {
+    pub fn cheapest(&self, into: &mut Graph) -> Vec<Edge> {
         let best = self.best.as_ref();
         best.map_or_else(Vec::new, |best| graft(&best.graph, into, &best.roots))
     }
