@@ -16,7 +16,7 @@ use crate::program::count::count;
 const MOST_WRITTEN_OUT: usize = 8;
 
 /// ṗ in the graph of `parts`: ∂ᵢT − γᵢⱼᵏ ξʲ pₖ written out, or Ṁ ξ − Γ ξ ξ with what is there for ξ̇
-/// anyway, whichever costs less; then −∂V and the applied forces.
+/// anyway, M written out or as it is traced, whichever costs least; then −∂V and the applied forces.
 pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
     if model.n() > MOST_WRITTEN_OUT {
         return traced_rate(model, graph, parts);
@@ -68,18 +68,13 @@ pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
             })
             .collect()
     };
-    let mut best: Option<Vec<Edge>> = None;
-    for candidate in candidates {
-        let full = with_forces(graph, &candidate);
-        let cost = count(graph, &full).weight();
-        if best
-            .as_ref()
-            .is_none_or(|best| cost < count(graph, best).weight())
-        {
-            best = Some(full);
-        }
-    }
-    best.unwrap_or_default()
+    let mut sums: Vec<Vec<Edge>> = candidates
+        .iter()
+        .map(|candidate| with_forces(graph, candidate))
+        .collect();
+    sums.push(traced_rate(model, graph, parts));
+    let cost = |sum: &Vec<Edge>| count(graph, sum).weight();
+    sums.into_iter().min_by_key(cost).unwrap_or_default()
 }
 
 /// d/dt (M ξ) at ξ̇ = 0, differentiated from M as it is traced, then −Γ ξ ξ − ∂V and the applied forces.
