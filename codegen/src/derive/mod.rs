@@ -58,6 +58,7 @@ pub mod motion;
 pub mod multipliers;
 pub mod normal;
 mod numbers;
+mod reactions;
 pub mod reduction;
 mod reference;
 mod slopes;
