@@ -59,8 +59,8 @@ pub fn assemble(
         builder.constraint_force(full, reduction);
         builder.projections();
     }
-    let Computation { graph, parts } = builder.shared();
-    let found = structure::analyse(full, model, &graph, &parts);
+    let Computation { graph, parts } = &builder.shared;
+    let found = structure::analyse(full, model, graph, parts);
     let structure = builder.splitting(found)?;
     let program = builder.finish(structure);
     match reduction {
@@ -81,6 +81,8 @@ pub(super) struct Builder<'a> {
     pub(super) chosen: Acceleration,
     /// M and forces.
     pub(super) parts: Parts,
+    /// The same in a graph where nothing but ξ̇ is computed, sharing what they can with it.
+    pub(super) shared: Computation,
     /// The functions.
     pub(super) functions: Vec<Function>,
     /// Pivots of [Y; Φ].
@@ -92,23 +94,22 @@ pub(super) struct Builder<'a> {
 impl<'a> Builder<'a> {
     fn new(model: &'a Model, chosen: Acceleration, computed: Computation) -> Self {
         let Computation { mut graph, parts } = computed;
+        let mut around = chosen.graph.clone();
+        let shared = Computation {
+            parts: parts.shared(&graph, &mut around),
+            graph: around,
+        };
         let kinematic_guards = rebuild(&model.graph, &mut graph, &model.completion.pivots);
         Builder {
             model,
             graph,
             chosen,
             parts,
+            shared,
             functions: Vec::new(),
             kinematic_guards,
             split_guards: Vec::new(),
         }
-    }
-
-    /// M and forces in a graph where nothing but ξ̇ is computed, sharing what they can with it.
-    pub(super) fn shared(&self) -> Computation {
-        let mut graph = self.chosen.graph.clone();
-        let parts = self.parts.shared(&self.graph, &mut graph);
-        Computation { graph, parts }
     }
 
     pub(super) fn push(

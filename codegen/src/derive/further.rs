@@ -23,9 +23,9 @@ impl Builder<'_> {
         }
         let n = self.model.n();
         if self.model.wants("momentum_rate") {
-            let Computation { mut graph, parts } = self.shared();
             let mut candidates = Candidates::new();
-            let rate = momentum::rate(self.model, &mut graph, &parts);
+            let mut graph = self.shared.graph.clone();
+            let rate = momentum::rate(self.model, &mut graph, &self.shared.parts);
             candidates.offer_own(graph, rate);
             let mut graph = self.graph.clone();
             let rate = momentum::rate(self.model, &mut graph, &self.parts);
@@ -43,7 +43,7 @@ impl Builder<'_> {
             return;
         }
         let p = &self.model.momenta;
-        let shared = self.shared();
+        let shared = &self.shared;
         let contexts = [(&self.graph, &self.parts), (&shared.graph, &shared.parts)];
         let found = contexts.map(|(graph, parts)| momentum::velocity(graph, parts, p));
         let cheapest = found.into_iter().flatten().min_by_key(|(cost, ..)| *cost);
@@ -72,7 +72,7 @@ impl Builder<'_> {
 
     /// [A B] of the motion nearby.
     pub(super) fn linearize(&mut self, full: &Model, reduction: Option<&Reduction>) {
-        let Computation { mut graph, parts } = self.shared();
+        let Computation { mut graph, parts } = self.shared.clone();
         let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
             return;
         };

@@ -28,7 +28,7 @@ impl Builder<'_> {
             return;
         }
         let mut candidates = Candidates::new();
-        let contexts = [self.shared().graph, self.graph.clone()];
+        let contexts = [self.shared.graph.clone(), self.graph.clone()];
         for mut graph in contexts.into_iter().chain([self.chosen.graph.clone()]) {
             let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut graph) else {
                 return;

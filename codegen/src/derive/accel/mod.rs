@@ -76,7 +76,7 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
             return Some((best, computed));
         }
     }
-    let variant = search(&given, &mut best)?;
+    let mut computations = search(&given, &mut best)?;
     if model.n() <= SMALL && model.spans {
         if let Some(twist) = Setting::twist(model) {
             search(&twist, &mut best);
@@ -87,18 +87,6 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
         }
     }
     let best = polished(best?, model);
-    let mut traced = vec![variant];
-    if model.n() <= SMALL {
-        let others = variants(model, true).into_iter();
-        traced.extend(others.filter(|other| *other != variant));
-    }
-    let mut computations: Vec<Computation> = traced
-        .into_iter()
-        .map(|variant| {
-            let (Model { graph, .. }, parts) = trace(&given, variant);
-            Computation { graph, parts }
-        })
-        .collect();
     computations.extend(recursion.map(|recursion| recursion.parts()));
     let computed = cheapest(computations, &best.graph, model)?;
     Some((best, computed))
@@ -209,12 +197,15 @@ fn polished(chosen: Acceleration, model: &Model) -> Acceleration {
     }
 }
 
-/// Counts the candidates of a setting; the way of tracing that the best of them used.
-fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Variant> {
+/// Counts the candidates of a setting; what was traced, that of the best of them first, and for systems
+/// that are not small alone.
+fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Vec<Computation>> {
     let small = setting.model.n() <= SMALL;
     let mut chosen: Option<(usize, Variant)> = None;
+    let mut computations = Vec::new();
     for variant in variants(&setting.model, small) {
         let (traced, parts) = trace(setting, variant);
+        let before = chosen;
         for plan in first_plans(&traced.graph, &parts, small) {
             if let Some(candidate) = attempt(setting, &traced, &parts, &plan, &variant) {
                 let weight = candidate.count.weight();
@@ -224,6 +215,13 @@ fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Variant>
                 keep(best, candidate);
             }
         }
+        let graph = traced.graph;
+        let place = if chosen == before {
+            computations.len()
+        } else {
+            0
+        };
+        computations.insert(place, Computation { graph, parts });
     }
     let (_, chosen) = chosen?;
     if small {
@@ -237,7 +235,8 @@ fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Variant>
             }
         }
     }
-    Some(chosen)
+    computations.truncate(if small { computations.len() } else { 1 });
+    Some(computations)
 }
 
 fn keep(best: &mut Option<Acceleration>, candidate: Acceleration) {
