@@ -100,7 +100,7 @@ impl<Sys: System<Scalar = f64>> Case<Sys> {
     /// The same by splitting.
     ///
     /// # Errors
-    /// Those of [`integrate`].
+    /// Those of [`integrate()`].
     pub fn split(&self, scheme: Scheme, until: f64, n: u32) -> Result<(State<Sys>, u64), StepError>
     where
         Sys: Split,
