@@ -7,9 +7,7 @@ use super::node::{Edge, Function, Node, NodeId};
 use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
-
-/// Nodes that are looked at for the rational factor of an expression.
-const CONTENT_STEPS: usize = 1 << 12;
+use rustc_hash::FxHashMap;
 
 impl Graph {
     /// √ of a rational square.
@@ -154,31 +152,31 @@ impl Graph {
                 if is_number && !number.is_some_and(|number| number.is_positive()) {
                     return Vec::new();
                 }
-                vec![(
-                    argument.node(),
-                    self.content(argument, &mut CONTENT_STEPS.clone()),
-                )]
+                vec![(argument.node(), self.noted_content(argument))]
             }
             Function::Log | Function::Atan2 => Vec::new(),
         }
     }
 
     /// A positive rational factor of an expression, the same however it is grouped.
-    fn content(&self, edge: Edge, steps: &mut usize) -> BigRational {
-        *steps = steps.saturating_sub(1);
-        if *steps == 0 {
-            return BigRational::one();
+    pub(super) fn content(&self, edge: Edge) -> BigRational {
+        let mut contents: FxHashMap<NodeId, BigRational> = FxHashMap::default();
+        let one = BigRational::one();
+        for id in self.reachable(&[edge]) {
+            let of = |edge: Edge| contents.get(&edge.node()).unwrap_or(&one);
+            let content = match self.node(id) {
+                Node::Constant(index) => self.constant(index).abs(),
+                Node::Mul(a, b) => of(a) * of(b),
+                Node::Div(a, b) => of(a) / of(b),
+                Node::Add(a, b) => {
+                    let (a, b) = (of(a), of(b));
+                    BigRational::new(a.numer().gcd(b.numer()), a.denom().lcm(b.denom()))
+                }
+                Node::Symbol(_) | Node::Apply(..) | Node::Atan2(..) => continue,
+            };
+            contents.insert(id, content);
         }
-        match self.node(edge.node()) {
-            Node::Constant(index) => self.constant(index).abs(),
-            Node::Mul(a, b) => self.content(a, steps) * self.content(b, steps),
-            Node::Div(a, b) => self.content(a, steps) / self.content(b, steps),
-            Node::Add(a, b) => {
-                let (a, b) = (self.content(a, steps), self.content(b, steps));
-                BigRational::new(a.numer().gcd(b.numer()), a.denom().lcm(b.denom()))
-            }
-            Node::Symbol(_) | Node::Apply(..) | Node::Atan2(..) => BigRational::one(),
-        }
+        contents.remove(&edge.node()).unwrap_or(one)
     }
 
     /// The argument of a function with a group law, as Σ coefficient · atom.

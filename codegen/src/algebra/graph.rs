@@ -32,6 +32,8 @@ pub struct Graph {
     symbols: Vec<Symbol>,
     lanes: [Lane; LANES],
     shadow: Shadow,
+    /// Rational factors of what stands under square roots, by its node.
+    contents: FxHashMap<NodeId, BigRational>,
     /// Class of the symbols that are constant at run time; products and sums of these are kept
     /// together so that they can be computed once.
     free_class: u8,
@@ -51,6 +53,7 @@ impl Graph {
             symbols: Vec::new(),
             lanes,
             shadow: Shadow::default(),
+            contents: FxHashMap::default(),
             free_class,
         };
         // Node 0 is the number 0, node 1 the number 1.
@@ -83,6 +86,21 @@ impl Graph {
     /// The real values of a symbol.
     pub fn reals(&self, symbol: usize) -> Reals {
         self.shadow.symbol(symbol)
+    }
+
+    /// Finds the rational factor of what is put under a square root, once for all points.
+    fn note_content(&mut self, function: Function, argument: Edge) {
+        let id = argument.node();
+        if function == Function::Sqrt && !self.contents.contains_key(&id) {
+            let content = self.content(argument);
+            self.contents.insert(id, content);
+        }
+    }
+
+    /// The rational factor of what stands under a square root.
+    pub(super) fn noted_content(&self, argument: Edge) -> BigRational {
+        let known = self.contents.get(&argument.node()).cloned();
+        known.unwrap_or_else(BigRational::one)
     }
 
     /// The number 0.
@@ -317,6 +335,7 @@ impl Graph {
         if let Some(exact) = exact {
             return exact;
         }
+        self.note_content(function, argument);
         let form = self.form(function, argument);
         if matches!(function, Function::Sin | Function::Cos)
             && let Some(turned) = self.without_right_angles(function, argument, &form)

@@ -16,6 +16,8 @@ use rustc_hash::FxHashMap;
 const TRIES: usize = 4000;
 /// Those after which roots of non-squares are allowed.
 const STRICT_TRIES: usize = 300;
+/// With more independent roots the tries would be too many.
+const MOST_STRICT: usize = 6;
 /// Systems of constraints without a solution before giving up.
 const FAILURES: usize = 3;
 /// Largest degree of a constraint in the coordinates.
@@ -142,7 +144,9 @@ impl Points {
             self.choose_where(&mut random, seed, STRICT_TRIES, &anything)
                 .is_some()
         };
-        let strict = self.radicals.is_empty() || found(1) && found(2);
+        let varying = |root: &&Edge| self.free.class(root.node()) != 0;
+        let count = self.radicals.iter().filter(varying).count();
+        let strict = count == 0 || count <= MOST_STRICT && found(1) && found(2);
         self.lenient |= !strict;
     }
 

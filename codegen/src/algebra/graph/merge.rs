@@ -29,6 +29,9 @@ impl Graph {
 
     /// A node that later expressions do not merge with.
     pub(in crate::algebra) fn push_unmerged(&mut self, node: Node) -> Edge {
+        if let Node::Apply(function, argument) = node {
+            self.note_content(function, argument);
+        }
         let id = self.nodes.len() as NodeId;
         let class = node
             .children()
