@@ -83,7 +83,7 @@ fn undetermined(graph: &Graph, m: &[Vec<Edge>], unknowns: usize) -> Vec<usize> {
     let without = |left_out: Option<usize>| {
         let row = |row: &Vec<Edge>| {
             let kept = row.iter().enumerate().filter(|(j, _)| Some(*j) != left_out);
-            kept.map(|(_, &edge)| graph.value(edge)[0]).collect()
+            kept.map(|(_, &edge)| graph.value(edge)).collect()
         };
         rank(m.iter().map(row).collect())
     };

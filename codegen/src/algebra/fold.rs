@@ -2,7 +2,7 @@
 //! and arguments of sin, cos and exp are read as linear forms.
 
 use super::fp::Fp;
-use super::graph::{Graph, LANES};
+use super::graph::Graph;
 use super::node::{Edge, Function, Node, NodeId};
 use num_integer::Integer;
 use num_rational::BigRational;
@@ -20,11 +20,10 @@ impl Graph {
 
     /// A node e with e² = `square` on X that is no square root itself; of either sign.
     pub fn known_root(&self, square: Edge) -> Option<Edge> {
-        let [a, b] = self.value(square).map(|value| value.sqrt());
-        let (a, b) = (a?, b?);
+        let root = self.value(square).sqrt()?;
         let is_root =
             |edge: &Edge| matches!(self.node(edge.node()), Node::Apply(Function::Sqrt, _));
-        [[a, b], [a, -b]]
+        [root, root.flipped()]
             .into_iter()
             .filter_map(|value| self.lookup(value))
             .find(|edge| !is_root(edge))
@@ -32,11 +31,10 @@ impl Graph {
 
     /// The values of √(e²) = |e|: roots of both signs are roots modulo p, and are chosen such that
     /// |e| is neither e nor −e, unless e is itself a root or a number.
-    pub(super) fn apart_from_root(&self, square: Edge, root: [Fp; LANES]) -> [Fp; LANES] {
-        let [a, b] = root;
+    pub(super) fn apart_from_root(&self, square: Edge, root: Fp) -> Fp {
         match self.lookup(root).map(|known| self.node(known.node())) {
             None | Some(Node::Constant(_) | Node::Apply(Function::Sqrt, _)) => root,
-            Some(_) if self.value(square) == root.map(|value| value * value) => [a, -b],
+            Some(_) if self.value(square) == root * root => root.flipped(),
             Some(_) => root,
         }
     }
@@ -109,7 +107,7 @@ impl Graph {
         argument: Edge,
         form: &[(NodeId, BigRational)],
     ) -> Option<Edge> {
-        let is_pi = |atom: NodeId| self.value(Edge::of(atom)).iter().all(|v| *v == Fp::PI);
+        let is_pi = |atom: NodeId| self.value(Edge::of(atom)) == Fp::PI;
         let (pi, halves) = form
             .iter()
             .find(|(atom, _)| is_pi(*atom))

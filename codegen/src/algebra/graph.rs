@@ -1,6 +1,6 @@
 //! The hash-consed graph of signed edges.
 //!
-//! Every node carries its value at two points of the constraint variety X. Equal values are one
+//! Every node carries its value at a point of the constraint variety X in each of two fields. Equal values are one
 //! node, so "equal on X" is node identity; zero and small rationals are recognised as constants.
 //! Where square roots take part, real samples have to agree, too (`shadow`).
 //! An edge is a node with a sign, so negation costs nothing and a − b, b − a are one node.
@@ -18,19 +18,16 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 use rustc_hash::FxHashMap;
 
-/// Number of points; a false merge of expressions of degree D has probability below (D/p)^2.
-pub const LANES: usize = 2;
-
 /// The graph.
 #[derive(Clone, Debug)]
 pub struct Graph {
     nodes: Vec<Node>,
-    values: Vec<[Fp; LANES]>,
+    values: Vec<Fp>,
     classes: Vec<u8>,
-    by_value: FxHashMap<[Fp; LANES], Edge>,
+    by_value: FxHashMap<Fp, Edge>,
     constants: Vec<BigRational>,
     symbols: Vec<Symbol>,
-    lanes: [Lane; LANES],
+    lane: Lane,
     shadow: Shadow,
     /// Rational factors of what stands under square roots, by its node.
     contents: FxHashMap<NodeId, BigRational>,
@@ -42,8 +39,6 @@ pub struct Graph {
 impl Graph {
     /// An empty graph; `seed` chooses the points, `free_class` the run-time constants.
     pub fn new(seed: u64, free_class: u8) -> Self {
-        let lanes =
-            std::array::from_fn(|lane| Lane::new(seed.wrapping_mul(31).wrapping_add(lane as u64)));
         let mut graph = Graph {
             nodes: Vec::new(),
             values: Vec::new(),
@@ -51,13 +46,13 @@ impl Graph {
             by_value: FxHashMap::default(),
             constants: Vec::new(),
             symbols: Vec::new(),
-            lanes,
+            lane: Lane::new(seed),
             shadow: Shadow::default(),
             contents: FxHashMap::default(),
             free_class,
         };
         // Node 0 is the number 0, node 1 the number 1.
-        graph.push(Node::Constant(0), [Fp::ZERO; LANES], 0);
+        graph.push(Node::Constant(0), Fp::ZERO, 0);
         graph.constants.push(BigRational::zero());
         graph.rational(&BigRational::one());
         graph
@@ -66,15 +61,13 @@ impl Graph {
     /// An empty graph at the same points, for some of the symbols.
     pub fn fresh(&self) -> Self {
         let mut graph = Graph::new(0, self.free_class);
-        graph.lanes = std::array::from_fn(|lane| self.lanes[lane].fresh());
+        graph.lane = self.lane.fresh();
         graph
     }
 
     /// Takes roots of non-squares in F_p(i); for when no point avoids them.
     pub fn set_lenient(&mut self, lenient: bool) {
-        self.lanes
-            .iter_mut()
-            .for_each(|lane| lane.lenient = lenient);
+        self.lane.lenient = lenient;
     }
 
     /// Gives the symbols real values, in order of creation; without them roots of expressions are
@@ -138,14 +131,10 @@ impl Graph {
         self.classes[id as usize] & !self.free_class == 0
     }
 
-    /// The values of an edge at the points.
-    pub fn value(&self, edge: Edge) -> [Fp; LANES] {
+    /// The value of an edge at the point.
+    pub fn value(&self, edge: Edge) -> Fp {
         let value = self.values[edge.node() as usize];
-        if edge.is_negative() {
-            value.map(|v| -v)
-        } else {
-            value
-        }
+        if edge.is_negative() { -value } else { value }
     }
 
     /// The symbols, in order of creation.
@@ -155,7 +144,7 @@ impl Graph {
 
     /// Whether a square root met a non-square: choose other points and start again.
     pub fn is_stuck(&self) -> bool {
-        self.lanes.iter().any(|lane| lane.stuck)
+        self.lane.is_stuck()
     }
 
     /// The number that an edge is, if it is one.
@@ -178,11 +167,9 @@ impl Graph {
         &self.constants[index as usize]
     }
 
-    /// A new symbol with its values at the points.
-    pub fn symbol(&mut self, name: &str, class: u8, value: [Fp; LANES]) -> Edge {
-        for (lane, value) in self.lanes.iter_mut().zip(value) {
-            lane.push_symbol(value);
-        }
+    /// A new symbol with its value at the point.
+    pub fn symbol(&mut self, name: &str, class: u8, value: Fp) -> Edge {
+        self.lane.push_symbol(value);
         let index = self.symbols.len() as u32;
         let edge = self.push(Node::Symbol(index), value, class);
         self.symbols.push(Symbol {
@@ -196,7 +183,7 @@ impl Graph {
     /// An exact number.
     pub fn rational(&mut self, value: &BigRational) -> Edge {
         if let Some(image) = Fp::from_rational(value)
-            && let Some(edge) = self.lookup([image; LANES])
+            && let Some(edge) = self.lookup(image)
             && self.as_rational(edge).as_ref() == Some(value)
         {
             return edge;
@@ -204,7 +191,7 @@ impl Graph {
         let image = Fp::from_rational(value).unwrap_or(Fp::ZERO);
         let index = self.constants.len() as u32;
         self.constants.push(value.clone());
-        self.push(Node::Constant(index), [image; LANES], 0)
+        self.push(Node::Constant(index), image, 0)
     }
 
     /// n/d; d must not be 0.
@@ -230,7 +217,7 @@ impl Graph {
         if let (Some(x), Some(y)) = (self.as_rational(a), self.as_rational(b)) {
             return self.rational(&(x + y));
         }
-        let value = lanewise(self.value(a), self.value(b), |x, y| x + y);
+        let value = self.value(a) + self.value(b);
         let class = self.class(a.node()) | self.class(b.node());
         if let Some(known) = self.known(Node::Add(a, b), value, class) {
             return known;
@@ -245,7 +232,7 @@ impl Graph {
         match (a.is_negative(), b.is_negative()) {
             (true, true) => {
                 let (a, b) = ordered(-a, -b);
-                -self.push(Node::Add(a, b), value.map(|v| -v), class)
+                -self.push(Node::Add(a, b), -value, class)
             }
             (true, false) => self.push(Node::Add(b, a), value, class),
             (false, true) => self.push(Node::Add(a, b), value, class),
@@ -277,7 +264,7 @@ impl Graph {
         if let (Some(x), Some(y)) = (self.as_rational(a), self.as_rational(b)) {
             return self.rational(&(x * y)).signed(negative);
         }
-        let value = lanewise(self.value(a), self.value(b), |x, y| x * y);
+        let value = self.value(a) * self.value(b);
         let class = self.class(a.node()) | self.class(b.node());
         if let Some(known) = self.known(Node::Mul(a, b), value, class) {
             return known.signed(negative);
@@ -302,10 +289,7 @@ impl Graph {
             let inverse = self.rational(&divisor.recip());
             return Some(self.mul(a, inverse).signed(negative));
         }
-        let mut value = [Fp::ZERO; LANES];
-        for lane in 0..LANES {
-            value[lane] = self.value(a)[lane] * self.value(b)[lane].inv()?;
-        }
+        let value = self.value(a) * self.value(b).inv()?;
         let class = self.class(a.node()) | self.class(b.node());
         if let Some(known) = self.known(Node::Div(a, b), value, class) {
             return Some(known.signed(negative));
@@ -342,14 +326,11 @@ impl Graph {
         {
             return turned.signed(negative);
         }
-        let arguments = self.value(argument);
-        let value = std::array::from_fn(|lane| {
-            let form = form
-                .iter()
-                .map(|(atom, c)| (self.value(Edge::of(*atom))[lane], c.clone()))
-                .collect();
-            self.lanes[lane].function(function, arguments[lane], &form)
-        });
+        let form = form
+            .iter()
+            .map(|(atom, c)| (self.value(Edge::of(*atom)), c.clone()))
+            .collect();
+        let value = self.lane.function(function, self.value(argument), &form);
         let value = match function {
             Function::Sqrt => self.apart_from_root(argument, value),
             _ => value,
@@ -365,10 +346,9 @@ impl Graph {
 
     /// atan2(y, x).
     pub fn atan2(&mut self, y: Edge, x: Edge) -> Edge {
-        let (ys, xs) = (self.value(y), self.value(x));
-        let value = std::array::from_fn(|lane| {
-            self.lanes[lane].opaque(Function::Atan2, ys[lane], xs[lane])
-        });
+        let value = self
+            .lane
+            .opaque(Function::Atan2, self.value(y), self.value(x));
         let class = self.class(y.node()) | self.class(x.node());
         let node = Node::Atan2(y, x);
         match self.known(node, value, class) {
@@ -432,8 +412,4 @@ impl Graph {
 
 fn ordered(a: Edge, b: Edge) -> (Edge, Edge) {
     if a <= b { (a, b) } else { (b, a) }
-}
-
-fn lanewise(a: [Fp; LANES], b: [Fp; LANES], f: impl Fn(Fp, Fp) -> Fp) -> [Fp; LANES] {
-    std::array::from_fn(|lane| f(a[lane], b[lane]))
 }

@@ -78,7 +78,7 @@ impl Tape {
         let columns = |table: &[Vec<Fp>], root: Operand| -> Vec<Fp> {
             (0..width).map(|k| Columns::entry(table, root, k)).collect()
         };
-        (!lane.stuck).then(|| {
+        (!lane.is_stuck()).then(|| {
             let jet = |&root: &Operand| Jet {
                 value: root.of(&all.value),
                 along: root.of(&all.along),
@@ -225,7 +225,7 @@ mod tests {
     use super::Seeds;
     use crate::algebra::derivation::Derivation;
     use crate::algebra::fp::{Fp, Random};
-    use crate::algebra::graph::{Edge, Function, Graph, LANES};
+    use crate::algebra::graph::{Edge, Function, Graph};
     use crate::algebra::lane::Lane;
     use crate::algebra::numeric::evaluate_at;
     use crate::algebra::tape::Tape;
@@ -235,13 +235,7 @@ mod tests {
     fn mixed_derivatives_are_those_of_the_symbolic_derivative() {
         let mut random = Random::new(5);
         let mut graph = Graph::new(1, 0);
-        let [s, t, a, b] = ["s", "t", "a", "b"].map(|name| {
-            graph.symbol(
-                name,
-                2,
-                std::array::from_fn::<_, LANES, _>(|_| random.element()),
-            )
-        });
+        let [s, t, a, b] = ["s", "t", "a", "b"].map(|name| graph.symbol(name, 2, random.element()));
         let product = graph.mul(a, b);
         let mut roots = vec![graph.sub(product, b)];
         for function in [

@@ -1,12 +1,13 @@
-//! One point of the variety: the values modulo p of all symbols, and of sin, cos, exp, √ at it.
+//! One point of the variety in each of the two fields: the values of all symbols, and of sin, cos, exp, √.
 //!
 //! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a
 //! random point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that
 //! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
 //! exp is treated likewise. Square roots keep the laws of positive numbers (`roots`).
 
-use super::fp::{Fp, P, Random};
+use super::fp::{Fp, Random};
 use super::graph::Function;
+use super::prime::Residue;
 use super::roots;
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -21,13 +22,14 @@ pub type LinearForm = Vec<(Fp, BigRational)>;
 const PARTS: i64 = 12;
 
 /// A point: values of symbols, and a seed from which the values of functions follow. Values of
-/// functions depend on values of arguments alone, so that two graphs agree at the same point.
+/// functions depend on values of arguments alone, so that two graphs agree at the same point; those in
+/// one field do not depend on what is in the other.
 #[derive(Clone, Debug)]
 pub struct Lane {
     seed: u64,
     symbols: Vec<Fp>,
-    /// Set when a square root was asked of a non-square: the point should be chosen anew.
-    pub stuck: bool,
+    /// In which field a square root was asked of a non-square: the point should be chosen anew there.
+    stuck: [bool; 2],
     /// Whether roots of non-squares are taken in F_p(i), where √a √b may be −√(ab).
     pub lenient: bool,
 }
@@ -38,7 +40,7 @@ impl Lane {
         Lane {
             seed,
             symbols: Vec::new(),
-            stuck: false,
+            stuck: [false; 2],
             lenient: false,
         }
     }
@@ -68,16 +70,32 @@ impl Lane {
         self.symbols[index]
     }
 
+    /// Whether a square root was asked of a non-square, in either field.
+    pub fn is_stuck(&self) -> bool {
+        self.stuck != [false; 2]
+    }
+
+    /// In which of the fields a square root was asked of a non-square.
+    pub fn stuck(&self) -> [bool; 2] {
+        self.stuck
+    }
+
     /// Value of a function of one argument; `form` is `Graph::form` of the argument.
     pub fn function(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
         match function {
-            Function::Sin => self.angle(form).1,
-            Function::Cos => self.angle(form).0,
-            Function::Exp => self.exp(form),
-            Function::Sqrt => self.root(argument, form).unwrap_or_else(|| {
-                self.stuck = true;
-                self.opaque(function, argument, Fp::ZERO)
-            }),
+            Function::Sin => Fp(self.angle(form, &first).1, self.angle(form, &second).1),
+            Function::Cos => Fp(self.angle(form, &first).0, self.angle(form, &second).0),
+            Function::Exp => Fp(self.exp(form, &first), self.exp(form, &second)),
+            Function::Sqrt => {
+                let roots = (
+                    self.root(argument.0, form, &first),
+                    self.root(argument.1, form, &second),
+                );
+                self.stuck[0] |= roots.0.is_none();
+                self.stuck[1] |= roots.1.is_none();
+                let other = self.opaque(function, argument, Fp::ZERO);
+                Fp(roots.0.unwrap_or(other.0), roots.1.unwrap_or(other.1))
+            }
             Function::Log | Function::Atan2 => self.opaque(function, argument, Fp::ZERO),
         }
     }
@@ -102,63 +120,89 @@ impl Lane {
     }
 
     /// √(c e) = √c √e with the factor c of the form; a number without a form has any root.
-    fn root(&self, argument: Fp, form: &LinearForm) -> Option<Fp> {
+    fn root<const K: usize>(
+        &self,
+        argument: Residue<K>,
+        form: &LinearForm,
+        _: Part<K>,
+    ) -> Option<Residue<K>> {
         let Some((_, factor)) = form.first() else {
             return argument.sqrt();
         };
-        let rest = argument * Fp::from_rational(factor)?.inv()?;
-        let root = roots::principal(rest);
+        let rest = argument * Residue::from_rational(factor)?.inv()?;
+        let root = rest.principal_root();
         let root = root.or_else(|| self.lenient.then(|| rest.sqrt())?)?;
-        Some(roots::of_rational(factor)? * root)
+        Some(roots::of_rational::<K>(factor)? * root)
     }
 
     /// A value without any law but equality of arguments.
     pub fn opaque(&self, function: Function, a: Fp, b: Fp) -> Fp {
-        self.draw(function as u64, a, b).element()
+        let tag = function as u64;
+        Fp(
+            self.draw(tag, a.0, b.0).residue(),
+            self.draw(tag, a.1, b.1).residue(),
+        )
     }
 
     /// A random stream that belongs to a tag and two values.
-    fn draw(&self, tag: u64, a: Fp, b: Fp) -> Random {
-        let mut seed = self.seed;
+    fn draw<const K: usize>(&self, tag: u64, a: Residue<K>, b: Residue<K>) -> Random {
+        let mut seed = self.seed ^ (K as u64) << 63;
         for part in [tag, a.bits(), b.bits()] {
             seed = Random::new(seed ^ part.wrapping_mul(0x2545_f491_4f6c_dd1d)).bits();
         }
         Random::new(seed)
     }
 
-    fn angle(&self, form: &LinearForm) -> (Fp, Fp) {
-        form.iter()
-            .fold((Fp::ONE, Fp::ZERO), |total, (atom, coefficient)| {
-                let (base, count, parts) = split(*atom, coefficient);
-                let point = if base == Fp::PI && parts == 1 {
+    fn angle<const K: usize>(&self, form: &LinearForm, part: Part<K>) -> Turn<K> {
+        form.iter().fold(
+            (Residue::ONE, Residue::ZERO),
+            |total, (atom, coefficient)| {
+                let (base, count, parts) = split(part(*atom), coefficient);
+                let point = if base == part(Fp::PI) && parts == 1 {
                     twelfth()
                 } else {
-                    circle_point(&mut self.draw(64 + parts, base, Fp::ONE))
+                    circle_residue(&mut self.draw(64 + parts, base, Residue::ONE))
                 };
                 rotate(total, power(point, count))
-            })
+            },
+        )
     }
 
-    fn exp(&self, form: &LinearForm) -> Fp {
-        form.iter().fold(Fp::ONE, |total, (atom, coefficient)| {
-            let (base, count, parts) = split(*atom, coefficient);
-            let magnitude = self
-                .draw(96 + parts, base, Fp::ONE)
-                .element()
-                .pow(count.unsigned_abs());
-            total
-                * if count < 0 {
-                    magnitude.inv().unwrap_or(Fp::ONE)
-                } else {
-                    magnitude
-                }
-        })
+    fn exp<const K: usize>(&self, form: &LinearForm, part: Part<K>) -> Residue<K> {
+        form.iter()
+            .fold(Residue::ONE, |total, (atom, coefficient)| {
+                let (base, count, parts) = split(part(*atom), coefficient);
+                let magnitude = self
+                    .draw(96 + parts, base, Residue::ONE)
+                    .residue::<K>()
+                    .pow(count.unsigned_abs());
+                total
+                    * if count < 0 {
+                        magnitude.inv().unwrap_or(Residue::ONE)
+                    } else {
+                        magnitude
+                    }
+            })
     }
+}
+
+/// Cosine and sine.
+type Turn<const K: usize> = (Residue<K>, Residue<K>);
+
+/// One of the two fields.
+type Part<'a, const K: usize> = &'a dyn Fn(Fp) -> Residue<K>;
+
+fn first(value: Fp) -> Residue<0> {
+    value.0
+}
+
+fn second(value: Fp) -> Residue<1> {
+    value.1
 }
 
 /// Writes c·atom as a whole number of parts of a base, signs made canonical; where c is no
 /// multiple of a part, c·atom is a base of its own.
-fn split(atom: Fp, coefficient: &BigRational) -> (Fp, i64, u64) {
+fn split<const K: usize>(atom: Residue<K>, coefficient: &BigRational) -> (Residue<K>, i64, u64) {
     let parts = coefficient * BigRational::from_integer(BigInt::from(PARTS));
     let whole = parts
         .is_integer()
@@ -167,7 +211,7 @@ fn split(atom: Fp, coefficient: &BigRational) -> (Fp, i64, u64) {
     let (base, count, parts) = match whole {
         Some(count) => (atom, count, 1),
         None => (
-            atom * Fp::from_rational(coefficient).unwrap_or(Fp::ONE),
+            atom * Residue::from_rational(coefficient).unwrap_or(Residue::ONE),
             1,
             0,
         ),
@@ -180,30 +224,39 @@ fn split(atom: Fp, coefficient: &BigRational) -> (Fp, i64, u64) {
 }
 
 /// A random point (c, s) of the unit circle: ((1 − t²), 2t)/(1 + t²); 1 + t² ≠ 0 as p ≡ 3 mod 4.
+fn circle_residue<const K: usize>(random: &mut Random) -> Turn<K> {
+    let t = random.residue();
+    let scale = (Residue::ONE + t * t).inv().unwrap_or(Residue::ONE);
+    ((Residue::ONE - t * t) * scale, (t + t) * scale)
+}
+
+/// The same in both fields.
 pub fn circle_point(random: &mut Random) -> (Fp, Fp) {
-    let t = random.element();
-    let scale = (Fp::ONE + t * t).inv().unwrap_or(Fp::ONE);
-    ((Fp::ONE - t * t) * scale, (t + t) * scale)
+    let (a, b) = (circle_residue(random), circle_residue(random));
+    (Fp(a.0, b.0), Fp(a.1, b.1))
 }
 
 /// Cosine and sine of π/12, (√3 ± 1) √2 / 4.
-fn twelfth() -> (Fp, Fp) {
+fn twelfth<const K: usize>() -> Turn<K> {
     let root = |n: i64| {
         let number = BigRational::from_integer(BigInt::from(n));
-        roots::of_rational(&number).unwrap_or(Fp::ONE)
+        roots::of_rational::<K>(&number).unwrap_or(Residue::ONE)
     };
-    let quarter = Fp::new(4).inv().unwrap_or(Fp::ONE) * root(2);
-    ((root(3) + Fp::ONE) * quarter, (root(3) - Fp::ONE) * quarter)
+    let quarter = Residue::new(4).inv().unwrap_or(Residue::ONE) * root(2);
+    (
+        (root(3) + Residue::ONE) * quarter,
+        (root(3) - Residue::ONE) * quarter,
+    )
 }
 
-fn rotate(a: (Fp, Fp), b: (Fp, Fp)) -> (Fp, Fp) {
+fn rotate<const K: usize>(a: Turn<K>, b: Turn<K>) -> Turn<K> {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
-fn power(base: (Fp, Fp), count: i64) -> (Fp, Fp) {
+fn power<const K: usize>(base: Turn<K>, count: i64) -> Turn<K> {
     let mut base = if count < 0 { (base.0, -base.1) } else { base };
-    let mut count = count.unsigned_abs() % (P + 1);
-    let mut result = (Fp::ONE, Fp::ZERO);
+    let mut count = count.unsigned_abs();
+    let mut result = (Residue::ONE, Residue::ZERO);
     while count > 0 {
         if count & 1 == 1 {
             result = rotate(result, base);

@@ -1,5 +1,5 @@
 //! Computer algebra without mechanics: a hash-consed graph whose nodes carry values modulo
-//! p = 2^61 − 1 at points of the constraint variety, derivations tangent to that variety, and
+//! two primes at points of the constraint variety, derivations tangent to that variety, and
 //! polynomials with normal forms for the small pieces that people read.
 
 pub mod blocks;
@@ -14,6 +14,7 @@ pub mod linear;
 pub mod node;
 pub mod numeric;
 pub mod poly;
+pub mod prime;
 pub mod reals;
 pub mod resubstitute;
 mod roots;

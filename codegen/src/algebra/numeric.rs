@@ -70,7 +70,7 @@ pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec
             }
         };
     }
-    (!lane.stuck).then(|| roots.iter().map(|&root| read(&values, root)).collect())
+    (!lane.is_stuck()).then(|| roots.iter().map(|&root| read(&values, root)).collect())
 }
 
 /// The solution of a square system over F_p; `None` where it is singular.

@@ -5,7 +5,7 @@
 //! value n − x, n + x or n / x is looked up. No node is ever added, so the count can only fall.
 
 use super::fp::Fp;
-use super::graph::{Graph, LANES};
+use super::graph::Graph;
 use super::node::{Edge, Node, NodeId};
 use super::transplant::rebuild;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -36,19 +36,13 @@ struct Network<'a> {
     roots: &'a [Edge],
     definitions: FxHashMap<NodeId, Node>,
     /// 1 / value of every node whose value is nowhere zero.
-    inverses: FxHashMap<NodeId, [Fp; LANES]>,
+    inverses: FxHashMap<NodeId, Fp>,
 }
 
 impl<'a> Network<'a> {
     fn new(graph: &'a Graph, roots: &'a [Edge]) -> Self {
         let nodes = graph.reachable(roots);
-        let inverse = |id: NodeId| {
-            let mut inverse = graph.value(Edge::of(id));
-            for value in &mut inverse {
-                *value = value.inv()?;
-            }
-            Some((id, inverse))
-        };
+        let inverse = |id: NodeId| Some((id, graph.value(Edge::of(id)).inv()?));
         Network {
             graph,
             roots,
@@ -155,33 +149,33 @@ impl<'a> Network<'a> {
             .copied()
             .filter(|node| !above.contains(node))
             .collect();
-        let by_value: FxHashMap<[Fp; LANES], NodeId> = usable
+        let by_value: FxHashMap<Fp, NodeId> = usable
             .iter()
             .map(|&node| (self.value(node), node))
             .collect();
-        let signed = |value: [Fp; LANES]| -> Option<Edge> {
-            let found = |value: &[Fp; LANES]| by_value.get(value).map(|&node| Edge::of(node));
-            found(&value).or_else(|| found(&value.map(|v| -v)).map(|edge| -edge))
+        let signed = |value: Fp| -> Option<Edge> {
+            let found = |value: &Fp| by_value.get(value).map(|&node| Edge::of(node));
+            found(&value).or_else(|| found(&-value).map(|edge| -edge))
         };
         let target = self.value(id);
         usable.iter().find_map(|&x| {
             let inverse = self.inverses.get(&x)?;
             let value = self.value(x);
-            let difference = std::array::from_fn(|lane| target[lane] - value[lane]);
+            let difference = target - value;
             if let Some(y) = signed(difference) {
                 return Some(Node::Add(Edge::of(x), y));
             }
-            let sum = std::array::from_fn(|lane| target[lane] + value[lane]);
+            let sum = target + value;
             if let Some(y) = signed(sum) {
                 return Some(Node::Add(-Edge::of(x), y));
             }
-            let quotient = std::array::from_fn(|lane| target[lane] * inverse[lane]);
+            let quotient = target * *inverse;
             let y = signed(quotient).filter(|y| !y.is_negative())?;
             Some(Node::Mul(Edge::of(x), y))
         })
     }
 
-    fn value(&self, id: NodeId) -> [Fp; LANES] {
+    fn value(&self, id: NodeId) -> Fp {
         self.graph.value(Edge::of(id))
     }
 
@@ -239,7 +233,7 @@ mod tests {
         let mut graph = Graph::new(3, 1);
         let mut random = Random::new(4);
         let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| {
-            let value = std::array::from_fn(|_| random.element());
+            let value = random.element();
             graph.symbol(name, 2, value)
         });
         let base = graph.clone();

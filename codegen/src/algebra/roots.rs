@@ -5,7 +5,7 @@
 //! points are used at which they are squares of F_p, whose roots that are squares themselves are
 //! closed under multiplication.
 
-use super::fp::{Fp, P};
+use super::prime::Residue;
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_rational::BigRational;
@@ -15,7 +15,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 const LARGEST_PRIME: u32 = 1 << 12;
 
 /// √c of a positive rational c; `None` where c ≤ 0 or p divides its denominator.
-pub fn of_rational(c: &BigRational) -> Option<Fp> {
+pub fn of_rational<const K: usize>(c: &BigRational) -> Option<Residue<K>> {
     if !c.is_positive() {
         return None;
     }
@@ -23,8 +23,8 @@ pub fn of_rational(c: &BigRational) -> Option<Fp> {
 }
 
 /// √n for n > 0, the product of the roots of its primes.
-fn of_integer(n: &BigInt) -> Fp {
-    let (mut rest, mut root) = (n.clone(), Fp::ONE);
+fn of_integer<const K: usize>(n: &BigInt) -> Residue<K> {
+    let (mut rest, mut root) = (n.clone(), Residue::ONE);
     let mut prime = 2;
     while prime < LARGEST_PRIME && !rest.is_one() {
         // What stays below 2^64 is divided faster there.
@@ -47,8 +47,8 @@ fn of_integer(n: &BigInt) -> Fp {
 }
 
 /// What is left of n without its primes from `first` on, and the product of their roots.
-fn split(mut n: u64, first: u32) -> (u64, Fp) {
-    let mut root = Fp::ONE;
+fn split<const K: usize>(mut n: u64, first: u32) -> (u64, Residue<K>) {
+    let mut root = Residue::ONE;
     let mut prime = u64::from(first);
     while prime < u64::from(LARGEST_PRIME) && n > 1 {
         while n.is_multiple_of(prime) {
@@ -61,31 +61,25 @@ fn split(mut n: u64, first: u32) -> (u64, Fp) {
 }
 
 /// √n of a number without small primes.
-fn of_rough(n: &BigInt) -> Fp {
+fn of_rough<const K: usize>(n: &BigInt) -> Residue<K> {
     let whole = n.sqrt();
     if &whole * &whole == *n {
-        return Fp::from_integer(&whole);
+        return Residue::from_integer(&whole);
     }
-    let residue = Fp::from_integer(n);
-    residue.sqrt().unwrap_or(Fp::ONE)
+    let residue = Residue::from_integer(n);
+    residue.sqrt().unwrap_or(Residue::ONE)
 }
 
 /// The root of a prime, in F_p or F_p(i).
-fn chosen(prime: u64) -> Fp {
-    Fp::new(prime).sqrt().unwrap_or(Fp::ONE)
-}
-
-/// √a as the square of F_p that it is, where a is a square; `None` elsewhere. p ≡ 3 mod 4, so
-/// a^((p+1)/4) is it.
-pub fn principal(a: Fp) -> Option<Fp> {
-    let root = a.is_prime().then(|| a.pow(P.div_ceil(4)))?;
-    (root * root == a).then_some(root)
+fn chosen<const K: usize>(prime: u64) -> Residue<K> {
+    Residue::new(prime).sqrt().unwrap_or(Residue::ONE)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{of_rational, principal};
-    use crate::algebra::fp::{Fp, Random};
+    use super::of_rational;
+    use crate::algebra::fp::Random;
+    use crate::algebra::prime::Residue;
     use num_bigint::BigInt;
     use num_rational::BigRational;
 
@@ -97,10 +91,10 @@ mod tests {
             .chain([number(4099 * 4111, 3), number(4099, 1), number(i64::MAX, 7)])
             .collect();
         for a in &numbers {
-            let root = of_rational(a).expect("positive");
-            assert_eq!(Some(root * root), Fp::from_rational(a), "{a}");
+            let root = of_rational::<1>(a).expect("positive");
+            assert_eq!(Some(root * root), Residue::from_rational(a), "{a}");
             for b in numbers.iter().take(80) {
-                let product = of_rational(&(a * b)).expect("positive");
+                let product = of_rational::<1>(&(a * b)).expect("positive");
                 assert_eq!(
                     product,
                     root * of_rational(b).expect("positive"),
@@ -110,11 +104,11 @@ mod tests {
         }
         // Squares have the root that is a number; nothing has the root of a negative number.
         assert_eq!(
-            of_rational(&number(9, 16)),
-            Fp::from_rational(&number(3, 4))
+            of_rational::<0>(&number(9, 16)),
+            Residue::from_rational(&number(3, 4))
         );
-        assert_eq!(of_rational(&number(-1, 4)), None);
-        assert_eq!(of_rational(&number(0, 1)), None);
+        assert_eq!(of_rational::<0>(&number(-1, 4)), None);
+        assert_eq!(of_rational::<0>(&number(0, 1)), None);
     }
 
     #[test]
@@ -122,10 +116,10 @@ mod tests {
         let mut random = Random::new(5);
         let mut found = 0;
         for _ in 0..200 {
-            let (a, b) = (random.element(), random.element());
-            if let (Some(x), Some(y)) = (principal(a), principal(b)) {
+            let (a, b) = (random.residue::<0>(), random.residue());
+            if let (Some(x), Some(y)) = (a.principal_root(), b.principal_root()) {
                 assert_eq!(x * x, a);
-                assert_eq!(principal(a * b), Some(x * y));
+                assert_eq!((a * b).principal_root(), Some(x * y));
                 found += 1;
             }
         }

@@ -99,7 +99,7 @@ impl Tape {
             };
             values.push(value);
         }
-        (!lane.stuck).then(|| self.roots.iter().map(|root| root.of(&values)).collect())
+        (!lane.is_stuck()).then(|| self.roots.iter().map(|root| root.of(&values)).collect())
     }
 }
 

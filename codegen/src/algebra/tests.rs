@@ -2,8 +2,8 @@
 //! those of numbers.
 
 use super::derivation::Derivation;
-use super::fp::{Fp, Random};
-use super::graph::{Edge, Function, Graph, LANES};
+use super::fp::Random;
+use super::graph::{Edge, Function, Graph};
 use super::lane::circle_point;
 use super::numeric::evaluate;
 use super::poly::monomial::Var;
@@ -18,7 +18,7 @@ fn graph() -> (Graph, [Edge; 6]) {
     let mut graph = Graph::new(7, PARAM);
     let mut random = Random::new(11);
     let mut free = |graph: &mut Graph, name: &str, class: u8| {
-        let value = std::array::from_fn(|_| random.element());
+        let value = random.element();
         graph.symbol(name, class, value)
     };
     let p = free(&mut graph, "p", PARAM);
@@ -26,9 +26,9 @@ fn graph() -> (Graph, [Edge; 6]) {
     let a = free(&mut graph, "a", COORD);
     let b = free(&mut graph, "b", COORD);
     let mut random = Random::new(13);
-    let points: [(Fp, Fp); LANES] = std::array::from_fn(|_| circle_point(&mut random));
-    let c = graph.symbol("c", COORD, points.map(|point| point.0));
-    let s = graph.symbol("s", COORD, points.map(|point| point.1));
+    let point = circle_point(&mut random);
+    let c = graph.symbol("c", COORD, point.0);
+    let s = graph.symbol("s", COORD, point.1);
     (graph, [p, q, a, b, c, s])
 }
 

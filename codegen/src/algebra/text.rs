@@ -82,12 +82,12 @@ fn within(graph: &Graph, edge: Edge, least: Binding, most: usize, depth: usize) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::fp::Fp;
+    use crate::algebra::fp::Random;
 
     #[test]
     fn parentheses_stand_where_they_are_needed() {
         let mut graph = Graph::new(3, 1);
-        let value = |n: u64| [Fp::new(n * 7919), Fp::new(n * n * 104_729)];
+        let value = |seed: u64| Random::new(seed).element();
         let a = graph.symbol("a", 2, value(11));
         let b = graph.symbol("b", 2, value(23));
         let sum = graph.sub(a, b);

@@ -183,7 +183,7 @@ mod tests {
             ["1/1000000000", "1", "0"],
         ] {
             let mut graph = Graph::new(7, class::PARAM);
-            graph.symbol("pi", 0, [Fp::from_i64(11); 2]);
+            graph.symbol("pi", 0, Fp::from_i64(11));
             let given = axis.map(|entry| number(&mut graph, entry));
             let Ok(unit) = unit(&mut graph, &Value::Vector(given.to_vec())) else {
                 panic!("{axis:?} has a direction");

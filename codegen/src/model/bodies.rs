@@ -167,7 +167,7 @@ pub fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
     let mut random = Random::new(0x71);
     let mut direction = Vec::new();
     for xi in xi {
-        let component = BigRational::from_integer(BigInt::from(random.element().value()));
+        let component = BigRational::from_integer(BigInt::from(random.bits() >> 3));
         direction.push((xi.node(), graph.rational(&component)));
     }
     let mut along = Derivation::new(direction);

@@ -29,11 +29,11 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
     let mut errors = first.finish().err().unwrap_or_default();
     for seed in SEED..SEED + ATTEMPTS {
         let mut choice = Report::new();
-        let lanes = variety.choose(system, seed, &mut choice);
+        let point = variety.choose(system, seed, &mut choice);
         errors.extend(choice.finish().err().unwrap_or_default());
         let mut report = Report::new();
         errors.iter().cloned().for_each(|error| report.push(error));
-        let result = Reading::new(system, &variety, &lanes, seed, report).read();
+        let result = Reading::new(system, &variety, &point, seed, report).read();
         match result {
             Ok(model) if model.graph.is_stuck() => variety.points.require_roots(&model.graph),
             Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
@@ -71,7 +71,7 @@ impl<'a> Reading<'a> {
     fn new(
         system: &'a System,
         variety: &'a Variety,
-        lanes: &[Vec<Fp>],
+        point: &[Fp],
         seed: u64,
         mut report: Report,
     ) -> Self {
@@ -80,7 +80,7 @@ impl<'a> Reading<'a> {
         let mut count = 0;
         let mut next = |_: &mut Graph| {
             count += 1;
-            std::array::from_fn(|lane| lanes[lane][count - 1])
+            point[count - 1]
         };
         let next = &mut next as &mut NextValue;
         graph.set_lenient(variety.points.lenient);

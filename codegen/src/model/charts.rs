@@ -99,7 +99,6 @@ pub fn jacobian(
 mod tests {
     use super::*;
     use crate::algebra::fp::Random;
-    use crate::algebra::graph::LANES;
     use crate::model::layout::{chart_rate, sample};
 
     /// C K = I on X for every kind.
@@ -113,9 +112,9 @@ mod tests {
         ] {
             let mut random = Random::new(7);
             let mut graph = Graph::new(7, 1);
-            let points: Vec<_> = (0..LANES).map(|_| sample(block, &mut random)).collect();
+            let point = sample(block, &mut random);
             let x: Vec<Edge> = (0..block.len())
-                .map(|i| graph.symbol("x", 2, std::array::from_fn(|lane| points[lane][i])))
+                .map(|i| graph.symbol("x", 2, point[i]))
                 .collect();
             for (k, column) in tangents(&mut graph, block, &x).iter().enumerate() {
                 let rates = chart_rate(&mut graph, block, &x, column);

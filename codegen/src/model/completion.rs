@@ -165,7 +165,7 @@ fn dependent(
     m: &[Vec<Edge>],
     given: &Given,
 ) -> Option<(usize, Span)> {
-    let values = |row: &Vec<Edge>| row.iter().map(|&e| graph.value(e)[0]).collect::<Vec<Fp>>();
+    let values = |row: &Vec<Edge>| row.iter().map(|&e| graph.value(e)).collect::<Vec<Fp>>();
     let with = |velocity: bool| {
         let rows = equations.iter().zip(m);
         rows.filter(move |(equation, _)| equation.velocity.is_some() == velocity)
@@ -190,7 +190,7 @@ fn no_new_velocity(
     unknowns: usize,
     m: &[Vec<Edge>],
 ) -> Diagnostic {
-    let values = |row: &Vec<Edge>| row.iter().map(|&e| graph.value(e)[0]).collect();
+    let values = |row: &Vec<Edge>| row.iter().map(|&e| graph.value(e)).collect();
     let (found, nu) = (rank(m.iter().map(values).collect()), declared.x.len());
     let node = declared.xi[i].node();
     let name = graph

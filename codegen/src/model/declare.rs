@@ -7,12 +7,12 @@ use super::start::Start;
 use super::value::Value;
 use super::{Coordinate, Group, class, samples};
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph, LANES};
+use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{CoordKind, Declaration, ItemKind, ShapeKind, Span, System};
 
 /// Makes the next symbol of a graph: free points draw a random value, constrained ones read it.
-pub type NextValue<'a> = dyn FnMut(&mut Graph) -> [Fp; LANES] + 'a;
+pub type NextValue<'a> = dyn FnMut(&mut Graph) -> Fp + 'a;
 
 /// All declared symbols.
 #[derive(Clone, Debug, Default)]
@@ -56,7 +56,7 @@ pub fn declare(
 ) -> Declared {
     let mut declared = Declared::default();
     next(graph);
-    graph.symbol("pi", 0, [Fp::PI; LANES]);
+    graph.symbol("pi", 0, Fp::PI);
     graph.set_reals(samples::pi());
     for item in &system.items {
         if let ItemKind::Const(list) = &item.kind {

@@ -93,7 +93,7 @@ fn rates(graph: &mut Graph, scope: &Scope, x: &[Edge]) -> (Scope, Vec<Edge>) {
     let mut rates = Rates::default();
     let mut x_dot = Vec::new();
     for &x in x {
-        let value = std::array::from_fn(|_| random.element());
+        let value = random.element();
         let rate = graph.symbol("rate", class::RATE, value);
         rates.of.insert(x.node(), rate);
         x_dot.push(rate);

@@ -38,7 +38,7 @@ pub fn choose(graph: &Graph, jacobian: &[Vec<Edge>], numbers: Option<&[Vec<f64>]
     let value = |row: &usize| -> Vec<Fp> {
         jacobian[*row]
             .iter()
-            .map(|&edge| graph.value(edge)[0])
+            .map(|&edge| graph.value(edge))
             .collect()
     };
     let adds = |rows: &[usize], row: usize| {

@@ -1,14 +1,15 @@
-//! Points of X over F_p: random values of all symbols that satisfy φ = 0.
+//! Points of X in both fields: random values of all symbols that satisfy φ = 0.
 
 use super::class;
 use super::layout::{Block, sample};
 use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Function, Graph, LANES, Node};
+use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::poly;
 use crate::algebra::poly::monomial::Var;
 use crate::algebra::poly::polynomial::Poly;
+use crate::algebra::prime::Residue;
 use crate::algebra::transplant::copy;
 use rustc_hash::FxHashMap;
 
@@ -80,6 +81,8 @@ impl Points {
         set: &dyn Fn(&mut Vec<Fp>) -> Option<()>,
     ) -> Option<Vec<Fp>> {
         let mut failures = 0;
+        // The parts of a point in the two fields are found apart: each root halves the chance of both.
+        let mut found: [Option<Vec<Fp>>; 2] = [None, None];
         for _ in 0..tries {
             let mut values = self.unconstrained(random);
             if set(&mut values).is_none() {
@@ -90,7 +93,7 @@ impl Points {
                 let Some(system) = self.system(&values, seed) else {
                     continue;
                 };
-                let Some(solution) = self.solve(system, random) else {
+                let Some(solution) = self.solve(&system, random) else {
                     failures += 1;
                     if failures == FAILURES {
                         return None;
@@ -101,8 +104,14 @@ impl Points {
                     values[var as usize] = value;
                 }
             }
-            if self.has_roots(&values, seed) {
-                return Some(values);
+            let stuck = self.stuck(&values, seed);
+            for (place, stuck) in found.iter_mut().zip(stuck) {
+                if !stuck && place.is_none() {
+                    *place = Some(values.clone());
+                }
+            }
+            if let [Some(one), Some(other)] = &found {
+                return Some(one.iter().zip(other).map(|(a, b)| Fp(a.0, b.1)).collect());
             }
         }
         None
@@ -125,9 +134,17 @@ impl Points {
         values
     }
 
-    fn has_roots(&self, values: &[Fp], seed: u64) -> bool {
-        self.radicals.is_empty()
-            || evaluate_at(&self.free, &self.radicals, &mut self.lane_of(values, seed)).is_some()
+    /// In which of the fields square roots have no value.
+    fn stuck(&self, values: &[Fp], seed: u64) -> [bool; 2] {
+        if self.radicals.is_empty() {
+            return [false; 2];
+        }
+        let mut lane = self.lane_of(values, seed);
+        match evaluate_at(&self.free, &self.radicals, &mut lane) {
+            Some(_) => [false; 2],
+            None if lane.is_stuck() => lane.stuck(),
+            None => [true; 2],
+        }
     }
 
     /// From now on, chooses points at which the square roots of another graph have values.
@@ -158,8 +175,20 @@ impl Points {
             .collect()
     }
 
-    /// Coordinates that satisfy the user's constraints, by elimination over F_p.
-    fn solve(&self, mut generators: Vec<Poly<Fp>>, random: &mut Random) -> Option<Vec<(Var, Fp)>> {
+    /// Coordinates that satisfy the user's constraints.
+    fn solve(&self, generators: &[Poly<Fp>], random: &mut Random) -> Option<Vec<(Var, Fp)>> {
+        let one = self.solve_in(part(generators, |c| c.0), random)?;
+        let other = self.solve_in(part(generators, |c| c.1), random)?;
+        let pairs = one.into_iter().zip(other);
+        Some(pairs.map(|((var, a), (_, b))| (var, Fp(a, b))).collect())
+    }
+
+    /// The same in one field, by elimination.
+    fn solve_in<const K: usize>(
+        &self,
+        mut generators: Vec<Poly<Residue<K>>>,
+        random: &mut Random,
+    ) -> Option<Vec<(Var, Residue<K>)>> {
         let mut variables: Vec<Var> = generators.iter().flat_map(|g| g.variables()).collect();
         variables.sort_unstable();
         variables.dedup();
@@ -261,8 +290,14 @@ impl Points {
     }
 }
 
-/// Seed of a lane of a graph that was made with a seed.
-pub fn lane_seed(graph_seed: u64, lane: usize) -> u64 {
-    debug_assert!(lane < LANES);
-    graph_seed.wrapping_mul(31).wrapping_add(lane as u64)
+/// The polynomials in one of the fields.
+fn part<const K: usize>(
+    polynomials: &[Poly<Fp>],
+    of: fn(Fp) -> Residue<K>,
+) -> Vec<Poly<Residue<K>>> {
+    let one = |polynomial: &Poly<Fp>| {
+        let terms = polynomial.terms().iter().map(|(m, c)| (m.clone(), of(*c)));
+        Poly::from_terms(polynomial.order(), terms.collect())
+    };
+    polynomials.iter().map(one).collect()
 }

@@ -6,7 +6,7 @@ use super::kinematics::{Rate, rate_help, velocity_for};
 use super::variety::{Origin, Variety};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph, LANES};
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::rank;
 use crate::algebra::text::short;
 use crate::diagnostics::{Diagnostic, Report};
@@ -96,7 +96,7 @@ pub struct Checker<'a> {
 impl Checker<'_> {
     /// ∂φ/∂x at the first point.
     fn slopes(&self) -> Vec<Vec<Fp>> {
-        let value = |&edge: &Edge| self.graph.value(edge)[0];
+        let value = |&edge: &Edge| self.graph.value(edge);
         let rows = self.jacobian.iter();
         rows.map(|row| row.iter().map(value).collect()).collect()
     }
@@ -148,13 +148,11 @@ impl Checker<'_> {
 
     /// Whether a motion along ξⁱ changes a row of φ.
     fn leaves(&self, a: &[Vec<Edge>], row: usize, i: usize) -> bool {
-        (0..LANES).any(|lane| {
-            let terms = a.iter().zip(&self.jacobian[row]);
-            let change = terms.fold(Fp::ZERO, |sum, (entries, &slope)| {
-                sum + self.graph.value(slope)[lane] * self.graph.value(entries[i])[lane]
-            });
-            !change.is_zero()
-        })
+        let terms = a.iter().zip(&self.jacobian[row]);
+        let change = terms.fold(Fp::ZERO, |sum, (entries, &slope)| {
+            sum + self.graph.value(slope) * self.graph.value(entries[i])
+        });
+        !change.is_zero()
     }
 
     /// The statement to blame: the first rate that takes part in the change.
@@ -267,7 +265,7 @@ impl Checker<'_> {
     /// A has rank n.
     pub fn independent(&mut self, a: &[Vec<Edge>]) -> bool {
         let n = self.declared.xi.len();
-        let value = |edge: &Edge| self.graph.value(*edge)[0];
+        let value = |edge: &Edge| self.graph.value(*edge);
         let values: Vec<Vec<Fp>> = a
             .iter()
             .map(|row| row.iter().map(value).collect())

@@ -5,12 +5,12 @@ use super::declare::{Declared, declare, size};
 use super::expression::Evaluator;
 use super::layout::{Block, blocks, constraint};
 use super::names::Names;
-use super::points::{HIGHEST_DEGREE, Points, lane_seed};
+use super::points::{HIGHEST_DEGREE, Points};
 use super::samples;
 use super::scope::Scope;
 use super::value::Value;
 use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Function, Graph, LANES, Node};
+use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::topoly::is_polynomial;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{ItemKind, Span, System};
@@ -44,7 +44,7 @@ impl Variety {
     pub fn read(system: &System, seed: u64, report: &mut Report) -> Self {
         let mut random = Random::new(seed ^ 0xf4ee);
         let mut graph = Graph::new(seed ^ 0xf4ee, class::PARAM);
-        let mut next = |_: &mut Graph| -> [Fp; LANES] { std::array::from_fn(|_| random.element()) };
+        let mut next = |_: &mut Graph| -> Fp { random.element() };
         let mut scope = Scope::new(system, true);
         let mut silent = Report::new();
         let declared = declare(system, &mut graph, &mut next, &mut scope, &mut silent);
@@ -129,18 +129,14 @@ impl Variety {
         kinds.count()..self.origins.len()
     }
 
-    /// One point of X a lane. Where there is none, the statement that is to blame is reported and
+    /// A point of X. Where there is none, the statement that is to blame is reported and
     /// the user's constraints are left out, so that the rest can still be read.
-    pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<Vec<Fp>> {
+    pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<Fp> {
         self.seed = seed;
         let mut random = Random::new(seed ^ 0x5eed);
-        let mut lanes = |points: &Points| -> Option<Vec<Vec<Fp>>> {
-            (0..LANES)
-                .map(|lane| points.choose(&mut random, lane_seed(seed, lane)))
-                .collect()
-        };
-        if let Some(lanes) = lanes(&self.points) {
-            return lanes;
+        let mut point = |points: &Points| points.choose(&mut random, seed);
+        if let Some(point) = point(&self.points) {
+            return point;
         }
         let statements: Vec<usize> = self
             .origins
@@ -153,7 +149,7 @@ impl Variety {
         let all = std::mem::take(&mut self.points.constraints);
         let blamed = (0..all.len()).find(|&last| {
             self.points.constraints = all[..=last].to_vec();
-            lanes(&self.points).is_none()
+            point(&self.points).is_none()
         });
         if let Some(&item) = blamed.and_then(|last| statements.get(last)) {
             report.push(contradiction(system, item, &statements));
@@ -163,7 +159,7 @@ impl Variety {
         self.phi.truncate(user);
         self.origins.truncate(user);
         self.points.constraints.clear();
-        lanes(&self.points).unwrap_or_else(|| vec![vec![Fp::ONE; self.points.symbols]; LANES])
+        point(&self.points).unwrap_or_else(|| vec![Fp::ONE; self.points.symbols])
     }
 
     /// Reports what is wrong with names and shapes in the constraints, in the graph with points on X.

@@ -4,7 +4,7 @@ use super::expression::Term;
 use super::listing::{Cell, Group};
 use super::polish::sorted;
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::graph::{Edge, Graph, NodeId};
 use crate::algebra::poly::polynomial::Poly;
 use num_rational::BigRational;
 use num_traits::Signed;
@@ -56,32 +56,32 @@ impl Row {
     }
 }
 
+/// What tells rows apart.
+#[derive(PartialEq, Eq, Hash)]
+enum Key {
+    Value(Fp),
+    Node(NodeId),
+}
+
 /// For every cell that is not zero its row, and whether it has the row's negative. Values are equal
-/// where they agree at the graph's points; the expression without coordinates is kept.
+/// where they agree at the graph's point; the expression without coordinates is kept.
 pub fn rows(cells: &[Cell], graph: &Graph) -> (Vec<Row>, Vec<Option<(usize, bool)>>) {
     let mut rows: Vec<Row> = Vec::new();
-    let mut known: FxHashMap<Vec<Fp>, (usize, bool)> = FxHashMap::default();
+    let mut known: FxHashMap<Key, (usize, bool)> = FxHashMap::default();
     let mut places = Vec::new();
     for cell in cells {
         if cell.edge == graph.zero() || cell.edge == -graph.zero() {
             places.push(None);
             continue;
         }
-        let values = graph.value(cell.edge);
-        let leading = values.iter().find(|v| !v.is_zero());
-        let negative = leading.is_some_and(|v| v.is_negative());
-        let mut key: Vec<Fp> = values
-            .iter()
-            .map(|&v| if negative { -v } else { v })
-            .collect();
+        let value = graph.value(cell.edge);
         // Nodes that the graph does not merge carry no values: they are their own key.
-        if key.iter().all(|v| v.is_zero()) {
-            key = vec![Fp::new(u64::from(cell.edge.node()))];
-        }
-        let negative = if key.len() == 1 {
-            cell.edge.is_negative()
+        let (key, negative) = if value.is_zero() {
+            (Key::Node(cell.edge.node()), cell.edge.is_negative())
+        } else if value.is_negative() {
+            (Key::Value(-value), true)
         } else {
-            negative
+            (Key::Value(value), false)
         };
         let edge = cell.edge.signed(negative);
         let place = match known.get(&key) {

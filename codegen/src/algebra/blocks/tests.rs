@@ -8,15 +8,15 @@ use crate::algebra::lane::circle_point;
 fn graph() -> (Graph, [Edge; 4]) {
     let mut graph = Graph::new(5, 1);
     let mut random = Random::new(11);
-    let points = [circle_point(&mut random), circle_point(&mut random)];
-    let c = graph.symbol("c", 2, points.map(|point| point.0));
-    let s = graph.symbol("s", 2, points.map(|point| point.1));
-    let l = graph.symbol("l", 1, [random.element(), random.element()]);
-    let x = graph.symbol("x", 2, [random.element(), random.element()]);
+    let point = circle_point(&mut random);
+    let c = graph.symbol("c", 2, point.0);
+    let s = graph.symbol("s", 2, point.1);
+    let l = graph.symbol("l", 1, random.element());
+    let x = graph.symbol("x", 2, random.element());
     (graph, [c, s, l, x])
 }
 
-/// M X = B at the graph's points.
+/// M X = B at the graph's point.
 fn holds(graph: &mut Graph, m: &[Vec<Edge>], x: &[Vec<Edge>], b: &[Vec<Edge>]) -> bool {
     multiply(graph, m, x) == b
 }

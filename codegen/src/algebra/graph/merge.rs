@@ -1,23 +1,20 @@
 //! Which node an expression gets: one that is there already, or a new one.
 
-use super::{Edge, Graph, LANES, Node, NodeId, lanewise};
+use super::{Edge, Graph, Node, NodeId};
 use crate::algebra::fp::Fp;
 
 impl Graph {
     /// A node with the value of another one, or the small rational that it is; an expression that is
     /// constant at run time does not give way to one that is not, nor any to what real samples say
     /// is another number.
-    pub(super) fn known(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Option<Edge> {
+    pub(super) fn known(&mut self, node: Node, value: Fp, class: u8) -> Option<Edge> {
         let known = match self.lookup(value) {
             Some(edge) => {
                 let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
                 (!improves).then_some(edge)?
             }
             None => {
-                if value.iter().any(|v| *v != value[0]) {
-                    return None;
-                }
-                let (n, d) = value[0].to_small_rational(29)?;
+                let (n, d) = value.to_small_rational(29)?;
                 is_plain(n, d).then(|| self.ratio(n, d))?
             }
         };
@@ -38,7 +35,7 @@ impl Graph {
             .fold(0, |class, child| class | self.class(child.node()));
         self.nodes.push(node);
         self.shadow.follow(node);
-        self.values.push([Fp::ZERO; LANES]);
+        self.values.push(Fp::ZERO);
         self.classes.push(class);
         Edge::of(id)
     }
@@ -48,9 +45,9 @@ impl Graph {
     pub(in crate::algebra) fn push_apart(&mut self, node: Node) -> Edge {
         let value = |edge: Edge| self.value(edge);
         let value = match node {
-            Node::Add(a, b) => lanewise(value(a), value(b), |x, y| x + y),
-            Node::Mul(a, b) => lanewise(value(a), value(b), |x, y| x * y),
-            Node::Div(a, b) => lanewise(value(a), value(b), |x, y| x * y.inv().unwrap_or(y)),
+            Node::Add(a, b) => value(a) + value(b),
+            Node::Mul(a, b) => value(a) * value(b),
+            Node::Div(a, b) => value(a) * value(b).inv().unwrap_or(value(b)),
             _ => return self.push_unmerged(node),
         };
         match self.lookup(value) {
@@ -64,12 +61,12 @@ impl Graph {
         }
     }
 
-    pub(in crate::algebra) fn lookup(&self, value: [Fp; LANES]) -> Option<Edge> {
+    pub(in crate::algebra) fn lookup(&self, value: Fp) -> Option<Edge> {
         let (key, negative) = canonical(value);
         self.by_value.get(&key).map(|edge| edge.signed(negative))
     }
 
-    pub(super) fn push(&mut self, node: Node, value: [Fp; LANES], class: u8) -> Edge {
+    pub(super) fn push(&mut self, node: Node, value: Fp, class: u8) -> Edge {
         let id = self.nodes.len() as NodeId;
         self.nodes.push(node);
         self.shadow.follow(node);
@@ -99,10 +96,7 @@ fn is_plain(n: i64, d: i64) -> bool {
 }
 
 /// The representative of {v, −v}, and whether v is its negative.
-fn canonical(value: [Fp; LANES]) -> ([Fp; LANES], bool) {
-    let negative = value
-        .iter()
-        .find(|v| !v.is_zero())
-        .is_some_and(|v| v.is_negative());
-    (if negative { value.map(|v| -v) } else { value }, negative)
+fn canonical(value: Fp) -> (Fp, bool) {
+    let negative = value.is_negative();
+    (if negative { -value } else { value }, negative)
 }

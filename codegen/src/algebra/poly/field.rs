@@ -1,8 +1,10 @@
 //! A field (F, +, ·): what polynomial arithmetic needs from its coefficients.
 //!
-//! Two fields are used: Q, where a computation is a proof, and F_p, where it is fast.
+//! Q is used where a computation is a proof, F_p where it is fast, and the pair of two such fields where
+//! expressions are read.
 
 use crate::algebra::fp::Fp;
+use crate::algebra::prime::Residue;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use std::fmt::Debug;
@@ -75,37 +77,49 @@ impl Field for BigRational {
     }
 }
 
+/// The operations that numbers modulo primes have by the same names.
+macro_rules! modular {
+    () => {
+        fn zero() -> Self {
+            Self::ZERO
+        }
+        fn one() -> Self {
+            Self::ONE
+        }
+        fn integer(value: i64) -> Self {
+            Self::from_i64(value)
+        }
+        fn from_rational(value: &BigRational) -> Option<Self> {
+            Self::from_rational(value)
+        }
+        fn add(&self, other: &Self) -> Self {
+            *self + *other
+        }
+        fn sub(&self, other: &Self) -> Self {
+            *self - *other
+        }
+        fn mul(&self, other: &Self) -> Self {
+            *self * *other
+        }
+        fn neg(&self) -> Self {
+            -*self
+        }
+        fn inv(&self) -> Option<Self> {
+            Self::inv(*self)
+        }
+        fn is_zero(&self) -> bool {
+            Self::is_zero(*self)
+        }
+    };
+}
+
+impl<const K: usize> Field for Residue<K> {
+    modular!();
+}
+
+/// Not quite a field: what is 0 in one part alone has no inverse, which happens by chance only.
 impl Field for Fp {
-    fn zero() -> Self {
-        Fp::ZERO
-    }
-    fn one() -> Self {
-        Fp::ONE
-    }
-    fn integer(value: i64) -> Self {
-        Fp::from_i64(value)
-    }
-    fn from_rational(value: &BigRational) -> Option<Self> {
-        Fp::from_rational(value)
-    }
-    fn add(&self, other: &Self) -> Self {
-        *self + *other
-    }
-    fn sub(&self, other: &Self) -> Self {
-        *self - *other
-    }
-    fn mul(&self, other: &Self) -> Self {
-        *self * *other
-    }
-    fn neg(&self) -> Self {
-        -*self
-    }
-    fn inv(&self) -> Option<Self> {
-        Fp::inv(*self)
-    }
-    fn is_zero(&self) -> bool {
-        Fp::is_zero(*self)
-    }
+    modular!();
 }
 
 #[cfg(test)]
@@ -126,8 +140,10 @@ mod tests {
     }
 
     #[test]
-    fn both_fields_obey_the_laws() {
+    fn all_fields_obey_the_laws() {
         laws::<BigRational>();
+        laws::<Residue<0>>();
+        laws::<Residue<1>>();
         laws::<Fp>();
     }
 }

@@ -7,18 +7,19 @@
 use super::monomial::Var;
 use super::polynomial::Poly;
 use crate::algebra::echelon::Echelon;
-use crate::algebra::fp::{Fp, Random};
+use crate::algebra::fp::Random;
+use crate::algebra::prime::Residue;
 
 /// Those of the given variables that are free one at a time, in the given order.
-pub(super) fn free_variables(
-    system: &[Poly<Fp>],
+pub(super) fn free_variables<const K: usize>(
+    system: &[Poly<Residue<K>>],
     variables: &[Var],
     random: &mut Random,
 ) -> Vec<Var> {
     let last = variables.iter().max().map_or(0, |&v| v as usize + 1);
-    let point: Vec<Fp> = (0..last).map(|_| random.element()).collect();
-    let at = |v: Var| point.get(v as usize).copied().unwrap_or(Fp::ZERO);
-    let row = |f: &Poly<Fp>| -> Vec<Fp> {
+    let point: Vec<Residue<K>> = (0..last).map(|_| random.residue()).collect();
+    let at = |v: Var| point.get(v as usize).copied().unwrap_or(Residue::ZERO);
+    let row = |f: &Poly<Residue<K>>| -> Vec<Residue<K>> {
         let entries = variables.iter().map(|&v| f.derivative(v).eval(&at));
         entries.collect()
     };
@@ -34,6 +35,8 @@ pub(super) fn free_variables(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    type Fp = Residue<0>;
 
     #[test]
     fn constraints_take_freedom() {

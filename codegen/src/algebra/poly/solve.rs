@@ -19,7 +19,8 @@ use super::normal_form::Basis;
 use super::order::Order;
 use super::polynomial::Poly;
 use super::univariate::roots;
-use crate::algebra::fp::{Fp, Random};
+use crate::algebra::fp::Random;
+use crate::algebra::prime::Residue;
 use std::collections::{BTreeMap, BTreeSet};
 use structure::{by_preference, dense, determined, parts};
 
@@ -36,13 +37,13 @@ const TOTAL_WORK: u64 = 8_000_000;
 
 /// A random F_p point of the variety of the generators, by ascending variable; `None` where no
 /// point was found: the system is inconsistent, has no point over F_p, or is too big.
-pub fn point(
-    generators: &[Poly<Fp>],
+pub fn point<const K: usize>(
+    generators: &[Poly<Residue<K>>],
     variables: &[Var],
     random: &mut Random,
-) -> Option<Vec<(Var, Fp)>> {
+) -> Option<Vec<(Var, Residue<K>)>> {
     let open: BTreeSet<Var> = variables.iter().copied().collect();
-    let known = |f: &Poly<Fp>| f.variables().iter().all(|v| open.contains(v));
+    let known = |f: &Poly<Residue<K>>| f.variables().iter().all(|v| open.contains(v));
     if !generators.iter().all(known) {
         return None;
     }
@@ -61,13 +62,13 @@ pub fn point(
         Err(Failure::Unlucky) => search(false, random).ok()?,
         Ok(values) => values,
     };
-    let at = |v: Var| values.get(&v).copied().unwrap_or(Fp::ZERO);
-    let vanishes = |f: &Poly<Fp>| f.eval(&at).is_zero();
+    let at = |v: Var| values.get(&v).copied().unwrap_or(Residue::ZERO);
+    let vanishes = |f: &Poly<Residue<K>>| f.eval(&at).is_zero();
     let complete = open.iter().all(|v| values.contains_key(v));
     (complete && generators.iter().all(vanishes)).then(|| values.into_iter().collect())
 }
 
-type Values = BTreeMap<Var, Fp>;
+type Values<const K: usize> = BTreeMap<Var, Residue<K>>;
 
 enum Failure {
     /// There is no point, not even over the algebraic closure.
@@ -88,8 +89,12 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Values of the open variables at which the system vanishes.
-    fn solve(&mut self, system: &[Poly<Fp>], open: &BTreeSet<Var>) -> Result<Values, Failure> {
-        let mut values = Values::new();
+    fn solve<const K: usize>(
+        &mut self,
+        system: &[Poly<Residue<K>>],
+        open: &BTreeSet<Var>,
+    ) -> Result<Values<K>, Failure> {
+        let mut values = Values::<K>::new();
         for (part, variables) in parts(system, open) {
             values.extend(self.solve_part(&part, &variables)?);
         }
@@ -97,15 +102,19 @@ impl Search<'_> {
     }
 
     /// Solves a connected system.
-    fn solve_part(&mut self, system: &[Poly<Fp>], open: &BTreeSet<Var>) -> Result<Values, Failure> {
+    fn solve_part<const K: usize>(
+        &mut self,
+        system: &[Poly<Residue<K>>],
+        open: &BTreeSet<Var>,
+    ) -> Result<Values<K>, Failure> {
         self.systems = self.systems.checked_sub(1).ok_or(Failure::Unlucky)?;
         if system.is_empty() {
-            return Ok(open.iter().map(|&v| (v, self.random.element())).collect());
+            return Ok(open.iter().map(|&v| (v, self.random.residue())).collect());
         }
         if open.is_empty() {
             return Err(Failure::Inconsistent);
         }
-        let single = |f: &&Poly<Fp>| f.variables().len() == 1;
+        let single = |f: &&Poly<Residue<K>>| f.variables().len() == 1;
         if let Some(f) = system.iter().filter(single).min_by_key(|f| f.degree())
             && let Some(variable) = f.variables().first()
         {
@@ -136,8 +145,8 @@ impl Search<'_> {
         if basis.is_unit() {
             return Err(Failure::Inconsistent);
         }
-        let system: Vec<Poly<Fp>> = basis.polynomials().cloned().collect();
-        let mut values = Values::new();
+        let system: Vec<Poly<Residue<K>>> = basis.polynomials().cloned().collect();
+        let mut values = Values::<K>::new();
         for (part, variables) in parts(&system, open) {
             values.extend(self.branch(&part, &basis, &variables)?);
         }
@@ -145,12 +154,12 @@ impl Search<'_> {
     }
 
     /// Solves a connected part of a Gröbner basis by setting one variable.
-    fn branch(
+    fn branch<const K: usize>(
         &mut self,
-        system: &[Poly<Fp>],
-        basis: &Basis<Fp>,
+        system: &[Poly<Residue<K>>],
+        basis: &Basis<Residue<K>>,
         open: &BTreeSet<Var>,
-    ) -> Result<Values, Failure> {
+    ) -> Result<Values<K>, Failure> {
         let variable = match determined(system, open) {
             Some(variable) => {
                 let minimal = minimal_polynomial(basis, variable, DEGREE);
@@ -163,16 +172,16 @@ impl Search<'_> {
 
     /// Sets a variable at random. If the basis is known and this leads to a contradiction, then the
     /// variable has only finitely many values.
-    fn free(
+    fn free<const K: usize>(
         &mut self,
-        system: &[Poly<Fp>],
-        basis: Option<&Basis<Fp>>,
+        system: &[Poly<Residue<K>>],
+        basis: Option<&Basis<Residue<K>>>,
         open: &BTreeSet<Var>,
         variable: Var,
-    ) -> Result<Values, Failure> {
+    ) -> Result<Values<K>, Failure> {
         let tries = if self.choices == 0 { TRIES.0 } else { TRIES.1 };
         for _ in 0..tries {
-            let value = self.random.element();
+            let value = self.random.residue();
             self.choices += 1;
             let result = self.set(system, open, variable, value);
             self.choices -= 1;
@@ -189,13 +198,13 @@ impl Search<'_> {
     }
 
     /// Sets a variable to a root of a polynomial that has all its values as roots.
-    fn finite(
+    fn finite<const K: usize>(
         &mut self,
-        system: &[Poly<Fp>],
-        polynomial: &[Fp],
+        system: &[Poly<Residue<K>>],
+        polynomial: &[Residue<K>],
         open: &BTreeSet<Var>,
         variable: Var,
-    ) -> Result<Values, Failure> {
+    ) -> Result<Values<K>, Failure> {
         let mut candidates = roots(polynomial, self.random);
         while !candidates.is_empty() {
             let index = self.random.bits() % candidates.len() as u64;
@@ -208,15 +217,15 @@ impl Search<'_> {
     }
 
     /// Solves the rest after one variable is set.
-    fn set(
+    fn set<const K: usize>(
         &mut self,
-        system: &[Poly<Fp>],
+        system: &[Poly<Residue<K>>],
         open: &BTreeSet<Var>,
         variable: Var,
-        value: Fp,
-    ) -> Result<Values, Failure> {
-        let set = |f: &Poly<Fp>| f.specialize(&|v| (v == variable).then_some(value));
-        let rest: Vec<Poly<Fp>> = system.iter().map(set).collect();
+        value: Residue<K>,
+    ) -> Result<Values<K>, Failure> {
+        let set = |f: &Poly<Residue<K>>| f.specialize(&|v| (v == variable).then_some(value));
+        let rest: Vec<Poly<Residue<K>>> = system.iter().map(set).collect();
         let others: BTreeSet<Var> = open.iter().copied().filter(|&v| v != variable).collect();
         let mut values = self.solve(&rest, &others)?;
         values.insert(variable, value);

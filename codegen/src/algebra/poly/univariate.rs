@@ -4,19 +4,20 @@
 //! gcd(f, x^q − x) = Π (x − r) over the roots r in the field of q elements; it is split by gcd with
 //! (x + a)^{(q−1)/2} − 1 for random a, which has each root with probability ½.
 
-use crate::algebra::fp::{Fp, P, Random};
+use crate::algebra::fp::Random;
+use crate::algebra::prime::Residue;
 
 /// The distinct roots of Σ f_k x^k, ascending; none for the zero polynomial.
-pub fn roots(coefficients: &[Fp], random: &mut Random) -> Vec<Fp> {
+pub fn roots<const K: usize>(coefficients: &[Residue<K>], random: &mut Random) -> Vec<Residue<K>> {
     let f = monic(coefficients.to_vec());
     if f.len() < 2 {
         return Vec::new();
     }
-    let x = vec![Fp::ZERO, Fp::ONE];
+    let x = vec![Residue::ZERO, Residue::ONE];
     let whole = f.iter().any(|coefficient| !coefficient.is_prime());
-    let mut frobenius = power(x.clone(), P, &f);
+    let mut frobenius = power(x.clone(), Residue::<K>::P, &f);
     if whole {
-        frobenius = power(frobenius, P, &f);
+        frobenius = power(frobenius, Residue::<K>::P, &f);
     }
     let mut result = Vec::new();
     let product = gcd(f, subtract(frobenius, &x));
@@ -26,20 +27,25 @@ pub fn roots(coefficients: &[Fp], random: &mut Random) -> Vec<Fp> {
 }
 
 /// Collects the roots of a monic product of distinct linear factors.
-fn split(f: Vec<Fp>, whole: bool, random: &mut Random, result: &mut Vec<Fp>) {
+fn split<const K: usize>(
+    f: Vec<Residue<K>>,
+    whole: bool,
+    random: &mut Random,
+    result: &mut Vec<Residue<K>>,
+) {
     match f.as_slice() {
         [] | [_] => {}
         [constant, _] => result.push(-*constant),
         _ => loop {
-            let mut shift = random.element();
+            let mut shift = random.residue();
             if whole {
-                shift = shift + Fp::I * random.element();
+                shift = shift + Residue::I * random.residue();
             }
-            let mut half = power(vec![shift, Fp::ONE], (P - 1) / 2, &f);
+            let mut half = power(vec![shift, Residue::ONE], (Residue::<K>::P - 1) / 2, &f);
             if whole {
-                half = power(half, P + 1, &f);
+                half = power(half, Residue::<K>::P + 1, &f);
             }
-            let factor = gcd(f.clone(), subtract(half, &[Fp::ONE]));
+            let factor = gcd(f.clone(), subtract(half, &[Residue::ONE]));
             if factor.len() > 1 && factor.len() < f.len() {
                 let (cofactor, _) = divide(f, &factor);
                 split(factor, whole, random, result);
@@ -50,14 +56,14 @@ fn split(f: Vec<Fp>, whole: bool, random: &mut Random, result: &mut Vec<Fp>) {
     }
 }
 
-fn trim(mut f: Vec<Fp>) -> Vec<Fp> {
+fn trim<const K: usize>(mut f: Vec<Residue<K>>) -> Vec<Residue<K>> {
     while f.last().is_some_and(|leading| leading.is_zero()) {
         f.pop();
     }
     f
 }
 
-fn monic(f: Vec<Fp>) -> Vec<Fp> {
+fn monic<const K: usize>(f: Vec<Residue<K>>) -> Vec<Residue<K>> {
     let mut f = trim(f);
     if let Some(inverse) = f.last().and_then(|leading| leading.inv()) {
         f.iter_mut().for_each(|c| *c = *c * inverse);
@@ -65,14 +71,17 @@ fn monic(f: Vec<Fp>) -> Vec<Fp> {
     f
 }
 
-fn subtract(mut f: Vec<Fp>, g: &[Fp]) -> Vec<Fp> {
-    f.resize(f.len().max(g.len()), Fp::ZERO);
+fn subtract<const K: usize>(mut f: Vec<Residue<K>>, g: &[Residue<K>]) -> Vec<Residue<K>> {
+    f.resize(f.len().max(g.len()), Residue::ZERO);
     f.iter_mut().zip(g).for_each(|(a, &b)| *a = *a - b);
     trim(f)
 }
 
 /// Quotient and remainder by a monic g.
-fn divide(mut f: Vec<Fp>, g: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
+fn divide<const K: usize>(
+    mut f: Vec<Residue<K>>,
+    g: &[Residue<K>],
+) -> (Vec<Residue<K>>, Vec<Residue<K>>) {
     if f.len() < g.len() {
         return (Vec::new(), f);
     }
@@ -87,8 +96,12 @@ fn divide(mut f: Vec<Fp>, g: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
     (quotient, trim(f))
 }
 
-fn multiply(f: &[Fp], g: &[Fp], modulus: &[Fp]) -> Vec<Fp> {
-    let mut product = vec![Fp::ZERO; f.len() + g.len()];
+fn multiply<const K: usize>(
+    f: &[Residue<K>],
+    g: &[Residue<K>],
+    modulus: &[Residue<K>],
+) -> Vec<Residue<K>> {
+    let mut product = vec![Residue::ZERO; f.len() + g.len()];
     for (i, &a) in f.iter().enumerate() {
         for (j, &b) in g.iter().enumerate() {
             product[i + j] = product[i + j] + a * b;
@@ -98,9 +111,13 @@ fn multiply(f: &[Fp], g: &[Fp], modulus: &[Fp]) -> Vec<Fp> {
 }
 
 /// base^exponent modulo a monic polynomial.
-fn power(base: Vec<Fp>, mut exponent: u64, modulus: &[Fp]) -> Vec<Fp> {
+fn power<const K: usize>(
+    base: Vec<Residue<K>>,
+    mut exponent: u64,
+    modulus: &[Residue<K>],
+) -> Vec<Residue<K>> {
     let mut square = divide(base, modulus).1;
-    let mut result = divide(vec![Fp::ONE], modulus).1;
+    let mut result = divide(vec![Residue::ONE], modulus).1;
     while exponent > 0 {
         if exponent & 1 == 1 {
             result = multiply(&result, &square, modulus);
@@ -111,7 +128,7 @@ fn power(base: Vec<Fp>, mut exponent: u64, modulus: &[Fp]) -> Vec<Fp> {
     result
 }
 
-fn gcd(f: Vec<Fp>, g: Vec<Fp>) -> Vec<Fp> {
+fn gcd<const K: usize>(f: Vec<Residue<K>>, g: Vec<Residue<K>>) -> Vec<Residue<K>> {
     let (mut f, mut g) = (monic(f), monic(g));
     while !g.is_empty() {
         let rest = divide(f, &g).1;
@@ -126,12 +143,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    type Fp = Residue<1>;
+
     proptest! {
         #[test]
         fn all_roots_are_found(list in prop::collection::btree_set(-50i64..50, 0..12), seed: u64) {
             // (x² + 1) Π (x − r), the first root twice; x² + 1 has no root.
             let mut random = Random::new(seed);
-            let mut f = vec![Fp::ONE, Fp::ZERO, random.element()];
+            let mut f = vec![Fp::ONE, Fp::ZERO, random.residue()];
             f[0] = f[2];
             let big = vec![Fp::ZERO; 40].into_iter().chain([Fp::ONE]).collect::<Vec<_>>();
             for &r in list.iter().chain(list.first()) {
@@ -147,7 +166,7 @@ mod tests {
     #[test]
     fn roots_beyond_the_prime_field_are_found() {
         let mut random = Random::new(3);
-        let mut number = || random.element() + Fp::I * random.element();
+        let mut number = || random.residue() + Fp::I * random.residue();
         let (a, b, c) = (number(), number(), number());
         let f = [-(a * b * c), a * b + b * c + c * a, -(a + b + c), Fp::ONE];
         let mut expected = vec![a, b, c];
@@ -167,7 +186,7 @@ mod tests {
     #[test]
     fn constants_have_no_roots() {
         let mut random = Random::new(1);
-        assert!(roots(&[], &mut random).is_empty());
+        assert!(roots::<1>(&[], &mut random).is_empty());
         assert!(roots(&[Fp::ZERO, Fp::ZERO], &mut random).is_empty());
         assert!(roots(&[Fp::ONE], &mut random).is_empty());
     }

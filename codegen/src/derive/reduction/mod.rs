@@ -198,7 +198,7 @@ fn keep(
         if solved.iter().any(|&(row, _)| row == i) {
             continue;
         }
-        let at_point = rows[i].iter().map(|&entry| model.graph.value(entry)[0]);
+        let at_point = rows[i].iter().map(|&entry| model.graph.value(entry));
         values.push(at_point.collect());
         if model.constraints[i].kind == Kind::Loop && rank(values.clone()) < values.len() {
             values.pop();

@@ -1,7 +1,7 @@
 //! Programs without functions, to be filled by hand.
 
-use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Graph, LANES};
+use crate::algebra::fp::Random;
+use crate::algebra::graph::{Edge, Graph};
 use crate::model::layout::{blocks, entry_names};
 use crate::model::value::Value;
 use crate::model::{Coordinate, Group, class};
@@ -23,7 +23,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
     let mut random = Random::new(7);
     let mut graph = Graph::new(11, class::PARAM);
     let mut symbol = |graph: &mut Graph, name: &str, class: u8| {
-        let value = std::array::from_fn::<Fp, LANES, _>(|_| random.element());
+        let value = random.element();
         graph.symbol(name, class, value)
     };
     symbol(&mut graph, "pi", 0);

@@ -2,15 +2,15 @@
 
 use super::super::monomial::Var;
 use super::super::polynomial::Poly;
-use crate::algebra::fp::Fp;
+use crate::algebra::prime::Residue;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The system as independent parts, with their variables.
-pub(super) fn parts(
-    system: &[Poly<Fp>],
+pub(super) fn parts<const K: usize>(
+    system: &[Poly<Residue<K>>],
     open: &BTreeSet<Var>,
-) -> Vec<(Vec<Poly<Fp>>, BTreeSet<Var>)> {
-    let mut parts: Vec<(Vec<Poly<Fp>>, BTreeSet<Var>)> = open
+) -> Vec<(Vec<Poly<Residue<K>>>, BTreeSet<Var>)> {
+    let mut parts: Vec<(Vec<Poly<Residue<K>>>, BTreeSet<Var>)> = open
         .iter()
         .map(|&v| (Vec::new(), BTreeSet::from([v])))
         .collect();
@@ -32,8 +32,8 @@ pub(super) fn parts(
 }
 
 /// The coefficients of a polynomial in one variable, ascending.
-pub(super) fn dense(f: &Poly<Fp>) -> Vec<Fp> {
-    let mut result = vec![Fp::ZERO; f.degree() as usize + 1];
+pub(super) fn dense<const K: usize>(f: &Poly<Residue<K>>) -> Vec<Residue<K>> {
+    let mut result = vec![Residue::ZERO; f.degree() as usize + 1];
     for (monomial, c) in f.terms() {
         result[monomial.degree() as usize] = *c;
     }
@@ -41,7 +41,10 @@ pub(super) fn dense(f: &Poly<Fp>) -> Vec<Fp> {
 }
 
 /// A variable of a Gröbner basis with a finite variety.
-pub(super) fn determined(system: &[Poly<Fp>], open: &BTreeSet<Var>) -> Option<Var> {
+pub(super) fn determined<const K: usize>(
+    system: &[Poly<Residue<K>>],
+    open: &BTreeSet<Var>,
+) -> Option<Var> {
     // The variety is finite if a power of every variable is a leading monomial.
     let powers: BTreeMap<Var, u32> = system
         .iter()
@@ -61,9 +64,12 @@ pub(super) fn determined(system: &[Poly<Fp>], open: &BTreeSet<Var>) -> Option<Va
 
 /// The open variables, first those of the polynomial with the fewest; among these first the one
 /// of highest degree, so that the rest is easy to solve.
-pub(super) fn by_preference(system: &[Poly<Fp>], open: &BTreeSet<Var>) -> Vec<Var> {
+pub(super) fn by_preference<const K: usize>(
+    system: &[Poly<Residue<K>>],
+    open: &BTreeSet<Var>,
+) -> Vec<Var> {
     let mut result = Vec::new();
-    let mut polynomials: Vec<(Vec<Var>, &Poly<Fp>)> =
+    let mut polynomials: Vec<(Vec<Var>, &Poly<Residue<K>>)> =
         system.iter().map(|f| (f.variables(), f)).collect();
     polynomials.sort_by_key(|(variables, f)| (variables.len(), f.degree()));
     for (mut variables, f) in polynomials {

@@ -3,6 +3,8 @@
 use super::super::ideals::{circle, quaternion, rotation};
 use super::*;
 
+type Fp = Residue<0>;
+
 fn n(value: i64) -> Poly<Fp> {
     Poly::constant(Fp::from_i64(value))
 }
@@ -67,7 +69,7 @@ fn catalogue_ideals_have_points() {
     assert_points("quaternion", &quaternion([0, 1, 2, 3]), 4);
     assert_points("rotation", &rotation([0, 1, 2, 3, 4, 5, 6, 7, 8]), 9);
     assert_points("nothing", &[], 3);
-    assert_eq!(point(&[], &[], &mut Random::new(1)), Some(Vec::new()));
+    assert_eq!(point::<0>(&[], &[], &mut Random::new(1)), Some(Vec::new()));
 }
 
 #[test]
