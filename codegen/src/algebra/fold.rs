@@ -12,7 +12,9 @@ use rustc_hash::FxHashMap;
 impl Graph {
     /// √ of a rational square.
     pub(super) fn exact_root(&mut self, argument: Edge) -> Option<Edge> {
-        let value = self.as_rational(argument)?;
+        let value = self
+            .as_rational(argument)
+            .filter(|value| !value.is_negative())?;
         let (n, d) = (value.numer().sqrt(), value.denom().sqrt());
         let root = BigRational::new(n, d);
         (&root * &root == value).then(|| self.rational(&root))

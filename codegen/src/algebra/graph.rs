@@ -2,7 +2,8 @@
 //!
 //! Every node carries its value at a point of the constraint variety X in each of two fields. Equal values are one
 //! node, so "equal on X" is node identity; zero and small rationals are recognised as constants.
-//! Where square roots take part, real samples have to agree, too (`shadow`).
+//! Where square roots take part, real samples have to agree, too; numbers are compared with certainty
+//! (`shadow`).
 //! An edge is a node with a sign, so negation costs nothing and a − b, b − a are one node.
 //! Children stand before parents.
 
@@ -313,7 +314,10 @@ impl Graph {
             Function::Sin if argument == self.zero() => Some(self.zero()),
             Function::Cos | Function::Exp if argument == self.zero() => Some(self.one()),
             Function::Log if argument == self.one() => Some(self.zero()),
-            Function::Sqrt => self.exact_root(argument),
+            Function::Sqrt => {
+                let exact = self.exact_root(argument);
+                exact.or_else(|| self.known_number_root(argument))
+            }
             _ => None,
         };
         if let Some(exact) = exact {

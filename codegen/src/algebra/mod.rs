@@ -8,6 +8,7 @@ pub mod echelon;
 mod fold;
 pub mod fp;
 pub mod graph;
+pub mod interval;
 pub mod jets;
 pub mod lane;
 pub mod linear;

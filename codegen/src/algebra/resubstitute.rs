@@ -7,6 +7,7 @@
 use super::fp::Fp;
 use super::graph::Graph;
 use super::node::{Edge, Node, NodeId};
+use super::shadow::Shadow;
 use super::transplant::rebuild;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -36,6 +37,8 @@ struct Network<'a> {
     roots: &'a [Edge],
     definitions: FxHashMap<NodeId, Node>,
     /// 1 / value of every node whose value is nowhere zero.
+    /// Real values, where square roots take part.
+    shadow: Option<Shadow>,
     inverses: FxHashMap<NodeId, Fp>,
 }
 
@@ -46,6 +49,7 @@ impl<'a> Network<'a> {
         Network {
             graph,
             roots,
+            shadow: graph.sampled(&nodes),
             inverses: nodes.iter().copied().filter_map(inverse).collect(),
             definitions: nodes.iter().map(|&id| (id, graph.node(id))).collect(),
         }
@@ -158,20 +162,24 @@ impl<'a> Network<'a> {
             found(&value).or_else(|| found(&-value).map(|edge| -edge))
         };
         let target = self.value(id);
+        let agrees = |node: &Node| {
+            let refused = self.shadow.as_ref().map(|shadow| shadow.refuses(id, *node));
+            !refused.unwrap_or(false)
+        };
         usable.iter().find_map(|&x| {
             let inverse = self.inverses.get(&x)?;
             let value = self.value(x);
             let difference = target - value;
             if let Some(y) = signed(difference) {
-                return Some(Node::Add(Edge::of(x), y));
+                return Some(Node::Add(Edge::of(x), y)).filter(agrees);
             }
             let sum = target + value;
             if let Some(y) = signed(sum) {
-                return Some(Node::Add(-Edge::of(x), y));
+                return Some(Node::Add(-Edge::of(x), y)).filter(agrees);
             }
             let quotient = target * *inverse;
             let y = signed(quotient).filter(|y| !y.is_negative())?;
-            Some(Node::Mul(Edge::of(x), y))
+            Some(Node::Mul(Edge::of(x), y)).filter(agrees)
         })
     }
 

@@ -1,9 +1,12 @@
-//! The real values of a graph's nodes, for as long as no square root takes part: none.
+//! The real values of a graph's nodes, found where they are needed to tell expressions apart: those of
+//! numbers with certainty, those of what has a square root below it at samples.
 
-use super::graph::{Edge, Function, Node};
+use super::graph::{Edge, Function, Node, NodeId};
+use super::interval::Interval;
 use super::reals::{Real, Reals, SAMPLES, contradict};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
+use rustc_hash::FxHashMap;
 
 /// Real values of nodes, found when they are first asked for.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +17,8 @@ pub(super) struct Shadow {
     values: Vec<Reals>,
     /// Whether a square root is below a node.
     rooted: Vec<bool>,
+    /// Numbers between certain bounds; `None` where none are known.
+    numbers: FxHashMap<NodeId, Option<Interval>>,
 }
 
 impl Shadow {
@@ -50,11 +55,95 @@ impl Shadow {
         if !self.has_root(node) && !self.rooted[known.node() as usize] {
             return false;
         }
+        self.fill(nodes, constants);
+        contradict(&self.value(constants, node), &self.read(known))
+    }
+
+    fn fill(&mut self, nodes: &[Node], constants: &[BigRational]) {
         for &node in &nodes[self.values.len()..] {
             let value = self.value(constants, node);
             self.values.push(value);
         }
-        contradict(&self.value(constants, node), &self.read(known))
+    }
+
+    /// Itself with the values of all nodes, where a square root is below one of the given nodes.
+    pub(super) fn filled(
+        &self,
+        nodes: &[Node],
+        constants: &[BigRational],
+        ids: &[NodeId],
+    ) -> Option<Shadow> {
+        let mut shadow = ids
+            .iter()
+            .any(|&id| self.rooted[id as usize])
+            .then(|| self.clone())?;
+        shadow.fill(nodes, constants);
+        Some(shadow)
+    }
+
+    /// Whether a node of values that were filled in is another number than what is to stand for it.
+    pub(super) fn refuses(&self, node: NodeId, other: Node) -> bool {
+        let pair = |a: Edge, b: Edge, of: fn(Real, Real) -> Real| -> Reals {
+            let (a, b) = (self.read(a), self.read(b));
+            std::array::from_fn(|sample| of(a[sample], b[sample]))
+        };
+        let other = match other {
+            Node::Add(a, b) => pair(a, b, Real::plus),
+            Node::Mul(a, b) => pair(a, b, Real::times),
+            _ => return true,
+        };
+        contradict(&self.values[node as usize], &other)
+    }
+
+    /// Whether a node that depends on no symbol, or what it is said to equal, is another number, or a
+    /// number that is not known.
+    pub(super) fn disputes_number(
+        &mut self,
+        nodes: &[Node],
+        constants: &[BigRational],
+        node: Node,
+        known: Edge,
+    ) -> bool {
+        let found = self.bounds(nodes, constants, node);
+        match (found, self.number(nodes, constants, known)) {
+            (Some(a), Some(b)) => a.differs(&b),
+            _ => true,
+        }
+    }
+
+    /// The bounds of a node that depends on no symbol but π.
+    fn number(
+        &mut self,
+        nodes: &[Node],
+        constants: &[BigRational],
+        edge: Edge,
+    ) -> Option<Interval> {
+        let id = edge.node();
+        if !self.numbers.contains_key(&id) {
+            let bounds = self.bounds(nodes, constants, nodes[id as usize]);
+            self.numbers.insert(id, bounds);
+        }
+        let bounds = self.numbers.get(&id)?.as_ref()?;
+        Some(bounds.signed(edge.is_negative()))
+    }
+
+    fn bounds(
+        &mut self,
+        nodes: &[Node],
+        constants: &[BigRational],
+        node: Node,
+    ) -> Option<Interval> {
+        let mut read = |edge: Edge| self.number(nodes, constants, edge);
+        match node {
+            Node::Constant(index) => Some(Interval::rational(&constants[index as usize])),
+            // π is the only symbol that is a number.
+            Node::Symbol(_) => Some(Interval::pi()),
+            Node::Add(a, b) => Some(read(a)?.plus(&read(b)?)),
+            Node::Mul(a, b) => Some(read(a)?.times(&read(b)?)),
+            Node::Div(a, b) => Some(read(a)?.times(&read(b)?.inverse()?)),
+            Node::Apply(function, a) => read(a)?.apply(function),
+            Node::Atan2(..) => None,
+        }
     }
 
     fn read(&self, edge: Edge) -> Reals {

@@ -17,15 +17,16 @@ pub fn pi() -> Vec<Reals> {
     vec![[Real::new(std::f64::consts::PI, ROUNDED); SAMPLES]]
 }
 
-/// The values of all symbols at random real points with φ = 0. At the first two all symbols but
-/// coordinates are positive, at the others of either sign. Coordinates of a constraint that was not
+/// The values of all symbols at random real points with φ = 0. At every other all symbols but coordinates
+/// are positive, at the others of either sign; at half of them of sizes about 1, at the others of sizes
+/// from 1/100 to 1000. Coordinates of a constraint that was not
 /// solved have no value.
 pub fn sample(points: &Points, phi: &[(Edge, String)], seed: u64) -> Vec<Reals> {
     let mut random = Random::new(seed ^ 0x7ea1);
     let equations = (!points.constraints.is_empty()).then(|| Equations::new(points, phi));
     let mut all = vec![[Real::UNKNOWN; SAMPLES]; points.symbols];
     for sample in 0..SAMPLES {
-        let values = one(points, &mut random, sample < 2);
+        let values = one(points, &mut random, sample);
         let solved = equations.as_ref().map(|equations| equations.near(&values));
         for (index, value) in values.into_iter().enumerate() {
             let coordinate = index.checked_sub(points.first);
@@ -46,7 +47,7 @@ pub fn anywhere(count: usize, seed: u64) -> Vec<Reals> {
     let mut random = Random::new(seed ^ 0x7ea1);
     let mut all = vec![[Real::UNKNOWN; SAMPLES]; count];
     for sample in 0..SAMPLES {
-        let values = numbers(count, &mut random, sample < 2);
+        let values = numbers(count, &mut random, sample);
         for (reals, value) in all.iter_mut().zip(values) {
             reals[sample] = Real::new(value, ROUNDED);
         }
@@ -55,11 +56,11 @@ pub fn anywhere(count: usize, seed: u64) -> Vec<Reals> {
 }
 
 /// Random values of all symbols, with φ = 0 of the coordinates' kinds.
-fn one(points: &Points, random: &mut Random, positive: bool) -> Vec<f64> {
-    let mut values = numbers(points.symbols, random, positive);
+fn one(points: &Points, random: &mut Random, sample: usize) -> Vec<f64> {
+    let mut values = numbers(points.symbols, random, sample);
     let mut place = points.first;
     for &block in &points.blocks {
-        for value in coordinates(block, random) {
+        for value in coordinates(block, random, sample) {
             values[place] = value;
             place += 1;
         }
@@ -68,14 +69,16 @@ fn one(points: &Points, random: &mut Random, positive: bool) -> Vec<f64> {
 }
 
 /// π, and random values of the symbols after it.
-fn numbers(count: usize, random: &mut Random, positive: bool) -> Vec<f64> {
+fn numbers(count: usize, random: &mut Random, sample: usize) -> Vec<f64> {
     let mut values: Vec<f64> = (0..count)
         .map(|_| {
-            if positive {
+            let size = if sample < SAMPLES / 2 {
                 size(random)
             } else {
-                number(random)
-            }
+                wide(random)
+            };
+            let positive = sample.is_multiple_of(2) || random.bits() & 1 == 0;
+            if positive { size } else { -size }
         })
         .collect();
     if let Some(first) = values.first_mut() {
@@ -89,24 +92,30 @@ fn size(random: &mut Random) -> f64 {
     0.5 + (random.bits() >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// The same of either sign.
+/// A number in 1/100…1000, on a logarithmic scale.
+fn wide(random: &mut Random) -> f64 {
+    10f64.powf(5.0 * (size(random) - 0.5) - 2.0)
+}
+
+/// A number of size about 1 and either sign.
 fn number(random: &mut Random) -> f64 {
     let size = size(random);
     if random.bits() & 1 == 0 { size } else { -size }
 }
 
-fn coordinates(block: Block, random: &mut Random) -> Vec<f64> {
-    let mut unit = |n: usize| {
+fn coordinates(block: Block, random: &mut Random, sample: usize) -> Vec<f64> {
+    let unit = |n: usize, random: &mut Random| {
         let entries: Vec<f64> = (0..n).map(|_| number(random)).collect();
         let length = entries.iter().map(|x| x * x).sum::<f64>().sqrt();
         entries.iter().map(|x| x / length).collect::<Vec<f64>>()
     };
     match block {
-        Block::Flat(n) => (0..n).map(|_| number(random)).collect(),
-        Block::Circle => unit(2),
-        Block::Quaternion => unit(4),
+        Block::Flat(n) if sample < SAMPLES / 2 => (0..n).map(|_| number(random)).collect(),
+        Block::Flat(n) => (0..n).map(|_| number(random) * wide(random)).collect(),
+        Block::Circle => unit(2, random),
+        Block::Quaternion => unit(4, random),
         Block::Rotation => {
-            let q = unit(4);
+            let q = unit(4, random);
             super::layout::rotation([q[0], q[1], q[2], q[3]], 2.0)
         }
     }

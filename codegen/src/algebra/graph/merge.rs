@@ -1,7 +1,8 @@
 //! Which node an expression gets: one that is there already, or a new one.
 
-use super::{Edge, Graph, Node, NodeId};
+use super::{Edge, Function, Graph, Node, NodeId};
 use crate::algebra::fp::Fp;
+use crate::algebra::shadow::Shadow;
 
 impl Graph {
     /// A node with the value of another one, or the small rational that it is; an expression that is
@@ -18,10 +19,45 @@ impl Graph {
                 is_plain(n, d).then(|| self.ratio(n, d))?
             }
         };
-        (!self
-            .shadow
-            .disputes(&self.nodes, &self.constants, node, known))
-        .then_some(known)
+        (!self.disputes(node, class, known)).then_some(known)
+    }
+
+    /// Whether real numbers contradict that a node is what has its values modulo the primes.
+    pub(in crate::algebra) fn disputes(&mut self, node: Node, class: u8, known: Edge) -> bool {
+        if self.node(known.node()) == node && !known.is_negative() {
+            return false;
+        }
+        let (nodes, constants) = (&self.nodes, &self.constants);
+        // No random point protects numbers: they are compared with certainty.
+        if class == 0 && self.classes[known.node() as usize] == 0 {
+            return self.shadow.disputes_number(nodes, constants, node, known);
+        }
+        self.shadow.disputes(nodes, constants, node, known)
+    }
+
+    /// The real values of nodes, where square roots take part in some of the given ones.
+    pub(in crate::algebra) fn sampled(&self, ids: &[NodeId]) -> Option<Shadow> {
+        self.shadow.filled(&self.nodes, &self.constants, ids)
+    }
+
+    /// The number whose square a number is, where it is there already.
+    pub(super) fn known_number_root(&mut self, square: Edge) -> Option<Edge> {
+        if self.class(square.node()) != 0 {
+            return None;
+        }
+        let root = self.value(square).sqrt()?;
+        let node = Node::Apply(Function::Sqrt, square);
+        for value in [root, root.flipped()] {
+            let Some(known) = self.lookup(value) else {
+                continue;
+            };
+            for known in [known, -known] {
+                if self.class(known.node()) == 0 && !self.disputes(node, 0, known) {
+                    return Some(known);
+                }
+            }
+        }
+        None
     }
 
     /// A node that later expressions do not merge with.

@@ -1,0 +1,377 @@
+//! Real numbers between bounds: certified arithmetic for the numbers of a description.
+//!
+//! A number that depends on no symbol has no random point that would protect its comparison with
+//! another one: modulo a prime √2 is one of two roots. So such numbers are compared as real numbers,
+//! lo 2^exponent ≤ value ≤ hi 2^exponent, with some 320 bits; every operation rounds outwards.
+
+use super::graph::Function;
+use num_bigint::{BigInt, Sign};
+use num_integer::Integer;
+use num_rational::BigRational;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+/// Bits that are kept.
+const BITS: u64 = 320;
+/// Fractional bits within elementary functions.
+const FRACTION: u64 = BITS + 64;
+/// Arguments of elementary functions beyond 2 to this are left alone.
+const LARGEST: i64 = 64;
+
+/// lo 2^exponent ≤ value ≤ hi 2^exponent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Interval {
+    lo: BigInt,
+    hi: BigInt,
+    exponent: i64,
+}
+
+fn power_of_two(exponent: u64) -> BigInt {
+    BigInt::one() << exponent
+}
+
+/// ⌈a / 2^bits⌉.
+fn shift_up(a: &BigInt, bits: u64) -> BigInt {
+    // Shifting to the right rounds towards −∞.
+    -((-a) >> bits)
+}
+
+impl Interval {
+    /// Rounded outwards to the bits that are kept.
+    fn new(lo: BigInt, hi: BigInt, exponent: i64) -> Self {
+        let bits = lo.bits().max(hi.bits());
+        if bits <= BITS {
+            return Interval { lo, hi, exponent };
+        }
+        let excess = bits - BITS;
+        Interval {
+            lo: lo >> excess,
+            hi: shift_up(&hi, excess),
+            exponent: exponent + excess as i64,
+        }
+    }
+
+    /// The bounds of a rational.
+    pub fn rational(value: &BigRational) -> Self {
+        let (n, d) = (value.numer(), value.denom());
+        if d.is_one() {
+            return Interval::new(n.clone(), n.clone(), 0);
+        }
+        let shift = BITS + d.bits();
+        let scaled = n << shift;
+        let lo = scaled.div_floor(d);
+        let hi = -((-scaled).div_floor(d));
+        Interval::new(lo, hi, -(shift as i64))
+    }
+
+    /// π, by Machin: 16 arctan 1/5 − 4 arctan 1/239.
+    pub fn pi() -> Self {
+        let unit = power_of_two(FRACTION);
+        let arctan = |n: u32| {
+            let square = BigInt::from(n * n);
+            let (mut power, mut sum, mut k) = (&unit / n, BigInt::zero(), 0u32);
+            while !power.is_zero() {
+                let term = &power / (2 * k + 1);
+                sum = if k.is_even() { sum + term } else { sum - term };
+                power /= &square;
+                k += 1;
+            }
+            sum
+        };
+        let value: BigInt = BigInt::from(16) * arctan(5) - BigInt::from(4) * arctan(239);
+        // Each of some 300 terms is cut twice.
+        let error = BigInt::from(1 << 16);
+        Interval::new(&value - &error, value + error, -(FRACTION as i64))
+    }
+
+    /// −a where asked.
+    pub fn signed(&self, negative: bool) -> Self {
+        if !negative {
+            return self.clone();
+        }
+        Interval {
+            lo: -&self.hi,
+            hi: -&self.lo,
+            exponent: self.exponent,
+        }
+    }
+
+    /// a + b.
+    pub fn plus(&self, b: &Interval) -> Self {
+        let (low, high) = if self.exponent <= b.exponent {
+            (self, b)
+        } else {
+            (b, self)
+        };
+        let shift = (high.exponent - low.exponent) as u64;
+        // What is far below the last bit of the other is rounded to that bit.
+        let most = 4 * BITS;
+        if shift > most {
+            let excess = shift - most;
+            let rounded = Interval {
+                lo: &low.lo >> excess,
+                hi: shift_up(&low.hi, excess),
+                exponent: low.exponent + excess as i64,
+            };
+            return rounded.plus(high);
+        }
+        Interval::new(
+            &low.lo + (&high.lo << shift),
+            &low.hi + (&high.hi << shift),
+            low.exponent,
+        )
+    }
+
+    /// a · b.
+    pub fn times(&self, b: &Interval) -> Self {
+        let products = [
+            &self.lo * &b.lo,
+            &self.lo * &b.hi,
+            &self.hi * &b.lo,
+            &self.hi * &b.hi,
+        ];
+        let lo = products.iter().min().cloned().unwrap_or_default();
+        let hi = products.into_iter().max().unwrap_or_default();
+        Interval::new(lo, hi, self.exponent + b.exponent)
+    }
+
+    /// 1/a; `None` where a may be 0.
+    pub fn inverse(&self) -> Option<Self> {
+        if self.contains_zero() {
+            return None;
+        }
+        let shift = BITS + self.lo.bits().max(self.hi.bits());
+        let unit = power_of_two(shift);
+        let lo = unit.div_floor(&self.hi);
+        let hi = -((-unit).div_floor(&self.lo));
+        Some(Interval::new(lo, hi, -(shift as i64) - self.exponent))
+    }
+
+    /// A function of one argument; `None` where it has no value, or none is known.
+    pub fn apply(&self, function: Function) -> Option<Self> {
+        match function {
+            Function::Sqrt => self.sqrt(),
+            Function::Sin => Some(self.angle()?.1),
+            Function::Cos => Some(self.angle()?.0),
+            Function::Exp => self.exp(),
+            Function::Log | Function::Atan2 => None,
+        }
+    }
+
+    fn sqrt(&self) -> Option<Self> {
+        if self.hi.is_negative() {
+            return None;
+        }
+        // An even exponent and enough bits.
+        let mut shift = (2 * BITS).saturating_sub(self.hi.bits());
+        if (self.exponent - shift as i64).is_odd() {
+            shift += 1;
+        }
+        let lo = (&self.lo << shift).max(BigInt::zero()).sqrt();
+        let hi = (&self.hi << shift).sqrt() + 1;
+        Some(Interval::new(lo, hi, (self.exponent - shift as i64) / 2))
+    }
+
+    /// The middle as a multiple of 2^−FRACTION, and how far the bounds are from it; `None` where too big.
+    fn middle(&self) -> Option<(BigInt, BigInt)> {
+        let size = self.exponent + self.lo.bits().max(self.hi.bits()) as i64;
+        if size > LARGEST {
+            return None;
+        }
+        let shift = self.exponent + FRACTION as i64;
+        let (lo, hi) = if shift >= 0 {
+            (&self.lo << shift as u64, &self.hi << shift as u64)
+        } else {
+            (&self.lo >> -shift as u64, shift_up(&self.hi, -shift as u64))
+        };
+        let middle = (&lo + &hi) >> 1u32;
+        let radius = (hi - lo) / 2 + 1;
+        Some((middle, radius))
+    }
+
+    /// Σ of a series whose terms follow by `next(term, k)`, in multiples of 2^−FRACTION.
+    fn series(first: BigInt, next: impl Fn(&BigInt, u32) -> BigInt) -> BigInt {
+        let (mut term, mut sum) = (first, BigInt::zero());
+        let mut k = 0;
+        while !term.is_zero() && term != BigInt::from(-1) {
+            sum += &term;
+            term = next(&term, k);
+            k += 1;
+        }
+        sum
+    }
+
+    /// Cosine and sine; both change by no more than their argument.
+    fn angle(&self) -> Option<(Self, Self)> {
+        let (mut x, mut radius) = self.middle()?;
+        let turn = Interval::pi();
+        let (turn, error) = turn
+            .times(&Interval::rational(&BigRational::from_integer(2.into())))
+            .middle()?;
+        let turns = x.div_floor(&turn);
+        x -= &turns * &turn;
+        radius += (turns.abs() + 1) * error;
+        let square = (&x * &x) >> FRACTION;
+        let next = |offset: u32| {
+            let square = &square;
+            move |term: &BigInt, k: u32| {
+                let divisor = (2 * k + 1 + offset) * (2 * k + 2 + offset);
+                -((term * square) >> FRACTION) / divisor
+            }
+        };
+        let cos = Self::series(power_of_two(FRACTION), next(0));
+        let sin = Self::series(x, next(1));
+        // Each of some 100 terms is cut twice, from sizes of up to 2⁶.
+        radius += power_of_two(24);
+        let around =
+            |middle: BigInt| Interval::new(&middle - &radius, middle + &radius, -(FRACTION as i64));
+        Some((around(cos), around(sin)))
+    }
+
+    /// exp(x) = exp(x / 2^k)^(2^k).
+    fn exp(&self) -> Option<Self> {
+        const HALVINGS: u32 = 12;
+        let (x, radius) = self.middle()?;
+        if x.bits() > FRACTION + 10 {
+            return None;
+        }
+        let small = &x >> HALVINGS;
+        let value = Self::series(power_of_two(FRACTION), |term, k| {
+            ((term * &small) >> FRACTION) / (k + 1)
+        });
+        let radius = (radius >> HALVINGS) + power_of_two(16);
+        let mut result = Interval::new(&value - &radius, value + radius, -(FRACTION as i64));
+        for _ in 0..HALVINGS {
+            result = result.times(&result);
+        }
+        Some(result)
+    }
+
+    fn contains_zero(&self) -> bool {
+        self.lo.sign() != Sign::Plus && self.hi.sign() != Sign::Minus
+    }
+
+    /// Whether the two are certainly different numbers.
+    pub fn differs(&self, b: &Interval) -> bool {
+        !self.plus(&b.signed(true)).contains_zero()
+    }
+
+    /// A number between the bounds.
+    pub fn to_f64(&self) -> f64 {
+        let middle = BigRational::from_integer((&self.lo + &self.hi) >> 1u32);
+        let scale = if self.exponent >= 0 {
+            BigRational::from_integer(power_of_two(self.exponent as u64))
+        } else {
+            BigRational::new(BigInt::one(), power_of_two(-self.exponent as u64))
+        };
+        (middle * scale).to_f64().unwrap_or(f64::NAN)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn number(n: i64, d: i64) -> Interval {
+        Interval::rational(&BigRational::new(n.into(), d.into()))
+    }
+
+    /// That the bounds are narrow: within 2^−bits of the size.
+    fn is_narrow(a: &Interval, bits: u64) -> bool {
+        let width = &a.hi - &a.lo;
+        let size = a.lo.abs().max(a.hi.abs());
+        width << bits <= size
+    }
+
+    #[test]
+    fn bounds_hold_and_are_narrow() {
+        let root = |n: i64| number(n, 1).apply(Function::Sqrt).expect("positive");
+        let cases: [(Interval, f64); 9] = [
+            (number(1, 3), 1.0 / 3.0),
+            (Interval::pi(), std::f64::consts::PI),
+            (root(2), 2f64.sqrt()),
+            (
+                root(3).plus(&root(2).signed(true)),
+                3f64.sqrt() - 2f64.sqrt(),
+            ),
+            (root(2).inverse().expect("not 0"), 0.5f64.sqrt()),
+            (
+                number(7, 10).apply(Function::Sin).expect("a value"),
+                0.7f64.sin(),
+            ),
+            (
+                number(-2000, 7).apply(Function::Cos).expect("a value"),
+                (-2000.0f64 / 7.0).cos(),
+            ),
+            (
+                number(5, 2).apply(Function::Exp).expect("a value"),
+                2.5f64.exp(),
+            ),
+            (
+                number(-90, 7).apply(Function::Exp).expect("a value"),
+                (-90.0f64 / 7.0).exp(),
+            ),
+        ];
+        for (found, expected) in cases {
+            let error = (found.to_f64() - expected).abs();
+            assert!(error <= 1e-15 * expected.abs().max(0.1), "{expected}");
+            assert!(is_narrow(&found, 250), "{expected}: {found:?}");
+        }
+        // Published digits of π.
+        let digits = "31415926535897932384626433832795028841971693993751058209749445923";
+        let published: BigInt = digits.parse().expect("digits");
+        let pi = BigRational::new(published, BigInt::from(10).pow(digits.len() as u32 - 1));
+        let rest = Interval::pi().plus(&Interval::rational(&pi).signed(true));
+        assert!(rest.to_f64().abs() < 1e-63 && rest.to_f64() != 0.0);
+    }
+
+    #[test]
+    fn identities_are_not_contradicted() {
+        let apply = |a: &Interval, f| a.apply(f).expect("a value");
+        for k in -40..40i64 {
+            let x = number(3 * k, 7);
+            let (c, s) = (apply(&x, Function::Cos), apply(&x, Function::Sin));
+            let one = c.times(&c).plus(&s.times(&s));
+            assert!(!one.differs(&number(1, 1)) && is_narrow(&one, 250), "{k}");
+            let double = apply(&x.plus(&x), Function::Cos);
+            assert!(!double.differs(&c.times(&c).plus(&s.times(&s).signed(true))));
+            let product = apply(&x, Function::Exp).times(&apply(&x.signed(true), Function::Exp));
+            assert!(
+                !product.differs(&number(1, 1)) && is_narrow(&product, 250),
+                "{k}"
+            );
+        }
+        let root = |n: i64| apply(&number(n, 1), Function::Sqrt);
+        assert!(!root(2).times(&root(3)).differs(&root(6)));
+        let nested = apply(
+            &number(5, 1).plus(&root(6).times(&number(-2, 1))),
+            Function::Sqrt,
+        );
+        let plain = root(3).plus(&root(2).signed(true));
+        assert!(!nested.differs(&plain) && nested.differs(&plain.signed(true)));
+        let sixth = apply(&Interval::pi().times(&number(1, 6)), Function::Sin);
+        assert!(!sixth.differs(&number(1, 2)));
+    }
+
+    #[test]
+    fn what_differs_by_little_differs() {
+        let tiny = Interval::rational(&BigRational::new(1.into(), BigInt::from(10).pow(60)));
+        let root = number(2, 1).apply(Function::Sqrt).expect("positive");
+        assert!(root.plus(&tiny).differs(&root) && !root.plus(&tiny).differs(&root.plus(&tiny)));
+        let huge = Interval::rational(&BigRational::from_integer(BigInt::from(10).pow(600)));
+        assert!(huge.differs(&huge.plus(&huge)) && huge.plus(&tiny).to_f64().is_infinite());
+    }
+
+    #[test]
+    fn what_has_no_value_is_none() {
+        let zero = number(2, 1).plus(&number(-2, 1));
+        assert_eq!(zero.inverse(), None);
+        assert_eq!(number(-1, 1).apply(Function::Sqrt), None);
+        assert_eq!(number(1, 1).apply(Function::Log), None);
+        let huge = Interval::rational(&BigRational::from_integer(BigInt::from(10).pow(40)));
+        assert!(huge.apply(Function::Sin).is_none() && huge.apply(Function::Exp).is_none());
+        assert_eq!(
+            zero.apply(Function::Sqrt).map(|root| root.to_f64()),
+            Some(0.0)
+        );
+    }
+}
