@@ -14,8 +14,8 @@ use std::path::PathBuf;
 /// Proves the identities behind the equations of motion.
 ///
 /// Equation numbers are those of KR18, the paper of the method. "proved" is exact, over the rationals
-/// and modulo the constraint; "checked modulo p" is equality at random exact points of the
-/// configuration manifold, which errs with a probability below 1e-17.
+/// and modulo the constraint; "checked" is equality at random points of the configuration manifold in
+/// exact arithmetic modulo two primes, with a bound of the chance that a false equation passes.
 ///
 /// Below them stands what the symbols say about the geometry: which velocities are integrable and what
 /// they are the rates of, which Lie algebra the frame is, the pattern of M, and symmetries.
@@ -95,7 +95,7 @@ fn table(identities: &[Identity]) -> String {
         .map(|identity| {
             let verdict = match &identity.verdict {
                 Verdict::Proved => "\x1b[32mproved\x1b[0m".to_string(),
-                Verdict::Checked => "\x1b[36mchecked modulo p\x1b[0m".to_string(),
+                Verdict::Checked(confidence) => format!("\x1b[36m{confidence}\x1b[0m"),
                 Verdict::Failed(why) => format!("\x1b[1;31mFAILED\x1b[0m: {why}"),
             };
             format!(

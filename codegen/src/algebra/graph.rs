@@ -10,7 +10,7 @@
 mod merge;
 
 use super::fp::Fp;
-use super::lane::Lane;
+use super::lane::{Lane, Roots};
 pub use super::node::{Edge, Function, Node, NodeId, Symbol};
 use super::reals::Reals;
 use super::shadow::Shadow;
@@ -66,9 +66,9 @@ impl Graph {
         graph
     }
 
-    /// Takes roots of non-squares in F_p(i); for when no point avoids them.
-    pub fn set_lenient(&mut self, lenient: bool) {
-        self.lane.lenient = lenient;
+    /// Which roots have values; for when no point has all of them.
+    pub fn set_roots(&mut self, roots: Roots) {
+        self.lane.roots = roots;
     }
 
     /// Gives the symbols real values, in order of creation; without them roots of expressions are
@@ -264,6 +264,11 @@ impl Graph {
         }
         if let (Some(x), Some(y)) = (self.as_rational(a), self.as_rational(b)) {
             return self.rational(&(x * y)).signed(negative);
+        }
+        if let (true, Node::Apply(Function::Sqrt, square)) = (a == b, self.node(a.node()))
+            && self.class(square.node()) == 0
+        {
+            return square.signed(negative);
         }
         let value = self.value(a) * self.value(b);
         let class = self.class(a.node()) | self.class(b.node());

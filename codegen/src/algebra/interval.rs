@@ -295,20 +295,20 @@ mod tests {
             ),
             (root(2).inverse().expect("not 0"), 0.5f64.sqrt()),
             (
-                number(7, 10).apply(Function::Sin).expect("a value"),
-                0.7f64.sin(),
+                number(3, 4).apply(Function::Sin).expect("a value"),
+                0.75f64.sin(),
             ),
             (
-                number(-2000, 7).apply(Function::Cos).expect("a value"),
-                (-2000.0f64 / 7.0).cos(),
+                number(-2000, 8).apply(Function::Cos).expect("a value"),
+                (-250.0f64).cos(),
             ),
             (
                 number(5, 2).apply(Function::Exp).expect("a value"),
                 2.5f64.exp(),
             ),
             (
-                number(-90, 7).apply(Function::Exp).expect("a value"),
-                (-90.0f64 / 7.0).exp(),
+                number(-90, 8).apply(Function::Exp).expect("a value"),
+                (-90.0f64 / 8.0).exp(),
             ),
         ];
         for (found, expected) in cases {

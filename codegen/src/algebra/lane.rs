@@ -21,6 +21,19 @@ pub type LinearForm = Vec<(Fp, BigRational)>;
 /// atom are then whole multiples of it.
 const PARTS: i64 = 12;
 
+/// Which square roots have values at a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Roots {
+    /// Those of squares of F_p: √a √b = √(ab).
+    #[default]
+    OfSquares,
+    /// Those of squares of F_p(i), where √a √b may be −√(ab).
+    Extended,
+    /// All; where F_p(i) has no root, any value stands for it, whose square is another one: what is proved
+    /// with it holds, but not all that holds is proved.
+    Anything,
+}
+
 /// A point: values of symbols, and a seed from which the values of functions follow. Values of
 /// functions depend on values of arguments alone, so that two graphs agree at the same point; those in
 /// one field do not depend on what is in the other.
@@ -30,8 +43,8 @@ pub struct Lane {
     symbols: Vec<Fp>,
     /// In which field a square root was asked of a non-square: the point should be chosen anew there.
     stuck: [bool; 2],
-    /// Whether roots of non-squares are taken in F_p(i), where √a √b may be −√(ab).
-    pub lenient: bool,
+    /// Which roots have values.
+    pub roots: Roots,
 }
 
 impl Lane {
@@ -41,14 +54,14 @@ impl Lane {
             seed,
             symbols: Vec::new(),
             stuck: [false; 2],
-            lenient: false,
+            roots: Roots::default(),
         }
     }
 
     /// The same functions, without symbols.
     pub fn fresh(&self) -> Self {
         Lane {
-            lenient: self.lenient,
+            roots: self.roots,
             ..Lane::new(self.seed)
         }
     }
@@ -126,13 +139,20 @@ impl Lane {
         form: &LinearForm,
         _: Part<K>,
     ) -> Option<Residue<K>> {
+        let anything = || {
+            (self.roots == Roots::Anything).then(|| {
+                self.draw(Function::Sqrt as u64, argument, Residue::ZERO)
+                    .residue()
+            })
+        };
         let Some((_, factor)) = form.first() else {
-            return argument.sqrt();
+            return argument.sqrt().or_else(anything);
         };
         let rest = argument * Residue::from_rational(factor)?.inv()?;
         let root = rest.principal_root();
-        let root = root.or_else(|| self.lenient.then(|| rest.sqrt())?)?;
-        Some(roots::of_rational::<K>(factor)? * root)
+        let root = root.or_else(|| rest.sqrt().filter(|_| self.roots != Roots::OfSquares));
+        let root = root.map(|root| Some(roots::of_rational::<K>(factor)? * root));
+        root.unwrap_or_else(anything)
     }
 
     /// A value without any law but equality of arguments.

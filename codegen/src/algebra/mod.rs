@@ -3,6 +3,7 @@
 //! polynomials with normal forms for the small pieces that people read.
 
 pub mod blocks;
+pub mod degree;
 pub mod derivation;
 pub mod echelon;
 mod fold;

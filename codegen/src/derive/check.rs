@@ -1,9 +1,10 @@
 //! The identities that every derivation has to satisfy, evaluated left and right.
 //!
-//! Both sides are compared at exact points of X modulo p ("checked modulo p"). Where they are small
+//! Both sides are compared at exact points of X in two fields ("checked"). Where they are small
 //! enough they are derived once more in the graph with free coordinates, where nothing is merged
 //! modulo φ, expanded over the rationals, and compared by normal forms modulo φ ("proved").
 
+use super::confidence::Confidence;
 use super::forms::Symbols;
 use super::motion;
 use super::normal::NormalForms;
@@ -23,8 +24,8 @@ use crate::program::Program;
 pub enum Verdict {
     /// Both sides have the same normal form modulo φ over the rationals.
     Proved,
-    /// Both sides agree at random points of X modulo p.
-    Checked,
+    /// Both sides agree at random points of X.
+    Checked(Confidence),
     /// They differ.
     Failed(String),
 }
@@ -44,7 +45,7 @@ pub struct Identity {
 const POINTS: u64 = 4;
 /// Points tried where square roots have no value.
 const TRIES: u64 = 300;
-/// Models with more velocities are only checked modulo p.
+/// Models with more velocities are only checked at points.
 const MOST_PROVED: usize = 8;
 /// Expressions of more nodes are not expanded for a proof.
 const MOST_NODES: usize = 20_000;
@@ -98,7 +99,7 @@ fn verdicts(
             let verdict = match at_points(model, graph, sides) {
                 Some(difference) => Verdict::Failed(difference),
                 None if proved() => Verdict::Proved,
-                None => Verdict::Checked,
+                None => Verdict::Checked(confidence(model, graph, sides)),
             };
             Identity {
                 label: sides.label,
@@ -382,6 +383,12 @@ fn metric(geometry: &mut Geometry) -> Vec<Sides> {
 
 fn flat(table: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
     table.iter().flatten().flatten().copied().collect()
+}
+
+/// What agreement of both sides at all points says.
+fn confidence(model: &Model, graph: &Graph, sides: &Sides) -> Confidence {
+    let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
+    Confidence::new(model, &[(graph, &roots)], 1, POINTS, sides.left.len())
 }
 
 /// Where both sides differ at a point of X, if they do.

@@ -1,9 +1,10 @@
-//! The proof for systems with constraints: at points of X modulo p, with ξ = C ξₐ, the emitted ξ̇ₐ and
+//! The proof for systems with constraints: at points of X, with ξ = C ξₐ, the emitted ξ̇ₐ and
 //! multipliers satisfy M ξ̇ + h + ∂V = f + Bᵀ λ in every row of the full frame, and d/dt (B ξ) is what
 //! the constraints ask for; M, h, V and f come from T and γ of the full frame.
 
 use super::calculus::Calculus;
 use super::check::{Identity, Verdict};
+use super::confidence::Confidence;
 use super::reduction::{Reduction, drift};
 use super::reference::Reference;
 use super::validate::failure;
@@ -18,7 +19,7 @@ use crate::model::{Model, class};
 use crate::program::Program;
 
 /// Points at which everything is compared.
-const POINTS: u64 = 8;
+const POINTS: u64 = 4;
 /// Points tried where square roots have no value.
 const TRIES: u64 = 400;
 
@@ -92,55 +93,110 @@ impl Full {
 
 /// Validates the functions of a program with constraints; an error is a fault of the generator.
 pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Result<(), Diagnostic> {
-    for identity in identities(model, reduction, program) {
-        if let Verdict::Failed(_) = identity.verdict {
-            return Err(failure(model, &identity.equation));
-        }
+    let full = Full::new(model, reduction);
+    let failed = full.and_then(|full| compare(&full, model, reduction, program));
+    let Some(failed) = failed else {
+        return Err(failure(
+            model,
+            "that the equations have values at some points",
+        ));
+    };
+    let mut rows = IDENTITIES.iter().zip(&failed);
+    match rows.find(|((label, _), failed)| failed.is_some() && is_there(label, reduction, program))
+    {
+        Some(((_, equation), _)) => Err(failure(model, equation)),
+        None => Ok(()),
     }
-    Ok(())
 }
 
-/// The identities with their verdicts.
-pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Vec<Identity> {
+/// What fails at fresh points; `None` where there are none.
+fn compare(
+    full: &Full,
+    model: &Model,
+    reduction: &Reduction,
+    program: &Program,
+) -> Option<[Option<String>; IDENTITIES.len()]> {
     let mut failed: [Option<String>; IDENTITIES.len()] = Default::default();
     let mut found = 0;
-    if let Some(full) = Full::new(model, reduction) {
-        for seed in 1..TRIES {
-            if found == POINTS {
-                break;
-            }
-            let Some(lane) = model.points.lane(0xb0d5 + seed) else {
-                continue;
-            };
-            let Some(results) = at_point(&full, reduction, program, &lane, seed) else {
-                continue;
-            };
-            found += 1;
-            for (failed, result) in failed.iter_mut().zip(results) {
-                *failed = failed.take().or(result.err());
-            }
+    for seed in 1..TRIES {
+        if found == POINTS {
+            break;
+        }
+        let Some(lane) = model.points.lane(0xb0d5 + seed) else {
+            continue;
+        };
+        let Some(results) = at_point(full, reduction, program, &lane, seed) else {
+            continue;
+        };
+        found += 1;
+        for (failed, result) in failed.iter_mut().zip(results) {
+            *failed = failed.take().or(result.err());
         }
     }
-    let verdict = |failed: Option<String>| match failed {
-        _ if found == 0 => Verdict::Failed("no point was found to compare at".into()),
-        Some(message) => Verdict::Failed(message),
-        None => Verdict::Checked,
-    };
-    // Nothing is said of what is not there.
-    let there = |label: &str| match label {
+    (found > 0).then_some(failed)
+}
+
+/// Nothing is said of what is not there.
+fn is_there(label: &str, reduction: &Reduction, program: &Program) -> bool {
+    match label {
         "C" => !reduction.solved.is_empty(),
         "B" => !reduction.kept.is_empty(),
         "nearby" => program.function("linearize").is_some(),
         _ => true,
+    }
+}
+
+/// What agreement at all points says: all that is evaluated, in sums and solutions of n + rows terms.
+fn confidence(full: &Full, model: &Model, program: &Program) -> Confidence {
+    let reference = &full.reference;
+    let mut roots = reference.mass.concat();
+    let lists = [
+        &reference.force,
+        &reference.bias,
+        &reference.slope,
+        &reference.model.rate,
+        &full.complement,
+        &full.rows,
+        &full.drift,
+    ];
+    lists.iter().for_each(|list| roots.extend(list.iter()));
+    roots.push(full.change);
+    let emitted: Vec<Edge> = program
+        .functions
+        .iter()
+        .flat_map(|function| function.outputs.clone())
+        .collect();
+    let expressions = [
+        (&reference.model.graph, &roots[..]),
+        (&full.reduced.graph, &full.right[..]),
+        (&program.graph, &emitted[..]),
+    ];
+    let terms = 4 * (model.n() + full.rows.len() + 1);
+    Confidence::new(model, &expressions, terms, POINTS, terms * terms)
+}
+
+/// The identities with their verdicts.
+pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Vec<Identity> {
+    let full = Full::new(model, reduction);
+    let failed = full
+        .as_ref()
+        .and_then(|full| compare(full, model, reduction, program));
+    let confidence = full.map(|full| confidence(&full, model, program));
+    let verdict = |index: usize| match (&failed, confidence) {
+        (Some(failed), Some(confidence)) => match &failed[index] {
+            Some(message) => Verdict::Failed(message.clone()),
+            None => Verdict::Checked(confidence),
+        },
+        _ => Verdict::Failed("no point was found to compare at".into()),
     };
     IDENTITIES
         .iter()
-        .zip(failed)
-        .filter(|((label, _), _)| there(label))
-        .map(|(&(label, equation), failed)| Identity {
+        .enumerate()
+        .filter(|(_, (label, _))| is_there(label, reduction, program))
+        .map(|(index, &(label, equation))| Identity {
             label,
             equation: equation.into(),
-            verdict: verdict(failed),
+            verdict: verdict(index),
         })
         .collect()
 }

@@ -26,6 +26,7 @@
 //! | `assemble` | the program of all generated functions | |
 //! | `further` | momenta, the motion nearby and invariants as functions | |
 //! | `structure` | whether a system splits into free motion and kicks; which method fits | |
+//! | `confidence` | what equality at random points says | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |
 //! | `motion` | those of the equations of motion | (20), (28), (30) |
 //! | `geometry` | integrability, Lie algebras, patterns, symmetries | 2.5 |
@@ -38,6 +39,7 @@ mod candidates;
 pub mod check;
 pub mod commutation;
 pub mod complement;
+pub mod confidence;
 pub mod connection;
 pub mod constrained;
 pub mod correction;

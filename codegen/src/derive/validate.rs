@@ -23,7 +23,7 @@ use super::slopes::Slopes;
 use super::structure::Proof;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
-use crate::algebra::lane::Lane;
+use crate::algebra::lane::{Lane, Roots};
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tape::Tape;
 use crate::diagnostics::Diagnostic;
@@ -32,7 +32,7 @@ use crate::program::Program;
 use rustc_hash::FxHashMap;
 
 /// Fresh points for every program.
-pub const POINTS: u64 = 8;
+pub const POINTS: u64 = 4;
 /// Points tried where square roots have no value.
 const TRIES: u64 = 400;
 
@@ -96,6 +96,14 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), String> {
 
 /// A fault of the generator, which is never emitted.
 pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
+    if model.points.roots == Roots::Anything {
+        let message = format!(
+            "`{}` could not be proved: {what} was not confirmed",
+            model.name
+        );
+        let help = "roots within roots have no values in the fields of the proof: let a parameter or a coordinate stand for the inner one";
+        return Diagnostic::new(model.span, message).help(help);
+    }
     Diagnostic::new(
         model.span,
         format!(

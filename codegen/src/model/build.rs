@@ -83,7 +83,7 @@ impl<'a> Reading<'a> {
             point[count - 1]
         };
         let next = &mut next as &mut NextValue;
-        graph.set_lenient(variety.points.lenient);
+        graph.set_roots(variety.points.roots);
         let declared = declare(system, &mut graph, next, &mut scope, &mut report);
         graph.set_reals(samples::sample(&variety.points, &variety.phi, seed));
         Reading {

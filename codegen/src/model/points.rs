@@ -4,7 +4,7 @@ use super::class;
 use super::layout::{Block, sample};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
-use crate::algebra::lane::Lane;
+use crate::algebra::lane::{Lane, Roots};
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::poly;
 use crate::algebra::poly::monomial::Var;
@@ -41,8 +41,8 @@ pub struct Points {
     pub symbols: usize,
     /// Square roots that need values at every point, in `free`.
     radicals: Vec<Edge>,
-    /// Whether points with roots in F_p were too rare, so that those in F_p(i) have to do.
-    pub lenient: bool,
+    /// Which roots have values: more than those in F_p where points with them were too rare.
+    pub roots: Roots,
 }
 
 impl Points {
@@ -56,7 +56,7 @@ impl Points {
             first,
             symbols,
             radicals: Vec::new(),
-            lenient: false,
+            roots: Roots::default(),
         }
     }
 
@@ -155,16 +155,27 @@ impl Points {
             .map(Edge::of)
             .collect();
         self.radicals = copy(graph, &mut self.free, &roots);
-        let mut random = Random::new(0x5_71c7);
-        let mut found = |seed| {
-            let anything = |_: &mut Vec<Fp>| Some(());
-            self.choose_where(&mut random, seed, STRICT_TRIES, &anything)
-                .is_some()
-        };
         let varying = |root: &&Edge| self.free.class(root.node()) != 0;
         let count = self.radicals.iter().filter(varying).count();
-        let strict = count == 0 || count <= MOST_STRICT && found(1) && found(2);
-        self.lenient |= !strict;
+        let many = count > MOST_STRICT;
+        let mut random = Random::new(0x5_71c7);
+        for roots in [Roots::OfSquares, Roots::Extended] {
+            let skipped = self.roots == Roots::Anything
+                || roots == Roots::OfSquares && (many || self.roots == Roots::Extended);
+            if skipped {
+                continue;
+            }
+            self.roots = roots;
+            let mut found = |seed| {
+                let anything = |_: &mut Vec<Fp>| Some(());
+                self.choose_where(&mut random, seed, STRICT_TRIES, &anything)
+                    .is_some()
+            };
+            if found(1) && found(2) {
+                return;
+            }
+        }
+        self.roots = Roots::Anything;
     }
 
     /// The user's constraints as polynomials in the coordinates.
@@ -282,7 +293,7 @@ impl Points {
 
     fn lane_of(&self, values: &[Fp], seed: u64) -> Lane {
         let mut lane = Lane::new(seed);
-        lane.lenient = self.lenient;
+        lane.roots = self.roots;
         for &value in values {
             lane.push_symbol(value);
         }

@@ -9,6 +9,7 @@ use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tangent::tangent_at;
 use crate::derive::calculus::Calculus;
 use crate::derive::check::{Identity, Verdict};
+use crate::derive::confidence::Confidence;
 use crate::derive::constrained::{in_kernel, places};
 use crate::derive::{energy, inertia};
 use crate::diagnostics::Diagnostic;
@@ -17,7 +18,7 @@ use crate::model::{Model, class};
 use crate::program::Program;
 
 /// Fresh points for every claim.
-const POINTS: u64 = 8;
+const POINTS: u64 = 4;
 /// Points tried where something has no value.
 const TRIES: u64 = 400;
 
@@ -53,7 +54,7 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
 /// The claims with their verdicts.
 pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
     let verdict = |claim: &Invariant| match refuted(model, program, claim) {
-        None => Verdict::Checked,
+        None => Verdict::Checked(confidence(model, program)),
         Some(_) => Verdict::Failed("d/dt is not zero where the constraints hold".into()),
     };
     model
@@ -65,6 +66,25 @@ pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
             verdict: verdict(claim),
         })
         .collect()
+}
+
+/// What agreement at all points says: an integral of T, V and momenta is differentiated along ξ̇.
+fn confidence(model: &Model, program: &Program) -> Confidence {
+    let mut own = model.clone();
+    let mut calculus = Calculus::new(&own);
+    let mass = inertia::mass_matrix(&mut own, &mut calculus);
+    let energies = [
+        energy::kinetic(&mut own, &mass),
+        energy::potential(&mut own),
+    ];
+    let mut roots = mass.concat();
+    roots.extend(own.rate.iter().chain(&energies).copied());
+    let accel = program
+        .function("accel")
+        .map_or(&[][..], |accel| &accel.outputs);
+    let expressions = [(&own.graph, &roots[..]), (&program.graph, accel)];
+    let terms = 4 * (model.n() + 1);
+    Confidence::new(model, &expressions, terms, POINTS, 9)
 }
 
 /// The entry that changes, `Some(None)` where there is no point to check it at.

@@ -19,6 +19,7 @@ mod remainder;
 
 use super::calculus::Calculus;
 use super::check::{Identity, Verdict};
+use super::confidence::Confidence;
 use super::reference::Reference;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, Node};
@@ -31,7 +32,7 @@ use crate::model::invariants::Invariant;
 use proof::{Proof, Prover};
 
 /// Fresh points for every claim.
-const POINTS: u64 = 8;
+const POINTS: u64 = 4;
 /// Points tried where something has no value.
 const TRIES: u64 = 400;
 
@@ -124,7 +125,7 @@ pub fn identities(model: &Model) -> Vec<Identity> {
                 if prover.as_mut().is_some_and(&mut proved) {
                     Verdict::Proved
                 } else {
-                    Verdict::Checked
+                    Verdict::Checked(motion.confidence(model, &entries))
                 }
             }
         };
@@ -186,6 +187,17 @@ impl Motion {
                 graph.sub(sum, reference.slope[i])
             })
             .collect()
+    }
+
+    /// What agreement at all points says: the entries are differentiated along a solution of n equations.
+    fn confidence(&mut self, model: &Model, entries: &[Edge]) -> Confidence {
+        let force = self.force();
+        let reference = &self.reference;
+        let mut roots = reference.mass.concat();
+        roots.extend(force.iter().chain(&reference.model.rate).chain(entries));
+        let graph = &reference.model.graph;
+        let terms = 2 * (model.n() + 1);
+        Confidence::new(model, &[(graph, &roots)], terms, POINTS, entries.len())
     }
 
     /// How the claim fails, if it does.
