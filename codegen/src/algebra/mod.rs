@@ -2,6 +2,7 @@
 //! p = 2^61 − 1 at points of the constraint variety, derivations tangent to that variety, and
 //! polynomials with normal forms for the small pieces that people read.
 
+pub mod bend;
 pub mod blocks;
 pub mod derivation;
 pub mod echelon;
@@ -18,6 +19,7 @@ pub mod reals;
 pub mod resubstitute;
 mod roots;
 mod shadow;
+pub mod slopes;
 pub mod tangent;
 pub mod tape;
 #[cfg(test)]
