@@ -68,7 +68,7 @@ struct Linear {
 /// Linearises and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let generated = Source::open(&arguments.file, &arguments.robot)?.derive_linearized()?;
-    let state = State::read(&generated.active, arguments.at.as_deref())?;
+    let state = State::read(&generated, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;
     let singular = || {
