@@ -1,5 +1,6 @@
 //! `hamel simulate`: a run in time, interpreted.
 
+mod balance;
 mod picture;
 mod record;
 mod rotor;

@@ -30,12 +30,28 @@ fn product<F: Field>(a: &Poly<F>, b: &Poly<F>) -> Option<Poly<F>> {
 }
 
 /// Polynomials over Q of nodes; remembers what it has expanded.
-#[derive(Default)]
 pub struct Expander {
     memo: FxHashMap<NodeId, Option<Poly<BigRational>>>,
+    /// Products and sums of terms that may still be made.
+    work: usize,
+}
+
+impl Default for Expander {
+    fn default() -> Self {
+        Expander::within(usize::MAX)
+    }
 }
 
 impl Expander {
+    /// One that gives up after so many products and sums of terms: what is not expanded by then has no
+    /// polynomial.
+    pub fn within(work: usize) -> Self {
+        Expander {
+            memo: FxHashMap::default(),
+            work,
+        }
+    }
+
     /// The polynomial of an expression; `None` where it has too many terms.
     pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
         for id in graph.reachable(&[edge]) {
@@ -56,7 +72,23 @@ impl Expander {
         })
     }
 
-    fn local(&self, graph: &Graph, id: NodeId) -> Option<Poly<BigRational>> {
+    /// Takes from the work that is left; `None` where it does not suffice.
+    fn spend(&mut self, work: usize) -> Option<()> {
+        let left = self.work.checked_sub(work);
+        self.work = left.unwrap_or(0);
+        left.map(|_| ())
+    }
+
+    fn terms(&self, edge: Edge) -> Option<usize> {
+        Some(self.memo.get(&edge.node())?.as_ref()?.terms().len())
+    }
+
+    fn local(&mut self, graph: &Graph, id: NodeId) -> Option<Poly<BigRational>> {
+        match graph.node(id) {
+            Node::Add(a, b) => self.spend(self.terms(a)? + self.terms(b)?)?,
+            Node::Mul(a, b) => self.spend(self.terms(a)? * self.terms(b)?)?,
+            _ => {}
+        }
         match graph.node(id) {
             Node::Constant(index) => Some(Poly::constant(graph.constant(index).clone())),
             Node::Symbol(index) => Some(Poly::var(index)),
