@@ -6,12 +6,13 @@ use crate::interpreted::{Interpreted, Output};
 use crate::method::{Chosen, Stepper};
 use crate::names;
 use crate::number::short;
+use crate::progress;
 use hamel::adaptive::{Adaptive, Event, Report};
 use hamel::methods::General;
 use hamel::{Monitor, State, StepError, System, integrate};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use std::cell::Cell;
 
 /// Samples where nothing else is asked for.
@@ -138,7 +139,12 @@ impl<'a> Run<'a> {
             Some(_) => 1,
             None => (plan.steps / POINTS).max(1),
         };
-        let bar = progress(plan.steps);
+        // How many steps a tolerance takes is not known: the bar comes when they are many.
+        let long = plan.tolerance.is_none() && plan.steps >= LONG;
+        let mut bar = match long {
+            true => progress::bar(plan.steps),
+            false => ProgressBar::hidden(),
+        };
         let mut steps = 0;
         let observe = |state: &State<Interpreted>, place: Place| {
             if place == Place::Within {
@@ -163,6 +169,9 @@ impl<'a> Run<'a> {
                 if thin(&mut track) {
                     stride *= 2;
                 }
+            }
+            if steps == LONG && !long {
+                bar = progress::bar(plan.steps);
             }
             if steps % TICK == 0 {
                 bar.set_position(match plan.tolerance {
@@ -324,22 +333,4 @@ fn advance(
         }
     };
     outcome.map(|_| ())
-}
-
-/// A bar on standard error, where that is a terminal and the run is long.
-fn progress(steps: u64) -> ProgressBar {
-    let colour = anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never;
-    if steps < LONG {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(steps);
-    let template = if colour {
-        "{bar:40.cyan} {percent}%  {eta} left"
-    } else {
-        "{bar:40} {percent}%  {eta} left"
-    };
-    match ProgressStyle::with_template(template) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

@@ -149,3 +149,36 @@ pub fn polynomial_at(
     }
     read(&memo, edge)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Expander;
+    use crate::algebra::fp::Random;
+    use crate::algebra::graph::{Graph, LANES};
+
+    #[test]
+    fn an_expansion_ends_with_its_work() {
+        let mut random = Random::new(5);
+        let mut graph = Graph::new(1, 0);
+        let symbols: Vec<_> = (0..6)
+            .map(|i| {
+                let value = std::array::from_fn::<_, LANES, _>(|_| random.element());
+                graph.symbol(&format!("x{i}"), 2, value)
+            })
+            .collect();
+        let sum = graph.sum(&symbols);
+        let square = graph.mul(sum, sum);
+        let fourth = graph.mul(square, square);
+        let terms = |work: usize, edge| {
+            let polynomial = Expander::within(work).expand(&graph, edge);
+            polynomial.map(|polynomial| polynomial.terms().len())
+        };
+        // 20 terms added up, 36 products, and 21² more.
+        assert_eq!(terms(19, sum), None);
+        assert_eq!(terms(20, sum), Some(6));
+        assert_eq!(terms(56, square), Some(21));
+        assert_eq!(terms(56, fourth), None);
+        assert_eq!(terms(20 + 36 + 441, fourth), Some(126));
+        assert_eq!(terms(20 + 36 + 440, fourth), None);
+    }
+}
