@@ -105,7 +105,7 @@ fn what_is_no_state_is_refused() {
     for (state, message) in [
         (
             r#"{"coord": {"q1": 1, "q1": 2}}"#,
-            "`q1` stands twice in one object at line 1 column 23",
+            "`q1` stands twice in one object at line 1 column 24",
         ),
         (
             r#"{"coord": {"q1": 1}, "coord": {}}"#,
