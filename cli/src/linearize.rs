@@ -59,8 +59,8 @@ struct Linear {
     inputs: Vec<String>,
     a: Vec<Vec<f64>>,
     b: Vec<Vec<f64>>,
-    /// Real and imaginary parts, the fastest growing first.
-    eigenvalues: Vec<(f64, f64)>,
+    /// Real and imaginary parts, the fastest growing first; `None` where they were not found.
+    eigenvalues: Option<Vec<(f64, f64)>>,
     /// ξ̇ at the state.
     xi_dot: Vec<f64>,
 }
@@ -68,7 +68,7 @@ struct Linear {
 /// Linearises and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let generated = Source::open(&arguments.file, &arguments.robot)?.derive_linearized()?;
-    let state = State::read(&generated.active, arguments.at.as_deref())?;
+    let state = State::read(&generated, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;
     let singular = || {
@@ -113,9 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .collect();
     let linear = Linear {
         system: generated.model.name.clone(),
-        eigenvalues: eigenvalues(&a).ok_or_else(|| {
-            Failure::failed("the eigenvalues were not found: the QR algorithm does not converge")
-        })?,
+        eigenvalues: eigenvalues(&a),
         states,
         inputs,
         a,
@@ -125,7 +123,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&match arguments.format {
         Format::Text => text(&linear),
         Format::Json => json(&linear).pretty(),
-    })
+    })?;
+    match linear.eigenvalues {
+        Some(_) => Ok(()),
+        None => Err(Failure::failed(
+            "the eigenvalues were not found: the QR algorithm does not converge for this A",
+        )),
+    }
 }
 
 fn text(linear: &Linear) -> String {
@@ -152,7 +156,11 @@ fn text(linear: &Linear) -> String {
             value
         }
     };
-    for &(re, im) in &linear.eigenvalues {
+    let Some(eigenvalues) = &linear.eigenvalues else {
+        text.push_str("  not found\n");
+        return text;
+    };
+    for &(re, im) in eigenvalues {
         let re = clean(re);
         // A pair of conjugates on one line.
         if im > 0.0 {
@@ -216,7 +224,10 @@ fn json(linear: &Linear) -> Json {
         ("B", Json::matrix(&linear.b)),
         (
             "eigenvalues",
-            Json::List(linear.eigenvalues.iter().map(pair).collect()),
+            match &linear.eigenvalues {
+                Some(values) => Json::List(values.iter().map(pair).collect()),
+                None => Json::Null,
+            },
         ),
         ("xi_dot", Json::vector(&linear.xi_dot)),
     ])

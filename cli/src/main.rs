@@ -10,6 +10,7 @@
 //! | `interpreted` | a described system that the integrators can run |
 //! | `method` | the methods by their names, and which systems they are for |
 //! | `json`, `names` | how results are written; pictures and numbers are those of `hamel-report` |
+//! | `progress` | what long work shows |
 //! | `failure` | errors and exit statuses |
 
 mod check;
@@ -25,6 +26,7 @@ mod linearize;
 mod method;
 mod names;
 mod ops;
+mod progress;
 mod robot;
 mod simulate;
 mod source;

@@ -1,14 +1,19 @@
 //! A description's file: reading and deriving it, with errors shown in its text.
 
 use crate::failure::Failure;
+use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::model::{self, Model};
 use hamel_codegen::render::render;
+use hamel_codegen::syntax;
 use hamel_codegen::urdf;
-use hamel_codegen::{model, syntax};
 use std::io::Read;
 use std::path::Path;
+
+/// What is shown while a derivation takes its time.
+const DERIVING: &str = "deriving";
 
 /// A text and where it comes from.
 pub struct Source {
@@ -80,20 +85,24 @@ impl Source {
         })
     }
 
+    /// What the description says, not derived yet.
+    pub fn model(&self) -> Result<Model, Failure> {
+        let model = syntax::parse_text(&self.text).and_then(|system| model::build(&system));
+        model.map_err(|errors| self.refused(&errors))
+    }
+
     /// Derives these functions, whatever the description's `generate` says.
     pub fn derive_only(&self, functions: &[&str]) -> Result<Generated, Failure> {
-        let model = syntax::parse_text(&self.text).and_then(|system| model::build(&system));
-        model
-            .and_then(|mut model| {
-                model.generate = functions.iter().map(|name| name.to_string()).collect();
-                Generated::of(model, 0)
-            })
-            .map_err(|errors| self.refused(&errors))
+        let mut model = self.model()?;
+        model.generate = functions.iter().map(|name| name.to_string()).collect();
+        let derived = progress::during(DERIVING, || Generated::of(model, 0));
+        derived.map_err(|errors| self.refused(&errors))
     }
 
     /// Derives the functions that the description asks for.
     pub fn derive(&self) -> Result<Generated, Failure> {
-        from_text(&self.text).map_err(|errors| self.refused(&errors))
+        let derived = progress::during(DERIVING, || from_text(&self.text));
+        derived.map_err(|errors| self.refused(&errors))
     }
 
     /// Derives all functions, whatever the description's `generate` says.
@@ -101,16 +110,18 @@ impl Source {
         let mut generated = self.derive()?;
         if !generated.model.generate.is_empty() {
             generated.model.generate.clear();
-            generated = Generated::of(generated.model, generated.hash)
-                .map_err(|errors| self.refused(&errors))?;
+            let (model, hash) = (generated.model, generated.hash);
+            let derived = progress::during(DERIVING, || Generated::of(model, hash));
+            generated = derived.map_err(|errors| self.refused(&errors))?;
         }
         Ok(generated)
     }
 
     /// Derives all functions and the linearisation, whatever the description's `generate` says.
     pub fn derive_linearized(&self) -> Result<Generated, Failure> {
-        let generated = self.derive()?;
-        Generated::all(generated.model, generated.hash).map_err(|errors| self.refused(&errors))
+        let model = self.model()?;
+        let derived = progress::during(DERIVING, || Generated::all(model, 0));
+        derived.map_err(|errors| self.refused(&errors))
     }
 
     /// The errors with their source underlined.

@@ -94,8 +94,21 @@ pub enum StepError {
         /// The step that was refused.
         step: f64,
     },
-    /// A tolerance is not a positive number.
-    InvalidTolerance,
+    /// A tolerance is not a number that errors can be compared with: less than rounding, or infinite.
+    InvalidTolerance {
+        /// The least that it can be.
+        least: f64,
+    },
+    /// The motion is stiff: it has a rate so fast that the steps of an explicit method stay short for it
+    /// alone, and more of them are ahead than [`Adaptive::stiff`](crate::adaptive::Adaptive) allows.
+    Stiff {
+        /// Time at the start of the step.
+        time: f64,
+        /// The step that the method can take.
+        step: f64,
+        /// The rate ρ, an estimate of the spectral radius of the equations.
+        rate: f64,
+    },
     /// The method is for motion without forces, and forces may act on this system.
     Forces {
         /// Time at the start of the step.
@@ -127,7 +140,15 @@ impl fmt::Display for StepError {
                 f,
                 "the tolerance asks for a step of {step:e} at t = {time}, which time does not resolve"
             ),
-            Self::InvalidTolerance => write!(f, "tolerances have to be positive"),
+            Self::InvalidTolerance { least } => write!(
+                f,
+                "a tolerance has to be a number of at least {least:e}: rounding allows no less"
+            ),
+            Self::Stiff { time, step, rate } => write!(
+                f,
+                "the motion is stiff at t = {time}: a rate of {rate:.1e} per unit of time keeps explicit \
+                 steps at {step:.1e}; take an implicit method, or a stiff solver through `hamel::adapter`"
+            ),
             Self::Forces { time } => write!(
                 f,
                 "forces may act, in the step from t = {time}: the closed form is for free motion"

@@ -39,8 +39,10 @@ impl<S: Scalar> Monitor<S> {
     {
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
         let energy = kinetic + system.potential_energy(&state.x);
-        self.deviation = Scalar::max(self.deviation, (energy - self.initial).abs());
-        self.scale = Scalar::max(self.scale, kinetic);
+        let gained = energy - self.initial;
+        self.deviation = Scalar::max(self.deviation, gained.abs());
+        // Energy that the run has made of nothing is no measure of what it should be.
+        self.scale = Scalar::max(self.scale, kinetic - gained.max(S::default()));
         self.constraint = Scalar::max(self.constraint, system.constraint_norm(&state.x));
     }
 
@@ -54,8 +56,9 @@ impl<S: Scalar> Monitor<S> {
         self.deviation
     }
 
-    /// max |T + V − E₀| over the larger of |E₀| and the largest kinetic energy seen: V has a free
-    /// constant, so that E₀ alone may be zero. Zero for a system that never moves.
+    /// max |T + V − E₀| over the larger of |E₀| and the largest kinetic energy seen, without what T + V
+    /// has gained by then: V has a free constant, so that E₀ alone may be zero. Zero for a system that
+    /// never moves.
     pub fn relative_energy_deviation(&self) -> S {
         let zero = S::default();
         // The second selection is for a scale of NaN, which must not become zero.

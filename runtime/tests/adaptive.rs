@@ -298,7 +298,12 @@ fn what_cannot_be_asked_is_a_typed_error() {
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let mut state = start.clone();
         let end = Adaptive::rkmk54(tolerance).run(&system, &mut state, 1.0, none::<Top<f64>>);
-        assert_eq!(end, Err(StepError::InvalidTolerance));
+        assert_eq!(
+            end,
+            Err(StepError::InvalidTolerance {
+                least: f64::EPSILON
+            })
+        );
     }
     let mut absolute = Adaptive::rkmk54(1e-6);
     absolute.tolerance = Tolerance {
@@ -329,10 +334,16 @@ fn a_tolerance_below_rounding_is_a_typed_error() {
     let double = top("kovalevskaya-top");
     let end =
         Adaptive::rkmk8(1e-17).run(&double, &mut State::start(&double), 1.0, none::<Top<f64>>);
-    assert_eq!(end, Err(StepError::InvalidTolerance));
+    assert_eq!(
+        end,
+        Err(StepError::InvalidTolerance {
+            least: f64::EPSILON
+        })
+    );
     let single = single_precision(&double.0);
     let end = Adaptive::rkmk8(1e-9).run(&single, &mut State::start(&single), 1.0, |_, _, _| []);
-    assert_eq!(end, Err(StepError::InvalidTolerance));
+    let least = f64::from(f32::EPSILON);
+    assert_eq!(end, Err(StepError::InvalidTolerance { least }));
 }
 
 fn single_precision(double: &Body<f64>) -> Top<f32> {

@@ -230,3 +230,68 @@ fn principal_axes_of_a_full_inertia() {
         }
     }
 }
+
+/// R(1) for moments 1e-9, 1, 1.000000000999 and ω = (0.1, 1, 0), R(0) = I: a Taylor series with 40 digits.
+const UNEQUAL: [f64; 9] = [
+    0.5403023058715479,
+    0.09861085763282458,
+    0.8356729725357923,
+    9.998096672964038e-11,
+    0.9931096705876494,
+    -0.11718866065149129,
+    -0.8414709848057081,
+    0.06331730365555048,
+    0.5365794449919812,
+];
+
+#[test]
+fn very_unequal_moments_keep_all_digits() -> Result<(), StepError> {
+    let top = spin([1e-9, 1.0, 1.000000000999], [0.1, 1.0, 0.0]);
+    let start = State::start(&top);
+    let end = free::at(&top, &start, 1.0)?;
+    let error = distance(end.x, so3::product(start.x, UNEQUAL));
+    assert!(error < 1e-14, "{error:e}");
+    Ok(())
+}
+
+/// Long times against many short ones, which are summed by Gauss points: momenta without a component
+/// along one axis start where the angle is folded. At full size with `HAMEL_ATTACK=full`.
+#[test]
+fn long_times_are_many_short_ones_wherever_the_motion_starts() -> Result<(), StepError> {
+    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
+    let mut state = 3u64;
+    let mut number = || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 33) as f64 / (1u64 << 31) as f64
+    };
+    for round in 0..if full { 20_000 } else { 600 } {
+        let spread = if round % 2 == 0 { 1.0 } else { 4.0 };
+        let moments: [f64; 3] = std::array::from_fn(|_| 10f64.powf(spread * (number() - 0.5)));
+        let mut w0: [f64; 3] = std::array::from_fn(|_| 2.0 * number() - 1.0);
+        w0[round % 3] = 0.0;
+        let rate = so3::dot(w0, w0).sqrt();
+        let top = spin(moments, w0);
+        // ω may grow by the ratio of the moments.
+        let (least, most) = moments
+            .iter()
+            .fold((f64::MAX, 0.0f64), |(a, b), &m| (a.min(m), b.max(m)));
+        let fastest = rate * most / least;
+        let t = 10.0 * number() / rate;
+        let start = State::start(&top);
+        let end = free::at(&top, &start, t)?;
+        let steps = (4.0 * fastest * t).ceil().max(1.0);
+        let mut by_steps = start.clone();
+        for step in 1..=steps as u64 {
+            by_steps = free::at(&top, &by_steps, t * (step as f64 / steps))?;
+        }
+        let error = distance(end.x, by_steps.x);
+        let allowed = 1e-14 * (10.0 + steps) * (1.0 + fastest * t);
+        assert!(
+            error <= allowed.min(1e-3),
+            "{moments:?} {w0:?} {t}: {error:e} of {allowed:e}"
+        );
+    }
+    Ok(())
+}

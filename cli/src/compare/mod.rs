@@ -137,7 +137,7 @@ fn compare(
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
     let generated = Source::open(file, &arguments.robot)?.derive_all()?;
-    let mut state = State::read(&generated.active, arguments.at.as_deref())?;
+    let mut state = State::read(&generated, arguments.at.as_deref())?;
     let fields = solution
         .map(|solution| Fields::of(solution, &generated.program))
         .transpose()?;

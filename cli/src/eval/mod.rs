@@ -1,8 +1,9 @@
 //! `hamel eval`: numbers of everything at a state.
 
+mod geometry;
 mod sample;
 
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, print, warn};
 use crate::interpreted::{Interpreted, constant_singular, function};
 use crate::json::Json;
 use crate::names;
@@ -11,21 +12,25 @@ use crate::source::Source;
 use crate::state::State;
 use crate::state::joints::{joints, rows};
 use crate::state::sample::is_sample;
+use crate::state::strict;
 use clap::Args;
+use geometry::Geometry;
 use hamel::System;
-use hamel_codegen::algebra::graph::Edge;
-use hamel_codegen::algebra::numeric::evaluate;
-use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 use std::path::PathBuf;
+
+/// γ and Γ have n³ entries each: of systems with more velocities they are printed where --tables asks.
+const MOST_SHOWN: usize = 64;
 
 /// Prints the numbers of A, γ, M, Γ, forces, rates and energies at a state, as JSON.
 ///
 /// The state is the description's start with default parameters and zero input, changed by what
 /// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…}, "input": {…}}.
 /// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
-/// Velocities of joints are known by the joint's name, too.
+/// Velocities of joints are known by the joint's name, too. What the file does not give is completed as
+/// the start of a description is: loops are closed and constraints kept by the coordinates and velocities
+/// that are left out, and a state that contradicts them is refused.
 /// Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk.
 ///
 /// STATE.json may also be about joints: {"configuration": {"elbow": 0.3, "root_joint": {"position": […],
@@ -46,6 +51,9 @@ pub struct Arguments {
     /// State, `-` for standard input.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
+    /// Print γ and Γ of systems with more than 64 velocities, too.
+    #[arg(long)]
+    tables: bool,
     #[command(flatten)]
     robot: RobotOptions,
 }
@@ -56,14 +64,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let at = arguments.at.as_deref().map(Source::read).transpose()?;
     // What is no JSON is refused below, with its place.
     if let Some(at) = &at
-        && let Ok(json) = serde_json::from_str(&at.text)
+        && let Ok(json) = strict::parse(&at.text)
         && is_sample(&json)
     {
         return sample::run(&source, &json, &at.path);
     }
     let generated = source.derive_all()?;
     let state = match &at {
-        Some(at) => State::parse(&generated.active, &at.text)
+        Some(at) => State::parse(&generated, &at.text)
             .map_err(|errors| Failure::usages(&at.path, &errors))?,
         None => State::start(&generated.active),
     };
@@ -87,7 +95,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let rows = rows(&generated.active, &known);
         members.push(("joints", Json::texts(&rows)));
     }
-    members.extend(geometry(&generated, &state)?);
+    let shown = arguments.tables || generated.model.n() <= MOST_SHOWN;
+    members.extend(Geometry::new(&generated, &state, shown)?.members());
+    if !shown {
+        warn(&format!(
+            "gamma and Gamma, 2 × {}³ numbers, are left out: --tables prints them\n",
+            generated.model.n()
+        ));
+    }
     let mut missing: Vec<String> = Vec::new();
     members.extend(motion(&generated, &state, &mut missing)?);
     let infinite = members.iter().filter(|(_, value)| !finite(value));
@@ -105,35 +120,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             missing.join("; ")
         )))
     }
-}
-
-/// A, γ, M, Γ.
-fn geometry(generated: &Generated, state: &State) -> Result<Vec<(&'static str, Json)>, Failure> {
-    let Some(geometry) = Geometry::new(&generated.model) else {
-        return Err(Failure::failed(
-            "the rates of this description leave A without a left inverse",
-        ));
-    };
-    let model = &geometry.model;
-    let numbers = model.numbers(
-        &state.params,
-        &state.x,
-        // The tables depend on x alone.
-        &vec![0.0; model.n()],
-        &state.u,
-        &vec![0.0; model.n()],
-    );
-    let row = |edges: &[Edge]| evaluate(&model.graph, edges, &numbers);
-    let matrix =
-        |rows: &[Vec<Edge>]| Json::matrix(&rows.iter().map(|edges| row(edges)).collect::<Vec<_>>());
-    let cube =
-        |table: &[Vec<Vec<Edge>>]| Json::List(table.iter().map(|rows| matrix(rows)).collect());
-    Ok(vec![
-        ("A", matrix(&model.a)),
-        ("gamma", cube(&geometry.gamma)),
-        ("M", matrix(&geometry.mass)),
-        ("Gamma", cube(&geometry.connection)),
-    ])
 }
 
 /// Forces, rates, energies, outputs.

@@ -33,7 +33,6 @@ const REACHED: f64 = 1e-9;
 /// the loads of the description act, with zero input.
 pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
     let generated = source.derive_only(&FUNCTIONS)?;
-    let model = &generated.active;
     let joints: &[(String, String)] = match &source.robot {
         Some(robot) => &robot.imported.joints,
         None => &[],
@@ -47,7 +46,7 @@ pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
     let mut errors = Vec::new();
     let mut samples = Vec::new();
     for (index, one) in list.iter().enumerate() {
-        match Sample::parse(one, order, model, joints) {
+        match Sample::parse(one, order, &generated, joints) {
             Ok(sample) => samples.push(sample),
             Err(found) if several => {
                 errors.extend(

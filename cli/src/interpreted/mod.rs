@@ -27,6 +27,7 @@ pub struct Interpreted {
     settle: Option<Interpreter>,
     constraint: Interpreter,
     momentum: Interpreter,
+    force: Interpreter,
     kinetic: Interpreter,
     potential: Interpreter,
     outputs: Vec<Output>,
@@ -80,6 +81,7 @@ impl Interpreted {
             settle: function("settle").ok(),
             constraint: function("constraint")?,
             momentum: function("momentum")?,
+            force: function("generalized_force")?,
             kinetic: function("kinetic_energy")?,
             potential: function("potential_energy")?,
             outputs: outputs.collect::<Result<_, Failure>>()?,
@@ -107,6 +109,12 @@ impl Interpreted {
     /// p = M ξ.
     pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Vec<f64> {
         value(&self.momentum, x, xi, &[])
+    }
+
+    /// The power of the loads, f ξ.
+    pub fn power(&self, x: &[f64], xi: &[f64]) -> f64 {
+        let force = value(&self.force, x, xi, &self.inputs);
+        force.iter().zip(xi).map(|(f, v)| f * v).sum()
     }
 
     /// φ(x).

@@ -57,18 +57,15 @@ struct Row {
 /// Counts and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
-    let mut generated = source.derive()?;
     if arguments.advise {
-        return advice::run(
-            &source,
-            &generated.model,
-            matches!(arguments.format, Format::Json),
-        );
+        let model = source.derive()?.model;
+        return advice::run(&source, &model, matches!(arguments.format, Format::Json));
     }
     // What is generated on demand alone is counted as well, unless functions were chosen.
-    if generated.model.generate.is_empty() {
-        generated = source.derive_linearized()?;
-    }
+    let generated = match source.model()?.generate.is_empty() {
+        true => source.derive_linearized()?,
+        false => source.derive()?,
+    };
     let program = &generated.program;
     let schedule = Schedule::of(program);
     let rows = rows(program, &schedule);

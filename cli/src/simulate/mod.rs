@@ -1,5 +1,6 @@
 //! `hamel simulate`: a run in time, interpreted.
 
+mod balance;
 mod picture;
 mod record;
 mod rotor;
@@ -100,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let generated = Source::open(&arguments.file, &arguments.robot)?.derive_all()?;
-    let state = State::read(&generated.active, arguments.at.as_deref())?;
+    let state = State::read(&generated, arguments.at.as_deref())?;
     if constant_singular(&generated.program, &state.params) {
         let message = "the mass matrix is not positive definite with these parameters";
         return Err(Failure::failed(message));

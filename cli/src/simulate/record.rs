@@ -1,21 +1,26 @@
 //! The run itself, and what is kept of it.
 
+use super::balance::Balance;
 use crate::failure::Failure;
 use crate::interpreted::{Interpreted, Output};
 use crate::method::{Chosen, Stepper};
 use crate::names;
 use crate::number::short;
-use hamel::adaptive::{Adaptive, Report};
+use crate::progress;
+use hamel::adaptive::{Adaptive, Event, Report};
 use hamel::methods::General;
 use hamel::{Monitor, State, StepError, System, integrate};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
+use std::cell::Cell;
 
 /// Samples where nothing else is asked for.
 const SAMPLES: u64 = 1000;
 /// Points of a plot.
 const POINTS: u64 = 4000;
+/// Samples that are kept at most, where their number is not asked for.
+const MOST: usize = 20_000;
 /// Shorter runs show no progress.
 const LONG: u64 = 20_000;
 /// Steps between two movements of the progress bar.
@@ -31,6 +36,8 @@ pub struct Plan {
     pub steps: u64,
     /// A sample every so many steps.
     pub every: u64,
+    /// Whether that was left to the plan, which may then take fewer.
+    pub chosen: bool,
     /// The error that a step may make, where steps are chosen by it.
     pub tolerance: Option<f64>,
 }
@@ -57,6 +64,7 @@ impl Plan {
             step,
             steps,
             every: every.unwrap_or(default),
+            chosen: every.is_none(),
             tolerance,
         }
     }
@@ -124,24 +132,46 @@ impl<'a> Run<'a> {
     ) -> Result<Self, Failure> {
         let mut state = State::start(system);
         let mut monitor = Monitor::new(system, &state);
+        let balance = Cell::new(Balance::new(system, &state));
         let (mut samples, mut track) = (Vec::new(), Vec::new());
-        let stride = match plan.tolerance {
+        let mut every = plan.every;
+        let mut stride = match plan.tolerance {
             Some(_) => 1,
             None => (plan.steps / POINTS).max(1),
         };
-        let bar = progress(plan.steps);
+        // How many steps a tolerance takes is not known: the bar comes when they are many.
+        let long = plan.tolerance.is_none() && plan.steps >= LONG;
+        let mut bar = match long {
+            true => progress::bar(plan.steps),
+            false => ProgressBar::hidden(),
+        };
         let mut steps = 0;
         let observe = |state: &State<Interpreted>, place: Place| {
             if place == Place::Within {
                 track.push(Sample::of(system, state));
+                if thin(&mut track) {
+                    stride *= 2;
+                }
                 return;
             }
             monitor.observe(system, state);
-            if steps % plan.every == 0 {
+            if plan.tolerance.is_some() {
+                balance.set(balance.get().after(system, state));
+            }
+            if steps % every == 0 {
                 samples.push(Sample::of(system, state));
+                if plan.chosen && thin(&mut samples) {
+                    every *= 2;
+                }
             }
             if steps % stride == 0 {
                 track.push(Sample::of(system, state));
+                if thin(&mut track) {
+                    stride *= 2;
+                }
+            }
+            if steps == LONG && !long {
+                bar = progress::bar(plan.steps);
             }
             if steps % TICK == 0 {
                 bar.set_position(match plan.tolerance {
@@ -151,13 +181,32 @@ impl<'a> Run<'a> {
             }
             steps += 1;
         };
-        let outcome = advance(system, &plan, &mut state, observe);
+        let outcome = advance(system, &plan, &mut state, &balance, observe);
         bar.finish_and_clear();
         let failure = match outcome {
-            Ok(()) => None,
-            Err(error @ (StepError::InvalidStep { .. } | StepError::Shape { .. })) => {
+            Ok(()) => plan.tolerance.and_then(|tolerance| {
+                let change = balance.get().after(system, &state).lost(tolerance)?;
+                Some(format!(
+                    "the run has lost the motion at t = {}: its energy has changed by {}, for which no load accounts; there may be a singularity on the way: try a smaller --tol than {}",
+                    short(state.t),
+                    short(change),
+                    short(tolerance)
+                ))
+            }),
+            Err(
+                error @ (StepError::InvalidStep { .. }
+                | StepError::Shape { .. }
+                | StepError::InvalidTolerance { .. }),
+            ) => {
                 return Err(Failure::usage(error.to_string()));
             }
+            Err(StepError::Stiff { time, step, rate }) => Some(format!(
+                "the run ends at t = {}: the motion is stiff, a rate of {} per unit of time keeps explicit steps at {}, {} of them ahead; try `--method backward-euler` with a --step of your choice, or a stiff solver through `hamel::adapter`",
+                short(time),
+                short(rate),
+                short(step),
+                short(((plan.until - time) / step).ceil())
+            )),
             Err(StepError::Singular { time, cause }) => Some(format!(
                 "the run ends at t = {}: {}",
                 short(time),
@@ -201,6 +250,19 @@ impl<'a> Run<'a> {
     }
 }
 
+/// Drops every second sample where there are more than a run shows; whether it did.
+fn thin(samples: &mut Vec<Sample>) -> bool {
+    if samples.len() < MOST {
+        return false;
+    }
+    let mut place = 0;
+    samples.retain(|_| {
+        place += 1;
+        place % 2 == 1
+    });
+    true
+}
+
 /// Where an observed state is.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
@@ -233,6 +295,7 @@ fn advance(
     system: &Interpreted,
     plan: &Plan,
     state: &mut State<Interpreted>,
+    balance: &Cell<Balance>,
     mut observe: impl FnMut(&State<Interpreted>, Place),
 ) -> Result<(), StepError> {
     let inputs = |_, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
@@ -247,33 +310,27 @@ fn advance(
     observe(state, Place::End);
     let until = plan.until;
     let spacing = until / POINTS as f64;
+    // A run that has lost the motion ends there.
+    let followed = |state: &State<Interpreted>| {
+        let here = balance.get().after(system, state);
+        if here.lost(tolerance).is_some() {
+            -1.0
+        } else {
+            1.0
+        }
+    };
+    let events = [Event::new(&followed).stopping()];
     let outcome = match general {
         General::Rkmk8 => {
-            Adaptive::rkmk8(tolerance).integrate(system, state, until, inputs, &[], |report| {
+            Adaptive::rkmk8(tolerance).integrate(system, state, until, inputs, &events, |report| {
                 show(report, spacing, &mut observe);
             })
         }
-        _ => Adaptive::rkmk54(tolerance).integrate(system, state, until, inputs, &[], |report| {
-            show(report, spacing, &mut observe);
-        }),
+        _ => {
+            Adaptive::rkmk54(tolerance).integrate(system, state, until, inputs, &events, |report| {
+                show(report, spacing, &mut observe);
+            })
+        }
     };
     outcome.map(|_| ())
-}
-
-/// A bar on standard error, where that is a terminal and the run is long.
-fn progress(steps: u64) -> ProgressBar {
-    let colour = anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never;
-    if steps < LONG {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(steps);
-    let template = if colour {
-        "{bar:40.cyan} {percent}%  {eta} left"
-    } else {
-        "{bar:40} {percent}%  {eta} left"
-    };
-    match ProgressStyle::with_template(template) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

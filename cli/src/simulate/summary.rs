@@ -131,11 +131,12 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
             .map(String::from)
             .to_vec(),
     ];
-    let relative = format!(
-        "{} relative",
+    let change = format!(
+        "{}, {} relative",
+        error(run.monitor.energy_deviation()),
         error(run.monitor.relative_energy_deviation())
     );
-    rows.push(row("energy", first.energy, last.energy, relative));
+    rows.push(row("energy", first.energy, last.energy, change));
     for (index, name) in run.velocity_names.iter().enumerate() {
         let (size, change) = spread(run, |sample| sample.momentum[index]);
         if size > 0.0 && change <= KEPT * size {

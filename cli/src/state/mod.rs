@@ -1,17 +1,22 @@
 //! The numbers of a state: the description's own, changed by what a JSON file says.
 //!
 //! `{"param": {…}, "coord": {…}, "velocity": {…}, "input": {…}}`, all optional. Every mistake is
-//! reported with its path in the file, all at once.
+//! reported with its path in the file, all at once. What a file does not give is completed as the
+//! start of a description is, so that loops are closed and constraints on velocities are kept; what it
+//! gives is kept, and refused where it contradicts them.
 
+mod complete;
 pub mod joints;
 mod read;
 pub mod sample;
+pub mod strict;
 #[cfg(test)]
 mod tests;
 
 use crate::failure::Failure;
 use crate::source::Source;
 use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::model::layout::Block;
 use read::Reader;
@@ -45,43 +50,29 @@ impl State {
     }
 
     /// The start, changed by a file where there is one.
-    pub fn read(model: &Model, at: Option<&Path>) -> Result<Self, Failure> {
+    pub fn read(generated: &Generated, at: Option<&Path>) -> Result<Self, Failure> {
         let Some(path) = at else {
-            return Ok(State::start(model));
+            return Ok(State::start(&generated.active));
         };
         let source = Source::read(path)?;
-        State::parse(model, &source.text).map_err(|errors| Failure::usages(&source.path, &errors))
+        State::parse(generated, &source.text)
+            .map_err(|errors| Failure::usages(&source.path, &errors))
     }
 
     /// The start, changed by a JSON text.
-    pub fn parse(model: &Model, text: &str) -> Result<Self, Vec<String>> {
-        let json =
-            serde_json::from_str(text).map_err(|error| vec![format!("not valid JSON: {error}")])?;
+    pub fn parse(generated: &Generated, text: &str) -> Result<Self, Vec<String>> {
+        let json = strict::parse(text).map_err(|error| vec![error])?;
+        let model = &generated.active;
         let mut state = State::start(model);
-        let mut reader = Reader::default();
+        let mut reader = Reader::new(model);
         reader.state(&json, model, &mut state);
-        let mut errors = reader.errors;
-        if errors.is_empty() {
-            errors = state.violations(model);
-        }
-        if errors.is_empty() {
-            Ok(state)
-        } else {
-            Err(errors)
-        }
+        reader.finish(generated, &mut state)?;
+        Ok(state)
     }
 
     /// Where x leaves the configuration manifold.
-    pub(super) fn violations(&self, model: &Model) -> Vec<String> {
-        let numbers = model.numbers(
-            &self.params,
-            &self.x,
-            &self.xi,
-            &self.u,
-            &vec![0.0; model.n()],
-        );
-        let rows: Vec<_> = model.phi.iter().map(|(edge, _)| *edge).collect();
-        let residuals = evaluate(&model.points.free, &rows, &numbers);
+    fn violations(&self, model: &Model) -> Vec<String> {
+        let residuals = self.residuals(model);
         let mut errors: Vec<String> = Vec::new();
         for ((_, text), residual) in model.phi.iter().zip(residuals) {
             // A NaN is off, too.
@@ -106,6 +97,14 @@ impl State {
             offset += block.len();
         }
         errors
+    }
+
+    /// φ(x).
+    fn residuals(&self, model: &Model) -> Vec<f64> {
+        let (xi, u) = (vec![0.0; model.n()], vec![0.0; model.u.len()]);
+        let numbers = model.numbers(&self.params, &self.x, &xi, &u, &xi);
+        let rows: Vec<_> = model.phi.iter().map(|(edge, _)| *edge).collect();
+        evaluate(&model.points.free, &rows, &numbers)
     }
 
     /// The coordinates that a constraint mentions, as paths.

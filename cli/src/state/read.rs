@@ -1,6 +1,7 @@
 //! JSON values to numbers, with the path of every mistake.
 
 use super::State;
+use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::suggest::closest;
@@ -9,14 +10,47 @@ use serde_json::{Map, Value};
 /// Entries (i, j) and (j, i) of a symmetric matrix may differ by rounding alone.
 const SYMMETRY: f64 = 1e-12;
 
-/// The mistakes found so far.
-#[derive(Debug, Default)]
+/// The mistakes found so far, and what was given.
+#[derive(Debug)]
 pub struct Reader {
     /// One line each, its path first.
-    pub errors: Vec<String>,
+    errors: Vec<String>,
+    /// Entries of x that were given.
+    given_x: Vec<bool>,
+    /// Entries of ξ that were given.
+    given_xi: Vec<bool>,
 }
 
 impl Reader {
+    /// Nothing was given yet.
+    pub fn new(model: &Model) -> Self {
+        Reader {
+            errors: Vec::new(),
+            given_x: vec![false; model.nu()],
+            given_xi: vec![false; model.n()],
+        }
+    }
+
+    /// Completes the state that was read, or hands out all mistakes.
+    pub fn finish(self, generated: &Generated, state: &mut State) -> Result<(), Vec<String>> {
+        match self.errors.is_empty() {
+            true => state.complete(generated, &self.given_x, &self.given_xi),
+            false => Err(self.errors),
+        }
+    }
+
+    /// Entries of x from a place on.
+    pub(super) fn put_x(&mut self, x: &mut [f64], offset: usize, values: &[f64]) {
+        put(x, offset, values);
+        self.given_x[offset..offset + values.len()].fill(true);
+    }
+
+    /// Entries of ξ from a place on.
+    pub(super) fn put_xi(&mut self, xi: &mut [f64], offset: usize, values: &[f64]) {
+        put(xi, offset, values);
+        self.given_xi[offset..offset + values.len()].fill(true);
+    }
+
     /// A whole file.
     pub fn state(&mut self, json: &Value, model: &Model, state: &mut State) {
         let Value::Object(parts) = json else {
@@ -50,15 +84,21 @@ impl Reader {
                     places => self.vector(&at, value, places.len()),
                 };
                 for (&place, value) in places.iter().zip(values.unwrap_or_default()) {
-                    numbers[place] = value;
+                    self.put_xi(numbers, place, &[value]);
                 }
             }
             for group in groups {
+                let at = format!("{part}.{}", group.name);
                 if let Some(value) = given.get(&group.name)
-                    && let Some(values) =
-                        self.shape(&format!("{part}.{}", group.name), value, group.shape)
+                    && let Some(values) = self.shape(&at, value, group.shape)
                 {
-                    numbers[group.offset..group.offset + group.len].copy_from_slice(&values);
+                    if part != "velocity" {
+                        put(numbers, group.offset, &values);
+                    } else if self.given_xi[group.offset] {
+                        self.error(&at, "given twice, by the name of its joint, too".into());
+                    } else {
+                        self.put_xi(numbers, group.offset, &values);
+                    }
                 }
             }
         }
@@ -80,7 +120,7 @@ impl Reader {
                 value,
                 coordinate.kind,
             ) {
-                state.x[offset + part..offset + part + values.len()].copy_from_slice(&values);
+                self.put_x(&mut state.x, offset + part, &values);
             }
         }
     }
@@ -257,6 +297,13 @@ impl Reader {
         } else {
             format!("{at}: {message}")
         });
+    }
+}
+
+/// Values from a place on.
+pub(super) fn put(target: &mut [f64], offset: usize, values: &[f64]) {
+    for (place, value) in target.iter_mut().skip(offset).zip(values) {
+        *place = *value;
     }
 }
 

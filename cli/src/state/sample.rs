@@ -2,8 +2,8 @@
 
 use super::State;
 use super::joints::{Joint, Place, joints};
-use super::read::{Reader, kind};
-use hamel_codegen::model::Model;
+use super::read::{Reader, kind, put};
+use hamel_codegen::generate::Generated;
 use serde_json::{Map, Value};
 
 /// What a sample can have, and what is read of it.
@@ -47,28 +47,22 @@ impl Sample {
     pub fn parse(
         json: &Value,
         order: Option<&Value>,
-        model: &Model,
+        generated: &Generated,
         names: &[(String, String)],
     ) -> Result<Self, Vec<String>> {
+        let model = &generated.active;
         let mut sample = Sample {
             state: State::start(model),
             joints: joints(model, names),
             force: None,
         };
-        let mut reader = Reader::default();
+        let mut reader = Reader::new(model);
         match json {
             Value::Object(parts) => reader.sample(parts, order, &mut sample),
             other => reader.error("", format!("an object expected, {} found", kind(other))),
         }
-        let mut errors = reader.errors;
-        if errors.is_empty() {
-            errors = sample.state.violations(model);
-        }
-        if errors.is_empty() {
-            Ok(sample)
-        } else {
-            Err(errors)
-        }
+        reader.finish(generated, &mut sample.state)?;
+        Ok(sample)
     }
 }
 
@@ -94,7 +88,10 @@ impl Reader {
         if let Some(given) = self.part(parts, "velocity", &names) {
             for joint in &joints {
                 if let Some(value) = given.get(&joint.name) {
-                    self.motion(&format!("velocity.{}", joint.name), value, joint, xi);
+                    let at = format!("velocity.{}", joint.name);
+                    for (offset, values) in self.motion(&at, value, joint) {
+                        self.put_xi(xi, offset, &values);
+                    }
                 }
             }
         }
@@ -109,7 +106,10 @@ impl Reader {
                 if let Some(given) = self.part(parts, "force", &names) {
                     for joint in &joints {
                         if let Some(value) = given.get(&joint.name) {
-                            self.motion(&format!("force.{}", joint.name), value, joint, &mut force);
+                            let at = format!("force.{}", joint.name);
+                            for (offset, values) in self.motion(&at, value, joint) {
+                                put(&mut force, offset, &values);
+                            }
                         }
                     }
                 }
@@ -166,29 +166,24 @@ impl Reader {
         match joint.place {
             Place::Plain(offset) if count == 1 => {
                 let number = self.number(at, value);
-                put(x, offset, &number.into_iter().collect::<Vec<_>>());
+                self.put_x(x, offset, &number.into_iter().collect::<Vec<_>>());
             }
             Place::Plain(offset) => {
-                put(
-                    x,
-                    offset,
-                    &self.vector(at, value, count).unwrap_or_default(),
-                );
+                let read = self.vector(at, value, count).unwrap_or_default();
+                self.put_x(x, offset, &read);
             }
             Place::Circle(offset) => {
                 if let Some(angle) = self.number(at, value) {
-                    put(x, offset, &[angle.cos(), angle.sin()]);
+                    self.put_x(x, offset, &[angle.cos(), angle.sin()]);
                 }
             }
             Place::Quaternion(offset) => {
-                put(x, offset, &self.vector(at, value, 4).unwrap_or_default());
+                let read = self.vector(at, value, 4).unwrap_or_default();
+                self.put_x(x, offset, &read);
             }
             Place::Rotation(offset) => {
-                put(
-                    x,
-                    offset,
-                    &self.matrix(at, value, 3).unwrap_or_default().concat(),
-                );
+                let read = self.matrix(at, value, 3).unwrap_or_default();
+                self.put_x(x, offset, &read.concat());
             }
             Place::Free(position, rotation) => {
                 let Some(given) = self.members(at, value, &["position", "rotation"]) else {
@@ -196,39 +191,38 @@ impl Reader {
                 };
                 if let Some(value) = given.get("position") {
                     let read = self.vector(&format!("{at}.position"), value, 3);
-                    put(x, position, &read.unwrap_or_default());
+                    self.put_x(x, position, &read.unwrap_or_default());
                 }
                 if let Some(value) = given.get("rotation") {
                     let read = self.matrix(&format!("{at}.rotation"), value, 3);
-                    put(x, rotation, &read.unwrap_or_default().concat());
+                    self.put_x(x, rotation, &read.unwrap_or_default().concat());
                 }
             }
         }
     }
 
-    /// Rates, or forces: a number, a list, or `linear` and `angular`.
-    fn motion(&mut self, at: &str, value: &Value, joint: &Joint, xi: &mut [f64]) {
+    /// Rates, or forces: a number, a list, or `linear` and `angular`; with their places in ξ.
+    fn motion(&mut self, at: &str, value: &Value, joint: &Joint) -> Vec<(usize, Vec<f64>)> {
         let (first, count) = joint.velocities;
+        let mut found = Vec::new();
         if let (Place::Free(..), Value::Object(_)) = (joint.place, value) {
             let Some(given) = self.members(at, value, &["linear", "angular"]) else {
-                return;
+                return found;
             };
             for (part, offset) in [("linear", 0), ("angular", 3)] {
                 if let Some(value) = given.get(part) {
                     let read = self.vector(&format!("{at}.{part}"), value, 3);
-                    put(xi, first + offset, &read.unwrap_or_default());
+                    found.extend(read.map(|read| (first + offset, read)));
                 }
             }
         } else if count == 1 {
             let number = self.number(at, value);
-            put(xi, first, &number.into_iter().collect::<Vec<_>>());
+            found.extend(number.map(|number| (first, vec![number])));
         } else {
-            put(
-                xi,
-                first,
-                &self.vector(at, value, count).unwrap_or_default(),
-            );
+            let read = self.vector(at, value, count);
+            found.extend(read.map(|read| (first, read)));
         }
+        found
     }
 
     fn members<'a>(
@@ -248,12 +242,5 @@ impl Reader {
         };
         self.known(at, given, names);
         Some(given)
-    }
-}
-
-/// Values from a place on.
-fn put(target: &mut [f64], offset: usize, values: &[f64]) {
-    for (place, value) in target.iter_mut().skip(offset).zip(values) {
-        *place = *value;
     }
 }

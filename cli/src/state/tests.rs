@@ -1,8 +1,7 @@
 //! States as users write them: what is read, and what is refused.
 
 use super::State;
-use hamel_codegen::generate::from_text;
-use hamel_codegen::model::Model;
+use hamel_codegen::generate::{Generated, from_text};
 
 const SYSTEM: &str = "system Mixed {
     param m = 2, J: sym3 = diag(1, 1, 1);
@@ -16,8 +15,8 @@ const SYSTEM: &str = "system Mixed {
     body on hull { mass m; inertia J about com; }
 }";
 
-fn model() -> Model {
-    from_text(SYSTEM).expect("a sound description").model
+fn model() -> Generated {
+    from_text(SYSTEM).expect("a sound description")
 }
 
 #[test]

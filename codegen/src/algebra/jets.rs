@@ -28,10 +28,27 @@ pub struct Jet {
     pub value: Fp,
     /// f₁.
     pub along: Fp,
-    /// f₂ of every column.
+    /// f₂ of every column; empty where nothing of it moves.
     pub across: Vec<Fp>,
-    /// f₁₂ of every column.
+    /// f₁₂ of every column; empty where nothing of it moves.
     pub mixed: Vec<Fp>,
+}
+
+impl Jet {
+    /// f₂ of a column.
+    pub fn across(&self, column: usize) -> Fp {
+        self.across.get(column).copied().unwrap_or(Fp::ZERO)
+    }
+
+    /// f₁₂ of a column.
+    pub fn mixed(&self, column: usize) -> Fp {
+        self.mixed.get(column).copied().unwrap_or(Fp::ZERO)
+    }
+
+    /// Whether nothing of it moves.
+    pub fn is_still(&self) -> bool {
+        self.across.is_empty()
+    }
 }
 
 /// Derivatives of all steps so far; those that do not move have no columns.
@@ -76,6 +93,7 @@ impl Tape {
             all.mixed.push(mixed);
         }
         let columns = |table: &[Vec<Fp>], root: Operand| -> Vec<Fp> {
+            let width = if all.moves(root) { width } else { 0 };
             (0..width).map(|k| Columns::entry(table, root, k)).collect()
         };
         (!lane.is_stuck()).then(|| {

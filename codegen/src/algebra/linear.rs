@@ -74,12 +74,18 @@ pub fn dot_mat3(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Edge {
 /// A B for matrices as rows.
 pub fn multiply(graph: &mut Graph, a: &[Vec<Edge>], b: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
     let columns = b.first().map_or(0, Vec::len);
+    let zero = graph.zero();
     a.iter()
         .map(|row| {
+            // Large frames have few entries.
+            let entries = row.iter().zip(b).filter(|(entry, _)| **entry != zero);
+            let entries: Vec<(Edge, &Vec<Edge>)> = entries.map(|(&a, b)| (a, b)).collect();
             (0..columns)
                 .map(|j| {
-                    let column: Vec<Edge> = b.iter().map(|r| r[j]).collect();
-                    graph.dot(row, &column)
+                    entries.iter().fold(zero, |sum, (a, b)| {
+                        let product = graph.mul(*a, b[j]);
+                        graph.add(sum, product)
+                    })
                 })
                 .collect()
         })

@@ -2,6 +2,7 @@
 //! two primes at points of the constraint variety, derivations tangent to that variety, and
 //! polynomials with normal forms for the small pieces that people read.
 
+pub mod bend;
 pub mod blocks;
 pub mod degree;
 pub mod derivation;
@@ -21,6 +22,7 @@ pub mod reals;
 pub mod resubstitute;
 mod roots;
 mod shadow;
+pub mod slopes;
 pub mod tangent;
 pub mod tape;
 #[cfg(test)]

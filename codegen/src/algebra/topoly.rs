@@ -30,12 +30,28 @@ fn product<F: Field>(a: &Poly<F>, b: &Poly<F>) -> Option<Poly<F>> {
 }
 
 /// Polynomials over Q of nodes; remembers what it has expanded.
-#[derive(Default)]
 pub struct Expander {
     memo: FxHashMap<NodeId, Option<Poly<BigRational>>>,
+    /// Products and sums of terms that may still be made.
+    work: usize,
+}
+
+impl Default for Expander {
+    fn default() -> Self {
+        Expander::within(usize::MAX)
+    }
 }
 
 impl Expander {
+    /// One that gives up after so many products and sums of terms: what is not expanded by then has no
+    /// polynomial.
+    pub fn within(work: usize) -> Self {
+        Expander {
+            memo: FxHashMap::default(),
+            work,
+        }
+    }
+
     /// The polynomial of an expression; `None` where it has too many terms.
     pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
         for id in graph.reachable(&[edge]) {
@@ -56,7 +72,23 @@ impl Expander {
         })
     }
 
-    fn local(&self, graph: &Graph, id: NodeId) -> Option<Poly<BigRational>> {
+    /// Takes from the work that is left; `None` where it does not suffice.
+    fn spend(&mut self, work: usize) -> Option<()> {
+        let left = self.work.checked_sub(work);
+        self.work = left.unwrap_or(0);
+        left.map(|_| ())
+    }
+
+    fn terms(&self, edge: Edge) -> Option<usize> {
+        Some(self.memo.get(&edge.node())?.as_ref()?.terms().len())
+    }
+
+    fn local(&mut self, graph: &Graph, id: NodeId) -> Option<Poly<BigRational>> {
+        match graph.node(id) {
+            Node::Add(a, b) => self.spend(self.terms(a)? + self.terms(b)?)?,
+            Node::Mul(a, b) => self.spend(self.terms(a)? * self.terms(b)?)?,
+            _ => {}
+        }
         match graph.node(id) {
             Node::Constant(index) => Some(Poly::constant(graph.constant(index).clone())),
             Node::Symbol(index) => Some(Poly::var(index)),
@@ -116,4 +148,37 @@ pub fn polynomial_at(
         memo.insert(id, polynomial);
     }
     read(&memo, edge)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Expander;
+    use crate::algebra::fp::Random;
+    use crate::algebra::graph::{Graph, LANES};
+
+    #[test]
+    fn an_expansion_ends_with_its_work() {
+        let mut random = Random::new(5);
+        let mut graph = Graph::new(1, 0);
+        let symbols: Vec<_> = (0..6)
+            .map(|i| {
+                let value = std::array::from_fn::<_, LANES, _>(|_| random.element());
+                graph.symbol(&format!("x{i}"), 2, value)
+            })
+            .collect();
+        let sum = graph.sum(&symbols);
+        let square = graph.mul(sum, sum);
+        let fourth = graph.mul(square, square);
+        let terms = |work: usize, edge| {
+            let polynomial = Expander::within(work).expand(&graph, edge);
+            polynomial.map(|polynomial| polynomial.terms().len())
+        };
+        // 20 terms added up, 36 products, and 21² more.
+        assert_eq!(terms(19, sum), None);
+        assert_eq!(terms(20, sum), Some(6));
+        assert_eq!(terms(56, square), Some(21));
+        assert_eq!(terms(56, fourth), None);
+        assert_eq!(terms(20 + 36 + 441, fourth), Some(126));
+        assert_eq!(terms(20 + 36 + 440, fourth), None);
+    }
 }

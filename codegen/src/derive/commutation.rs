@@ -18,6 +18,10 @@ pub fn gamma(model: &mut Model, calculus: &mut Calculus, y: &[Vec<Edge>]) -> Vec
                     model.graph.sub(left, right)
                 })
                 .collect();
+            // Most fields of large frames commute.
+            if commutator.iter().all(|&entry| entry == zero) {
+                continue;
+            }
             for k in 0..n {
                 let entry = model.graph.dot(&commutator, &y[k]);
                 gamma[i][j][k] = entry;

@@ -13,7 +13,7 @@ pub fn connection(
 ) -> Vec<Vec<Vec<Edge>>> {
     let n = model.n();
     let graph = &mut model.graph;
-    let half = graph.ratio(1, 2);
+    let (half, zero) = (graph.ratio(1, 2), graph.zero());
     // change[k][i][j] = ∂ₖM_ij; lowered[i][j][k] = γᵢⱼˢ M_sk
     let change: Vec<Vec<Vec<Edge>>> = (0..n)
         .map(|k| {
@@ -31,7 +31,10 @@ pub fn connection(
         .map(|plane| {
             plane
                 .iter()
-                .map(|row| (0..n).map(|k| graph.dot(row, &mass[k])).collect())
+                .map(|row| match row.iter().all(|&entry| entry == zero) {
+                    true => vec![zero; n],
+                    false => (0..n).map(|k| graph.dot(row, &mass[k])).collect(),
+                })
                 .collect()
         })
         .collect();
@@ -72,7 +75,8 @@ pub fn quadratic(
     let xi = model.xi.clone();
     let momentum: Vec<Edge> = mass.iter().map(|row| graph.dot(row, &xi)).collect();
     let half = graph.ratio(1, 2);
-    let mut twice_energy = graph.zero();
+    let zero = graph.zero();
+    let mut twice_energy = zero;
     for (p, x) in momentum.iter().zip(&xi) {
         let product = graph.mul(*p, *x);
         twice_energy = graph.add(twice_energy, product);
@@ -84,6 +88,9 @@ pub fn quadratic(
             let change = calculus.along(graph, i, energy);
             let mut sum = graph.sub(rate, change);
             for j in 0..n {
+                if gamma[i][j].iter().all(|&entry| entry == zero) {
+                    continue;
+                }
                 let row = graph.dot(&gamma[i][j], &momentum);
                 let product = graph.mul(row, xi[j]);
                 sum = graph.add(sum, product);

@@ -24,6 +24,8 @@ use crate::program::count::count;
 const MOST_EXPANDED: usize = 8;
 /// Entries with more terms are not expanded.
 const MOST_TERMS: usize = 40;
+/// Products and sums of terms after which the expansion is given up: the traced entries stand.
+const MOST_WORK: usize = 1_000_000;
 
 /// ξ̇ = F as edges of a graph that grew from the model's.
 pub struct Motion<'a> {
@@ -226,7 +228,7 @@ fn recursive(
 
 /// Every entry as a sum of monomials with coefficients of parameters alone, where all are short.
 fn expanded(model: &Model, explicit: &Linear, base: &Graph) -> Option<Linear> {
-    let mut forms = NormalForms::new(&model.points);
+    let mut forms = NormalForms::within(&model.points, MOST_WORK);
     let mut source = explicit.graph.clone();
     let mut polynomials = Vec::new();
     for &edge in explicit.rows.iter().flatten() {

@@ -27,6 +27,12 @@ pub struct NormalForms {
 impl NormalForms {
     /// The Gröbner bases of φ; constraints whose basis is too large are left out.
     pub fn new(points: &Points) -> Self {
+        NormalForms::within(points, usize::MAX)
+    }
+
+    /// The same, with so many products and sums of terms for all expansions together: what is not
+    /// expanded by then is too large.
+    pub fn within(points: &Points, work: usize) -> Self {
         let mut expander = Expander::default();
         let mut generators: Vec<Vec<Poly<BigRational>>> = Vec::new();
         let mut place = points.first as Var;
@@ -79,7 +85,7 @@ impl NormalForms {
             .filter_map(|ideal| groebner(ideal, Order::Grevlex, Limits::default()).ok())
             .collect();
         NormalForms {
-            expander: Expander::default(),
+            expander: Expander::within(work),
             angles: Angles::default(),
             bases,
             circles: BTreeMap::new(),

@@ -1,7 +1,9 @@
 //! Validation of the motion nearby, [A B], and of invariants, at a point modulo p.
 //!
-//! Slopes are taken by dual numbers from M, h, ∂V and f of the independent derivation, and M ξ̇ = F
-//! is solved in numbers: no derivative of the generator's own takes part.
+//! Slopes are taken by dual numbers, and M ξ̇ = F is solved in numbers: no derivative of the generator's
+//! own takes part. Where M, inverse dynamics and f are emitted, they have been compared with the
+//! independent derivation by then, and equal functions on X have equal slopes along it; so the slopes are
+//! those of the emitted functions. Else M, h, ∂V and f are derived once more.
 
 use super::calculus::Calculus;
 use super::invariants::quantity;
@@ -21,8 +23,24 @@ pub struct Slopes {
     invariants: Vec<(String, Vec<Edge>)>,
     model: Model,
     /// What slopes are taken of, where the motion nearby is wanted.
-    reference: Option<Reference>,
+    source: Option<Source>,
 }
+
+/// What slopes are taken of.
+enum Source {
+    /// The functions of the program.
+    Emitted,
+    /// A derivation of its own.
+    Derived(Box<Reference>),
+}
+
+/// The emitted functions that slopes of ξ̇ follow from.
+const EMITTED: [&str; 4] = [
+    "accel",
+    "mass_matrix",
+    "inverse_dynamics",
+    "generalized_force",
+];
 
 /// M, F = f − h − ∂V, A and Aξ of one point, or their slopes.
 struct Numbers {
@@ -80,14 +98,16 @@ impl Slopes {
                 invariants.push((claim.name.clone(), value.entries()));
             }
         }
+        let emitted = EMITTED.iter().all(|name| program.function(name).is_some());
+        let source = match linear {
+            false => None,
+            true if emitted => Some(Source::Emitted),
+            true => Some(Source::Derived(Box::new(Reference::new(model)?))),
+        };
         Some(Slopes {
             invariants,
             model: own,
-            reference: if linear {
-                Some(Reference::new(model)?)
-            } else {
-                None
-            },
+            source,
         })
     }
 
@@ -102,84 +122,171 @@ impl Slopes {
                 return Some(Err("an invariant".into()));
             }
         }
-        let Some(reference) = &self.reference else {
-            return Some(Ok(()));
-        };
-        let graph = &reference.model.graph;
-        let roots = Numbers::roots(reference);
-        let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut lane.clone())?);
-        let symbol = |edges: &[Edge]| -> Vec<usize> {
-            edges
-                .iter()
-                .filter_map(|edge| match graph.node(edge.node()) {
-                    Node::Symbol(index) => Some(index as usize),
-                    _ => None,
-                })
-                .collect()
-        };
-        let model = &reference.model;
-        let (x, xi, u) = (symbol(&model.x), symbol(&model.xi), symbol(&model.u));
-        // The slopes of everything along a direction in the symbols.
-        let size = graph.symbols().len();
-        let slope = |moved: &[(usize, Fp)]| -> Option<Numbers> {
-            let mut direction = vec![Fp::ZERO; size];
-            moved.iter().for_each(|&(index, by)| direction[index] = by);
-            let duals = tangent_at(graph, &roots, &mut lane.clone(), &direction)?;
-            let slopes: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
-            Some(Numbers::new(reference, &slopes))
-        };
-        let along = |column: &[Fp]| -> Vec<(usize, Fp)> {
-            x.iter().copied().zip(column.iter().copied()).collect()
-        };
-        let moving = slope(&along(&here.rate))?;
-        let n = model.n();
-        let xi_dot = solve(here.mass.clone(), here.force.clone())?;
-        // All columns at once, (h, δξ, δu) of random numbers: one wrong entry goes unnoticed with
-        // probability 1/p.
-        let columns = 2 * n + u.len();
-        let mut random = Random::new(here.rate.iter().fold(columns as u64, |seed, rate| {
-            seed.rotate_left(7) ^ rate.bits()
-        }));
-        let nearby: Vec<Fp> = (0..columns).map(|_| random.element()).collect();
-        let linear = value("linearize")?;
-        let rows: Vec<Vec<Fp>> = linear.chunks(columns.max(1)).map(<[Fp]>::to_vec).collect();
-        let found = product(&rows, &nearby);
-        let (h, rest) = nearby.split_at(n);
-        let mut moved = along(&product(&here.a, h));
-        moved.extend(xi.iter().chain(&u).copied().zip(rest.iter().copied()));
-        let changed = slope(&moved)?;
-        // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
-        let turned = product(&moving.a, h);
-        let left: Vec<Fp> = changed
-            .rate
-            .iter()
-            .zip(&turned)
-            .map(|(&a, &b)| a - b)
-            .collect();
-        if product(&here.a, &found[..n]) != left {
-            return Some(Err("ḣ of the motion nearby".into()));
+        match &self.source {
+            None => Some(Ok(())),
+            Some(Source::Emitted) => self.emitted_at(program, lane),
+            Some(Source::Derived(reference)) => derived_at(reference, program, lane),
         }
-        // M δξ̇ = δF − δM ξ̇.
-        let held = product(&changed.mass, &xi_dot);
-        let right: Vec<Fp> = changed
-            .force
-            .iter()
-            .zip(&held)
-            .map(|(&a, &b)| a - b)
+    }
+
+    /// By the slopes of the emitted M, inverse dynamics and f.
+    fn emitted_at(&self, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
+        let (model, graph) = (&self.model, &program.graph);
+        let (n, nu) = (model.n(), model.nu());
+        let outputs = |name: &str| Some(program.function(name)?.outputs.as_slice());
+        let value = |name: &str| evaluate_at(graph, outputs(name)?, &mut lane.clone());
+        let xi_dot = value("accel")?;
+        let mass = value("mass_matrix")?;
+        let mass: Vec<Vec<Fp>> = mass.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
+        let roots: Vec<Edge> = model
+            .a
+            .concat()
+            .into_iter()
+            .chain(model.rate.clone())
             .collect();
-        if product(&here.mass, &found[n..]) != right {
-            return Some(Err("δξ̇ of the motion nearby".into()));
+        let here = evaluate_at(&model.graph, &roots, &mut lane.clone())?;
+        let nearby = Nearby::new(model, &here[nu * n..]);
+        let moved = nearby.moved(model, &here[..nu * n]);
+        let kinematics = |moved: &[Fp]| -> Option<Vec<Fp>> {
+            let duals = tangent_at(&model.graph, &roots, &mut lane.clone(), moved)?;
+            Some(duals.into_iter().map(|dual| dual.1).collect())
+        };
+        let changed = kinematics(&moved)?;
+        let moving = kinematics(&nearby.moving)?;
+        let linear = value("linearize")?;
+        let found = nearby.found(&linear);
+        let matrix =
+            |flat: &[Fp]| -> Vec<Vec<Fp>> { flat.chunks(n.max(1)).map(<[Fp]>::to_vec).collect() };
+        let left = difference(
+            &changed[nu * n..],
+            &product(&matrix(&moving[..nu * n]), &nearby.columns[..n]),
+        );
+        if product(&matrix(&here[..nu * n]), &found[..n]) != left {
+            return Some(Err(KINEMATIC.into()));
+        }
+        // M δξ̇ = δ(f − F(x, ξ, ξ̇)), ξ̇ held.
+        let mut held = lane.clone();
+        for (place, value) in symbols(model, &model.xi_dot).into_iter().zip(xi_dot) {
+            held.set_symbol(place, value);
+        }
+        let slopes = |name: &str| -> Option<Vec<Fp>> {
+            let duals = tangent_at(graph, outputs(name)?, &mut held.clone(), &moved)?;
+            Some(duals.into_iter().map(|dual| dual.1).collect())
+        };
+        let right = difference(&slopes("generalized_force")?, &slopes("inverse_dynamics")?);
+        if product(&mass, &found[n..]) != right {
+            return Some(Err(DYNAMIC.into()));
         }
         Some(Ok(()))
     }
 }
 
+/// What is broken where a part of the motion nearby is wrong.
+const KINEMATIC: &str = "ḣ of the motion nearby";
+const DYNAMIC: &str = "δξ̇ of the motion nearby";
+
+/// All columns at once, (h, δξ, δu) of random numbers: one wrong entry goes unnoticed with probability
+/// 1/p.
+struct Nearby {
+    columns: Vec<Fp>,
+    /// ẋ as a direction in the symbols.
+    moving: Vec<Fp>,
+    x: Vec<usize>,
+    others: Vec<usize>,
+}
+
+impl Nearby {
+    fn new(model: &Model, rate: &[Fp]) -> Self {
+        let x = symbols(model, &model.x);
+        let others = [symbols(model, &model.xi), symbols(model, &model.u)].concat();
+        let columns = model.n() + others.len();
+        let mut random = Random::new(rate.iter().fold(columns as u64, |seed, rate| {
+            seed.rotate_left(7) ^ rate.bits()
+        }));
+        let mut moving = vec![Fp::ZERO; model.graph.symbols().len()];
+        for (&place, &rate) in x.iter().zip(rate) {
+            moving[place] = rate;
+        }
+        Nearby {
+            columns: (0..columns).map(|_| random.element()).collect(),
+            moving,
+            x,
+            others,
+        }
+    }
+
+    /// (A h, δξ, δu) as a direction in the symbols.
+    fn moved(&self, model: &Model, a: &[Fp]) -> Vec<Fp> {
+        let n = model.n();
+        let (h, rest) = self.columns.split_at(n);
+        let a: Vec<Vec<Fp>> = a.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
+        let mut moved = vec![Fp::ZERO; model.graph.symbols().len()];
+        for (&place, value) in self.x.iter().zip(product(&a, h)) {
+            moved[place] = value;
+        }
+        for (&place, &value) in self.others.iter().zip(rest) {
+            moved[place] = value;
+        }
+        moved
+    }
+
+    /// (ḣ, δξ̇) by the emitted matrices.
+    fn found(&self, linear: &[Fp]) -> Vec<Fp> {
+        let rows = linear.chunks(self.columns.len().max(1));
+        let rows: Vec<Vec<Fp>> = rows.map(<[Fp]>::to_vec).collect();
+        product(&rows, &self.columns)
+    }
+}
+
+/// The numbers of symbols.
+fn symbols(model: &Model, edges: &[Edge]) -> Vec<usize> {
+    let index = |edge: &Edge| match model.graph.node(edge.node()) {
+        Node::Symbol(index) => Some(index as usize),
+        _ => None,
+    };
+    edges.iter().filter_map(index).collect()
+}
+
+/// By the slopes of a derivation of its own.
+fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<Result<(), String>> {
+    let (model, graph) = (&reference.model, &reference.model.graph);
+    let n = model.n();
+    let roots = Numbers::roots(reference);
+    let here = Numbers::new(reference, &evaluate_at(graph, &roots, &mut lane.clone())?);
+    // The slopes of everything along a direction in the symbols.
+    let slope = |direction: &[Fp]| -> Option<Numbers> {
+        let duals = tangent_at(graph, &roots, &mut lane.clone(), direction)?;
+        let slopes: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
+        Some(Numbers::new(reference, &slopes))
+    };
+    let xi_dot = solve(here.mass.clone(), here.force.clone())?;
+    let nearby = Nearby::new(model, &here.rate);
+    let moving = slope(&nearby.moving)?;
+    let changed = slope(&nearby.moved(model, &here.a.concat()))?;
+    let linear = &program.function("linearize")?.outputs;
+    let found = nearby.found(&evaluate_at(&program.graph, linear, &mut lane.clone())?);
+    // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
+    let left = difference(&changed.rate, &product(&moving.a, &nearby.columns[..n]));
+    if product(&here.a, &found[..n]) != left {
+        return Some(Err(KINEMATIC.into()));
+    }
+    // M δξ̇ = δF − δM ξ̇.
+    let right = difference(&changed.force, &product(&changed.mass, &xi_dot));
+    if product(&here.mass, &found[n..]) != right {
+        return Some(Err(DYNAMIC.into()));
+    }
+    Some(Ok(()))
+}
+
+fn difference(a: &[Fp], b: &[Fp]) -> Vec<Fp> {
+    a.iter().zip(b).map(|(&a, &b)| a - b).collect()
+}
+
 fn product(rows: &[Vec<Fp>], vector: &[Fp]) -> Vec<Fp> {
-    let terms = |row: &Vec<Fp>| row.iter().zip(vector).map(|(&a, &b)| a * b).collect();
     rows.iter()
         .map(|row| {
-            let terms: Vec<Fp> = terms(row);
-            terms.into_iter().fold(Fp::ZERO, |sum, term| sum + term)
+            let terms = row.iter().zip(vector).map(|(&a, &b)| a * b);
+            terms.fold(Fp::ZERO, |sum, term| sum + term)
         })
         .collect()
 }

@@ -142,7 +142,7 @@ impl<'a> Reading<'a> {
             &kinematics,
             report.is_empty() && last.is_empty(),
         ) {
-            let mut closure =
+            let closure =
                 closure::Closure::new(graph, declared, kinematics, &constraints, &defaults);
             report.keep(closure.close(start));
         }

@@ -1,8 +1,10 @@
-//! A start that closes all loops and keeps all constraints on the velocities.
+//! A state that closes all loops and keeps all constraints on the velocities.
 //!
-//! What the description gives is kept; what it does not give is solved for, as close as possible to
-//! the identity and to rest. Where everything is given it only has to hold, but for rounding.
+//! What is given is kept; what is not is solved for, as close as possible to what stands there: for the
+//! start of a description the identity and rest. Where everything is given it only has to hold, but for
+//! rounding.
 
+use super::Model;
 use super::declare::Declared;
 use super::kinematics::Kinematics;
 use super::layout::{Block, blocks};
@@ -26,11 +28,20 @@ pub struct Closure<'a> {
     a: Vec<Edge>,
     n: usize,
     constraints: &'a [Pfaffian],
-    defaults: &'a [f64],
+    params: &'a [f64],
+}
+
+/// A constraint that could not be kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Open {
+    /// Its place among the constraints.
+    pub constraint: usize,
+    /// By how much it is violated.
+    pub residual: f64,
 }
 
 impl<'a> Closure<'a> {
-    /// The equations of a description.
+    /// The equations of a description that is being read.
     pub fn new(
         graph: &'a Graph,
         declared: &Declared,
@@ -48,56 +59,91 @@ impl<'a> Closure<'a> {
             a: kinematics.a.concat(),
             n: declared.xi.len(),
             constraints,
-            defaults,
+            params: defaults,
         }
     }
 
-    /// Solves for what was not given.
-    pub fn close(&mut self, start: &mut Start) -> Result<(), Diagnostic> {
-        if self.constraints.is_empty() || self.defaults.iter().any(|number| number.is_nan()) {
+    /// The equations of a model, whose loops are those of all its constraints.
+    pub fn of(model: &'a Model, params: &'a [f64]) -> Self {
+        Closure {
+            graph: &model.graph,
+            blocks: model.blocks.clone(),
+            a: model.a.concat(),
+            n: model.n(),
+            constraints: &model.constraints,
+            params,
+        }
+    }
+
+    /// Solves for what the description does not give.
+    pub fn close(&self, start: &mut Start) -> Result<(), Diagnostic> {
+        if self.params.iter().any(|number| number.is_nan()) {
             return Ok(());
         }
-        let loops: Vec<&Pfaffian> = self.loops();
-        if !loops.is_empty() {
-            self.close_loops(start)?;
-        }
-        self.settle_velocities(start)
-    }
-
-    fn loops(&self) -> Vec<&'a Pfaffian> {
-        let is_loop = |c: &&Pfaffian| c.kind == Kind::Loop;
-        self.constraints.iter().filter(is_loop).collect()
-    }
-
-    fn close_loops(&self, start: &mut Start) -> Result<(), Diagnostic> {
         let given: Vec<bool> = start.given_x.iter().map(Option::is_some).collect();
+        self.close_loops(&mut start.x, &given).map_err(|open| {
+            let error = Diagnostic::new(
+                self.constraints[open.constraint].span,
+                format!(
+                    "no configuration near the start closes this loop: it is open by {:.3e}",
+                    open.residual
+                ),
+            );
+            error.help(
+                "give a `start` closer to a closed loop; coordinates without a `start` are solved for, those with one are kept",
+            )
+        })?;
+        let given: Vec<bool> = start.given_xi.iter().map(Option::is_some).collect();
+        self.settle(&start.x, &mut start.xi, &given).map_err(|open| {
+            let error = Diagnostic::new(
+                self.constraints[open.constraint].span,
+                format!(
+                    "the start velocities violate this constraint by {:.3e}",
+                    open.residual
+                ),
+            );
+            error.help(
+                "leave out the `start` of velocities that follow from the others: they are solved for",
+            )
+        })
+    }
+
+    /// The loops, by their places among the constraints.
+    fn loops(&self) -> Vec<usize> {
+        let is_loop = |&place: &usize| self.constraints[place].kind == Kind::Loop;
+        (0..self.constraints.len()).filter(is_loop).collect()
+    }
+
+    /// Closes all loops by the coordinates that are not given; those given are polished where rounding
+    /// alone leaves loops open. An error leaves x as it was.
+    pub fn close_loops(&self, x: &mut Vec<f64>, given: &[bool]) -> Result<(), Open> {
+        let before = self.residuals(x);
+        let Some((which, residual)) = worst(&before) else {
+            return Ok(());
+        };
         let all = vec![false; given.len()];
-        let before = self.residuals(&start.x);
-        let close = worst(&before).is_none_or(|(_, size)| size <= ROUNDING);
-        let attempts = [Some(given), close.then_some(all)];
+        let attempts = [Some(given), (residual <= ROUNDING).then_some(&all[..])];
         for fixed in attempts.into_iter().flatten() {
-            if let Some(x) = self.newton(&start.x, &fixed) {
-                start.x = x;
+            if let Some(closed) = self.newton(x, fixed) {
+                *x = closed;
                 return Ok(());
             }
         }
-        let Some((which, size)) = worst(&before) else {
-            return Ok(());
-        };
-        let error = Diagnostic::new(
-            self.loops()[which].span,
-            format!("no configuration near the start closes this loop: it is open by {size:.3e}"),
-        );
-        Err(error.help(
-            "give a `start` closer to a closed loop; coordinates without a `start` are solved for, those with one are kept",
-        ))
+        Err(Open {
+            constraint: self.loops()[which],
+            residual,
+        })
     }
 
     /// x with all loops closed, moved along A where not fixed; `None` where Newton's method fails.
     fn newton(&self, from: &[f64], fixed: &[bool]) -> Option<Vec<f64>> {
         let mut x = from.to_vec();
-        let (loops, n) = (self.loops(), self.n);
-        let rows: Vec<Edge> = loops.iter().flat_map(|l| l.row.iter().copied()).collect();
+        let n = self.n;
+        let rows = self
+            .loops()
+            .into_iter()
+            .map(|place| &self.constraints[place].row);
+        let rows: Vec<Edge> = rows.flatten().copied().collect();
         let mut best = f64::INFINITY;
         for _ in 0..STEPS {
             let residuals = self.residuals(&x);
@@ -135,80 +181,75 @@ impl<'a> Closure<'a> {
         (size <= SOLVED).then_some(x)
     }
 
-    fn settle_velocities(&self, start: &mut Start) -> Result<(), Diagnostic> {
+    /// Keeps all constraints on the velocities by those that are not given; those given are polished
+    /// where rounding alone violates them. An error leaves ξ as it was.
+    pub fn settle(&self, x: &[f64], xi: &mut Vec<f64>, given: &[bool]) -> Result<(), Open> {
         let n = self.n;
-        let rows: Vec<Edge> = self
-            .constraints
-            .iter()
-            .flat_map(|c| c.row.iter().copied())
-            .collect();
-        let b = evaluate(self.graph, &rows, &self.numbers(&start.x));
+        let rows = self.constraints.iter().flat_map(|c| c.row.iter().copied());
+        let rows: Vec<Edge> = rows.collect();
+        let b = evaluate(self.graph, &rows, &self.numbers(x));
         let speeds = |xi: &[f64]| -> Vec<f64> {
-            b.chunks(n)
+            b.chunks(n.max(1))
                 .map(|row| row.iter().zip(xi).map(|(b, v)| b * v).sum())
                 .collect()
         };
-        let given: Vec<bool> = start.given_xi.iter().map(Option::is_some).collect();
-        let close = worst(&speeds(&start.xi)).is_none_or(|(_, size)| size <= ROUNDING);
-        for fixed in [Some(given), close.then(|| vec![false; n])]
+        let Some((constraint, residual)) = worst(&speeds(xi)) else {
+            return Ok(());
+        };
+        let all = vec![false; n];
+        for fixed in [Some(given), (residual <= ROUNDING).then_some(&all[..])]
             .into_iter()
             .flatten()
         {
-            let mut xi = start.xi.clone();
+            let mut settled = xi.clone();
             let free: Vec<usize> = (0..n).filter(|&i| !fixed[i]).collect();
             let jacobian: Vec<Vec<f64>> = b
                 .chunks(n)
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
             for _ in 0..3 {
-                let target: Vec<f64> = speeds(&xi).iter().map(|r| -r).collect();
+                let target: Vec<f64> = speeds(&settled).iter().map(|r| -r).collect();
                 let Some(step) = least_norm(&jacobian, &target) else {
                     break;
                 };
-                free.iter().zip(step).for_each(|(&i, h)| xi[i] += h);
+                free.iter().zip(step).for_each(|(&i, h)| settled[i] += h);
             }
-            let scale = xi.iter().fold(1.0f64, |m, v| m.max(v.abs()));
-            if worst(&speeds(&xi)).is_none_or(|(_, size)| size <= SOLVED * scale) {
-                start.xi = xi;
+            let scale = settled.iter().fold(1.0f64, |m, v| m.max(v.abs()));
+            if worst(&speeds(&settled)).is_none_or(|(_, size)| size <= SOLVED * scale) {
+                *xi = settled;
                 return Ok(());
             }
         }
-        let Some((which, size)) = worst(&speeds(&start.xi)) else {
-            return Ok(());
-        };
-        let error = Diagnostic::new(
-            self.constraints[which].span,
-            format!("the start velocities violate this constraint by {size:.3e}"),
-        );
-        Err(error.help(
-            "leave out the `start` of velocities that follow from the others: they are solved for",
-        ))
+        Err(Open {
+            constraint,
+            residual,
+        })
     }
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        let edges: Vec<Edge> = self.loops().iter().map(|l| l.residual).collect();
+        let loops = self.loops().into_iter();
+        let edges: Vec<Edge> = loops
+            .map(|place| self.constraints[place].residual)
+            .collect();
         evaluate(self.graph, &edges, &self.numbers(x))
     }
 
     fn numbers(&self, x: &[f64]) -> Vec<f64> {
         let mut numbers = vec![std::f64::consts::PI];
-        numbers.extend(self.defaults.iter().chain(x));
+        numbers.extend(self.params.iter().chain(x));
         numbers.resize(self.graph.symbols().len(), 0.0);
         numbers
     }
 }
 
-/// The largest entry by size, and where it is.
+/// The largest entry by size, and where it is; what is not a number is larger than all.
 fn worst(values: &[f64]) -> Option<(usize, f64)> {
     let sizes = values.iter().map(|v| v.abs()).enumerate();
-    sizes.fold(None, |worst, (index, size)| match worst {
-        Some((_, most)) if size <= most => worst,
-        _ => Some((index, size)),
-    })
+    sizes.rev().max_by(|(_, a), (_, b)| a.total_cmp(b))
 }
 
 /// Puts x back on its blocks: unit norm, or Newton's polar iteration for a rotation.
-fn normalise(blocks: &[Block], x: &mut [f64]) {
+pub fn normalise(blocks: &[Block], x: &mut [f64]) {
     let mut place = 0;
     for &block in blocks {
         let entries = &mut x[place..place + block.len()];

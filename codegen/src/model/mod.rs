@@ -9,7 +9,7 @@ mod axes;
 mod bodies;
 mod build;
 pub mod charts;
-mod closure;
+pub mod closure;
 pub mod completion;
 mod declare;
 mod defaults;

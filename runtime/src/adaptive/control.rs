@@ -38,10 +38,13 @@ impl Tolerance {
         let between = |least: f64, value: f64| value >= least && value < f64::INFINITY;
         let relative = self.relative == 0.0 || between(S::EPSILON, self.relative);
         let absolute = between(f64::MIN_POSITIVE, self.absolute);
-        if between(S::EPSILON, self.angle) && absolute && relative {
-            Ok(())
+        if !between(S::EPSILON, self.angle) || !relative {
+            Err(StepError::InvalidTolerance { least: S::EPSILON })
+        } else if !absolute {
+            let least = f64::MIN_POSITIVE;
+            Err(StepError::InvalidTolerance { least })
         } else {
-            Err(StepError::InvalidTolerance)
+            Ok(())
         }
     }
 

@@ -57,6 +57,7 @@ pub mod events;
 pub mod pair;
 mod start;
 pub mod step;
+mod stiff;
 
 pub use control::Tolerance;
 pub use events::{Direction, Event};
@@ -64,6 +65,7 @@ pub use step::Step;
 
 use crate::adaptive::control::{Controller, power};
 use crate::adaptive::pair::Pair;
+use crate::adaptive::stiff::Stiffness;
 use crate::error::StepError;
 use crate::integrate::{acceleration, projected};
 use crate::methods::tableau::{Stages, Sums};
@@ -84,6 +86,9 @@ pub struct Adaptive<const M: usize, const D: usize> {
     pub longest: f64,
     /// To how much time events are located; never finer than rounding of t.
     pub precision: f64,
+    /// A stiff motion that needs more steps than this is refused, [`StepError::Stiff`]; a million unless
+    /// it is set.
+    pub stiff: f64,
 }
 
 impl Adaptive<7, 1> {
@@ -145,6 +150,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             first: None,
             longest: f64::INFINITY,
             precision: 0.0,
+            stiff: 1e6,
         }
     }
 
@@ -281,6 +287,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             }
         };
         let mut controller = Controller::new(self.pair.order);
+        let mut stiffness = Stiffness::default();
         while state.t != until {
             let left = (until - state.t).abs();
             let is_last = 1.01 * length >= left;
@@ -320,6 +327,12 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             }
             *state = end;
             statistics.accepted += 1;
+            if left > self.stiff * h.abs()
+                && let Some(rate) = stiffness.after(system, &stages, self.pair, h)
+            {
+                let (time, step) = (state.t, h);
+                return Err(StepError::Stiff { time, step, rate });
+            }
             if stopped_by.is_some() {
                 outcome.stopped_by = stopped_by;
                 return Ok(outcome);

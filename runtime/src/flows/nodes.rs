@@ -109,7 +109,8 @@ fn long<S: Scalar>(motion: &Motion<S>, h: S) -> Angle<S> {
     let half = periods * S::from_f64(0.5);
     let parity = one - S::from_f64(4.0) * (half - round(half)).abs();
     let near = motion.start.plus(mean.at(rest), motion.m);
-    let crossed = (motion.start.cn * near.cn).select_lt(zero, one, zero);
+    // By the same sides as in `folded`, also where cn is 0 at the start.
+    let crossed = (one - side(motion.start) * side(near)) * S::from_f64(0.5);
     let direction = rest.select_lt(zero, -one, one);
     let folds = periods + crossed * direction;
 
@@ -123,11 +124,16 @@ fn long<S: Scalar>(motion: &Motion<S>, h: S) -> Angle<S> {
 
 /// ∫₀ᵘ sn²/(1 + n sn²) with u moved by multiples of 2K to |u| ≤ K.
 fn folded<S: Scalar>(at: Jacobi<S>, n: S) -> S {
-    let (zero, one) = (S::default(), S::from_f64(1.0));
+    let one = S::from_f64(1.0);
     let square = at.sn * at.sn;
     let integral = third_kind(at.cn * at.cn, at.dn * at.dn, one, one + n * square);
-    let sign = at.cn.select_lt(zero, -one, one);
-    sign * at.sn * square * integral / S::from_f64(3.0)
+    side(at) * at.sn * square * integral / S::from_f64(3.0)
+}
+
+/// −1 where cn is negative, else 1.
+fn side<S: Scalar>(at: Jacobi<S>) -> S {
+    let one = S::from_f64(1.0);
+    at.cn.select_lt(S::default(), -one, one)
 }
 
 /// The nearest whole number, as long as whole numbers are exact.

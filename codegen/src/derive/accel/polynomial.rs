@@ -22,6 +22,8 @@ const MOST_TERMS: usize = 260;
 /// Most terms where M is constant and still to be solved with: tracing the bodies has a smaller
 /// right-hand side then.
 const MOST_CONSTANT_TERMS: usize = 40;
+/// Products and sums of terms after which the expansion is given up: what is traced stands.
+const MOST_WORK: usize = 1_000_000;
 
 /// The candidates of this route that may cost less than `most`; none where the system is too large
 /// to expand.
@@ -34,7 +36,7 @@ pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
     };
     let mut calculus = Calculus::new(model);
     let parts = parts(&mut traced, &mut calculus, variant);
-    let mut forms = NormalForms::new(&model.points);
+    let mut forms = NormalForms::within(&model.points, MOST_WORK);
     let mut all = Vec::new();
     let mut before: Option<System> = None;
     for reduced in [false, true] {

@@ -125,6 +125,12 @@ impl Expressions {
         self.seed([(&self.xi, xi), (&[], &[])])
     }
 
+    /// The entries of ξ in a list with one entry for each symbol.
+    pub fn xi_of(&self, symbols: &[Fp]) -> Vec<Fp> {
+        let entry = |&place: &usize| symbols.get(place).copied().unwrap_or(Fp::ZERO);
+        self.xi.iter().map(entry).collect()
+    }
+
     /// A direction in both.
     pub fn of_x_and_xi(&self, x: &[Fp], xi: &[Fp]) -> Vec<Fp> {
         self.seed([(&self.x, x), (&self.xi, xi)])

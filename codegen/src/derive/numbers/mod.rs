@@ -91,7 +91,7 @@ impl Kinematics {
 
     /// ∂ᵢẋ at constant ξ.
     fn drift(&self, i: usize) -> Vec<Fp> {
-        self.rate.iter().map(|jet| jet.across[i]).collect()
+        self.rate.iter().map(|jet| jet.across(i)).collect()
     }
 
     fn rows(&self) -> std::slice::Chunks<'_, Jet> {
@@ -100,12 +100,18 @@ impl Kinematics {
 
     /// Whether Y A = I.
     fn inverse(&self) -> bool {
-        (0..self.n).all(|i| {
-            let column = self.column(i, |jet| jet.value);
-            self.rows().enumerate().all(|(k, row)| {
-                let row: Vec<Fp> = row.iter().map(|jet| jet.value).collect();
-                dot(&row, &column) == if i == k { Fp::ONE } else { Fp::ZERO }
-            })
+        self.rows().enumerate().all(|(k, row)| {
+            let mut product = vec![Fp::ZERO; self.n];
+            for (y, of_a) in row.iter().zip(self.a.chunks(self.n.max(1))) {
+                if y.value.is_zero() {
+                    continue;
+                }
+                for (sum, a) in product.iter_mut().zip(of_a) {
+                    *sum = *sum + y.value * a.value;
+                }
+            }
+            let mut entries = product.into_iter().enumerate();
+            entries.all(|(i, entry)| entry == if i == k { Fp::ONE } else { Fp::ZERO })
         })
     }
 
@@ -123,9 +129,18 @@ impl Kinematics {
     fn turn_of_rows(&self, p: &[Fp]) -> Vec<Fp> {
         let rate: Vec<Fp> = self.rate.iter().map(|jet| jet.value).collect();
         let moved = self.weighted(p, |jet| jet.along);
+        // Entries Y_α^k that move, weighted by p_k ẋ^α: of large frames they are few.
+        let mut moving: Vec<(&Jet, Fp)> = Vec::new();
+        for (row, &p) in self.rows().zip(p) {
+            let entries = row.iter().zip(&rate).filter(|(jet, _)| !jet.is_still());
+            moving.extend(entries.map(|(jet, &rate)| (jet, p * rate)));
+        }
         let turn = |i: usize| {
             let own = self.column(i, |jet| jet.value);
-            dot(&moved, &own) - dot(&self.weighted(p, |jet| jet.across[i]), &rate)
+            let changes = moving
+                .iter()
+                .fold(Fp::ZERO, |sum, &(jet, weight)| sum + jet.across(i) * weight);
+            dot(&moved, &own) - changes
         };
         (0..self.n).map(turn).collect()
     }
@@ -231,7 +246,7 @@ impl Numbers {
         for _ in &model.particles {
             sums.particle(read.one()?, gravity, &points.next()?, &xi);
         }
-        let along = |jet: &Jet| jet.across.iter().take(n).copied().collect::<Vec<Fp>>();
+        let along = |jet: &Jet| (0..n).map(|i| jet.across(i)).collect::<Vec<Fp>>();
         let [potential, beside, written] = potentials else {
             return None;
         };
@@ -290,18 +305,20 @@ impl Numbers {
         };
         let driven = by(all.of_x_and_xi(rate, xi_dot))?;
         let coasting = by(all.of_x(rate))?;
-        let turn = kinematics.turn_of_rows(&driven.across);
+        let momentum: Vec<Fp> = (0..n).map(|i| driven.across(i)).collect();
+        let turn = kinematics.turn_of_rows(&momentum);
         let mut left = Vec::with_capacity(n);
         sums.kinetic = sums.kinetic + written.value;
         for i in 0..n {
-            let row = by(all.of_xi(&unit(n, i)))?.mixed;
-            let slope = written.across[i];
-            left.push(dot(&row, xi_dot) + coasting.mixed[i] - slope + turn[i]);
+            let bend = all.velocity.bend(lane, &all.of_xi(&unit(n, i)))?;
+            let row = all.xi_of(&bend);
+            let slope = written.across(i);
+            left.push(dot(&row, xi_dot) + coasting.mixed(i) - slope + turn[i]);
             for (sum, entry) in [
-                (&mut sums.momentum[i], driven.across[i]),
-                (&mut sums.momentum_rate[i], driven.mixed[i]),
+                (&mut sums.momentum[i], momentum[i]),
+                (&mut sums.momentum_rate[i], driven.mixed(i)),
                 (&mut sums.slope[i], slope),
-                (&mut sums.swing[i], coasting.mixed[i]),
+                (&mut sums.swing[i], coasting.mixed(i)),
                 (&mut sums.centrifugal[i], slope),
             ] {
                 *sum = *sum + entry;
@@ -366,11 +383,11 @@ impl Numbers {
                 Along::Scalar(_) => {
                     let rate = rates.next()?;
                     let pull = -(coefficient * rate.value);
-                    resisting.add(rate.across.iter().map(|&slope| pull * slope));
+                    resisting.add((0..n).map(|i| pull * rate.across(i)));
                 }
             }
         }
-        resisting.add(dissipation.mixed.iter().map(|&entry| -entry));
+        resisting.add((0..n).map(|i| -dissipation.mixed(i)));
         let power = dot(&resisting.sum, xi);
         applied.add(resisting.sum);
         Some((applied.sum, -(power * Fp::new(2).inv()?)))

@@ -49,6 +49,11 @@ pub fn settle(
     let changes = variation.changes(graph, edges, &moved);
     let zero = graph.zero();
     let mut settled = edges.to_vec();
+    // What changes is left alone: with numbers in the place of symbols its own would grow without bound.
+    let places: Vec<usize> = (0..edges.len())
+        .filter(|&index| !changes[index] && !graph.is_free(edges[index].node()))
+        .collect();
+    let constant: Vec<Edge> = places.iter().map(|&index| edges[index]).collect();
     for plain in [0, 1] {
         let mut set = resting(model, graph, parts, plain);
         set.extend(
@@ -57,10 +62,10 @@ pub fn settle(
                 .iter()
                 .filter_map(|&xi| Some((symbol(graph, xi)?, zero))),
         );
-        let images = substitute(graph, edges, &set);
-        for (index, image) in images.into_iter().enumerate() {
+        let images = substitute(graph, &constant, &set);
+        for (&index, image) in places.iter().zip(images) {
             let same = graph.value(image) == graph.value(edges[index]);
-            if !changes[index] && same && !graph.is_free(settled[index].node()) {
+            if same && !graph.is_free(settled[index].node()) {
                 settled[index] = image;
             }
         }

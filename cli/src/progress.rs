@@ -1,0 +1,34 @@
+//! What long work shows on standard error, where that is a terminal.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use std::time::Duration;
+
+/// How often something moves while an end is not known.
+const TICK: Duration = Duration::from_millis(200);
+
+/// A bar of so many steps, with the time that is left.
+pub fn bar(steps: u64) -> ProgressBar {
+    let colour = anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never;
+    let bar = ProgressBar::new(steps);
+    let template = if colour {
+        "{bar:40.cyan} {percent}%  {eta} left"
+    } else {
+        "{bar:40} {percent}%  {eta} left"
+    };
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// Does work whose length is not known, and shows for how long it has been going on.
+pub fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
+    let bar = ProgressBar::new_spinner().with_message(what);
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(TICK);
+    let done = work();
+    bar.finish_and_clear();
+    done
+}

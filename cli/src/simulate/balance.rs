@@ -1,0 +1,78 @@
+//! Whether a run with error control still follows the motion: its energy may change by the work of loads
+//! alone, and does so otherwise where a step has jumped across a singularity.
+
+use crate::interpreted::Interpreted;
+use hamel::{State, System};
+
+/// A change of energy that no load accounts for means that the motion is lost where it is larger than this
+/// part of the energy that moves on average, or than so many tolerances of what moves here.
+const LOST: f64 = 1e-2;
+const TOLERANCES: f64 = 100.0;
+/// The work of loads is estimated from the ends of steps, and may be so many times as much.
+const WORK: f64 = 10.0;
+
+/// What is known of the energy so far.
+#[derive(Clone, Copy, Debug)]
+pub struct Balance {
+    start: f64,
+    initial: f64,
+    time: f64,
+    power: f64,
+    /// ∫ |f ξ| dt.
+    work: f64,
+    /// ∫ T dt, without what the run has made of nothing.
+    moving: f64,
+    /// T and the change of T + V at the last state.
+    kinetic: f64,
+    change: f64,
+}
+
+impl Balance {
+    /// Starts at a state.
+    pub fn new(system: &Interpreted, state: &State<Interpreted>) -> Self {
+        Balance {
+            start: state.t,
+            initial: energy(system, state),
+            time: state.t,
+            power: system.power(&state.x, &state.xi).abs(),
+            work: 0.0,
+            moving: 0.0,
+            kinetic: system.kinetic_energy(&state.x, &state.xi),
+            change: 0.0,
+        }
+    }
+
+    /// What is known with one more state.
+    pub fn after(mut self, system: &Interpreted, state: &State<Interpreted>) -> Self {
+        let h = (state.t - self.time).abs();
+        let power = system.power(&state.x, &state.xi).abs();
+        let gained = energy(system, state) - self.initial;
+        let kinetic = system.kinetic_energy(&state.x, &state.xi);
+        self.kinetic = (kinetic - gained.max(0.0)).max(0.0);
+        self.work += h * power.max(self.power);
+        self.moving += h * self.kinetic;
+        self.change = gained;
+        self.time = state.t;
+        self.power = power;
+        self
+    }
+
+    /// The change of energy here, where no load accounts for it.
+    pub fn lost(&self, tolerance: f64) -> Option<f64> {
+        let elapsed = (self.time - self.start).abs();
+        let mean = if elapsed > 0.0 {
+            self.moving / elapsed
+        } else {
+            0.0
+        };
+        let rough = TOLERANCES * tolerance;
+        let allowed = LOST.max(rough) * mean.max(self.initial.abs()) + rough * self.kinetic;
+        // What is not a number is said by the method itself.
+        let lost = self.change.abs() > allowed + WORK * self.work;
+        lost.then_some(self.change)
+    }
+}
+
+fn energy(system: &Interpreted, state: &State<Interpreted>) -> f64 {
+    system.kinetic_energy(&state.x, &state.xi) + system.potential_energy(&state.x)
+}

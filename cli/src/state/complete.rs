@@ -1,0 +1,68 @@
+//! What a state does not give follows from what it gives: loops are closed, constraints on velocities
+//! kept, unit quaternions and rotations cleared of rounding.
+
+use super::State;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::model::Model;
+use hamel_codegen::model::closure::{Closure, Open, normalise};
+
+/// Smaller values of |φ(x)| are left as they are.
+const EXACT: f64 = 1e-12;
+
+impl State {
+    /// Completes a state whose entries of x and ξ are given or not; what contradicts the description is
+    /// refused, with the residual.
+    pub(super) fn complete(
+        &mut self,
+        generated: &Generated,
+        given_x: &[bool],
+        given_xi: &[bool],
+    ) -> Result<(), Vec<String>> {
+        let (full, active) = (&generated.model, &generated.active);
+        let none = |errors: Vec<String>| match errors.is_empty() {
+            true => Ok(()),
+            false => Err(errors),
+        };
+        none(self.violations(active))?;
+        if self.residuals(active).iter().any(|size| size.abs() > EXACT) {
+            normalise(&active.blocks, &mut self.x);
+        }
+        let mut x = self.x.clone();
+        let closed = Closure::of(full, &self.params).close_loops(&mut x, given_x);
+        closed.map_err(|open| {
+            vec![format!(
+                "coord: this configuration leaves {} open by {:.2e}, and no change of coordinates that are not given closes it",
+                text(full, open),
+                open.residual
+            )]
+        })?;
+        self.x = x;
+        // Steps along the loops may leave constraints that are no loops.
+        none(self.violations(active))?;
+        let mut xi = self.xi.clone();
+        let settled = Closure::of(active, &self.params).settle(&self.x, &mut xi, given_xi);
+        settled.map_err(|open| {
+            vec![format!(
+                "velocity: violates {} by {:.2e}, and no change of velocities that are not given keeps it",
+                text(active, open),
+                open.residual
+            )]
+        })?;
+        self.xi = xi;
+        Ok(())
+    }
+}
+
+/// A constraint as it was written.
+fn text(model: &Model, open: Open) -> String {
+    let number = open.constraint + 1;
+    let span = model.constraints.get(open.constraint).map(|row| row.span);
+    let written = span.and_then(|span| span.lo.join(span.hi)?.source_text());
+    match written {
+        Some(text) => {
+            let words: Vec<&str> = text.split_whitespace().collect();
+            format!("`{}`", words.join(" "))
+        }
+        None => format!("constraint {number} on the velocities"),
+    }
+}

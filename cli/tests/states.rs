@@ -1,0 +1,198 @@
+//! States that come from outside: completed as a start is, or refused with what is wrong.
+
+mod common;
+
+use common::{hamel, text};
+use serde_json::{Value, json};
+
+fn model(name: &str) -> String {
+    format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let list = value.as_array().expect("a list");
+    list.iter()
+        .map(|entry| entry.as_f64().expect("a number"))
+        .collect()
+}
+
+/// What is open of the loops of `four_bar_loop`, and the rates of that.
+fn four_bar(x: &[f64], w: &[f64]) -> [f64; 4] {
+    let (l1, l2, l3, d) = (0.4, 1.0, 0.8, 1.0);
+    let parts = [(l1, x[0], w[0]), (l2, x[1], w[1]), (-l3, x[2], w[2])];
+    let mut open = [-d, 0.0, 0.0, 0.0];
+    for (l, q, w) in parts {
+        open[0] += l * q.cos();
+        open[1] += l * q.sin();
+        open[2] -= l * q.sin() * w;
+        open[3] += l * q.cos() * w;
+    }
+    open
+}
+
+fn refused(name: &str, state: &str) -> String {
+    let output = hamel(&["eval", &model(name), "--at", "-"], state);
+    assert_eq!(
+        output.status.code(),
+        Some(2),
+        "{state}: {}",
+        text(&output.stdout)
+    );
+    assert!(
+        output.stdout.is_empty(),
+        "nothing is printed of a state that is refused"
+    );
+    text(&output.stderr)
+}
+
+#[test]
+fn a_coordinate_of_a_closed_loop_moves_the_others() {
+    let output = hamel(
+        &["eval", &model("four_bar_loop"), "--at", "-"],
+        r#"{"coord": {"q1": 1.5}, "velocity": {"w1": -3}}"#,
+    );
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let (x, xi) = (numbers(&found["x"]), numbers(&found["xi"]));
+    assert_eq!((x[0], xi[0]), (1.5, -3.0));
+    let open = four_bar(&x, &xi);
+    assert!(open.iter().all(|size| size.abs() < 1e-12), "{open:?}");
+}
+
+#[test]
+fn what_contradicts_a_loop_is_refused_with_the_residual() {
+    let message = refused(
+        "four_bar_loop",
+        r#"{"coord": {"q1": 1.5, "q2": 0, "q3": 0}}"#,
+    );
+    assert!(message.contains("open by 7.72e-1"), "{message}");
+    assert!(
+        message.contains("l1 * cos(q1) + l2 * cos(q2) = d + l3 * cos(q3)"),
+        "{message}"
+    );
+    let velocities = r#"{"velocity": {"w1": 1, "w2": 5, "w3": 5}}"#;
+    let message = refused("four_bar_loop", velocities);
+    assert!(message.contains("velocity: violates `l1 *"), "{message}");
+    let longer = r#"{"param": {"d": 10}}"#;
+    assert!(refused("four_bar_loop", longer).contains("open by"));
+}
+
+#[test]
+fn a_run_from_a_completed_state_keeps_its_energy() {
+    let output = hamel(
+        &[
+            "simulate",
+            &model("four_bar_loop"),
+            "--until",
+            "0.5",
+            "--at",
+            "-",
+        ],
+        r#"{"coord": {"q1": 1.5}, "velocity": {"w1": 4}}"#,
+    );
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let out = text(&output.stdout);
+    let line = out
+        .lines()
+        .find(|line| line.trim_start().starts_with("energy"));
+    let word = line.expect("the energy").split_whitespace().rev().nth(1);
+    let drift: f64 = word.expect("a number").parse().expect("a number");
+    assert!(drift < 1e-6, "{out}");
+}
+
+#[test]
+fn what_is_no_state_is_refused() {
+    for (state, message) in [
+        (
+            r#"{"coord": {"q1": 1, "q1": 2}}"#,
+            "`q1` stands twice in one object at line 1 column 24",
+        ),
+        (
+            r#"{"coord": {"q1": 1}, "coord": {}}"#,
+            "`coord` stands twice",
+        ),
+        (r#"{"coord": {"q1": NaN}}"#, "not valid JSON"),
+        (
+            r#"{"coord": {"q1": 1e999}}"#,
+            "not valid JSON: number out of range",
+        ),
+        (r#"{"coord": {"q4": 1}}"#, "coord.q4: unknown name"),
+        (
+            r#"{"coord": {"q1": [1, 2]}}"#,
+            "coord.q1: a number expected, a list found",
+        ),
+        (r#"{"positions": {}}"#, "positions: unknown name"),
+    ] {
+        let found = refused("four_bar_loop", state);
+        assert!(found.contains(message), "{state}: {found}");
+    }
+}
+
+#[test]
+fn a_rotation_off_by_the_rounding_of_its_text_is_cleared_of_it() {
+    let state = json!({"coord": {"R": [[0.6, -0.8, 0.0], [0.8000001, 0.6, 0.0], [0.0, 0.0, 1.0]]}});
+    let output = hamel(
+        &["eval", &model("heavy_top"), "--at", "-"],
+        &state.to_string(),
+    );
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let off = numbers(&found["constraint"]);
+    assert!(off.iter().all(|size| size.abs() < 1e-15), "{off:?}");
+    let further = json!({"coord": {"R": [[0.6, -0.8, 0.0], [0.801, 0.6, 0.0], [0.0, 0.0, 1.0]]}});
+    assert!(refused("heavy_top", &further.to_string()).contains("the difference is"));
+}
+
+/// At full size with `HAMEL_ATTACK=full`.
+#[test]
+fn any_state_closes_its_loops_or_is_refused() {
+    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
+    let mut state = 9u64;
+    let mut number = || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 33) as f64 / (1u64 << 31) as f64
+    };
+    let mut kept = 0;
+    let rounds = if full { 1_000 } else { 16 };
+    for _ in 0..rounds {
+        let (mut coord, mut velocity) = (json!({}), json!({}));
+        for i in 1..=3 {
+            if number() < 0.3 {
+                coord[format!("q{i}")] = json!(4.0 * number() - 2.0);
+            }
+            if number() < 0.3 {
+                velocity[format!("w{i}")] = json!(20.0 * number() - 10.0);
+            }
+        }
+        let text = json!({"coord": coord, "velocity": velocity}).to_string();
+        let output = hamel(&["eval", &model("four_bar_loop"), "--at", "-"], &text);
+        match output.status.code() {
+            Some(0) => {}
+            Some(2) => continue,
+            code => panic!("{text}: {code:?} {}", common::text(&output.stderr)),
+        }
+        kept += 1;
+        let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let (x, xi) = (numbers(&found["x"]), numbers(&found["xi"]));
+        let size = xi.iter().fold(1.0, |size: f64, w| size.max(w.abs()));
+        let open = four_bar(&x, &xi);
+        assert!(
+            open.iter().all(|open| open.abs() < 1e-11 * size),
+            "{text}: {open:?}"
+        );
+        for i in 0..3 {
+            let given = |part: &Value, name: String, value: f64| {
+                let given = part.get(&name).and_then(Value::as_f64);
+                assert!(
+                    given.is_none_or(|given| given == value),
+                    "{text}: {name} is {value}"
+                );
+            };
+            given(&coord, format!("q{}", i + 1), x[i]);
+            given(&velocity, format!("w{}", i + 1), xi[i]);
+        }
+    }
+    assert!(kept * 3 > rounds, "{kept} of {rounds}");
+}

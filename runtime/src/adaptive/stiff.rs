@@ -1,0 +1,70 @@
+//! Whether the steps are short for the sake of stability alone.
+//!
+//! Two stages at the end of a step differ little, and mostly along the fastest direction, so that the
+//! change of the rates over that of the points, ρ, estimates the spectral radius. Where h ρ stays at the
+//! bound of the region of stability, the step is not chosen by the motion. Source: E. Hairer, G. Wanner,
+//! *Solving Ordinary Differential Equations II* (1996), IV.2.
+
+use crate::adaptive::pair::Pair;
+use crate::methods::tableau::Stages;
+use crate::scalar::Scalar;
+use crate::store::add_scaled;
+use crate::system::System;
+
+/// Steps at the bound, more than steps within it, after which the motion is stiff: a passage near a
+/// singularity takes fewer.
+const OFTEN: u32 = 1000;
+
+/// How often the step was at the bound.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stiffness {
+    count: u32,
+}
+
+impl Stiffness {
+    /// The rate ρ where the motion is stiff, after one more step.
+    pub(super) fn after<Sys: System + ?Sized, const M: usize, const D: usize>(
+        &mut self,
+        system: &Sys,
+        stages: &Stages<Sys, M>,
+        pair: &Pair<M, D>,
+        h: f64,
+    ) -> Option<f64> {
+        let rate = rate(system, stages, pair, h)?;
+        // Where h ρ is for the pairs of orders 5 and 8 when stability holds it.
+        let bound = if pair.order > 6 { 6.1 } else { 3.25 };
+        if rate * h.abs() < 0.8 * bound {
+            self.count = self.count.saturating_sub(1);
+            return None;
+        }
+        self.count += 1;
+        (self.count >= OFTEN).then_some(rate)
+    }
+}
+
+/// The size of the change of the rates between the last two stages of a step over that of their points,
+/// in the worst lane.
+fn rate<Sys: System + ?Sized, const M: usize, const D: usize>(
+    system: &Sys,
+    stages: &Stages<Sys, M>,
+    pair: &Pair<M, D>,
+    h: f64,
+) -> Option<f64> {
+    let before = pair.end.checked_sub(1)?;
+    let minus = Sys::Scalar::from_f64(-1.0);
+    let point = |index: usize| Some(stages.sums(system, h, pair.rows.get(index)?.weights));
+    let (mut moved, other) = (point(pair.end)?, point(before)?);
+    add_scaled(moved.u.as_mut(), minus, other.u.as_ref());
+    add_scaled(moved.dxi.as_mut(), minus, other.dxi.as_ref());
+    let mut k = stages.k.get(pair.end)?.clone();
+    let mut f = stages.f.get(pair.end)?.clone();
+    add_scaled(k.as_mut(), minus, stages.k.get(before)?.as_ref());
+    add_scaled(f.as_mut(), minus, stages.f.get(before)?.as_ref());
+    let square = |sum: Sys::Scalar, entry: &Sys::Scalar| entry.mul_add(*entry, sum);
+    let size = |u: &[Sys::Scalar], v: &[Sys::Scalar]| {
+        let sum = u.iter().fold(Sys::Scalar::default(), square);
+        v.iter().fold(sum, square).sqrt()
+    };
+    let ratio = size(k.as_ref(), f.as_ref()) / size(moved.u.as_ref(), moved.dxi.as_ref());
+    Some(ratio.largest_lane()).filter(|rate| rate.is_finite())
+}
