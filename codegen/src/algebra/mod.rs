@@ -4,6 +4,7 @@
 
 pub mod blocks;
 pub mod derivation;
+pub mod double;
 pub mod echelon;
 mod fold;
 pub mod fp;
@@ -17,6 +18,7 @@ pub mod poly;
 pub mod reals;
 pub mod resubstitute;
 mod roots;
+pub mod rounding;
 mod shadow;
 pub mod tangent;
 pub mod tape;

@@ -17,6 +17,7 @@ use crate::algebra::linear::solve_symmetric;
 use crate::algebra::resubstitute::resubstitute;
 use crate::algebra::transplant::{map_symbols, rebuild};
 use crate::derive::normal::{NormalForms, build};
+use crate::derive::tree::Placement;
 use crate::model::Model;
 use crate::program::count::count;
 
@@ -88,7 +89,7 @@ impl Displacements {
 /// entries expanded, their coefficients computed when parameters are set.
 pub fn linearize(model: &Model, motion: &Motion) -> Linear {
     let upper = upper(model, motion);
-    let recursion = Recursion::of(&Setting::given(model));
+    let recursion = Recursion::of(&Setting::given(model), Placement::Chosen);
     // Beyond a few links nothing comes near the recursion.
     let long = recursion.as_ref().is_some_and(Recursion::is_long);
     let mut candidates: Vec<Linear> = recursion

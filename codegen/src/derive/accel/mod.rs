@@ -14,6 +14,7 @@ pub mod solve;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::resubstitute::resubstitute;
+use crate::derive::tree::Placement;
 use crate::model::Model;
 use crate::program::count::{Count, count, depth};
 use cheapest::{Computation, cheapest};
@@ -60,7 +61,7 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
     if !model.constraints.is_empty() {
         return constrained(&given);
     }
-    let recursion = Recursion::of(&given);
+    let recursion = Recursion::of(&given, Placement::Chosen);
     if let Some(recursion) = &recursion {
         recursion.search(&mut best);
         // What moves in a plane is short for longer.

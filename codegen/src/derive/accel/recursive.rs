@@ -12,7 +12,7 @@ use crate::algebra::transplant::map_symbols;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{inverse, wrenches};
 use crate::derive::tree::nearby::slopes;
-use crate::derive::tree::{Tree, articulated, composite};
+use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;
 use crate::program::count::{count, depth};
 
@@ -32,13 +32,13 @@ pub struct Recursion {
 
 impl Recursion {
     /// The recursion over a model's links, where they are a tree.
-    pub fn of(setting: &Setting) -> Option<Self> {
+    pub fn of(setting: &Setting, placement: Placement) -> Option<Self> {
         let mut model = setting.model.clone();
         let mut calculus = setting.calculus.clone();
         if !model.constraints.is_empty() || setting.back.is_some() {
             return None;
         }
-        let tree = Tree::of(&mut model, &mut calculus)?;
+        let tree = Tree::of(&mut model, &mut calculus, placement)?;
         let elastic = loads::elastic(&mut model, &mut calculus);
         let loads = loads::applied(&mut model, &mut calculus);
         let applied = (0..model.n())
