@@ -10,7 +10,8 @@ use common::{Random, generated, value};
 use hamel_codegen::algebra::double::Double;
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::derive::tables::Geometry;
-use hamel_codegen::generate::Generated;
+use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::render::render;
 
 /// Largest error relative to the scale of a result.
 const CLOSE: f64 = 1e-13;
@@ -87,7 +88,14 @@ fn awkward_axes_keep_their_digits() {
     for case in 0..size(ARMS) {
         let arm = Arm::awkward(&mut random);
         let text = arm.text();
-        let system = generated(&text);
+        let system = match from_text(&text) {
+            Ok(system) => system,
+            Err(errors) => {
+                let message = render(&errors, "arm", &text, false);
+                failures.push(format!("case {case}: {message}\n{text}"));
+                continue;
+            }
+        };
         let worst = errors(&arm, &system, case as u64);
         let mut tables = 0.0;
         if arm.0.len() <= 3 {

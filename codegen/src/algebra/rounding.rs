@@ -27,6 +27,13 @@ pub struct Rounded {
     pub exact: Double,
 }
 
+impl Rounded {
+    /// How far the one is from the other.
+    pub fn apart(&self) -> f64 {
+        (Double::new(self.rounded) - self.exact).abs().to_f64()
+    }
+}
+
 /// The expressions in `f64` and in twice the length, given the value of every symbol but π.
 pub fn rounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Rounded> {
     let zero = Rounded {

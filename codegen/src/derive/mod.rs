@@ -34,6 +34,7 @@ pub mod accel;
 pub mod adviser;
 pub mod assemble;
 pub mod calculus;
+pub mod care;
 mod candidates;
 pub mod check;
 pub mod commutation;
