@@ -116,10 +116,16 @@ fn rounding(generated: &Generated) -> String {
     let functions = &generated.program.functions;
     let losses = losses(&generated.active, &generated.program);
     let width = functions.iter().map(|f| f.name.len()).max().unwrap_or(0);
-    let lines = functions.iter().zip(losses).filter_map(|(function, digits)| {
-        let digits = digits?;
-        Some(format!("  rounding       {:width$}  loses {digits:.1} digits\n", function.name))
-    });
+    let lines = functions
+        .iter()
+        .zip(losses)
+        .filter_map(|(function, digits)| {
+            let digits = digits?;
+            Some(format!(
+                "  rounding       {:width$}  loses {digits:.1} digits\n",
+                function.name
+            ))
+        });
     lines.collect()
 }
 

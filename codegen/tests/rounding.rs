@@ -38,7 +38,13 @@ fn apart(found: &[f64], wanted: &[Double]) -> f64 {
     assert_eq!(found.len(), wanted.len());
     let both = found.iter().zip(wanted);
     let far = both.map(|(&a, &b)| (Double::new(a) - b).abs().to_f64());
-    far.fold(0.0, |most, d| if d.is_nan() { f64::INFINITY } else { f64::max(most, d) })
+    far.fold(0.0, |most, d| {
+        if d.is_nan() {
+            f64::INFINITY
+        } else {
+            f64::max(most, d)
+        }
+    })
 }
 
 /// The errors of M, bias, slope of the potential and ξ̇ at random states, each relative to its scale.
@@ -58,9 +64,18 @@ fn errors(arm: &Arm, system: &Generated, seed: u64) -> [f64; 4] {
         let motion = exact.solve(&right);
         let moved = [
             (apart(&of("mass_matrix"), &mass), size),
-            (apart(&of("bias"), &exact.bias), largest(&exact.bias).max(size)),
-            (apart(&of("potential_force"), &exact.slope), largest(&exact.slope).max(size)),
-            (apart(&of("accel"), &motion), largest(&motion) * exact.condition()),
+            (
+                apart(&of("bias"), &exact.bias),
+                largest(&exact.bias).max(size),
+            ),
+            (
+                apart(&of("potential_force"), &exact.slope),
+                largest(&exact.slope).max(size),
+            ),
+            (
+                apart(&of("accel"), &motion),
+                largest(&motion) * exact.condition(),
+            ),
         ];
         for (worst, (error, scale)) in worst.iter_mut().zip(moved) {
             *worst = f64::max(*worst, error / scale);
@@ -78,7 +93,10 @@ fn error_of_tables(arm: &Arm, system: &Generated, seed: u64) -> f64 {
     let (x, still) = (random.numbers(n), vec![0.0; n]);
     let numbers = model.numbers(&[], &x, &still, &still, &still);
     let mass = arm.dynamics(&x, &still).mass.concat();
-    apart(&evaluate(&model.graph, &geometry.mass.concat(), &numbers), &mass) / largest(&mass)
+    apart(
+        &evaluate(&model.graph, &geometry.mass.concat(), &numbers),
+        &mass,
+    ) / largest(&mass)
 }
 
 #[test]
@@ -101,11 +119,22 @@ fn awkward_axes_keep_their_digits() {
         if arm.0.len() <= 3 {
             tables = error_of_tables(&arm, &system, case as u64);
         }
-        if worst.iter().chain([&tables]).any(|&error| !(error <= CLOSE)) {
-            failures.push(format!("case {case}: {worst:?}, tables {tables:.1e}\n{text}"));
+        if worst
+            .iter()
+            .chain([&tables])
+            .any(|&error| !(error <= CLOSE))
+        {
+            failures.push(format!(
+                "case {case}: {worst:?}, tables {tables:.1e}\n{text}"
+            ));
         }
     }
-    assert!(failures.is_empty(), "{} arms:\n{}", failures.len(), failures.join("\n"));
+    assert!(
+        failures.is_empty(),
+        "{} arms:\n{}",
+        failures.len(),
+        failures.join("\n")
+    );
 }
 
 /// Two parallel axes and one that is tilted by 1e-8 rad (issue: M₁₁ was 7.20 instead of 10.04).

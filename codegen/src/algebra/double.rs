@@ -278,13 +278,19 @@ mod tests {
 
     #[test]
     fn arithmetic_inverts_itself() {
-        let (a, b) = (decimal("3.1415926535897932384626433832795029"), decimal("0.0001234567890123456789012345678901"));
+        let (a, b) = (
+            decimal("3.1415926535897932384626433832795029"),
+            decimal("0.0001234567890123456789012345678901"),
+        );
         close(a / b * b, a);
         close(a - b + b, a);
         close(a.sqrt() * a.sqrt(), a);
         close(a, Double::PI);
         assert_eq!(sum(1.0, 1e-20).to_f64(), 1.0);
-        assert_eq!((Double::new(1.0) + Double::new(1e-20) - Double::ONE).to_f64(), 1e-20);
+        assert_eq!(
+            (Double::new(1.0) + Double::new(1e-20) - Double::ONE).to_f64(),
+            1e-20
+        );
     }
 
     /// Values of tables with 34 digits.
@@ -295,10 +301,16 @@ mod tests {
         close(sin, decimal("0.8414709848078965066525023216302990"));
         close(cos, decimal("0.5403023058681397174009366074429766"));
         close(one.exp(), decimal("2.7182818284590452353602874713526625"));
-        close(decimal("10.0").log(), decimal("2.3025850929940456840179914546843642"));
+        close(
+            decimal("10.0").log(),
+            decimal("2.3025850929940456840179914546843642"),
+        );
         close(one.atan2(one).scaled(4.0), Double::PI);
         close((-one).atan2(-one).scaled(-4.0), Double::PI.scaled(3.0));
-        close(decimal("2.0").sqrt(), decimal("1.4142135623730950488016887242096981"));
+        close(
+            decimal("2.0").sqrt(),
+            decimal("1.4142135623730950488016887242096981"),
+        );
     }
 
     #[test]
@@ -314,7 +326,9 @@ mod tests {
                 assert!((a.abs().log().exp() - a.abs()).abs().to_f64() < 1e-30 * a.abs().to_f64());
             }
             let turned = sin.atan2(cos).sin_cos();
-            assert!((turned.0 - sin).abs().to_f64() < 1e-31 && (turned.1 - cos).abs().to_f64() < 1e-31);
+            assert!(
+                (turned.0 - sin).abs().to_f64() < 1e-31 && (turned.1 - cos).abs().to_f64() < 1e-31
+            );
         }
     }
 }

@@ -54,9 +54,9 @@ pub fn rounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Rounded> {
         values[id as usize] = match graph.node(id) {
             Node::Constant(index) => nearest(Double::of_rational(graph.constant(index))),
             Node::Symbol(0) => nearest(Double::PI),
-            Node::Symbol(index) => {
-                nearest(Double::new(symbols.get(index as usize).copied().unwrap_or(0.0)))
-            }
+            Node::Symbol(index) => nearest(Double::new(
+                symbols.get(index as usize).copied().unwrap_or(0.0),
+            )),
             Node::Add(a, b) => {
                 let (a, b) = pair(a, b);
                 Rounded {
@@ -211,6 +211,8 @@ mod tests {
         assert!((only.exact.to_f64().abs() - wanted).abs() < 1e-24);
         let bound = bounded(&graph, &[angle], &[0.0, 1.0])[0];
         assert!(bound.error > 1e-16 && bound.error < 2e-15);
-        assert!((rounded(&graph, &[angle], &[0.0, 1.0])[0].rounded - bound.value).abs() <= bound.error);
+        assert!(
+            (rounded(&graph, &[angle], &[0.0, 1.0])[0].rounded - bound.value).abs() <= bound.error
+        );
     }
 }

@@ -31,7 +31,8 @@ pub fn assemble(
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let (mut program, mass) = put_together(full, reduction, linearized, &Care::default())?;
     let excess = care::excess(model, &program, &mass);
-    if excess > 0.0 {
+    // Rows that depend on one another amplify how far a start is off the loop, whatever is emitted.
+    if excess > 0.0 && !model.overconstrained {
         let (careful, mass) = put_together(full, reduction, linearized, &Care::of(model))?;
         if care::excess(model, &careful, &mass) < excess {
             program = careful;
@@ -115,12 +116,7 @@ pub(super) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(
-        model: &'a Model,
-        chosen: Acceleration,
-        computed: Computation,
-        care: &Care,
-    ) -> Self {
+    fn new(model: &'a Model, chosen: Acceleration, computed: Computation, care: &Care) -> Self {
         let Computation { mut graph, parts } = computed;
         let mut around = chosen.graph.clone();
         let shared = Computation {

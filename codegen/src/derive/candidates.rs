@@ -62,11 +62,7 @@ impl<'a> Candidates<'a> {
 
     fn keep(&mut self, cost: (usize, usize), graph: Cow<'a, Graph>, roots: Vec<Edge>) {
         if self.best.as_ref().is_none_or(|best| cost < best.cost) {
-            self.best = Some(Computed {
-                cost,
-                graph,
-                roots,
-            });
+            self.best = Some(Computed { cost, graph, roots });
         }
     }
 

@@ -95,7 +95,13 @@ pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64 {
 
 /// Whether M is solved with in a function.
 fn is_solved(name: &str) -> bool {
-    let solved = ["accel", "linearize", "velocity_of_momentum", "constraint_force", "settle"];
+    let solved = [
+        "accel",
+        "linearize",
+        "velocity_of_momentum",
+        "constraint_force",
+        "settle",
+    ];
     solved.contains(&name)
 }
 
@@ -142,7 +148,11 @@ mod tests {
 
     #[test]
     fn inverses_and_norms() {
-        let rows = vec![vec![4.0, 1.0, 0.0], vec![1.0, 3.0, -1.0], vec![0.0, -1.0, 2.0]];
+        let rows = vec![
+            vec![4.0, 1.0, 0.0],
+            vec![1.0, 3.0, -1.0],
+            vec![0.0, -1.0, 2.0],
+        ];
         let inverted = inverse(rows.clone());
         for i in 0..3 {
             for j in 0..3 {

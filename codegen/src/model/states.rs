@@ -15,18 +15,24 @@ const NEAR: f64 = 0.3;
 pub fn states(model: &Model) -> Vec<Vec<f64>> {
     let mut random = Random::new(0x57a7e);
     let mut all = vec![numbers(model, model.start_x.clone(), &mut random)];
-    let equations = (!model.points.constraints.is_empty())
-        .then(|| Equations::new(&model.points, &model.phi));
+    let equations =
+        (!model.points.constraints.is_empty()).then(|| Equations::new(&model.points, &model.phi));
     // Off a loop that is overconstrained its rows contradict one another.
     let zero = model.graph.zero();
-    let looped = model.constraints.iter().any(|constraint| constraint.residual != zero);
+    let looped = model
+        .constraints
+        .iter()
+        .any(|constraint| constraint.residual != zero);
     for _ in 0..RANDOM {
         if looped {
             all.push(numbers(model, model.start_x.clone(), &mut random));
             continue;
         }
         let Some(equations) = &equations else {
-            let x = model.blocks.iter().flat_map(|&block| anywhere(block, &mut random));
+            let x = model
+                .blocks
+                .iter()
+                .flat_map(|&block| anywhere(block, &mut random));
             let x = x.collect();
             all.push(numbers(model, x, &mut random));
             continue;

@@ -20,11 +20,7 @@ pub struct Measured<'a> {
 
 /// The digits that rounding takes of each of several functions at states, given by the values of all
 /// symbols; `None` where a function has no value at any of them, or is 0 at all.
-pub fn digits_lost(
-    graph: &Graph,
-    functions: &[Measured],
-    states: &[Vec<f64>],
-) -> Vec<Option<f64>> {
+pub fn digits_lost(graph: &Graph, functions: &[Measured], states: &[Vec<f64>]) -> Vec<Option<f64>> {
     let mut sizes = vec![(0.0_f64, 0.0_f64); functions.len()];
     let roots: Vec<Edge> = functions
         .iter()
@@ -43,9 +39,8 @@ pub fn digits_lost(
             }
         }
     }
-    let digits = |(error, size): (f64, f64)| {
-        (size > 0.0).then(|| (error / (UNIT * size)).max(1.0).log10())
-    };
+    let digits =
+        |(error, size): (f64, f64)| (size > 0.0).then(|| (error / (UNIT * size)).max(1.0).log10());
     sizes.into_iter().map(digits).collect()
 }
 

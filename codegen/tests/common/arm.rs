@@ -81,16 +81,26 @@ impl Arm {
             "system Arm { generate accel, mass_matrix, bias, potential_force; gravity [0, 0, -9.81];\n",
         );
         for (i, joint) in self.0.iter().enumerate() {
-            let on = i.checked_sub(1).map_or(String::new(), |b| format!("on f{b}"));
-            let kind = if joint.slides { "prismatic" } else { "revolute" };
+            let on = i
+                .checked_sub(1)
+                .map_or(String::new(), |b| format!("on f{b}"));
+            let kind = if joint.slides {
+                "prismatic"
+            } else {
+                "revolute"
+            };
             let axis: [u8; 3] = std::array::from_fn(|k| u8::from(k == joint.axis));
             let [r, p, y] = joint.rpy.map(Angle::text);
             let place = joint.place.map(Decimal::text).join(", ");
-            text += &format!("    input u{i}; joint j{i}: {kind} {axis:?} {on} at pose(rpy({r}, {p}, {y}), [{place}]) moves f{i} {{ force u{i}; }}\n");
+            text += &format!(
+                "    input u{i}; joint j{i}: {kind} {axis:?} {on} at pose(rpy({r}, {p}, {y}), [{place}]) moves f{i} {{ force u{i}; }}\n"
+            );
             let com = joint.com.map(Decimal::text).join(", ");
             let moments = joint.moments.map(Decimal::text).join(", ");
             let mass = joint.mass.text();
-            text += &format!("    body on f{i} {{ mass {mass}; com [{com}]; inertia diag({moments}) about com; }}\n");
+            text += &format!(
+                "    body on f{i} {{ mass {mass}; com [{com}]; inertia diag({moments}) about com; }}\n"
+            );
         }
         text + "}\n"
     }
@@ -143,7 +153,10 @@ impl Arm {
                 .iter()
                 .map(|(slides, axis, point)| match slides {
                     true => (zero3, *axis),
-                    false => (*axis, cross(axis, &add(&centre, &scale(-Double::ONE, point)))),
+                    false => (
+                        *axis,
+                        cross(axis, &add(&centre, &scale(-Double::ONE, point))),
+                    ),
                 })
                 .collect();
             for (j, (spin, speed)) in moved.iter().enumerate() {
@@ -187,7 +200,11 @@ impl Joint {
         };
         Joint {
             slides: index > 0 && random.below(8) == 0,
-            axis: if random.below(4) == 0 { random.below(3) } else { 2 },
+            axis: if random.below(4) == 0 {
+                random.below(3)
+            } else {
+                2
+            },
             rpy,
             place,
             mass: Decimal(1 + random.below(9) as i64, 0),
@@ -247,10 +264,14 @@ impl Dynamics {
     pub fn condition(&self) -> f64 {
         let n = self.mass.len();
         let unit = |k: usize| -> Vec<Double> {
-            (0..n).map(|i| Double::new(if i == k { 1.0 } else { 0.0 })).collect()
+            (0..n)
+                .map(|i| Double::new(if i == k { 1.0 } else { 0.0 }))
+                .collect()
         };
         let norm = |rows: &[Vec<Double>]| {
-            let sums = rows.iter().map(|row| row.iter().map(|e| e.abs().to_f64()).sum::<f64>());
+            let sums = rows
+                .iter()
+                .map(|row| row.iter().map(|e| e.abs().to_f64()).sum::<f64>());
             sums.fold(0.0, f64::max)
         };
         let inverse: Vec<Vec<Double>> = (0..n).map(|k| self.solve(&unit(k))).collect();

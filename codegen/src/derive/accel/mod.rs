@@ -153,8 +153,7 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
             let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
             let loss = care.loss(&graph, &solution.xi_dot, &pivots);
             let cost = (loss, count.weight(), depth);
-            if best.as_ref().is_some_and(|(best, _)| best.cost() <= cost)
-            {
+            if best.as_ref().is_some_and(|(best, _)| best.cost() <= cost) {
                 continue;
             }
             let route = format!(

@@ -44,7 +44,10 @@ impl Safe {
             return f64::NAN;
         }
         let values = bounded(graph, entries, &self.numbers).into_iter();
-        values.map(|entry| entry.value * entry.value).sum::<f64>().sqrt()
+        values
+            .map(|entry| entry.value * entry.value)
+            .sum::<f64>()
+            .sqrt()
     }
 
     /// Whether an origin may be moved by a distance.

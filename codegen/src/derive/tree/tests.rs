@@ -156,6 +156,9 @@ fn other_inertia_is_no_tree() {
         );
         let mut model = built(&text);
         let mut calculus = Calculus::new(&model);
-        assert!(Tree::of(&mut model, &mut calculus, Placement::Chosen).is_none(), "{other}");
+        assert!(
+            Tree::of(&mut model, &mut calculus, Placement::Chosen).is_none(),
+            "{other}"
+        );
     }
 }
