@@ -4,7 +4,7 @@ use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::Args;
-use hamel_codegen::derive::care::losses;
+use hamel_codegen::derive::care::{HELP, MANY, losses};
 use hamel_codegen::derive::check::{Identity, Verdict, check};
 use hamel_codegen::derive::geometry::Inspection;
 use hamel_codegen::derive::structure::choice::choose;
@@ -121,9 +121,14 @@ fn rounding(generated: &Generated) -> String {
         .zip(losses)
         .filter_map(|(function, digits)| {
             let digits = digits?;
+            let help = if digits >= MANY {
+                format!(". {HELP}")
+            } else {
+                String::new()
+            };
+            let name = &function.name;
             Some(format!(
-                "  rounding       {:width$}  loses {digits:.1} digits\n",
-                function.name
+                "  rounding       {name:width$}  loses {digits:.1} digits{help}\n"
             ))
         });
     lines.collect()

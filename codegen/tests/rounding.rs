@@ -9,6 +9,7 @@ use arm::{Angle, Arm, Decimal, Joint};
 use common::{Random, generated, value};
 use hamel_codegen::algebra::double::Double;
 use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::derive::care::losses;
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
@@ -137,9 +138,8 @@ fn awkward_axes_keep_their_digits() {
     );
 }
 
-/// Two parallel axes and one that is tilted by 1e-8 rad (issue: M₁₁ was 7.20 instead of 10.04).
-#[test]
-fn a_tilt_of_a_hundredth_of_a_millionth() {
+/// An axis across two parallel ones, the last of which is tilted.
+fn arm_of_three(tilt: Decimal) -> Arm {
     let (zero, one) = (Decimal(0, 0), Decimal(1, 0));
     let joint = |axis: usize, tilt: Decimal, place: Decimal, mass: Decimal| Joint {
         slides: false,
@@ -150,15 +150,84 @@ fn a_tilt_of_a_hundredth_of_a_millionth() {
         com: [one, Decimal(3, -1), Decimal(2, -1)],
         moments: [mass; 3],
     };
-    let arm = Arm(vec![
+    Arm(vec![
         joint(1, zero, zero, zero),
         joint(2, zero, one, zero),
-        joint(2, Decimal(1, -8), one, one),
-    ]);
+        joint(2, tilt, one, one),
+    ])
+}
+
+/// M₁₁ was 7.20 instead of 10.04.
+#[test]
+fn a_tilt_of_a_hundredth_of_a_millionth() {
+    let arm = arm_of_three(Decimal(1, -8));
     let system = generated(&arm.text());
     let still = [0.0; 3];
     let mass = value(&system, "mass_matrix", [&still, &still, &still, &[]]);
     assert!((mass[0] - 10.040000008).abs() < 1e-12, "{}", mass[0]);
     let worst = errors(&arm, &system, 1);
     assert!(worst.iter().all(|&error| error <= CLOSE), "{worst:?}");
+}
+
+/// What a description loses whichever candidate is taken is measured, and said.
+#[test]
+fn lost_digits_are_measured() {
+    let text = "system Lost {
+        coord x; velocity v; rate x = v; kinetic v^2 / 2; start x = 0.5;
+        output small = (1 - cos(1e-4 * x)) * 2e8;
+        output fine = x^2 + 3 * v;
+    }";
+    let system = generated(text);
+    let losses = losses(&system.active, &system.program);
+    let of = |name: &str| {
+        let mut functions = system.program.functions.iter();
+        functions
+            .position(|function| function.name == name)
+            .expect("it is there")
+    };
+    // 1 − cos(1e-4 x) is some 1e-9 and is known to 1e-16.
+    let (small, fine) = (of("small"), of("fine"));
+    let lost = losses[small].expect("it has values");
+    assert!((7.0..10.0).contains(&lost), "{lost}");
+    assert!(losses[fine].expect("it has values") < 1.0);
+    let says = |index: usize| {
+        system.program.functions[index]
+            .docs
+            .concat()
+            .contains("Rounding takes")
+    };
+    assert!(says(small) && !says(fine));
+    // The measure is what f64 does: against x² − 1e-8 x⁴ / 12.
+    let (x, v) = (0.7, 0.2);
+    let found = value(&system, "small", [&[x], &[v], &[], &[]])[0];
+    let error = (found - (x * x - 1e-8 * x.powi(4) / 12.0)).abs();
+    assert!(error > 1e-12 && error < 1e-6, "{error:e}");
+}
+
+/// Where the scene stands in the world does not loosen the bounds for its frames.
+#[test]
+fn far_from_the_origin_of_the_world() {
+    let text = "system Far {
+        generate mass_matrix, accel; gravity [0, 0, -9.81];
+        joint a: revolute [0, 1, 0] at pose(identity(3), [1e6, -2e6, 3e6]) moves f;
+        joint b: revolute [0, 0, 1] on f at pose(identity(3), [1, 0, 0]) moves g;
+        joint c: revolute [0, 0, 1] on g at pose(roty(1e-3), [1, 0, 0]) moves h;
+        body on h { mass 1; com [1, 0.3, 0.2]; inertia diag(1, 1, 1) about com; }
+    }";
+    let near = text.replace("[1e6, -2e6, 3e6]", "[0, 0, 0]");
+    let state = [0.3, -0.4, 0.8];
+    let of = |text: &str| {
+        value(
+            &generated(text),
+            "mass_matrix",
+            [&state, &[0.0; 3], &[], &[]],
+        )
+    };
+    let (far, near) = (of(text), of(&near));
+    let exact = arm_of_three(Decimal(1, -3))
+        .dynamics(&state, &[0.0; 3])
+        .mass
+        .concat();
+    let scale = largest(&exact);
+    assert!(apart(&far, &exact) <= CLOSE * scale && apart(&near, &exact) <= CLOSE * scale);
 }

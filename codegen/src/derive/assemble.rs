@@ -30,13 +30,18 @@ pub fn assemble(
 ) -> Result<Program, Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let (mut program, mass) = put_together(full, reduction, linearized, &Care::default())?;
-    let excess = care::excess(model, &program, &mass);
     // Rows that depend on one another amplify how far a start is off the loop, whatever is emitted.
-    if excess > 0.0 && !model.overconstrained {
-        let (careful, mass) = put_together(full, reduction, linearized, &Care::of(model))?;
-        if care::excess(model, &careful, &mass) < excess {
-            program = careful;
+    if !model.overconstrained {
+        let mut losses = care::losses(model, &program);
+        let excess = care::excess(model, &program, &mass, &losses);
+        if excess > 0.0 {
+            let (careful, mass) = put_together(full, reduction, linearized, &Care::of(model))?;
+            let kept = care::losses(model, &careful);
+            if care::excess(model, &careful, &mass, &kept) < excess {
+                (program, losses) = (careful, kept);
+            }
         }
+        care::note(&mut program, &losses);
     }
     match reduction {
         Some(reduction) => constrained::validate(full, reduction, &program)?,

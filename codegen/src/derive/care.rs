@@ -12,6 +12,10 @@ use crate::model::states::states;
 use crate::program::Program;
 use crate::program::rounding::{Measured, digits_lost};
 
+/// Functions that lose so many digits say so.
+pub const MANY: f64 = 6.0;
+/// What keeps digits that all candidates lose.
+pub const HELP: &str = "Frames near their bodies, and no differences of large terms, keep more.";
 /// Digits that a function may lose before candidates are compared by them.
 const ENOUGH: f64 = 2.5;
 /// The same for candidates: what is lost below counts nothing.
@@ -80,10 +84,10 @@ pub fn losses(model: &Model, program: &Program) -> Vec<Option<f64>> {
 
 /// By how many digits the worst function of a program loses more than it should: what is solved with M
 /// may lose as many more as the condition of M has. 0 where all is well.
-pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64 {
+pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Option<f64>]) -> f64 {
     let mut condition = None;
     let mut worst = 0.0_f64;
-    for (function, digits) in program.functions.iter().zip(losses(model, program)) {
+    for (function, digits) in program.functions.iter().zip(losses) {
         let mut beyond = digits.unwrap_or(0.0) - ENOUGH;
         if beyond > 0.0 && is_solved(&function.name) {
             beyond -= *condition.get_or_insert_with(|| condition_digits(model, program, mass));
@@ -91,6 +95,19 @@ pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64 {
         worst = worst.max(beyond);
     }
     worst
+}
+
+/// Says in the documentation of functions that lose many digits that they do, and what helps.
+pub fn note(program: &mut Program, losses: &[Option<f64>]) {
+    for (function, digits) in program.functions.iter_mut().zip(losses) {
+        if let Some(digits) = digits.filter(|&digits| digits >= MANY) {
+            let digits = digits.min(16.0);
+            function.docs.extend([
+                String::new(),
+                format!("Rounding takes about {digits:.0} of its 16 digits at the start or near it. {HELP}"),
+            ]);
+        }
+    }
 }
 
 /// Whether M is solved with in a function.

@@ -115,15 +115,22 @@ fn normal(
         .map(|z| (-z[1], z[0]))
         .collect();
     let oblique = |&(x, y): &(Edge, Edge)| x.abs() != zero || y.abs() != zero;
-    if let Some((x, y)) = directions.into_iter().find(oblique) {
-        return direction(graph, x, y);
+    for (x, y) in directions.into_iter().filter(oblique) {
+        let (c, s) = direction(graph, x, y)?;
+        if safe.is_sharp(graph, &[c, s]) {
+            return Some((c, s));
+        }
     }
-    let arm = children.iter().map(|&j| links[j].position);
-    let arm = arm.into_iter().find(|p| {
-        let oblique = numeric(graph, &p[..2]) && p[0] != zero && p[1] != zero;
-        oblique && safe.has_direction(graph, &p[..2])
-    })?;
-    direction(graph, arm[0], arm[1])
+    let arms = children.iter().map(|&j| links[j].position);
+    for p in arms.filter(|p| p[0] != zero && p[1] != zero) {
+        if numeric(graph, &p[..2]) && safe.has_direction(graph, &p[..2]) {
+            let (c, s) = direction(graph, p[0], p[1])?;
+            if safe.is_sharp(graph, &[c, s]) {
+                return Some((c, s));
+            }
+        }
+    }
+    None
 }
 
 /// (x, y) / √(x² + y²); `None` where that is no turn at all.
@@ -225,7 +232,9 @@ fn tilt(graph: &mut Graph, z: Vec3, safe: &Safe) -> Option<[Turn; 2]> {
     if safe.has_direction(graph, &[x, y]) {
         let length = hypotenuse(graph, x, y);
         let (c, s) = (-graph.div(y, length)?, graph.div(x, length)?);
-        return Some([about(2, c, s), about(0, w, length)]);
+        if safe.is_sharp(graph, &[c, s]) {
+            return Some([about(2, c, s), about(0, w, length)]);
+        }
     }
     let length = hypotenuse(graph, y, w);
     let (c, s) = (graph.div(w, length)?, -graph.div(y, length)?);

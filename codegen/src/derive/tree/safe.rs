@@ -16,7 +16,8 @@ const BLUR: f64 = 256.0;
 pub struct Safe {
     /// Default values of parameters.
     numbers: Vec<f64>,
-    /// The greatest distance between an origin and the one before or a centre of mass (m).
+    /// The greatest distance between an origin and the one before or a centre of mass (m); where in the
+    /// world the first links stand does not count.
     size: f64,
 }
 
@@ -29,9 +30,11 @@ impl Safe {
         };
         let graph = &model.graph;
         for link in links {
-            let mut lengths = vec![safe.length(graph, &link.position)];
             let mass = safe.length(graph, &[link.mass.mass]);
-            lengths.push(safe.length(graph, &link.mass.first) / mass);
+            let mut lengths = vec![safe.length(graph, &link.mass.first) / mass];
+            if link.parent.is_some() {
+                lengths.push(safe.length(graph, &link.position));
+            }
             let known = lengths.into_iter().filter(|length| length.is_finite());
             safe.size = known.fold(safe.size, f64::max);
         }
@@ -64,5 +67,12 @@ impl Safe {
         };
         let (length, error) = (norm(|value, _| value), norm(|_, error| error));
         length > 0.0 && error <= BLUR * UNIT * length
+    }
+
+    /// Whether rounding leaves a cosine and a sine what they are: their root may be known by another
+    /// expression, in which digits cancel.
+    pub fn is_sharp(&self, graph: &Graph, turn: &[Edge]) -> bool {
+        let entries = bounded(graph, turn, &self.numbers);
+        entries.iter().all(|entry| entry.error <= BLUR * UNIT)
     }
 }
