@@ -93,10 +93,11 @@ pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> 
         }
     }
     let mut computations = search(&given, &mut best, care)?;
-    if model.n() <= SMALL && model.spans {
-        if let Some(twist) = Setting::twist(model) {
-            search(&twist, &mut best, care);
-        }
+    if model.n() <= SMALL
+        && model.spans
+        && let Some(twist) = Setting::twist(model)
+    {
+        search(&twist, &mut best, care);
     }
     if model.n() <= SMALL && model.spans && !care.is_taken() {
         let most = best.as_ref().map_or(usize::MAX, |best| best.count.weight());
