@@ -4,6 +4,7 @@ use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::Args;
+use hamel_codegen::derive::care::{HELP, MANY, losses};
 use hamel_codegen::derive::check::{Identity, Verdict, check};
 use hamel_codegen::derive::geometry::Inspection;
 use hamel_codegen::derive::structure::choice::choose;
@@ -19,6 +20,9 @@ use std::path::PathBuf;
 ///
 /// Below them stands what the symbols say about the geometry: which velocities are integrable and what
 /// they are the rates of, which Lie algebra the frame is, the pattern of M, and symmetries.
+/// "rounding" is what each function loses of its sixteen digits, as computed in f64 and in twice the
+/// length at the start and at states beside it, relative to the largest entry of the result.
+///
 /// The last lines say what methods of integration ask: whether the equations split into free motion
 /// and kicks, what stands in the way where they do not, and the method that `simulate --method auto`
 /// takes.
@@ -46,6 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let generated = source.derive_all()?;
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
+            print(&rounding(&generated))?;
             print(&geometry(&generated))?;
             print(&methods(&generated))?;
             let failed = identities
@@ -104,6 +109,29 @@ fn table(identities: &[Identity]) -> String {
             )
         })
         .collect()
+}
+
+/// The digits, of the sixteen of `f64`, that rounding takes of every function.
+fn rounding(generated: &Generated) -> String {
+    let functions = &generated.program.functions;
+    let losses = losses(&generated.active, &generated.program);
+    let width = functions.iter().map(|f| f.name.len()).max().unwrap_or(0);
+    let lines = functions
+        .iter()
+        .zip(losses)
+        .filter_map(|(function, digits)| {
+            let digits = digits?;
+            let help = if digits >= MANY {
+                format!(". {HELP}")
+            } else {
+                String::new()
+            };
+            let name = &function.name;
+            Some(format!(
+                "  rounding       {name:width$}  loses {digits:.1} digits{help}\n"
+            ))
+        });
+    lines.collect()
 }
 
 /// Integrable velocities, the Lie algebra of the frame, the pattern of M, symmetries.

@@ -466,3 +466,14 @@ fn tables_and_counts_come_in_every_format() {
     );
     assert!(counts["parameters"]["kept"].as_u64() > Some(0));
 }
+
+#[test]
+fn check_prints_what_rounding_takes() {
+    let printed = stdout(&["check", &model("heavy_top.eom")]);
+    let line = printed
+        .lines()
+        .find(|line| line.contains("rounding") && line.contains(" accel "));
+    let digits = line.and_then(|line| line.split("loses ").nth(1)?.split(' ').next());
+    let digits: Option<f64> = digits.and_then(|digits| digits.parse().ok());
+    assert!(digits.is_some_and(|digits| digits < 2.0), "{printed}");
+}

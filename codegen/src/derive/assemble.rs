@@ -4,6 +4,7 @@ use super::accel::cheapest::Computation;
 use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel};
 use super::calculus::Calculus;
+use super::care::{self, Care};
 use super::reduction::Reduction;
 use super::structure::{self, Found};
 use super::{constrained, correction, energy, inertia, kinematics, loads};
@@ -20,12 +21,43 @@ use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 /// entries of all bodies, would take longer than all else.
 const MOST_LITERAL: usize = 8;
 
-/// Derives the functions of a model that are wanted; `reduction` solves its constraints.
+/// Derives the functions of a model that are wanted; `reduction` solves its constraints. The program is
+/// the cheapest one, or, where rounding takes too much of that, the one that keeps more digits.
 pub fn assemble(
     full: &Model,
     reduction: Option<&Reduction>,
     linearized: bool,
 ) -> Result<Program, Diagnostic> {
+    let model = reduction.map_or(full, |reduction| &reduction.model);
+    let (mut program, mass) = put_together(full, reduction, linearized, &Care::default())?;
+    // Rows that depend on one another amplify how far a start is off the loop, whatever is emitted.
+    if !model.overconstrained {
+        let mut losses = care::losses(model, &program);
+        let excess = care::excess(model, &program, &mass, &losses);
+        if excess > 0.0 {
+            let (careful, mass) = put_together(full, reduction, linearized, &Care::of(model))?;
+            let kept = care::losses(model, &careful);
+            if care::excess(model, &careful, &mass, &kept) < excess {
+                (program, losses) = (careful, kept);
+            }
+        }
+        care::note(&mut program, &losses);
+    }
+    match reduction {
+        Some(reduction) => constrained::validate(full, reduction, &program)?,
+        None => super::validate::validate(model, &program)?,
+    }
+    correction::validate(full, &program)?;
+    Ok(program)
+}
+
+/// The program before it is validated, and M in its graph.
+fn put_together(
+    full: &Model,
+    reduction: Option<&Reduction>,
+    linearized: bool,
+    care: &Care,
+) -> Result<(Program, Vec<Vec<Edge>>), Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
     if model.n() <= MOST_LITERAL {
@@ -33,7 +65,7 @@ pub fn assemble(
         let mass = inertia::mass_matrix(&mut reference, &mut calculus);
         inertia::positive_definite(model, &reference.graph, &mass)?;
     }
-    let Some((chosen, computed)) = accel(model) else {
+    let Some((chosen, computed)) = accel(model, care) else {
         return Err(Diagnostic::new(
             model.span,
             "the mass matrix is singular for every configuration",
@@ -44,7 +76,7 @@ pub fn assemble(
         inertia::positive_definite(model, &computed.graph, &computed.parts.mass)?;
     }
     let potential = energy::potential(&mut reference);
-    let mut builder = Builder::new(model, chosen, computed);
+    let mut builder = Builder::new(model, chosen, computed, care);
     builder.kinematics();
     builder.dynamics(&reference.graph, potential);
     builder.momentum();
@@ -62,13 +94,8 @@ pub fn assemble(
     let Computation { graph, parts } = &builder.shared;
     let found = structure::analyse(full, model, graph, parts);
     let structure = builder.splitting(found)?;
-    let program = builder.finish(structure);
-    match reduction {
-        Some(reduction) => constrained::validate(full, reduction, &program)?,
-        None => super::validate::validate(model, &program)?,
-    }
-    correction::validate(full, &program)?;
-    Ok(program)
+    let mass = builder.parts.mass.clone();
+    Ok((builder.finish(structure), mass))
 }
 
 /// The functions so far, and what they are made from.
@@ -85,6 +112,8 @@ pub(super) struct Builder<'a> {
     pub(super) shared: Computation,
     /// The functions.
     pub(super) functions: Vec<Function>,
+    /// How candidates are compared.
+    pub(super) care: Care,
     /// Pivots of [Y; Φ].
     pub(super) kinematic_guards: Vec<Edge>,
     /// Pivots of the inertias of a system that splits, where M has none that are constant.
@@ -92,7 +121,7 @@ pub(super) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(model: &'a Model, chosen: Acceleration, computed: Computation) -> Self {
+    fn new(model: &'a Model, chosen: Acceleration, computed: Computation, care: &Care) -> Self {
         let Computation { mut graph, parts } = computed;
         let mut around = chosen.graph.clone();
         let shared = Computation {
@@ -107,6 +136,7 @@ impl<'a> Builder<'a> {
             parts,
             shared,
             functions: Vec::new(),
+            care: care.clone(),
             kinematic_guards,
             split_guards: Vec::new(),
         }

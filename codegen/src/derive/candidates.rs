@@ -1,5 +1,6 @@
 //! Of several computations of the same values the cheapest.
 
+use super::care::Care;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{graft, rebuild};
 use crate::program::count::count;
@@ -12,31 +13,41 @@ const LARGE: usize = 3000;
 /// at length does not lengthen it.
 #[derive(Default)]
 pub struct Candidates<'a> {
+    care: Care,
     best: Option<Computed<'a>>,
 }
 
 struct Computed<'a> {
-    weight: usize,
+    /// Loss of digits, as far as it counts, and operations.
+    cost: (usize, usize),
     graph: Cow<'a, Graph>,
     roots: Vec<Edge>,
 }
 
 impl<'a> Candidates<'a> {
     /// No computation yet.
-    pub fn new() -> Self {
-        Candidates::default()
+    pub fn with(care: &Care) -> Self {
+        Candidates {
+            care: care.clone(),
+            best: None,
+        }
+    }
+
+    fn cost(&self, graph: &Graph, roots: &[Edge]) -> (usize, usize) {
+        let loss = self.care.loss(graph, roots, &[]);
+        (loss, count(graph, roots).weight())
     }
 
     /// One more computation, in a graph that others share.
     pub fn offer(&mut self, graph: &'a Graph, roots: Vec<Edge>) {
-        let weight = count(graph, &roots).weight();
-        self.keep(weight, Cow::Borrowed(graph), roots);
+        let cost = self.cost(graph, &roots);
+        self.keep(cost, Cow::Borrowed(graph), roots);
     }
 
     /// One more computation, in a graph of its own.
     pub fn offer_own(&mut self, graph: Graph, roots: Vec<Edge>) {
-        let weight = count(&graph, &roots).weight();
-        self.keep(weight, Cow::Owned(graph), roots);
+        let cost = self.cost(&graph, &roots);
+        self.keep(cost, Cow::Owned(graph), roots);
     }
 
     /// One more computation, as it stands and as what it becomes where other things are computed already.
@@ -49,13 +60,9 @@ impl<'a> Candidates<'a> {
         self.offer_own(graph, roots);
     }
 
-    fn keep(&mut self, weight: usize, graph: Cow<'a, Graph>, roots: Vec<Edge>) {
-        if self.best.as_ref().is_none_or(|best| weight < best.weight) {
-            self.best = Some(Computed {
-                weight,
-                graph,
-                roots,
-            });
+    fn keep(&mut self, cost: (usize, usize), graph: Cow<'a, Graph>, roots: Vec<Edge>) {
+        if self.best.as_ref().is_none_or(|best| cost < best.cost) {
+            self.best = Some(Computed { cost, graph, roots });
         }
     }
 

@@ -23,7 +23,7 @@ impl Builder<'_> {
         }
         let n = self.model.n();
         if self.model.wants("momentum_rate") {
-            let mut candidates = Candidates::new();
+            let mut candidates = Candidates::with(&self.care);
             let mut graph = self.shared.graph.clone();
             let rate = momentum::rate(self.model, &mut graph, &self.shared.parts);
             candidates.offer_own(graph, rate);
@@ -48,7 +48,7 @@ impl Builder<'_> {
         let found = contexts.map(|(graph, parts)| momentum::velocity(graph, parts, p));
         let cheapest = found.into_iter().flatten().min_by_key(|(cost, ..)| *cost);
         if let Some((_, graph, solution)) = cheapest {
-            let mut candidates = Candidates::new();
+            let mut candidates = Candidates::with(&self.care);
             candidates.offer_both(
                 graph,
                 [solution.xi_dot, solution.pivots].concat(),
@@ -84,7 +84,7 @@ impl Builder<'_> {
             // With multipliers M F is not the right-hand side.
             implicit: (self.model.constraints.is_empty()).then_some((&parts.mass, &right)),
         };
-        let linear = linearize(self.model, &motion);
+        let linear = linearize(self.model, &motion, &self.care);
         let rows = linear.rows.len();
         let columns = linear.rows.first().map_or(0, Vec::len);
         let outputs = graft(&linear.graph, &mut self.graph, &linear.rows.concat());

@@ -9,6 +9,7 @@ use super::accel::recursive::Recursion;
 use super::accel::setting::Setting;
 use super::accel::solve::solve_columns;
 use super::calculus::Calculus;
+use super::care::Care;
 use super::reduction::Reduction;
 use super::{commutation, kinematics};
 use crate::algebra::derivation::Derivation;
@@ -88,24 +89,31 @@ impl Displacements {
 /// Linearises; `model` is that of the active velocities. The cheapest of three ways is taken: F itself
 /// differentiated; M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all columns; the
 /// entries expanded, their coefficients computed when parameters are set.
-pub fn linearize(model: &Model, motion: &Motion) -> Linear {
+pub fn linearize(model: &Model, motion: &Motion, care: &Care) -> Linear {
     let upper = upper(model, motion);
-    let recursion = Recursion::of(&Setting::given(model));
+    let placements = care.placements().iter();
+    let recursions: Vec<Recursion> = placements
+        .filter_map(|&placement| Recursion::of(&Setting::given(model), placement))
+        .collect();
     // Beyond a few links nothing comes near the recursion.
-    let long = recursion.as_ref().is_some_and(Recursion::is_long);
-    let mut candidates: Vec<Linear> = recursion
-        .and_then(|recursion| recursive(model, motion, &recursion, &upper))
-        .into_iter()
+    let long = recursions.first().is_some_and(Recursion::is_long);
+    let mut candidates: Vec<Linear> = recursions
+        .iter()
+        .filter_map(|recursion| recursive(model, motion, recursion, &upper))
         .collect();
     if candidates.is_empty() || !(long || model.n() > MOST_EXPANDED) {
         let explicit = explicit(model, motion, &upper);
-        if model.n() <= MOST_EXPANDED {
+        if model.n() <= MOST_EXPANDED && !care.is_taken() {
             candidates.extend(expanded(model, &explicit, motion.graph));
         }
         candidates.extend(implicit(model, motion, &upper));
         candidates.push(explicit);
     }
-    let cost = |linear: &Linear| count(&linear.graph, &linear.rows.concat()).weight();
+    let cost = |linear: &Linear| {
+        let rows = linear.rows.concat();
+        let loss = care.loss(&linear.graph, &rows, &[]);
+        (loss, count(&linear.graph, &rows).weight())
+    };
     // The first of equals; there is always one.
     let cheapest = (1..candidates.len()).fold(0, |best, i| {
         if cost(&candidates[i]) < cost(&candidates[best]) {

@@ -36,6 +36,7 @@ pub mod adviser;
 pub mod assemble;
 pub mod calculus;
 mod candidates;
+pub mod care;
 pub mod check;
 pub mod commutation;
 pub mod complement;

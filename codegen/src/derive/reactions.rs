@@ -27,7 +27,7 @@ impl Builder<'_> {
         if self.model.overconstrained {
             return;
         }
-        let mut candidates = Candidates::new();
+        let mut candidates = Candidates::with(&self.care);
         let contexts = [self.shared.graph.clone(), self.graph.clone()];
         for mut graph in contexts.into_iter().chain([self.chosen.graph.clone()]) {
             let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut graph) else {

@@ -37,6 +37,7 @@ pub mod rotations;
 mod samples;
 pub mod scope;
 mod start;
+pub mod states;
 mod tangency;
 pub mod value;
 mod variety;

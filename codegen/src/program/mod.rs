@@ -2,6 +2,7 @@
 
 pub mod count;
 pub mod interpret;
+pub mod rounding;
 pub mod schedule;
 pub mod structure;
 

@@ -5,6 +5,7 @@ use super::parts::Parts;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
 use crate::derive::candidates::Candidates;
+use crate::derive::care::Care;
 use crate::model::Model;
 
 /// A computation of M and forces, in a graph of its own.
@@ -27,6 +28,7 @@ pub fn cheapest(
     mut computations: Vec<Computation>,
     chosen: &Graph,
     model: &Model,
+    care: &Care,
 ) -> Option<Computation> {
     let functions: Vec<Functions> = computations
         .iter_mut()
@@ -43,7 +45,7 @@ pub fn cheapest(
             (merged, functions)
         })
         .collect();
-    let mut all: [Candidates; 5] = std::array::from_fn(|_| Candidates::new());
+    let mut all: [Candidates; 5] = std::array::from_fn(|_| Candidates::with(care));
     let traced = computations.iter().map(|computation| &computation.graph);
     let computed = traced
         .zip(&functions)

@@ -14,6 +14,7 @@ pub mod solve;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::resubstitute::resubstitute;
+use crate::derive::care::Care;
 use crate::model::Model;
 use crate::program::count::{Count, count, depth};
 use cheapest::{Computation, cheapest};
@@ -45,6 +46,8 @@ pub struct Acceleration {
     pub multipliers: Vec<Edge>,
     /// What leads back to these constraints, where there are some.
     pub projections: Option<Projections>,
+    /// The digits that rounding takes of it, in steps, as far as they count.
+    pub loss: usize,
     /// Its operations.
     pub count: Count,
     /// Its longest chain of operations after one another: of two equal counts the flatter is faster.
@@ -53,16 +56,29 @@ pub struct Acceleration {
     pub route: String,
 }
 
+impl Acceleration {
+    /// Digits first, where they count, then operations, then depth.
+    fn cost(&self) -> (usize, usize, usize) {
+        (self.loss, self.count.weight(), self.depth)
+    }
+}
+
 /// The cheapest computation of ξ̇; M and the forces as each is cheapest, in a graph where ξ̇ is, too.
-pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
+pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> {
     let mut best: Option<Acceleration> = None;
     let given = Setting::given(model);
     if !model.constraints.is_empty() {
-        return constrained(&given);
+        return constrained(&given, care);
     }
-    let recursion = Recursion::of(&given);
-    if let Some(recursion) = &recursion {
-        recursion.search(&mut best);
+    let placements = care.placements().iter();
+    let recursions: Vec<Recursion> = placements
+        .filter_map(|&placement| Recursion::of(&given, placement))
+        .collect();
+    for recursion in &recursions {
+        recursion.search(&mut best, care);
+    }
+    let traced = || recursions.iter().map(Recursion::parts);
+    if let Some(recursion) = recursions.first() {
         // What moves in a plane is short for longer.
         let plain = |variant: &Variant| {
             let (traced, parts) = trace(&given, *variant);
@@ -72,28 +88,31 @@ pub fn accel(model: &Model) -> Option<(Acceleration, Computation)> {
         let short = || !recursion.is_long() || variants(model, false).iter().any(plain);
         if model.n() > SMALL || !short() {
             let best = best?;
-            let computed = cheapest(vec![recursion.parts()], &best.graph, model)?;
+            let computed = cheapest(traced().collect(), &best.graph, model, care)?;
             return Some((best, computed));
         }
     }
-    let mut computations = search(&given, &mut best)?;
-    if model.n() <= SMALL && model.spans {
-        if let Some(twist) = Setting::twist(model) {
-            search(&twist, &mut best);
-        }
+    let mut computations = search(&given, &mut best, care)?;
+    if model.n() <= SMALL
+        && model.spans
+        && let Some(twist) = Setting::twist(model)
+    {
+        search(&twist, &mut best, care);
+    }
+    if model.n() <= SMALL && model.spans && !care.is_taken() {
         let most = best.as_ref().map_or(usize::MAX, |best| best.count.weight());
         for candidate in polynomial::candidates(model, most) {
-            keep(&mut best, candidate);
+            keep(&mut best, candidate, care);
         }
     }
-    let best = polished(best?, model);
-    computations.extend(recursion.map(|recursion| recursion.parts()));
-    let computed = cheapest(computations, &best.graph, model)?;
+    let best = polished(best?, model, care);
+    computations.extend(traced());
+    let computed = cheapest(computations, &best.graph, model, care)?;
     Some((best, computed))
 }
 
 /// The cheapest computation with multipliers.
-fn constrained(setting: &Setting) -> Option<(Acceleration, Computation)> {
+fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computation)> {
     let n = setting.model.n();
     let rows: Vec<Vec<Edge>> = setting
         .model
@@ -133,11 +152,9 @@ fn constrained(setting: &Setting) -> Option<(Acceleration, Computation)> {
             let mut roots = solution.xi_dot.clone();
             roots.extend(pivots.iter().filter(varying));
             let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
-            let cost = (count.weight(), depth);
-            if best
-                .as_ref()
-                .is_some_and(|(best, _)| (best.count.weight(), best.depth) <= cost)
-            {
+            let loss = care.loss(&graph, &solution.xi_dot, &pivots);
+            let cost = (loss, count.weight(), depth);
+            if best.as_ref().is_some_and(|(best, _)| best.cost() <= cost) {
                 continue;
             }
             let route = format!(
@@ -151,6 +168,7 @@ fn constrained(setting: &Setting) -> Option<(Acceleration, Computation)> {
                 pivots,
                 multipliers: solution.multipliers,
                 projections: Some(projections),
+                loss,
                 count,
                 depth,
                 route,
@@ -164,7 +182,7 @@ fn constrained(setting: &Setting) -> Option<(Acceleration, Computation)> {
 }
 
 /// The chosen computation after resubstitution.
-fn polished(chosen: Acceleration, model: &Model) -> Acceleration {
+fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
     let roots: Vec<Edge> = chosen
         .xi_dot
         .iter()
@@ -181,6 +199,7 @@ fn polished(chosen: Acceleration, model: &Model) -> Acceleration {
         .filter(|edge| !graph.is_free(edge.node()))
         .collect::<Vec<_>>();
     let polished = Acceleration {
+        loss: care.loss(&graph, xi_dot, pivots),
         count: count(&graph, &varying),
         depth: depth(&graph, &varying),
         route: chosen.route.clone(),
@@ -190,7 +209,8 @@ fn polished(chosen: Acceleration, model: &Model) -> Acceleration {
         projections: None,
         graph,
     };
-    if polished.count.weight() < chosen.count.weight() {
+    let cost = |a: &Acceleration| (a.loss, a.count.weight());
+    if cost(&polished) < cost(&chosen) {
         polished
     } else {
         chosen
@@ -199,7 +219,11 @@ fn polished(chosen: Acceleration, model: &Model) -> Acceleration {
 
 /// Counts the candidates of a setting; what was traced, that of the best of them first, and for systems
 /// that are not small alone.
-fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Vec<Computation>> {
+fn search(
+    setting: &Setting,
+    best: &mut Option<Acceleration>,
+    care: &Care,
+) -> Option<Vec<Computation>> {
     let small = setting.model.n() <= SMALL;
     let mut chosen: Option<(usize, Variant)> = None;
     let mut computations = Vec::new();
@@ -212,7 +236,7 @@ fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Vec<Comp
                 if chosen.is_none_or(|(least, _)| weight < least) {
                     chosen = Some((weight, variant));
                 }
-                keep(best, candidate);
+                keep(best, candidate, care);
             }
         }
         let graph = traced.graph;
@@ -230,7 +254,7 @@ fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Vec<Comp
             let (traced, parts) = trace(setting, variant);
             for plan in all_plans(&traced.graph, &parts) {
                 if let Some(candidate) = attempt(setting, &traced, &parts, &plan, &variant) {
-                    keep(best, candidate);
+                    keep(best, candidate, care);
                 }
             }
         }
@@ -239,11 +263,11 @@ fn search(setting: &Setting, best: &mut Option<Acceleration>) -> Option<Vec<Comp
     Some(computations)
 }
 
-fn keep(best: &mut Option<Acceleration>, candidate: Acceleration) {
-    let cost = |a: &Acceleration| (a.count.weight(), a.depth);
+fn keep(best: &mut Option<Acceleration>, mut candidate: Acceleration, care: &Care) {
+    candidate.loss = care.loss(&candidate.graph, &candidate.xi_dot, &candidate.pivots);
     let better = best
         .as_ref()
-        .is_none_or(|best| cost(&candidate) < cost(best));
+        .is_none_or(|best| candidate.cost() < best.cost());
     if better {
         *best = Some(candidate);
     }
@@ -302,6 +326,7 @@ fn attempt(
         pivots: solution.pivots,
         multipliers: Vec::new(),
         projections: None,
+        loss: 0,
         count,
         depth,
         route,

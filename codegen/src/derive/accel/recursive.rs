@@ -9,10 +9,11 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::zero3;
 use crate::algebra::transplant::map_symbols;
+use crate::derive::care::Care;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{inverse, wrenches};
 use crate::derive::tree::nearby::slopes;
-use crate::derive::tree::{Tree, articulated, composite};
+use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;
 use crate::program::count::{count, depth};
 
@@ -32,13 +33,13 @@ pub struct Recursion {
 
 impl Recursion {
     /// The recursion over a model's links, where they are a tree.
-    pub fn of(setting: &Setting) -> Option<Self> {
+    pub fn of(setting: &Setting, placement: Placement) -> Option<Self> {
         let mut model = setting.model.clone();
         let mut calculus = setting.calculus.clone();
         if !model.constraints.is_empty() || setting.back.is_some() {
             return None;
         }
-        let tree = Tree::of(&mut model, &mut calculus)?;
+        let tree = Tree::of(&mut model, &mut calculus, placement)?;
         let elastic = loads::elastic(&mut model, &mut calculus);
         let loads = loads::applied(&mut model, &mut calculus);
         let applied = (0..model.n())
@@ -67,7 +68,7 @@ impl Recursion {
     }
 
     /// Counts articulated bodies, and M with elimination from the leaves and from the root.
-    pub fn search(&self, best: &mut Option<Acceleration>) {
+    pub fn search(&self, best: &mut Option<Acceleration>, care: &Care) {
         let n = self.model.n();
         let rest = vec![self.model.graph.zero(); n];
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
@@ -77,10 +78,8 @@ impl Recursion {
             let forces = wrenches(&mut graph, &self.tree, xi, &rest, gravity);
             if let Some(solution) = articulated::forward(&mut graph, &self.tree, &forces, &load) {
                 let route = "links traced, articulated bodies".to_string();
-                keep(
-                    best,
-                    candidate(graph, solution.xi_dot, solution.pivots, route),
-                );
+                let candidate = candidate(graph, solution.xi_dot, solution.pivots, route);
+                keep(best, candidate, care);
             }
         }
         let mut graph = self.model.graph.clone();
@@ -112,10 +111,8 @@ impl Recursion {
             let mut graph = graph.clone();
             if let Some(solution) = solve(&mut graph, &given, &plan) {
                 let route = format!("links traced, composite bodies, M eliminated {way}");
-                keep(
-                    best,
-                    candidate(graph, solution.xi_dot, solution.pivots, route),
-                );
+                let candidate = candidate(graph, solution.xi_dot, solution.pivots, route);
+                keep(best, candidate, care);
             }
         }
     }
@@ -207,6 +204,7 @@ fn candidate(graph: Graph, xi_dot: Vec<Edge>, pivots: Vec<Edge>, route: String) 
         pivots,
         multipliers: Vec::new(),
         projections: None,
+        loss: 0,
         route,
     }
 }

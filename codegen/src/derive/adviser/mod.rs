@@ -7,6 +7,7 @@
 mod rates;
 
 use super::accel::accel;
+use super::care::Care;
 use super::kinematics;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Function, Node};
@@ -196,7 +197,7 @@ impl Choice {
         as_written: bool,
         model: Model,
     ) -> Result<Self, String> {
-        let Some((chosen, _)) = accel(&model) else {
+        let Some((chosen, _)) = accel(&model, &Care::default()) else {
             return Err("the mass matrix is singular for every configuration".into());
         };
         Ok(Choice {

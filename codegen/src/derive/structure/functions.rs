@@ -224,7 +224,7 @@ impl Functions {
         ];
         for (name, docs, arguments, shape, outputs) in table {
             let Some(outputs) = outputs else { continue };
-            let mut candidates = Candidates::new();
+            let mut candidates = Candidates::with(&builder.care);
             candidates.offer_both(self.graph.clone(), outputs.clone(), &builder.graph);
             let outputs = candidates.cheapest(&mut builder.graph);
             builder.push(name, docs, arguments, shape, outputs);

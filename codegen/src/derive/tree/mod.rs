@@ -14,6 +14,7 @@ pub mod nearby;
 mod reframe;
 mod regroup;
 mod revolute;
+mod safe;
 #[cfg(test)]
 mod tests;
 pub mod turn;
@@ -93,13 +94,28 @@ pub struct Tree {
     pub armature: Vec<Edge>,
 }
 
+/// Where the frames of links are put.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placement {
+    /// Where the recursions are cheapest, inertias regrouped.
+    Chosen,
+    /// Where the description has them, inertias with the links that they are of.
+    Described,
+}
+
 impl Tree {
     /// The tree of a model; `None` where not all of its inertia is that of armatures, and of bodies and
     /// particles that are fixed to frames.
-    pub fn of(model: &mut Model, calculus: &mut Calculus) -> Option<Tree> {
+    pub fn of(model: &mut Model, calculus: &mut Calculus, placement: Placement) -> Option<Tree> {
         let mut draft = draft::draft(model, calculus)?;
-        reframe::reframe(&mut model.graph, &mut draft);
-        regroup::regroup(&mut model.graph, &mut draft);
+        let safe = safe::Safe::of(model, &draft);
+        match placement {
+            Placement::Chosen => {
+                reframe::reframe(&mut model.graph, &mut draft, &safe);
+                regroup::regroup(&mut model.graph, &mut draft);
+            }
+            Placement::Described => reframe::keep(&mut model.graph, &mut draft, &safe),
+        }
         let links = draft.into_iter().map(|link| link.finish(&mut model.graph));
         Some(Tree {
             links: links.collect(),

@@ -1,14 +1,20 @@
 //! Frames of hinged links after Denavit and Hartenberg: the third axis along the hinge, the first
 //! along the common normal to the hinge of the next link, so that two plane rotations and two
 //! distances lead from link to link.
+//!
+//! The foot of the common normal of two axes at a tilt α is p·z / sin² α along the axis, and rounding at
+//! a distance d costs (d / L)² units where the description has the size L. So an origin is moved only as
+//! far as `safe` allows, and a direction is taken only where its numbers keep their digits; axes that are
+//! almost parallel are placed as parallel ones are, and their tilt is turned by Rx(a) Ry(b).
 
 use super::draft::{Draft, Motion};
+use super::safe::Safe;
 use super::turn::Turn;
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{Vec3, add3, scale3};
 
 /// Moves and turns the frames of all hinged links.
-pub fn reframe(graph: &mut Graph, links: &mut [Draft]) {
+pub fn reframe(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
     let weights = weights(links);
     for i in 0..=links.len() {
         // The world first, then every link.
@@ -18,20 +24,27 @@ pub fn reframe(graph: &mut Graph, links: &mut [Draft]) {
             .collect();
         let hinged = parent.is_some_and(|link| is_hinge(&links[link]));
         for &j in &children {
-            if let Some(distance) = foot(graph, &links[j], hinged) {
+            if let Some(distance) = foot(graph, &links[j], hinged, safe) {
                 slide(graph, links, j, distance);
             }
         }
         if let (Some(link), true) = (parent, hinged) {
             let mut children = children.clone();
             children.sort_by_key(|&j| std::cmp::Reverse(weights[j]));
-            if let Some(angle) = normal(graph, links, &children) {
+            if let Some(angle) = normal(graph, links, &children, safe) {
                 spin(graph, links, link, angle);
             }
         }
         for j in children {
-            factor(graph, &mut links[j]);
+            factor(graph, &mut links[j], safe);
         }
+    }
+}
+
+/// Leaves the frames where they are: hinges turn about third axes, and nothing else is chosen.
+pub fn keep(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
+    for link in links.iter_mut().filter(|link| is_hinge(link)) {
+        factor(graph, link, safe);
     }
 }
 
@@ -62,7 +75,7 @@ fn numeric(graph: &Graph, edges: &[Edge]) -> bool {
 
 /// How far along its hinge the origin of a link is best moved: to the foot of the common normal
 /// with the hinge before, or to where a coordinate vanishes.
-fn foot(graph: &mut Graph, link: &Draft, hinged: bool) -> Option<Edge> {
+fn foot(graph: &mut Graph, link: &Draft, hinged: bool, safe: &Safe) -> Option<Edge> {
     let (z, p) = (axis(link), link.position);
     let zero = graph.zero();
     if !numeric(graph, &z) {
@@ -78,31 +91,50 @@ fn foot(graph: &mut Graph, link: &Draft, hinged: bool) -> Option<Edge> {
     let (x, y) = (graph.mul(z[0], z[0]), graph.mul(z[1], z[1]));
     let square = graph.add(x, y);
     let forward = graph.dot(&p[..2], &z[..2]);
-    Some(-graph.div(forward, square)?)
+    let distance = -graph.div(forward, square)?;
+    if safe.is_near(graph, distance) {
+        return Some(distance);
+    }
+    // Almost parallel: to the height of the hinge before, as for parallel axes.
+    let level = -graph.div(p[2], z[2])?;
+    safe.is_near(graph, level).then_some(level)
 }
 
 /// Cosine and sine of the angle by which a link's axes are best turned about its hinge.
-fn normal(graph: &mut Graph, links: &[Draft], children: &[usize]) -> Option<(Edge, Edge)> {
+fn normal(
+    graph: &mut Graph,
+    links: &[Draft],
+    children: &[usize],
+    safe: &Safe,
+) -> Option<(Edge, Edge)> {
     let zero = graph.zero();
     let directions: Vec<(Edge, Edge)> = children
         .iter()
         .map(|&j| axis(&links[j]))
-        .filter(|z| numeric(graph, z))
+        .filter(|z| numeric(graph, z) && safe.has_direction(graph, &z[..2]))
         .map(|z| (-z[1], z[0]))
         .collect();
     let oblique = |&(x, y): &(Edge, Edge)| x.abs() != zero || y.abs() != zero;
-    if let Some((x, y)) = directions.into_iter().find(oblique) {
-        return direction(graph, x, y);
+    for (x, y) in directions.into_iter().filter(oblique) {
+        let (c, s) = direction(graph, x, y, safe)?;
+        if safe.is_sharp(graph, &[c, s]) {
+            return Some((c, s));
+        }
     }
-    let arm = children.iter().map(|&j| links[j].position);
-    let arm = arm
-        .into_iter()
-        .find(|p| numeric(graph, &p[..2]) && p[0] != zero && p[1] != zero)?;
-    direction(graph, arm[0], arm[1])
+    let arms = children.iter().map(|&j| links[j].position);
+    for p in arms.filter(|p| p[0] != zero && p[1] != zero) {
+        if numeric(graph, &p[..2]) && safe.has_direction(graph, &p[..2]) {
+            let (c, s) = direction(graph, p[0], p[1], safe)?;
+            if safe.is_sharp(graph, &[c, s]) {
+                return Some((c, s));
+            }
+        }
+    }
+    None
 }
 
 /// (x, y) / √(x² + y²); `None` where that is no turn at all.
-fn direction(graph: &mut Graph, x: Edge, y: Edge) -> Option<(Edge, Edge)> {
+fn direction(graph: &mut Graph, x: Edge, y: Edge, safe: &Safe) -> Option<(Edge, Edge)> {
     let zero = graph.zero();
     if y.abs() == zero {
         return None;
@@ -110,9 +142,7 @@ fn direction(graph: &mut Graph, x: Edge, y: Edge) -> Option<(Edge, Edge)> {
     if x.abs() == zero {
         return Some((zero, graph.one()));
     }
-    let (a, b) = (graph.mul(x, x), graph.mul(y, y));
-    let square = graph.add(a, b);
-    let length = graph.apply(Function::Sqrt, square);
+    let length = hypotenuse(graph, x, y, safe);
     Some((graph.div(x, length)?, graph.div(y, length)?))
 }
 
@@ -165,26 +195,12 @@ fn advance(graph: &mut Graph, link: &mut Draft, (c, s): (Edge, Edge)) {
     }
 }
 
-/// base = Rz(β) Rx(α) Rz(γ): the first two are kept, the last goes into the angle.
-fn factor(graph: &mut Graph, link: &mut Draft) {
-    let z = axis(link);
-    let zero = graph.zero();
-    let [x, y, cos] = z;
-    let (c, s, sin) = if x.abs() == zero {
-        (graph.one(), zero, -y)
-    } else if y.abs() == zero {
-        (zero, graph.one(), x)
-    } else {
-        let (a, b) = (graph.mul(x, x), graph.mul(y, y));
-        let square = graph.add(a, b);
-        let length = graph.apply(Function::Sqrt, square);
-        let quotients = (graph.div(y, length), graph.div(x, length));
-        match quotients {
-            (Some(c), Some(s)) => (-c, s, length),
-            _ => return,
-        }
+/// base = Rz(β) Rx(α) Rz(γ), or Rx(a) Ry(b) Rz(γ) where a small tilt hides β: the first two are kept, the
+/// last goes into the angle.
+fn factor(graph: &mut Graph, link: &mut Draft, safe: &Safe) {
+    let Some(first) = tilt(graph, axis(link), safe) else {
+        return;
     };
-    let first = [(2, c, s), (0, cos, sin)].map(|(axis, cos, sin)| Turn::About { axis, cos, sin });
     let mut rest = link.base;
     for turn in &first {
         for column in 0..3 {
@@ -197,5 +213,43 @@ fn factor(graph: &mut Graph, link: &mut Draft) {
     advance(graph, link, (rest[0][0], rest[1][0]));
     if let Motion::Hinge { turns, .. } = &mut link.motion {
         turns.extend(first);
+    }
+}
+
+/// Two plane rotations that take the third axis to z = (x, y, w):
+/// Rz(β) Rx(α) with (sin β, −cos β) = (x, y) / sin α, or Rx(a) Ry(b) with sin b = x and
+/// (−sin a, cos a) = (y, w) / cos b.
+fn tilt(graph: &mut Graph, z: Vec3, safe: &Safe) -> Option<[Turn; 2]> {
+    let zero = graph.zero();
+    let [x, y, w] = z;
+    let about = |axis, cos, sin| Turn::About { axis, cos, sin };
+    if x.abs() == zero {
+        return Some([about(2, graph.one(), zero), about(0, w, -y)]);
+    }
+    if y.abs() == zero {
+        return Some([about(2, zero, graph.one()), about(0, w, x)]);
+    }
+    if safe.has_direction(graph, &[x, y]) {
+        let length = hypotenuse(graph, x, y, safe);
+        let (c, s) = (-graph.div(y, length)?, graph.div(x, length)?);
+        if safe.is_sharp(graph, &[c, s]) {
+            return Some([about(2, c, s), about(0, w, length)]);
+        }
+    }
+    let length = hypotenuse(graph, y, w, safe);
+    let (c, s) = (graph.div(w, length)?, -graph.div(y, length)?);
+    Some([about(0, c, s), about(1, length, x)])
+}
+
+/// √(x² + y²); the number whose square that is, where there is one: it is known which of e and −e is
+/// positive.
+fn hypotenuse(graph: &mut Graph, x: Edge, y: Edge, safe: &Safe) -> Edge {
+    let (a, b) = (graph.mul(x, x), graph.mul(y, y));
+    let square = graph.add(a, b);
+    let known = graph.known_root(square);
+    match known.filter(|root| numeric(graph, &[*root])) {
+        Some(root) if safe.is_negative(graph, root) => -root,
+        Some(root) => root,
+        None => graph.apply(Function::Sqrt, square),
     }
 }

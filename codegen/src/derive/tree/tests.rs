@@ -1,7 +1,7 @@
 //! Recursions against the derivation that knows no trees: the same values on X.
 
 use super::inverse::{inverse, wrenches};
-use super::{Tree, articulated, composite, nearby};
+use super::{Placement, Tree, articulated, composite, nearby};
 use crate::algebra::derivation::Derivation;
 use crate::derive::accel::parts::{Axes, Reference, Variant, parts};
 use crate::derive::calculus::Calculus;
@@ -68,7 +68,7 @@ fn agree(mut model: Model, steady: bool) {
     };
     let mut plain = model.clone();
     let parts = parts(&mut plain, &mut calculus.clone(), variant);
-    let tree = Tree::of(&mut model, &mut calculus).expect("is a tree");
+    let tree = Tree::of(&mut model, &mut calculus, Placement::Chosen).expect("is a tree");
     let n = model.n();
     let zero = model.graph.zero();
     let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
@@ -156,6 +156,9 @@ fn other_inertia_is_no_tree() {
         );
         let mut model = built(&text);
         let mut calculus = Calculus::new(&model);
-        assert!(Tree::of(&mut model, &mut calculus).is_none(), "{other}");
+        assert!(
+            Tree::of(&mut model, &mut calculus, Placement::Chosen).is_none(),
+            "{other}"
+        );
     }
 }

@@ -1,0 +1,334 @@
+//! Numbers of twice the length of `f64`, for measuring what rounding does.
+//!
+//! A number is the unevaluated sum h + l of two `f64`, |l| ≤ ½ ulp(h): some 32 decimal digits. Sums and
+//! products are those of Dekker (1971) and Knuth with exact errors: s = fl(a + b), e = a + b − s, and
+//! p = fl(a b), e = fma(a, b, −p). Functions are Taylor's sums after reduction of the argument, or one
+//! step of Newton's method from the value in `f64`:
+//!
+//! | function | by |
+//! |---|---|
+//! | √a | r + (a − r²) / 2 r |
+//! | sin, cos | a − k π/2, Taylor's sums on ±π/4 |
+//! | exp | 2ᵏ exp(r / 64)⁶⁴, |r| ≤ ½ log 2 |
+//! | log a | y + a exp(−y) − 1 |
+//! | atan2(y, x) | θ + (y cos θ − x sin θ) / √(x² + y²) |
+
+use super::graph::Function;
+use num_rational::BigRational;
+use num_traits::{ToPrimitive, Zero};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number with some 32 digits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Double {
+    high: f64,
+    low: f64,
+}
+
+/// π/2 in three parts.
+const HALF_PI: [f64; 3] = [
+    std::f64::consts::FRAC_PI_2,
+    6.123_233_995_736_766e-17,
+    -1.497_384_904_859_169_7e-33,
+];
+/// log 2 in two parts.
+const LOG_2: Double = Double {
+    high: std::f64::consts::LN_2,
+    low: 2.319_046_813_846_3e-17,
+};
+/// Terms of Taylor's sums for sine and cosine: (π/4)³² / 32! < 2^-110.
+const TERMS: u32 = 32;
+/// The argument of exp is halved so often.
+const HALVINGS: u32 = 6;
+
+impl Double {
+    /// 0.
+    pub const ZERO: Double = Double::new(0.0);
+    /// 1.
+    pub const ONE: Double = Double::new(1.0);
+    /// π.
+    pub const PI: Double = Double {
+        high: 2.0 * HALF_PI[0],
+        low: 2.0 * HALF_PI[1],
+    };
+
+    /// The number that an `f64` is.
+    pub const fn new(value: f64) -> Self {
+        Double {
+            high: value,
+            low: 0.0,
+        }
+    }
+
+    /// The nearest `f64`.
+    pub fn to_f64(self) -> f64 {
+        self.high
+    }
+
+    /// The nearest to a rational: what its nearest `f64` leaves is rounded once more.
+    pub fn of_rational(value: &BigRational) -> Self {
+        let high = value.to_f64().unwrap_or(f64::NAN);
+        let rest = BigRational::from_float(high).map_or_else(BigRational::zero, |h| value - h);
+        sum(high, rest.to_f64().unwrap_or(0.0))
+    }
+
+    /// |a|.
+    pub fn abs(self) -> Self {
+        self.signed(self.high < 0.0)
+    }
+
+    /// −a where asked.
+    pub fn signed(self, negative: bool) -> Self {
+        if negative { -self } else { self }
+    }
+
+    /// Times a power of 2.
+    fn scaled(self, factor: f64) -> Self {
+        Double {
+            high: self.high * factor,
+            low: self.low * factor,
+        }
+    }
+
+    /// √a.
+    pub fn sqrt(self) -> Self {
+        let root = self.high.sqrt();
+        if root == 0.0 || !root.is_finite() {
+            return Double::new(root);
+        }
+        let rest = self - product(root, root);
+        sum(root, rest.high / (2.0 * root))
+    }
+
+    /// sin a and cos a.
+    pub fn sin_cos(self) -> (Self, Self) {
+        let quarters = (self.high / HALF_PI[0]).round();
+        let parts = HALF_PI.map(|part| product(quarters, part));
+        let rest = parts.into_iter().fold(self, |rest, part| rest - part);
+        let square = rest * rest;
+        // 1 − x²/(k (k+1)) (1 − …): sin x / x from k = 2, cos x from k = 1.
+        let series = |first: u32| {
+            let terms = (first..TERMS).step_by(2).rev();
+            terms.fold(Double::ONE, |inner, k| {
+                let divisor = Double::new(f64::from(k * (k + 1)));
+                Double::ONE - square / divisor * inner
+            })
+        };
+        let (sin, cos) = (rest * series(2), series(1));
+        match quarters.rem_euclid(4.0) as u8 {
+            0 => (sin, cos),
+            1 => (cos, -sin),
+            2 => (-sin, -cos),
+            _ => (-cos, sin),
+        }
+    }
+
+    /// exp a.
+    pub fn exp(self) -> Self {
+        let powers = (self.high / LOG_2.high).round();
+        if powers.abs() > 1000.0 || powers.is_nan() {
+            return Double::new(self.high.exp());
+        }
+        let rest = self - Double::new(powers) * LOG_2;
+        let small = rest.scaled(0.5_f64.powi(HALVINGS as i32));
+        // exp x − 1, which squaring keeps relative digits of: (1 + e)² − 1 = e (2 + e).
+        let tail = (2..18).rev().fold(Double::ONE, |inner, k| {
+            Double::ONE + small / Double::new(f64::from(k)) * inner
+        });
+        let mut less = small * tail;
+        for _ in 0..HALVINGS {
+            less = less * (Double::new(2.0) + less);
+        }
+        (Double::ONE + less).scaled(2.0_f64.powi(powers as i32))
+    }
+
+    /// log a.
+    pub fn log(self) -> Self {
+        let first = self.high.ln();
+        if !first.is_finite() {
+            return Double::new(first);
+        }
+        let first = Double::new(first);
+        first + (self * (-first).exp() - Double::ONE)
+    }
+
+    /// The angle of (x, y).
+    pub fn atan2(self, x: Double) -> Self {
+        let y = self;
+        let first = y.high.atan2(x.high);
+        let radius = (x * x + y * y).sqrt();
+        if radius.high == 0.0 || !first.is_finite() {
+            return Double::new(first);
+        }
+        let first = Double::new(first);
+        let (sin, cos) = first.sin_cos();
+        first + (y * cos - x * sin) / radius
+    }
+
+    /// A function of one argument.
+    pub fn apply(self, function: Function) -> Self {
+        match function {
+            Function::Sin => self.sin_cos().0,
+            Function::Cos => self.sin_cos().1,
+            Function::Exp => self.exp(),
+            Function::Log => self.log(),
+            Function::Sqrt => self.sqrt(),
+            // Two arguments: its own node.
+            Function::Atan2 => Double::new(f64::NAN),
+        }
+    }
+}
+
+/// a + b exactly.
+fn sum(a: f64, b: f64) -> Double {
+    let high = a + b;
+    let back = high - a;
+    Double {
+        high,
+        low: (a - (high - back)) + (b - back),
+    }
+}
+
+/// a + b exactly, where |a| ≥ |b|.
+fn ordered_sum(a: f64, b: f64) -> Double {
+    let high = a + b;
+    Double {
+        high,
+        low: b - (high - a),
+    }
+}
+
+/// a b exactly.
+fn product(a: f64, b: f64) -> Double {
+    let high = a * b;
+    Double {
+        high,
+        low: a.mul_add(b, -high),
+    }
+}
+
+impl Add for Double {
+    type Output = Double;
+    fn add(self, b: Double) -> Double {
+        let (high, low) = (sum(self.high, b.high), sum(self.low, b.low));
+        let first = ordered_sum(high.high, high.low + low.high);
+        ordered_sum(first.high, first.low + low.low)
+    }
+}
+
+impl Neg for Double {
+    type Output = Double;
+    fn neg(self) -> Double {
+        Double {
+            high: -self.high,
+            low: -self.low,
+        }
+    }
+}
+
+impl Sub for Double {
+    type Output = Double;
+    fn sub(self, b: Double) -> Double {
+        self + -b
+    }
+}
+
+impl Mul for Double {
+    type Output = Double;
+    fn mul(self, b: Double) -> Double {
+        let exact = product(self.high, b.high);
+        let cross = self.high.mul_add(b.low, self.low * b.high);
+        ordered_sum(exact.high, exact.low + cross)
+    }
+}
+
+impl Div for Double {
+    type Output = Double;
+    fn div(self, b: Double) -> Double {
+        let first = self.high / b.high;
+        if !first.is_finite() || first == 0.0 {
+            return Double::new(first);
+        }
+        let rest = self - b * Double::new(first);
+        let second = rest.high / b.high;
+        let rest = rest - b * Double::new(second);
+        ordered_sum(first, second) + Double::new(rest.high / b.high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Double, sum};
+    use num_bigint::BigInt;
+    use num_rational::BigRational;
+
+    /// A number by its decimal digits.
+    fn decimal(text: &str) -> Double {
+        let (whole, digits) = text.split_once('.').expect("a point");
+        let numerator: BigInt = format!("{whole}{digits}").parse().expect("digits");
+        let denominator = BigInt::from(10).pow(digits.len() as u32);
+        Double::of_rational(&BigRational::new(numerator, denominator))
+    }
+
+    fn close(a: Double, b: Double) {
+        let apart = (a - b).abs().to_f64();
+        let size = b.abs().to_f64();
+        assert!(apart <= 4e-31 * size, "{a:?} and {b:?} differ by {apart:e}");
+    }
+
+    #[test]
+    fn arithmetic_inverts_itself() {
+        let (a, b) = (
+            decimal("3.1415926535897932384626433832795029"),
+            decimal("0.0001234567890123456789012345678901"),
+        );
+        close(a / b * b, a);
+        close(a - b + b, a);
+        close(a.sqrt() * a.sqrt(), a);
+        close(a, Double::PI);
+        assert_eq!(sum(1.0, 1e-20).to_f64(), 1.0);
+        assert_eq!(
+            (Double::new(1.0) + Double::new(1e-20) - Double::ONE).to_f64(),
+            1e-20
+        );
+    }
+
+    /// Values of tables with 34 digits.
+    #[test]
+    fn functions_have_their_values() {
+        let one = Double::ONE;
+        let (sin, cos) = one.sin_cos();
+        close(sin, decimal("0.8414709848078965066525023216302990"));
+        close(cos, decimal("0.5403023058681397174009366074429766"));
+        close(one.exp(), decimal("2.7182818284590452353602874713526625"));
+        close(
+            decimal("10.0").log(),
+            decimal("2.3025850929940456840179914546843642"),
+        );
+        close(one.atan2(one).scaled(4.0), Double::PI);
+        close((-one).atan2(-one).scaled(-4.0), Double::PI.scaled(3.0));
+        close(
+            decimal("2.0").sqrt(),
+            decimal("1.4142135623730950488016887242096981"),
+        );
+    }
+
+    #[test]
+    fn functions_obey_their_laws() {
+        for k in -40..40 {
+            let a = Double::new(f64::from(k) * 0.37) / Double::new(1.7);
+            let (sin, cos) = a.sin_cos();
+            close(sin * sin + cos * cos, Double::ONE);
+            let (twice, _) = (a + a).sin_cos();
+            assert!((twice - (sin * cos).scaled(2.0)).abs().to_f64() < 1e-30);
+            close(a.exp() * (-a).exp(), Double::ONE);
+            if k != 0 {
+                assert!((a.abs().log().exp() - a.abs()).abs().to_f64() < 1e-30 * a.abs().to_f64());
+            }
+            let turned = sin.atan2(cos).sin_cos();
+            assert!(
+                (turned.0 - sin).abs().to_f64() < 1e-31 && (turned.1 - cos).abs().to_f64() < 1e-31
+            );
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Real states at which programs are measured: the start, and a few at random with φ = 0; of closed
+//! loops the start with several velocities.
+
+use super::Model;
+use super::layout::Block;
+use super::nearest::Equations;
+use crate::algebra::fp::Random;
+
+/// States at random.
+const RANDOM: usize = 2;
+/// Coordinates under constraints are looked for so near the start, on its branch.
+const NEAR: f64 = 0.3;
+
+/// The values of all symbols, parameters at their defaults, at the start and at a few states beside it.
+pub fn states(model: &Model) -> Vec<Vec<f64>> {
+    let mut random = Random::new(0x57a7e);
+    let mut all = vec![numbers(model, model.start_x.clone(), &mut random)];
+    let equations =
+        (!model.points.constraints.is_empty()).then(|| Equations::new(&model.points, &model.phi));
+    // Off a loop that is overconstrained its rows contradict one another.
+    let zero = model.graph.zero();
+    let looped = model
+        .constraints
+        .iter()
+        .any(|constraint| constraint.residual != zero);
+    for _ in 0..RANDOM {
+        if looped {
+            all.push(numbers(model, model.start_x.clone(), &mut random));
+            continue;
+        }
+        let Some(equations) = &equations else {
+            let x = model
+                .blocks
+                .iter()
+                .flat_map(|&block| anywhere(block, &mut random));
+            let x = x.collect();
+            all.push(numbers(model, x, &mut random));
+            continue;
+        };
+        let guess = model.start_x.iter().map(|x| x + NEAR * number(&mut random));
+        let guess = guess.collect();
+        let mut state = numbers(model, guess, &mut random);
+        if let Some(x) = equations.near(&state) {
+            let first = model.points.first;
+            state[first..first + x.len()].copy_from_slice(&x);
+            all.push(state);
+        }
+    }
+    all
+}
+
+/// All symbols: velocities, inputs, accelerations and momenta at random.
+fn numbers(model: &Model, x: Vec<f64>, random: &mut Random) -> Vec<f64> {
+    let mut list = |count: usize| -> Vec<f64> { (0..count).map(|_| number(random)).collect() };
+    let (n, m) = (model.n(), model.u.len());
+    let (xi, u, xi_dot, momenta) = (list(n), list(m), list(n), list(n));
+    let mut numbers = model.numbers(&model.defaults, &x, &xi, &u, &xi_dot);
+    numbers.extend(momenta);
+    numbers
+}
+
+/// A number in ±1.
+fn number(random: &mut Random) -> f64 {
+    (random.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// A point of a block.
+fn anywhere(block: Block, random: &mut Random) -> Vec<f64> {
+    let mut unit = |n: usize| {
+        let entries: Vec<f64> = (0..n).map(|_| number(random)).collect();
+        let length = entries.iter().map(|x| x * x).sum::<f64>().sqrt();
+        entries.iter().map(|x| x / length).collect::<Vec<f64>>()
+    };
+    match block {
+        Block::Flat(n) => (0..n).map(|_| number(random)).collect(),
+        Block::Circle => unit(2),
+        Block::Quaternion => unit(4),
+        Block::Rotation => {
+            let q = unit(4);
+            super::layout::rotation([q[0], q[1], q[2], q[3]], 2.0)
+        }
+    }
+}
