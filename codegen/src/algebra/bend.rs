@@ -56,7 +56,7 @@ impl Tape {
             numbers.push(value.0);
             parts.push(part);
         }
-        if lane.stuck {
+        if lane.is_stuck() {
             return None;
         }
         let root = self.roots.first()?;
