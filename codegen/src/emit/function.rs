@@ -144,9 +144,10 @@ impl Drawing<'_> {
         let value = match self.spec.shape {
             Shape::Scalar => results.join(""),
             Shape::Vector(_) => format!("[{}]", results.join(", ")),
+            Shape::Matrix(_, 0) => zeros(self.spec.shape),
             Shape::Matrix(_, columns) => {
                 let rows = results
-                    .chunks(columns.max(1))
+                    .chunks(columns)
                     .map(|row| format!("[{}]", row.join(", ")));
                 format!("[{}]", rows.collect::<Vec<_>>().join(", "))
             }

@@ -62,11 +62,14 @@ impl Printer<'_> {
             }
             Place::Number => self.locals.name(node).into(),
             Place::Temporary if self.here.contains(&node) => self.locals.name(node).into(),
-            Place::Temporary => {
-                self.used.reads = true;
-                let slot = self.slots.get(&node).copied().unwrap_or_default();
-                format!("slots[{slot}]")
-            }
+            Place::Temporary => match self.slots.get(&node) {
+                Some(slot) => {
+                    self.used.reads = true;
+                    format!("slots[{slot}]")
+                }
+                // No Rust, so that the text never leaves the generator.
+                None => format!("no value for node {node}"),
+            },
         }
     }
 
