@@ -7,8 +7,8 @@ use hamel_bench::peers::{Peers, mujoco};
 use hamel_bench::runner::{BenchError, Effort};
 use hamel_report::data::{Machine, Report};
 use hamel_report::{auto, json};
-use std::io::Write;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

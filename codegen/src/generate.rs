@@ -61,8 +61,9 @@ impl Generated {
     pub fn fault(&self, error: &NotRust) -> Diagnostic {
         let name = &self.model.name;
         let message = format!("internal check failed for `{name}`: {error}");
-        Diagnostic::new(self.model.span, message)
-            .help("nothing was written; this is an error in hamel: please report it with the description")
+        Diagnostic::new(self.model.span, message).help(
+            "nothing was written; this is an error in hamel: please report it with the description",
+        )
     }
 
     fn with(model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {

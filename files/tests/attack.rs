@@ -30,7 +30,9 @@ impl Random {
     fn text(&mut self) -> String {
         let size = [0, 1, 100, 5000, 200_000][self.below(5)];
         let letters = ["a", "é", "\n", "{", "\u{1d4f6}"];
-        (0..size).map(|_| letters[self.below(letters.len())]).collect()
+        (0..size)
+            .map(|_| letters[self.below(letters.len())])
+            .collect()
     }
 }
 
@@ -46,7 +48,10 @@ fn state(folder: &Path) -> BTreeMap<PathBuf, String> {
             open.extend(entries.map(|entry| entry.expect("an entry").path()));
             "folder".into()
         } else if of.is_symlink() {
-            format!("link to {}", fs::read_link(&path).expect("a link").display())
+            format!(
+                "link to {}",
+                fs::read_link(&path).expect("a link").display()
+            )
         } else if of.is_fifo() {
             "pipe".into()
         } else {
@@ -82,7 +87,14 @@ fn place(random: &mut Random, folder: &Path) -> (PathBuf, bool) {
             (path, false)
         }
         4 => {
-            assert!(Command::new("mkfifo").arg("--").arg(&path).status().expect("mkfifo").success());
+            assert!(
+                Command::new("mkfifo")
+                    .arg("--")
+                    .arg(&path)
+                    .status()
+                    .expect("mkfifo")
+                    .success()
+            );
             (path, false)
         }
         5 => (folder.join("missing").join("a"), false),
@@ -130,10 +142,18 @@ fn files_at_random_places() {
         std::thread::spawn(move || send.send(hamel_files::write(&to, &new)));
         let written = answer.recv_timeout(PATIENCE);
         let written = written.unwrap_or_else(|_| panic!("case {case}: {} hangs", path.display()));
-        assert_eq!(written.is_ok(), succeeds, "case {case}: {} {written:?}", path.display());
+        assert_eq!(
+            written.is_ok(),
+            succeeds,
+            "case {case}: {} {written:?}",
+            path.display()
+        );
         let mut after = state(&folder);
         if succeeds {
-            assert!(fs::read_to_string(&path).expect("a file") == text, "case {case}");
+            assert!(
+                fs::read_to_string(&path).expect("a file") == text,
+                "case {case}"
+            );
             if let Ok(mode) = mode {
                 let new = fs::metadata(&path).expect("a file").permissions();
                 assert_eq!(new, mode, "case {case}");

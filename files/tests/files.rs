@@ -20,7 +20,13 @@ fn folder(name: &str) -> PathBuf {
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     let mut names: Vec<String> = entries
-        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
         .collect();
     names.sort();
     names
@@ -111,7 +117,10 @@ fn what_is_no_file_is_refused_with_its_reason() {
         ("file/a", "Not a directory (os error 20)"),
     ] {
         let said = why(&folder.join(name));
-        assert!(said.starts_with("cannot write ") && said.ends_with(reason), "{said}");
+        assert!(
+            said.starts_with("cannot write ") && said.ends_with(reason),
+            "{said}"
+        );
     }
     assert_eq!(why(Path::new("/")), "cannot write /: it names a folder");
     assert_eq!(names(&folder), ["file", "pipe", "socket", "sub"]);
@@ -138,7 +147,11 @@ fn descriptors_are_written_behind_what_is_there() {
     fs::write(&path, "old\n").expect("a file");
     let file = File::options().append(true).open(&path).expect("a file");
     for folder in ["/dev/fd", "/proc/self/fd"] {
-        write(&Path::new(folder).join(file.as_raw_fd().to_string()), "new\n").expect("written");
+        write(
+            &Path::new(folder).join(file.as_raw_fd().to_string()),
+            "new\n",
+        )
+        .expect("written");
     }
     assert_eq!(read(&path), "old\nnew\nnew\n");
 }

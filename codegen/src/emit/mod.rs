@@ -191,10 +191,11 @@ pub fn rust(program: &Program, options: &Options) -> String {
 pub fn tokens(program: &Program, options: &Options) -> Result<TokenStream, NotRust> {
     let text = rust(program, options);
     lines::skeleton(&text)?;
-    text.parse().map_err(|error: proc_macro2::LexError| NotRust {
-        why: error.to_string(),
-        line: None,
-    })
+    text.parse()
+        .map_err(|error: proc_macro2::LexError| NotRust {
+            why: error.to_string(),
+            line: None,
+        })
 }
 
 /// The text of [`rust`], formatted, below a header that says where it comes from.

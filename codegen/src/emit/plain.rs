@@ -314,7 +314,18 @@ mod tests {
         ] {
             assert!(!is_statement(text), "{text}");
         }
-        for text in ["[", "]", "[a", "[a]]", "[a b]", "[,]", "[[a], k[1]", "[[a, k[1,], b]", "Ok([a]", "[[[a]]]"] {
+        for text in [
+            "[",
+            "]",
+            "[a",
+            "[a]]",
+            "[a b]",
+            "[,]",
+            "[[a], k[1]",
+            "[[a, k[1,], b]",
+            "Ok([a]",
+            "[[[a]]]",
+        ] {
             assert!(!is_value(text), "{text}");
         }
     }
