@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         seed += 1;
     }
     // Every awkward name as that of the type.
-    for name in describe::NAMES {
+    for name in describe::names() {
         let text = format!(
             "pub system {name} {{ coord q; velocity v; rate q = v; kinetic v^2; potential q^4; generate rate, accel; }}"
         );
@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let text = format!(
         "{modules}\n/// All systems.\npub const CASES: &[Case] = &[\n{list}];\n/// How many descriptions were tried for them.\npub const TRIED: usize = {};\n",
-        seed as usize + describe::NAMES.len()
+        seed as usize + describe::names().count()
     );
     std::fs::write(folder.join("cases.rs"), text)?;
     Ok(())

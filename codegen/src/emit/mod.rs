@@ -212,7 +212,8 @@ pub fn file(program: &Program, options: &Options) -> Result<String, NotRust> {
     );
     if !options.command.is_empty() {
         let command: Vec<&str> = options.command.split_whitespace().collect();
-        header.push_str(&format!("// Regenerate with `{}`.\n", command.join(" ")));
+        let command = docs::spelled(&command.join(" "));
+        header.push_str(&format!("// Regenerate with `{command}`.\n"));
     }
     Ok(format!("{header}\n{text}"))
 }

@@ -5,162 +5,30 @@ use super::common::Random;
 use std::fmt::Write;
 
 /// Names that are legal in a description, and that generated Rust has to get out of the way of.
-pub const NAMES: &[&str] = &[
-    "bool",
-    "char",
-    "str",
-    "u8",
-    "i64",
-    "usize",
-    "f16",
-    "f32",
-    "f64",
-    "f128",
-    "isize",
-    "u128", //
-    "Some",
-    "None",
-    "Ok",
-    "Err",
-    "Option",
-    "Result",
-    "Vec",
-    "Box",
-    "String",
-    "Clone",
-    "Copy",
-    "Debug",
-    "Default",
-    "Drop",
-    "Iterator",
-    "From",
-    "Into",
-    "Send",
-    "Sized",
-    "Fn",
-    "drop",
-    "panic",
-    "println",
-    "vec",
-    "assert",
-    "core",
-    "std",
-    "hamel",
-    "alloc",
-    "derive",
-    "inline",
-    "test", //
-    "union",
-    "auto",
-    "raw",
-    "safe",
-    "macro_rules",
-    "default",
-    "generate_",
-    "async_",
-    "type_", //
-    "S",
-    "System",
-    "Scalar",
-    "Split",
-    "Canonical",
-    "Singular",
-    "Rotor",
-    "Block",
-    "Rotors",
-    "FREE",
-    "Coordinates",
-    "Velocities",
-    "Chart",
-    "Inputs",
-    "COORDINATES",
-    "VELOCITIES",
-    "INPUTS",
-    "PARAMETERS",
-    "new",
-    "clone",
-    "clone_from",
-    "fmt",
-    "blocks",
-    "zero_coordinates",
-    "zero_velocities",
-    "zero_chart",
-    "zero_inputs",
-    "constraint_norm",
-    "rotors",
-    "constants",
-    "update",
-    "free",
-    "system",
-    "next",
-    "value",
-    "norm",
-    "pivot",
-    "kinematics",
-    "from_f64",
-    "sin_cos",
-    "mul_add",
-    "is_positive",
-    "max",
-    "abs", //
-    "x",
-    "xi",
-    "u",
-    "xi_dot",
-    "momentum_",
-    "k",
-    "k_2",
-    "slots",
-    "out",
-    "j",
-    "y",
-    "p",
-    "q",
-    "t1",
-    "t2",
-    "c1",
-    "sin1",
-    "cos1",
-    "sin_q",
-    "minus_t1",
-    "zero",
-    "one",
-    "two",
-    "three",
-    "four",
-    "half",
-    "third",
-    "quarter",
-    "set_k",
-    "set_set_k",
-    "accel_part1",
-    "rate_part1",
-    "hamel_line_0",
-    "self_",
-    "Self_",
-    "v",
-    "_a",
-    "a__b",
-    "θ",
-    "Θ",
-    "theta",
-    "theta_2",
-    "ω̇",
-    "omega_dot",
-    "é",
-    "ue9",
-    "Δθ",
-    "名",
-    "ünit",
-    "camelCase",
-    "SHOUT",
-    "a_name_that_is_so_long_that_every_list_with_it_has_to_be_broken_by_the_printer_wherever_it_stands",
-];
+const NAMES: &str = "
+    bool char str u8 i64 usize f16 f32 f64 f128 isize u128 Some None Ok Err Option Result Vec Box
+    String Clone Copy Debug Default Drop Iterator From Into Send Sized Fn drop panic println vec
+    assert core std hamel alloc derive inline test union auto raw safe macro_rules default generate_
+    async_ type_ S System Scalar Split Canonical Singular Rotor Block Rotors FREE Coordinates
+    Velocities Chart Inputs COORDINATES VELOCITIES INPUTS PARAMETERS new clone clone_from fmt blocks
+    zero_coordinates zero_velocities zero_chart zero_inputs constraint_norm rotors constants update
+    free system next value norm pivot kinematics from_f64 sin_cos mul_add is_positive max abs x xi u
+    xi_dot momentum_ k k_2 slots out j y p q t1 t2 c1 sin1 cos1 sin_q minus_t1 zero one two three
+    four half third quarter set_k set_set_k accel_part1 rate_part1 hamel_line_0 self_ Self_ v _a
+    a__b θ Θ theta theta_2 ω̇ omega_dot é ue9 Δθ 名 ünit camelCase SHOUT
+    a_name_that_is_so_long_that_every_list_with_it_has_to_be_broken_by_the_printer_wherever_it_stands
+";
+
+/// All of these names.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    NAMES.split_whitespace()
+}
 
 /// A description in the making.
 struct Draft<'a> {
     random: &'a mut Random,
     text: String,
+    names: Vec<&'static str>,
     taken: Vec<&'static str>,
     /// Scalars that expressions may mention: constant, of coordinates, of anything.
     constants: Vec<String>,
@@ -173,13 +41,15 @@ pub fn description(random: &mut Random, system: Option<&str>) -> String {
     let mut draft = Draft {
         random,
         text: String::new(),
-        taken: vec![],
+        names: names().collect(),
+        taken: Vec::new(),
         constants: vec!["2.5".into(), "1e-3".into(), "pi".into()],
         positions: Vec::new(),
         all: Vec::new(),
     };
     let name = system.map_or_else(|| draft.name(), str::to_string);
     draft.taken.clear();
+    draft.line("/// Turned \u{202e} around, `[a]` */ \"# {}");
     draft.line(&format!("pub system {name} {{"));
     draft.params();
     match draft.random.below(3) {
@@ -209,7 +79,7 @@ impl Draft<'_> {
     /// A name that the description has not used.
     fn name(&mut self) -> String {
         loop {
-            let name = self.pick(NAMES);
+            let name = self.names[self.random.below(self.names.len())];
             if !self.taken.contains(&name) {
                 self.taken.push(name);
                 return name.into();

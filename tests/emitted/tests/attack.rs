@@ -1,6 +1,6 @@
 //! What was generated for random descriptions, compiled, against their interpreter: f64, f32 and SIMD lanes
 //! of both. And more descriptions whose code is parsed alone. `HAMEL_ATTACK=full` compiles 500 and parses
-//! 5,000.
+//! 2,000.
 
 use common::Random;
 use hamel::Lanes;
@@ -167,7 +167,7 @@ fn compiled_code_gives_what_the_interpreter_gives() {
 #[test]
 fn every_text_is_rust() {
     let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
-    let count = if full { 5_000 } else { PARSED };
+    let count = if full { 2_000 } else { PARSED };
     let mut written = 0;
     for seed in 10_000..10_000 + count {
         let text = describe::description(&mut Random(seed), None);

@@ -150,6 +150,20 @@ fn names_are_legal() {
 }
 
 #[test]
+fn comments_are_what_rustc_takes() {
+    let lines = [
+        "plain é 名".to_string(),
+        "a\rb\nc".into(),
+        "x\u{202e}y\u{2066}".into(),
+    ];
+    let text = super::docs::comment(&lines);
+    assert_eq!(
+        text,
+        "/// plain é 名\n/// a\n/// b\n/// c\n/// x\\u{202e}y\\u{2066}\n"
+    );
+}
+
+#[test]
 fn names_are_unique() {
     for chunk in [10, 500] {
         let file = parse(
