@@ -10,7 +10,6 @@ use hamel_codegen::syntax::ast::ShapeKind;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-#[allow(dead_code, unused_imports)] // the tests use the rest
 #[path = "../../codegen/tests/common/mod.rs"]
 mod common;
 #[path = "src/describe.rs"]
@@ -86,7 +85,7 @@ fn calls(program: &Program, case: usize) -> String {
         .map(|group| parameter(program, group))
         .collect();
     // Parameters by the constructor, or one by one.
-    let system = if case % 2 == 0 {
+    let system = if case.is_multiple_of(2) {
         format!("    let system = {of}::<L>::new({})?;\n", values.join(", "))
     } else {
         let sets = values.iter().zip(&names.accessors).map(|(value, name)| {
