@@ -1,4 +1,8 @@
 //! Random descriptions, compiled: each with a function that evaluates all that was generated.
+#![allow(
+    clippy::self_named_constructors,
+    reason = "one of the types is called `new`"
+)]
 
 use hamel::wide::{f32x8, f64x4};
 use hamel::{Lanes, Scalar, Singular};
