@@ -96,6 +96,29 @@ fn constants_that_are_copied_are_computed() {
     assert_eq!(constants.matches(".sin_cos()").count(), 1, "{constants}");
 }
 
+/// In the weight of a link on a slider ξ̇ takes part where it cancels: equal expressions are one node. The
+/// function takes no ξ̇.
+#[test]
+fn functions_read_what_they_take() {
+    let text = "system A {
+        joint a: prismatic [1, 2, 2] at pose(rotz(pi / 2), [0.5, 0, 0.25]) moves f;
+        body on f { mass 1.2345678901234567; com [0.1, -0.2, 0.3]; inertia diag(1, 2, 2.5) about com; }
+        joint b: revolute [1, 2, 2] on f at pose(identity(3), [0, 0.4, 0]) moves g;
+        body on g { mass 3e1; com [0.1, -0.2, 0.3]; inertia diag(1, 2, 2.5) about com; }
+        gravity [0, 0, -9.81];
+    }";
+    let code = emitted(&["-"], text);
+    for function in code.split("\n    ///").filter(|text| text.contains(" fn ")) {
+        let Some((head, body)) = function.split_once(" {\n") else {
+            continue;
+        };
+        assert!(
+            head.contains("xi_dot") || !body.contains("xi_dot["),
+            "{function}"
+        );
+    }
+}
+
 /// Keywords are refused where they stand; names of primitive types are not taken from Rust.
 #[test]
 fn types_get_names_that_are_free() {

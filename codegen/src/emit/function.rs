@@ -118,6 +118,7 @@ impl Drawing<'_> {
             program: self.emitter.program,
             places: &self.emitter.places,
             time: self.spec.time,
+            arguments: self.spec.arguments,
             locals: self.locals,
             parameters: self.parameters,
             slots: &self.plan.slots,

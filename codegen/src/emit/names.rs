@@ -52,12 +52,15 @@ const KEYWORDS: &[&str] = &[
     "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "Self",
 ];
 
-/// Methods of every generated type, or of the traits that it implements.
+/// Methods of every generated type, or of the traits that it implements. `into` and `try_into` take a value,
+/// which Rust prefers to a method of the type that takes a reference.
 const METHODS: &[&str] = &[
     "new",
     "default",
     "clone",
     "clone_from",
+    "into",
+    "try_into",
     "fmt",
     "blocks",
     "zero_coordinates",

@@ -35,6 +35,8 @@ pub struct Printer<'a> {
     pub places: &'a Places<'a>,
     /// When the function runs.
     pub time: Time,
+    /// What the function takes.
+    pub arguments: &'a [Argument],
     /// Names of values.
     pub locals: &'a Locals,
     /// The parameters as expressions, in order.
@@ -51,6 +53,11 @@ impl Printer<'_> {
     /// A value without its sign.
     fn value(&mut self, node: NodeId) -> String {
         match self.places.of(node, self.time) {
+            // The value of the function does not depend on it, as was proved, but expressions that are equal
+            // are one node. The interpreter takes 0 as well.
+            Place::Argument(argument, _) if !self.arguments.contains(&argument) => {
+                number::scalar(0.0)
+            }
             Place::Argument(argument, index) => {
                 self.used.arguments.insert(argument);
                 format!("{}[{index}]", names::argument(argument))

@@ -10,7 +10,7 @@ const NAMES: &str = "
     String Clone Copy Debug Default Drop Iterator From Into Send Sized Fn drop panic println vec
     assert core std hamel alloc derive inline test union auto raw safe macro_rules default generate_
     async_ type_ S System Scalar Split Canonical Singular Rotor Block Rotors FREE Coordinates
-    Velocities Chart Inputs COORDINATES VELOCITIES INPUTS PARAMETERS new clone clone_from fmt blocks
+    Velocities Chart Inputs COORDINATES VELOCITIES INPUTS PARAMETERS new clone clone_from into try_into fmt blocks
     zero_coordinates zero_velocities zero_chart zero_inputs constraint_norm rotors constants update
     free system next value norm pivot kinematics from_f64 sin_cos mul_add is_positive max abs x xi u
     xi_dot momentum_ k k_2 slots out j y p q t1 t2 c1 sin1 cos1 sin_q minus_t1 zero one two three
