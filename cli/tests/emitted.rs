@@ -101,9 +101,10 @@ fn constants_that_are_copied_are_computed() {
 #[test]
 fn functions_read_what_they_take() {
     let text = "system A {
-        joint a: prismatic [1, 2, 2] at pose(rotz(pi / 2), [0.5, 0, 0.25]) moves f;
+        input u1, u2;
+        joint a: prismatic [1, 2, 2] at pose(rotz(pi / 2), [0.5, 0, 0.25]) moves f { damping 0.1; force u1; }
         body on f { mass 1.2345678901234567; com [0.1, -0.2, 0.3]; inertia diag(1, 2, 2.5) about com; }
-        joint b: revolute [1, 2, 2] on f at pose(identity(3), [0, 0.4, 0]) moves g;
+        joint b: revolute [1, 2, 2] on f at pose(identity(3), [0, 0.4, 0]) moves g { damping 0.1; force u2; }
         body on g { mass 3e1; com [0.1, -0.2, 0.3]; inertia diag(1, 2, 2.5) about com; }
         gravity [0, 0, -9.81];
     }";
