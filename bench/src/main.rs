@@ -8,6 +8,7 @@ use hamel_bench::runner::{BenchError, Effort};
 use hamel_report::data::{Machine, Report};
 use hamel_report::{auto, json};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -92,15 +93,21 @@ fn run(arguments: &Arguments) -> Result<(), BenchError> {
 
 fn written(report: &Report, arguments: &Arguments, root: &Path) -> Result<(), BenchError> {
     for path in output::write(report, &arguments.out)? {
-        anstream::println!("wrote {}", path.display());
+        say(&format!("wrote {}", path.display()))?;
     }
     if let Some(verdict) = auto::verdict(report) {
-        anstream::println!("{verdict}");
+        say(&verdict.to_string())?;
     }
     if arguments.cases.is_empty() {
         output::rewrite(report, &root.join("README.md"))?;
     }
     Ok(())
+}
+
+/// Writes a line to standard output.
+fn say(line: &str) -> Result<(), BenchError> {
+    let said = writeln!(anstream::stdout(), "{line}");
+    said.map_err(|error| BenchError(format!("cannot write to standard output: {error}")))
 }
 
 fn bar(name: &str) -> ProgressBar {

@@ -68,7 +68,7 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, BenchError>
         .into_iter()
         .map(|(name, text)| {
             let path = folder.join(name);
-            fs::write(&path, text).map_err(|error| unwritten(&path, &error))?;
+            written(&path, &text)?;
             Ok(path)
         })
         .collect()
@@ -88,7 +88,12 @@ pub fn rewrite(report: &Report, path: &Path) -> Result<(), BenchError> {
     let text = fs::read_to_string(path).map_err(|error| unwritten(path, &error))?;
     let new = readme::replaced(&text, &readme::block(report))
         .ok_or_else(|| BenchError(format!("{}: no block of the report", path.display())))?;
-    fs::write(path, new).map_err(|error| unwritten(path, &error))
+    written(path, &new)
+}
+
+/// Writes a file, whole or not at all.
+fn written(path: &Path, text: &str) -> Result<(), BenchError> {
+    hamel_files::write(path, text).map_err(|error| BenchError(error.to_string()))
 }
 
 fn unwritten(path: &Path, error: &std::io::Error) -> BenchError {

@@ -1,6 +1,6 @@
 //! `hamel emit`: the generated Rust.
 
-use crate::failure::{Failure, print, write};
+use crate::failure::{Failure, print, update};
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::Args;
@@ -46,18 +46,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Some(out) = &arguments.out else {
         return print(&code);
     };
-    let known = std::fs::read(out);
-    let same = known.as_ref().is_ok_and(|known| known == code.as_bytes());
-    match (arguments.check, same, known) {
-        (_, true, _) => Ok(()),
-        (false, false, _) => write(out, &code),
-        (true, false, Ok(_)) => Err(Failure::failed(format!(
+    if !arguments.check {
+        return update(out, &code);
+    }
+    match hamel_files::holds(out, &code) {
+        Ok(true) => Ok(()),
+        Ok(false) => Err(Failure::failed(format!(
             "{} is stale; write it again with `hamel emit {} -o {}`",
             out.display(),
             arguments.file.display(),
             out.display()
         ))),
-        (true, false, Err(error)) => Err(Failure::usage(format!(
+        Err(error) => Err(Failure::usage(format!(
             "cannot read {}: {error}",
             out.display()
         ))),

@@ -69,15 +69,30 @@ fn headed(message: &str) -> String {
 /// Writes a result to standard output; colours are dropped where it is no terminal, or with `NO_COLOR`.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = anstream::stdout();
-    match stdout
+    let written = stdout
         .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-    {
+        .and_then(|()| stdout.flush());
+    printed(written)
+}
+
+/// What a failure to write to standard output means.
+fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
+    match written {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::Closed),
         Err(error) => Err(Failure::usage(format!(
             "cannot write to standard output: {error}"
         ))),
+    }
+}
+
+/// What the command line is answered with: help, the version, or what is wrong with it.
+pub fn said(answer: &clap::Error) -> ExitCode {
+    let written = answer.print();
+    match (answer.use_stderr(), printed(written)) {
+        (true, _) => ExitCode::from(2),
+        (false, Ok(())) => ExitCode::SUCCESS,
+        (false, Err(failure)) => failure.report(),
     }
 }
 
@@ -87,8 +102,12 @@ pub fn warn(text: &str) {
     let _ = anstream::stderr().write_all(text.as_bytes());
 }
 
-/// Writes a file.
+/// Writes a file, whole or not at all.
 pub fn write(path: &std::path::Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text)
-        .map_err(|error| Failure::usage(format!("cannot write {}: {error}", path.display())))
+    hamel_files::write(path, text).map_err(|error| Failure::usage(error.to_string()))
+}
+
+/// Writes a file, whole or not at all, unless it holds the text already.
+pub fn update(path: &std::path::Path, text: &str) -> Result<(), Failure> {
+    hamel_files::update(path, text).map_err(|error| Failure::usage(error.to_string()))
 }

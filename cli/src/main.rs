@@ -73,7 +73,11 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result = match Line::parse().command {
+    let line = match Line::try_parse() {
+        Ok(line) => line,
+        Err(said) => return failure::said(&said),
+    };
+    let result = match line.command {
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Ops(arguments) => ops::run(&arguments),

@@ -155,11 +155,7 @@ fn generate_file(path: &Path, kind: &Kind, target: &Path) -> Result<(), String> 
                 .map_err(|errors| refused(&errors, &imported, &shown, &text, false))
         }
     }?;
-    if std::fs::read_to_string(target).is_ok_and(|known| known == code) {
-        return Ok(());
-    }
-    std::fs::write(target, code)
-        .map_err(|error| format!("cannot write {}: {error}", target.display()))
+    hamel_files::update(target, &code).map_err(|error| error.to_string())
 }
 
 /// The generated file of a description; `name` stands in the command that its header shows.
@@ -170,5 +166,5 @@ pub fn source(text: &str, name: &str) -> Result<String, Vec<Diagnostic>> {
         command: format!("hamel emit {name}"),
         ..Default::default()
     };
-    Ok(emit::file(&generated.program, &options))
+    emit::file(&generated.program, &options).map_err(|error| vec![generated.fault(&error)])
 }

@@ -24,5 +24,8 @@ pub fn expand(input: TokenStream) -> TokenStream {
         .help("put the description in an `.eom` file and call `hamel_codegen::Builder` in build.rs");
         return to_compile_errors(&[error]);
     }
-    emit::tokens(&generated.program, &emit::Options::default())
+    match emit::tokens(&generated.program, &emit::Options::default()) {
+        Ok(tokens) => tokens,
+        Err(error) => to_compile_errors(&[generated.fault(&error)]),
+    }
 }

@@ -4,6 +4,7 @@ use crate::derive::assemble::assemble;
 use crate::derive::invariants;
 use crate::derive::reduction::reduce;
 use crate::diagnostics::Diagnostic;
+use crate::emit::NotRust;
 use crate::model::{self, Model};
 use crate::program::Program;
 use crate::syntax::{self, ast};
@@ -54,6 +55,15 @@ impl Generated {
     pub fn all(mut model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
         model.generate.clear();
         Generated::with(model, hash, true)
+    }
+
+    /// What is said where the generated text is no Rust.
+    pub fn fault(&self, error: &NotRust) -> Diagnostic {
+        let name = &self.model.name;
+        let message = format!("internal check failed for `{name}`: {error}");
+        Diagnostic::new(self.model.span, message).help(
+            "nothing was written; this is an error in hamel: please report it with the description",
+        )
     }
 
     fn with(model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {

@@ -149,6 +149,7 @@ fn the_import_knows_no_generator() {
 fn no_file_hides_two_ideas() {
     for folder in [
         "codegen/src",
+        "files/src",
         "urdf/src",
         "macros/src",
         "runtime/src",

@@ -70,9 +70,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             "casadi_ns": theirs, "hamel_ns": ours, "ratio": ratio,
         }));
     }
-    std::fs::write(
-        folder.join("report.json"),
-        serde_json::to_string_pretty(&rows)?,
+    hamel_files::write(
+        &folder.join("report.json"),
+        &serde_json::to_string_pretty(&rows)?,
     )?;
     Ok(())
 }

@@ -22,7 +22,20 @@ pub fn comment(lines: &[String]) -> String {
         } else {
             " "
         };
-        text.push_str(&format!("///{space}{line}\n"));
+        text.push_str(&format!("///{space}{}\n", spelled(line)));
+    }
+    text
+}
+
+/// A line of a comment in which what turns the direction of writing is spelled out: rustc refuses it.
+pub fn spelled(line: &str) -> String {
+    let turns = |letter| matches!(letter, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let mut text = String::with_capacity(line.len());
+    for letter in line.chars() {
+        match turns(letter) {
+            true => text.extend(letter.escape_unicode()),
+            false => text.push(letter),
+        }
     }
     text
 }

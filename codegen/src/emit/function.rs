@@ -118,6 +118,7 @@ impl Drawing<'_> {
             program: self.emitter.program,
             places: &self.emitter.places,
             time: self.spec.time,
+            arguments: self.spec.arguments,
             locals: self.locals,
             parameters: self.parameters,
             slots: &self.plan.slots,
@@ -144,9 +145,10 @@ impl Drawing<'_> {
         let value = match self.spec.shape {
             Shape::Scalar => results.join(""),
             Shape::Vector(_) => format!("[{}]", results.join(", ")),
+            Shape::Matrix(_, 0) => zeros(self.spec.shape),
             Shape::Matrix(_, columns) => {
                 let rows = results
-                    .chunks(columns.max(1))
+                    .chunks(columns)
                     .map(|row| format!("[{}]", row.join(", ")));
                 format!("[{}]", rows.collect::<Vec<_>>().join(", "))
             }

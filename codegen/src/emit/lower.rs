@@ -45,6 +45,20 @@ impl Operation {
         };
         list.into_iter().flatten()
     }
+
+    /// The same with other operands.
+    fn map(self, to: impl Fn(Edge) -> Edge) -> Self {
+        match self {
+            Operation::Add(a, b) => Operation::Add(to(a), to(b)),
+            Operation::Multiply(a, b) => Operation::Multiply(to(a), to(b)),
+            Operation::Fused(a, b, c) => Operation::Fused(to(a), to(b), to(c)),
+            Operation::Divide(a, b) => Operation::Divide(to(a), to(b)),
+            Operation::SinCos(a) => Operation::SinCos(to(a)),
+            Operation::Apply(function, a) => Operation::Apply(function, to(a)),
+            Operation::Atan2(y, x) => Operation::Atan2(to(y), to(x)),
+            Operation::Check(pivot, a) => Operation::Check(pivot, to(a)),
+        }
+    }
 }
 
 /// One statement.
@@ -89,12 +103,24 @@ pub fn lower(
     let graph = places.graph();
     let roots = outputs.iter().chain(guards);
     let mut sums = sums(places, time, nodes, roots, named);
+    // Functions that hold off X too are copied into the graph unmerged, so that a sine or cosine may have
+    // several nodes. All are read from the first.
     let mut angles: FxHashMap<Edge, [Option<NodeId>; 2]> = FxHashMap::default();
+    let mut first: FxHashMap<NodeId, NodeId> = FxHashMap::default();
     for &id in nodes {
         if let Node::Apply(function @ (Function::Sin | Function::Cos), angle) = graph.node(id) {
-            angles.entry(angle).or_default()[usize::from(function == Function::Cos)] = Some(id);
+            let pair = angles.entry(angle).or_default();
+            match pair[usize::from(function == Function::Cos)] {
+                Some(known) => _ = first.insert(id, known),
+                ref mut free => *free = Some(id),
+            }
         }
     }
+    let read = |edge: Edge| {
+        let known = first.get(&edge.node());
+        known.map_or(edge, |&node| Edge::of(node).signed(edge.is_negative()))
+    };
+    let guards: Vec<Edge> = guards.iter().map(|&guard| read(guard)).collect();
     let mut checks: FxHashMap<NodeId, Vec<usize>> = FxHashMap::default();
     let mut statements = Vec::new();
     for (pivot, &guard) in guards.iter().enumerate() {
@@ -104,7 +130,8 @@ pub fn lower(
             _ => statements.push(check(pivot, guard)),
         }
     }
-    let mut push = |statement: Statement| {
+    let mut push = |mut statement: Statement| {
+        statement.operation = statement.operation.map(read);
         statements.push(statement);
         for node in statement.defined() {
             let pivots = checks.remove(&node).unwrap_or_default();
@@ -137,7 +164,7 @@ pub fn lower(
     }
     Body {
         statements,
-        outputs: outputs.to_vec(),
+        outputs: outputs.iter().map(|&output| read(output)).collect(),
     }
 }
 

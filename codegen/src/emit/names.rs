@@ -52,12 +52,15 @@ const KEYWORDS: &[&str] = &[
     "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "Self",
 ];
 
-/// Methods of every generated type, or of the traits that it implements.
+/// Methods of every generated type, or of the traits that it implements. `into` and `try_into` take a value,
+/// which Rust prefers to a method of the type that takes a reference.
 const METHODS: &[&str] = &[
     "new",
     "default",
     "clone",
     "clone_from",
+    "into",
+    "try_into",
     "fmt",
     "blocks",
     "zero_coordinates",
@@ -72,8 +75,17 @@ const METHODS: &[&str] = &[
 /// Local names that a function may use besides those of its values.
 const LOCALS: &[&str] = &["x", "xi", "u", "xi_dot", "momentum", "k", "slots", "out"];
 
-/// The generic parameter, and primitive types that the text mentions.
-const TYPES: &[&str] = &["S", "f64", "usize"];
+/// The generic parameter, and the primitive types: the text mentions some of them.
+const TYPES: &[&str] = &[
+    "S", "bool", "char", "str", "f16", "f32", "f64", "f128", "i8", "i16", "i32", "i64", "i128",
+    "isize", "u8", "u16", "u32", "u64", "u128", "usize",
+];
+
+/// Whether a word is one of Rust's own.
+pub fn is_keyword(word: &str) -> bool {
+    // None ends in a digit, as most generated names do.
+    !word.ends_with(|last: char| last.is_ascii_digit()) && KEYWORDS.contains(&word)
+}
 
 /// The name of an argument.
 pub fn argument(argument: Argument) -> &'static str {

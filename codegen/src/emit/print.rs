@@ -35,6 +35,8 @@ pub struct Printer<'a> {
     pub places: &'a Places<'a>,
     /// When the function runs.
     pub time: Time,
+    /// What the function takes.
+    pub arguments: &'a [Argument],
     /// Names of values.
     pub locals: &'a Locals,
     /// The parameters as expressions, in order.
@@ -51,6 +53,11 @@ impl Printer<'_> {
     /// A value without its sign.
     fn value(&mut self, node: NodeId) -> String {
         match self.places.of(node, self.time) {
+            // The value of the function does not depend on it, as was proved, but expressions that are equal
+            // are one node. The interpreter takes 0 as well.
+            Place::Argument(argument, _) if !self.arguments.contains(&argument) => {
+                number::scalar(0.0)
+            }
             Place::Argument(argument, index) => {
                 self.used.arguments.insert(argument);
                 format!("{}[{index}]", names::argument(argument))
@@ -62,11 +69,14 @@ impl Printer<'_> {
             }
             Place::Number => self.locals.name(node).into(),
             Place::Temporary if self.here.contains(&node) => self.locals.name(node).into(),
-            Place::Temporary => {
-                self.used.reads = true;
-                let slot = self.slots.get(&node).copied().unwrap_or_default();
-                format!("slots[{slot}]")
-            }
+            Place::Temporary => match self.slots.get(&node) {
+                Some(slot) => {
+                    self.used.reads = true;
+                    format!("slots[{slot}]")
+                }
+                // No Rust, so that the text never leaves the generator.
+                None => format!("no value for node {node}"),
+            },
         }
     }
 

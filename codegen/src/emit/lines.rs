@@ -1,0 +1,191 @@
+//! The generated text without the short lines in it, which `syn` would take most of the time for.
+//!
+//! Most lines are short statements that already look as the printer would leave them, guards, and
+//! results in one line. Runs of these are taken out while the rest is parsed; they are parsed by
+//! [`plain`], and laid out by `format`.
+
+use super::plain;
+use std::fmt;
+
+/// The longest line of the printer.
+pub const WIDTH: usize = 89;
+/// How far statements of a method are set in.
+const INDENT: usize = 8;
+/// Longer statements may be broken by the printer.
+const SHORT: usize = WIDTH - INDENT - 1;
+/// What a run of lines leaves behind; the printer keeps it as it is.
+pub const MARK: &str = "let hamel_line_";
+
+/// Text that is no Rust was generated: an error in the generator, whatever the description is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotRust {
+    /// What the parser says.
+    pub why: String,
+    /// The line that is wrong, where it is known.
+    pub line: Option<String>,
+}
+
+impl fmt::Display for NotRust {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the generated text is no Rust: {}", self.why)?;
+        match &self.line {
+            Some(line) => write!(f, ", in `{}`", line.trim()),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for NotRust {}
+
+/// A line whose layout is known.
+pub enum Line<'a> {
+    /// It stays.
+    Plain(&'a str),
+    /// A condition with one statement.
+    Guard(&'a str, &'a str),
+    /// What stands before a list, the list, what stands behind it.
+    List(&'a str, &'a str, &'a str),
+}
+
+/// A text in two parts, both parsed.
+pub struct Skeleton<'a> {
+    /// The text with a mark in the place of each run.
+    pub file: syn::File,
+    /// The runs that were taken out.
+    pub taken: Vec<Vec<Line<'a>>>,
+}
+
+/// Parses a text.
+///
+/// # Errors
+/// Where it is no Rust.
+pub fn skeleton(text: &str) -> Result<Skeleton<'_>, NotRust> {
+    let mut taken = Vec::new();
+    let mut rest = String::with_capacity(text.len() / 2);
+    let mut lines = text.lines().peekable();
+    while let Some(line) = lines.next() {
+        let Some(first) = line_of(line, lines.peek()) else {
+            rest.push_str(line);
+            rest.push('\n');
+            continue;
+        };
+        rest.push_str(&format!("{MARK}{};\n", taken.len()));
+        let mut run = vec![first];
+        while let Some(&line) = lines.peek() {
+            let mut after = lines.clone();
+            after.next();
+            let Some(next) = line_of(line, after.peek()) else {
+                break;
+            };
+            run.push(next);
+            lines.next();
+        }
+        taken.push(run);
+    }
+    match syn::parse_file(&rest) {
+        Ok(file) => Ok(Skeleton { file, taken }),
+        Err(error) => Err(NotRust {
+            why: error.to_string(),
+            line: place(&error, &rest),
+        }),
+    }
+}
+
+/// The line of an error, where places are known.
+#[cfg(feature = "files")]
+fn place(error: &syn::Error, text: &str) -> Option<String> {
+    let line = error.span().start().line;
+    text.lines().nth(line.checked_sub(1)?).map(str::to_string)
+}
+
+#[cfg(not(feature = "files"))]
+fn place(_: &syn::Error, _: &str) -> Option<String> {
+    None
+}
+
+/// How a line is laid out, where that is known without `syn`; `next` is the line behind it.
+fn line_of<'a>(line: &'a str, next: Option<&&str>) -> Option<Line<'a>> {
+    if is_plain(line) {
+        return plain::is_statement(line).then_some(Line::Plain(line));
+    }
+    if let Some((condition, rest)) = line.split_once(" { ")
+        && condition.starts_with("if !")
+        && is_simple(condition)
+        && condition.len() + 2 <= SHORT
+        && let Some(statement) = rest.strip_suffix(" }")
+        && statement.starts_with("return Err(")
+        && statement.ends_with(");")
+        && statement.len() + 4 <= SHORT
+    {
+        return plain::is_statement(line).then_some(Line::Guard(condition, statement));
+    }
+    // A value ends its function.
+    if !next.is_some_and(|next| next.starts_with('}')) {
+        return None;
+    }
+    for (before, after) in [("[", "]"), ("Ok([", "])")] {
+        if let Some(list) = line.strip_prefix(before)
+            && let Some(list) = list.strip_suffix(after)
+            && !list.is_empty()
+            && entries(list).all(|entry| match row(entry) {
+                Some(row) => entries(row).all(is_entry),
+                None => is_entry(entry),
+            })
+        {
+            return plain::is_value(line).then_some(Line::List(before, list, after));
+        }
+    }
+    None
+}
+
+/// The entries of a list, rows whole.
+pub fn entries(list: &str) -> impl Iterator<Item = &str> {
+    let mut depth = 0_i32;
+    let mut after_comma = false;
+    let parts = list.split(move |c: char| {
+        let ends = c == ',' && depth == 0;
+        depth += i32::from(matches!(c, '[' | '(')) - i32::from(matches!(c, ']' | ')'));
+        ends
+    });
+    parts.map(move |part| {
+        let entry = if after_comma {
+            part.strip_prefix(' ').unwrap_or(part)
+        } else {
+            part
+        };
+        after_comma = true;
+        entry
+    })
+}
+
+/// What stands in an entry that is a row: one bracket on either side is its own, `k[15]` at its end is not.
+pub fn row(entry: &str) -> Option<&str> {
+    entry.strip_prefix('[')?.strip_suffix(']')
+}
+
+/// Whether a line is one short statement in which there is nothing to lay out.
+fn is_plain(line: &str) -> bool {
+    let starts = |word: &str| line.starts_with(word);
+    line.len() <= SHORT
+        && (starts("let ") || starts("slots[") || starts("out[") || starts("*out "))
+        && line.ends_with(';')
+        && is_simple(&line[..line.len() - 1])
+}
+
+/// Whether an entry of a list is a value; lists of numbers are laid out in another way.
+fn is_entry(text: &str) -> bool {
+    text.len() <= SHORT / 2
+        && text.starts_with(|c: char| c.is_ascii_alphabetic() || matches!(c, '-' | '_'))
+        && is_simple(text)
+}
+
+/// Whether there is nothing in an expression that is laid out: no blocks, lists, or operators of types.
+fn is_simple(text: &str) -> bool {
+    let mut previous = b' ';
+    text.bytes().all(|byte| {
+        let index =
+            byte != b'[' || previous.is_ascii_alphanumeric() || matches!(previous, b'_' | b']');
+        previous = byte;
+        index && !matches!(byte, b'{' | b'}' | b'|' | b'#' | b'"' | b';')
+    })
+}

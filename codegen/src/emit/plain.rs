@@ -1,0 +1,332 @@
+//! The part of Rust that most lines of the generated text are written in, and its parser.
+//!
+//! ```text
+//! statement  let PATTERN = SUM;   PLACE = SUM;   if !SUM { return Err(PATH(NUMBER)); }
+//! value      [ENTRY, …]   Ok([ENTRY, …])                          entries are sums, or rows of them
+//! SUM        OPERAND (+ - * /) OPERAND …
+//! OPERAND    - & before a name, a path, a number or (SUM), and behind it [NUMBER] .name .0 (SUM, …)
+//! ```
+//!
+//! Every text has to be Rust before it leaves the generator. `syn` reads what is not written in this
+//! language; for the rest it would take longer than all stages before.
+
+use super::names::is_keyword;
+
+/// Whether a text is one statement of the language.
+pub fn is_statement(text: &str) -> bool {
+    let mut reader = Reader::new(text);
+    reader.statement() && reader.ends()
+}
+
+/// Whether a text is a list that stands as the value of a function.
+pub fn is_value(text: &str) -> bool {
+    let mut reader = Reader::new(text);
+    let whole = match reader.word("Ok") {
+        true => reader.take("(") && reader.list(true) && reader.take(")"),
+        false => reader.list(true),
+    };
+    whole && reader.ends()
+}
+
+/// A text, and how far it is read.
+struct Reader<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn new(text: &'a str) -> Self {
+        Reader { text, at: 0 }
+    }
+
+    /// What is not read yet, from the next token on.
+    fn rest(&mut self) -> &'a str {
+        let rest = &self.text[self.at..];
+        let found = rest.trim_ascii_start();
+        self.at += rest.len() - found.len();
+        found
+    }
+
+    fn ends(&mut self) -> bool {
+        self.rest().is_empty()
+    }
+
+    /// Reads a token that is no word.
+    fn take(&mut self, token: &str) -> bool {
+        let found = self.rest().starts_with(token);
+        if found {
+            self.at += token.len();
+        }
+        found
+    }
+
+    /// Reads as many bytes as belong together.
+    fn run(&mut self, belongs: impl Fn(u8) -> bool) -> &'a str {
+        let rest = self.rest();
+        let length = rest.bytes().take_while(|&byte| belongs(byte)).count();
+        self.at += length;
+        &rest[..length]
+    }
+
+    /// A keyword, a name, or nothing; nothing is read where it does not begin with a letter.
+    fn next_word(&mut self) -> &'a str {
+        match self.rest().bytes().next() {
+            Some(first) if first.is_ascii_alphabetic() || first == b'_' => {
+                self.run(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+            }
+            _ => "",
+        }
+    }
+
+    /// Reads this very word.
+    fn word(&mut self, word: &str) -> bool {
+        let before = self.at;
+        let found = self.next_word() == word;
+        if !found {
+            self.at = before;
+        }
+        found
+    }
+
+    /// Reads a name that is no keyword.
+    fn name(&mut self) -> bool {
+        let word = self.next_word();
+        !word.is_empty() && word != "_" && !is_keyword(word)
+    }
+
+    /// Reads digits alone.
+    fn integer(&mut self) -> bool {
+        !self.run(|byte| byte.is_ascii_digit()).is_empty()
+    }
+
+    /// Reads `1`, `1.5`, `1e300` or `1.5e-300`.
+    fn number(&mut self) -> bool {
+        let digits = |reader: &mut Self| {
+            let length = reader.text[reader.at..]
+                .bytes()
+                .take_while(u8::is_ascii_digit)
+                .count();
+            reader.at += length;
+            length > 0
+        };
+        self.rest();
+        let next = |reader: &Self| reader.text.as_bytes().get(reader.at).copied();
+        if !digits(self) {
+            return false;
+        }
+        if next(self) == Some(b'.') {
+            self.at += 1;
+            if !digits(self) {
+                return false;
+            }
+        }
+        if next(self) == Some(b'e') {
+            self.at += 1;
+            if next(self) == Some(b'-') {
+                self.at += 1;
+            }
+            return digits(self);
+        }
+        !next(self).is_some_and(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+    }
+
+    fn statement(&mut self) -> bool {
+        if self.word("let") {
+            return self.pattern() && self.take("=") && self.sum() && self.take(";");
+        }
+        if self.word("if") {
+            return self.take("!") && self.sum() && self.leaves();
+        }
+        // A place: `out`, `*out` and `out[1][2]`.
+        self.take("*");
+        let mut place = self.name();
+        while place && self.take("[") {
+            place = self.integer() && self.take("]");
+        }
+        place && self.take("=") && self.sum() && self.take(";")
+    }
+
+    /// `{ return Err(…); }`
+    fn leaves(&mut self) -> bool {
+        let returns = self.take("{") && self.word("return") && self.word("Err") && self.take("(");
+        let error = returns && self.path();
+        let of = match self.take("{") {
+            true => self.name() && self.take(":") && self.integer() && self.take("}"),
+            false => self.take("(") && self.integer() && self.take(")"),
+        };
+        error && of && self.take(")") && self.take(";") && self.take("}")
+    }
+
+    /// `a`, `mut a`, `_` or `(a, _)`.
+    fn pattern(&mut self) -> bool {
+        if self.take("(") {
+            return self.binding() && self.take(",") && self.binding() && self.take(")");
+        }
+        self.binding()
+    }
+
+    fn binding(&mut self) -> bool {
+        if self.word("_") {
+            return true;
+        }
+        self.word("mut");
+        self.name()
+    }
+
+    fn sum(&mut self) -> bool {
+        loop {
+            if !self.operand() {
+                return false;
+            }
+            if !["+", "-", "*", "/"].iter().any(|sign| self.take(sign)) {
+                return true;
+            }
+        }
+    }
+
+    fn operand(&mut self) -> bool {
+        let _ = self.take("-") || self.take("&");
+        let whole = match self.rest().bytes().next() {
+            Some(b'(') => self.take("(") && self.sum() && self.take(")"),
+            Some(b'0'..=b'9') => self.number(),
+            _ => self.word("self") || self.path(),
+        };
+        whole && self.behind()
+    }
+
+    /// `a`, `S::from_f64`, `::core::f64::consts::PI`.
+    fn path(&mut self) -> bool {
+        self.take("::");
+        let mut name = self.name();
+        while name && self.take("::") {
+            name = self.name();
+        }
+        name
+    }
+
+    /// Indices, fields and calls.
+    fn behind(&mut self) -> bool {
+        loop {
+            let right = if self.take("[") {
+                self.integer() && self.take("]")
+            } else if self.take(".") {
+                self.integer() || self.name()
+            } else if self.take("(") {
+                self.arguments()
+            } else {
+                return true;
+            };
+            if !right {
+                return false;
+            }
+        }
+    }
+
+    fn arguments(&mut self) -> bool {
+        while !self.take(")") {
+            if !self.sum() {
+                return false;
+            }
+            if !self.take(",") {
+                return self.take(")");
+            }
+        }
+        true
+    }
+
+    /// A list of sums and, on the outside, of rows.
+    fn list(&mut self, outside: bool) -> bool {
+        if !self.take("[") {
+            return false;
+        }
+        while !self.take("]") {
+            let row = outside && self.rest().starts_with('[');
+            if !(if row { self.list(false) } else { self.sum() }) {
+                return false;
+            }
+            if !self.take(",") {
+                return self.take("]");
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_statement, is_value};
+
+    #[test]
+    fn what_is_read_is_rust() {
+        for text in [
+            "let a = x[0] * 2.0;",
+            "let mut out = S::default();",
+            "let (sin_q, _) = (-x[1]).sin_cos();",
+            "let pi = S::from_f64(::core::f64::consts::PI);",
+            "let c1 = S::from_f64(-1.5e-300);",
+            "let c2 = S::from_f64(1e300);",
+            "let k = &self.k;",
+            "let t1 = k[1].mul_add(-t2, self.theta[0][1]);",
+            "let t2 = t1.sin_cos().0;",
+            "out[1][2] = -t1;",
+            "*out = t1;",
+            "slots[3] = x[0] / a;",
+            "if !(-a).is_positive() { return Err(::hamel::Singular { pivot: 1 }); }",
+            "if !k[3].is_positive() { return Err(::hamel::Singular::kinematics(1)); }",
+        ] {
+            assert!(is_statement(text), "{text}");
+            syn::parse_str::<syn::Block>(&format!("{{{text}}}")).expect(text);
+        }
+        for text in [
+            "[]",
+            "[t1, -t2,]",
+            "[[t1, k[15]], [a, b]]",
+            "Ok([[x[0]], [k[1],\n]])",
+        ] {
+            assert!(is_value(text), "{text}");
+            syn::parse_str::<syn::Expr>(text).expect(text);
+        }
+    }
+
+    #[test]
+    fn what_is_no_rust_is_not_read() {
+        for text in [
+            "let a = x[0;",
+            "let a = x 0];",
+            "let a = k[115, 2.0;",
+            "let type = 2.0;",
+            "let a = type;",
+            "let _ = _;",
+            "let a = b c;",
+            "let a = b + ;",
+            "let a = 1.;5;",
+            "let a = 2x;",
+            "let a = no value for node 3;",
+            "let a = b",
+            "let = b;",
+            "let a = (b;",
+            "let a = b);",
+            "let a = b.mul_add(c d);",
+            "a[b] = c;",
+            "x;",
+            "if !a.is_positive() { return Err(::hamel::Singular { pivot: 1 }; }",
+            "",
+        ] {
+            assert!(!is_statement(text), "{text}");
+        }
+        for text in [
+            "[",
+            "]",
+            "[a",
+            "[a]]",
+            "[a b]",
+            "[,]",
+            "[[a], k[1]",
+            "[[a, k[1,], b]",
+            "Ok([a]",
+            "[[[a]]]",
+        ] {
+            assert!(!is_value(text), "{text}");
+        }
+    }
+}

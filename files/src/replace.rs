@@ -1,0 +1,61 @@
+//! A regular file, replaced in one step.
+
+use std::fs::{File, Metadata, OpenOptions};
+use std::io::{self, Write};
+use std::path::Path;
+use tempfile::Builder;
+
+/// Gives a path a new text; `known` is the file that it stands for now.
+pub fn replace(place: &Path, known: Option<&Metadata>, text: &str) -> Result<(), String> {
+    let said = |error: io::Error| error.to_string();
+    let Some(folder) = place.parent() else {
+        return Err("it is a folder".into());
+    };
+    if known.is_some() {
+        // A file that must not be written must not be replaced either.
+        OpenOptions::new().write(true).open(place).map_err(said)?;
+    }
+    let mut builder = Builder::new();
+    builder.prefix(".hamel-").suffix(".tmp");
+    for_everybody(&mut builder);
+    let mut file = builder
+        .tempfile_in(folder)
+        .map_err(|error| format!("no file can be made beside it: {error}"))?;
+    file.write_all(text.as_bytes()).map_err(said)?;
+    if let Some(known) = known {
+        keep(file.as_file(), known).map_err(said)?;
+    }
+    file.as_file().sync_all().map_err(said)?;
+    file.persist(place).map_err(|error| said(error.error))?;
+    // The new name is in the folder, which is brought to the disk where the system can do that; the file
+    // is whole in any case.
+    if cfg!(unix) {
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
+    Ok(())
+}
+
+/// New files get the permissions that the user's mask leaves, as any other.
+#[cfg(unix)]
+fn for_everybody(builder: &mut Builder) {
+    use std::fs::Permissions;
+    use std::os::unix::fs::PermissionsExt;
+    builder.permissions(Permissions::from_mode(0o666));
+}
+
+#[cfg(not(unix))]
+fn for_everybody(_: &mut Builder) {}
+
+/// Gives a new file the owner and the permissions of the old one.
+fn keep(file: &File, known: &Metadata) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{MetadataExt, fchown};
+        let new = file.metadata()?;
+        if (new.uid(), new.gid()) != (known.uid(), known.gid()) {
+            // Only some users may give files away; the others own what they write.
+            let _ = fchown(file, Some(known.uid()), Some(known.gid()));
+        }
+    }
+    file.set_permissions(known.permissions())
+}

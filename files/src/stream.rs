@@ -1,0 +1,120 @@
+//! Targets that are written to as they are: devices, pipes, descriptors of this process.
+
+use std::fs::{self, File, FileType, OpenOptions};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// A target without a text of its own.
+pub enum Stream {
+    /// Standard output of this process.
+    Output,
+    /// Standard error of this process.
+    Error,
+    /// Another descriptor of a process that leads to a file: what is there stays.
+    Descriptor(PathBuf),
+    /// A device such as `/dev/null`.
+    Device(PathBuf),
+    /// A pipe, by its name or by a descriptor.
+    Pipe(PathBuf),
+}
+
+impl Stream {
+    /// What is behind a path that the kernel lists as a descriptor; nothing for other paths.
+    pub fn descriptor(folder: &Path, place: &Path) -> Option<Result<Stream, String>> {
+        let own = format!("/proc/{}/fd", std::process::id());
+        let fixed = folder == Path::new(&own) || folder == Path::new("/dev/fd");
+        if !fixed && !folder.starts_with("/proc") {
+            return None;
+        }
+        match place.file_name().and_then(|name| name.to_str()) {
+            Some("1") if fixed => return Some(Ok(Stream::Output)),
+            Some("2") if fixed => return Some(Ok(Stream::Error)),
+            _ => {}
+        }
+        Some(match fs::metadata(place) {
+            Err(error) => Err(error.to_string()),
+            Ok(known) if known.is_file() => Ok(Stream::Descriptor(place.to_path_buf())),
+            Ok(known) => Stream::of(place.to_path_buf(), known.file_type()),
+        })
+    }
+
+    /// What is no regular file, by its type.
+    #[cfg(unix)]
+    pub fn of(place: PathBuf, of: FileType) -> Result<Stream, String> {
+        use std::os::unix::fs::FileTypeExt;
+        if of.is_dir() {
+            Err("it is a folder".into())
+        } else if of.is_fifo() {
+            Ok(Stream::Pipe(place))
+        } else if of.is_char_device() {
+            Ok(Stream::Device(place))
+        } else if of.is_socket() {
+            Err("it is a socket".into())
+        } else {
+            Err("it is a disk or the like".into())
+        }
+    }
+
+    /// What is no regular file, by its type.
+    #[cfg(not(unix))]
+    pub fn of(place: PathBuf, of: FileType) -> Result<Stream, String> {
+        if of.is_dir() {
+            Err("it is a folder".into())
+        } else {
+            Ok(Stream::Device(place))
+        }
+    }
+
+    /// Writes a text behind what is there.
+    pub fn write(self, text: &str) -> Result<(), String> {
+        let whole = |mut to: Box<dyn Write>| {
+            to.write_all(text.as_bytes())?;
+            to.flush()
+        };
+        let written = match self {
+            Stream::Output => whole(Box::new(io::stdout())),
+            Stream::Error => whole(Box::new(io::stderr())),
+            Stream::Descriptor(place) => {
+                let file = OpenOptions::new().append(true).open(place);
+                file.and_then(|file| whole(Box::new(file)))
+            }
+            Stream::Device(place) => {
+                let file = OpenOptions::new().write(true).open(place);
+                file.and_then(|file| whole(Box::new(file)))
+            }
+            Stream::Pipe(place) => whole(Box::new(pipe(&place)?)),
+        };
+        written.map_err(|error| match error.kind() {
+            ErrorKind::BrokenPipe => "its reader is gone".into(),
+            _ => error.to_string(),
+        })
+    }
+}
+
+/// Opens a pipe that has a reader; without one, opening it as usual would wait for ever.
+#[cfg(unix)]
+fn pipe(place: &Path) -> Result<File, String> {
+    use rustix::fs::{OFlags, fcntl_setfl};
+    use rustix::io::Errno;
+    use std::os::unix::fs::OpenOptionsExt;
+    let flags = OFlags::NONBLOCK.bits().cast_signed();
+    let file = OpenOptions::new()
+        .write(true)
+        .custom_flags(flags)
+        .open(place)
+        .map_err(|error| match error.raw_os_error() {
+            Some(code) if code == Errno::NXIO.raw_os_error() => {
+                "it is a pipe that nobody reads from".into()
+            }
+            _ => error.to_string(),
+        })?;
+    // Writing may wait for the reader as long as there is one.
+    fcntl_setfl(&file, OFlags::empty()).map_err(|error| error.to_string())?;
+    Ok(file)
+}
+
+#[cfg(not(unix))]
+fn pipe(place: &Path) -> Result<File, String> {
+    let file = OpenOptions::new().write(true).open(place);
+    file.map_err(|error| error.to_string())
+}

@@ -1,0 +1,62 @@
+//! What a path stands for: a file to be replaced, or a stream to be written to.
+
+use crate::stream::Stream;
+use std::fs::{self, Metadata};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf, is_separator};
+
+/// The most symbolic links from a path to its file, as in the kernel.
+const MOST_LINKS: usize = 40;
+
+/// What a path stands for.
+pub enum Target {
+    /// A regular file that is there, or one that is not there yet.
+    File {
+        /// Its path, without symbolic links.
+        place: PathBuf,
+        /// What is known of the file that is there.
+        known: Option<Metadata>,
+    },
+    /// What has no text of its own that could be replaced.
+    Stream(Stream),
+}
+
+impl Target {
+    /// Follows symbolic links to what a path stands for, or says why that cannot be written.
+    pub fn of(path: &Path) -> Result<Target, String> {
+        let mut path = path.to_path_buf();
+        for _ in 0..=MOST_LINKS {
+            let folder_only = path.to_string_lossy().ends_with(is_separator);
+            let (Some(name), false) = (path.file_name(), folder_only) else {
+                return Err("it names a folder".into());
+            };
+            let folder = match path.parent() {
+                Some(parent) if !parent.as_os_str().is_empty() => parent,
+                _ => Path::new("."),
+            };
+            let folder = folder
+                .canonicalize()
+                .map_err(|error| format!("its folder {}: {error}", folder.display()))?;
+            let place = folder.join(name);
+            if let Some(stream) = Stream::descriptor(&folder, &place) {
+                return stream.map(Target::Stream);
+            }
+            match fs::symlink_metadata(&place) {
+                Err(error) if error.kind() == ErrorKind::NotFound => {
+                    return Ok(Target::File { place, known: None });
+                }
+                Err(error) => return Err(error.to_string()),
+                Ok(known) if known.is_symlink() => {
+                    let link = fs::read_link(&place).map_err(|error| error.to_string())?;
+                    path = folder.join(link);
+                }
+                Ok(known) if known.is_file() => {
+                    let known = Some(known);
+                    return Ok(Target::File { place, known });
+                }
+                Ok(known) => return Stream::of(place, known.file_type()).map(Target::Stream),
+            }
+        }
+        Err("its symbolic links lead nowhere".into())
+    }
+}

@@ -1,0 +1,159 @@
+//! Writes random descriptions, generates their code, and a function for each that calls all that was
+//! generated: a module of this crate for each. `HAMEL_ATTACK=full` makes 500 instead of 20.
+
+use common::Random;
+use hamel_codegen::emit::{self, Options, names::Names};
+use hamel_codegen::generate::from_text;
+use hamel_codegen::model::Group;
+use hamel_codegen::program::{Argument, Function, Program, Shape};
+use hamel_codegen::syntax::ast::ShapeKind;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+#[path = "../../codegen/tests/common/mod.rs"]
+mod common;
+#[path = "src/describe.rs"]
+mod describe;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    println!("cargo:rerun-if-env-changed=HAMEL_ATTACK");
+    println!("cargo:rerun-if-changed=src/describe.rs");
+    println!("cargo:rerun-if-changed=../../codegen/tests/common/mod.rs");
+    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
+    let count = if full { 500 } else { 20 };
+    let folder = PathBuf::from(std::env::var("OUT_DIR")?);
+    let mut modules = String::new();
+    let mut list = String::new();
+    let mut write = |case: usize,
+                     text: &str,
+                     chunk: usize|
+     -> Result<bool, Box<dyn std::error::Error>> {
+        // What is refused is the business of other tests.
+        let Ok(generated) = from_text(text) else {
+            return Ok(false);
+        };
+        let options = Options {
+            chunk,
+            ..Options::default()
+        };
+        let code = emit::file(&generated.program, &options)?;
+        std::fs::write(folder.join(format!("case{case}.eom")), text)?;
+        std::fs::write(folder.join(format!("case{case}.rs")), code)?;
+        writeln!(
+            modules,
+            "/// A random system.\npub mod case{case} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/case{case}.rs\"));\n}}\n{}",
+            calls(&generated.program, case)
+        )?;
+        writeln!(
+            list,
+            "    Case {{ text: include_str!(concat!(env!(\"OUT_DIR\"), \"/case{case}.eom\")), double: calls{case}, single: calls{case}, doubles: calls{case}, singles: calls{case} }},"
+        )?;
+        Ok(true)
+    };
+    let (mut made, mut seed) = (0, 0);
+    while made < count {
+        let mut random = Random(seed);
+        let text = describe::description(&mut random, None);
+        // Long functions are cut: here short ones, too.
+        let chunk = [500, 500, 60, 8][random.below(4)];
+        made += usize::from(write(made, &text, chunk)?);
+        seed += 1;
+    }
+    // Every awkward name as that of the type.
+    for name in describe::names() {
+        let text = format!(
+            "pub system {name} {{ coord q; velocity v; rate q = v; kinetic v^2; potential q^4; generate rate, accel; }}"
+        );
+        assert!(write(made, &text, 500)?, "no type can be called {name}");
+        made += 1;
+    }
+    let text = format!(
+        "{modules}\n/// All systems.\npub const CASES: &[Case] = &[\n{list}];\n/// How many descriptions were tried for them.\npub const TRIED: usize = {};\n",
+        seed as usize + describe::names().count()
+    );
+    std::fs::write(folder.join("cases.rs"), text)?;
+    Ok(())
+}
+
+/// `fn calls7`: all functions of system 7, at a state for each lane.
+fn calls(program: &Program, case: usize) -> String {
+    let names = Names::new(program);
+    let of = format!("case{case}::{}", names.type_name);
+    let values: Vec<String> = program
+        .params
+        .iter()
+        .map(|group| parameter(program, group))
+        .collect();
+    // Parameters by the constructor, or one by one.
+    let system = if case.is_multiple_of(2) {
+        format!("    let system = {of}::<L>::new({})?;\n", values.join(", "))
+    } else {
+        let sets = values.iter().zip(&names.accessors).map(|(value, name)| {
+            format!("    system.set_{name}({value})?;\n    let _ = system.{name}();\n")
+        });
+        let sets: String = sets.collect();
+        let mutable = if sets.is_empty() { "" } else { "mut " };
+        format!("    let {mutable}system = {of}::<L>::default();\n{sets}")
+    };
+    let functions = program.functions.iter().zip(&names.functions);
+    let calls: String = functions
+        .map(|(function, name)| call(function, name))
+        .collect();
+    format!(
+        "fn calls{case}<L: Lanes>(at: &At) -> Values<L> {{\n{system}    Ok(vec![\n{calls}    ])\n}}\n"
+    )
+}
+
+/// A function's value as a list of numbers, nothing where it has none.
+fn call(function: &Function, name: &str) -> String {
+    let arguments = function.arguments.iter().map(|argument| match argument {
+        Argument::Coordinates => "&gather(at, 0)",
+        Argument::Velocities => "&gather(at, 1)",
+        Argument::Accelerations => "&gather(at, 2)",
+        Argument::Momenta => "&gather(at, 3)",
+        Argument::Inputs => "&gather(at, 4)",
+    });
+    let call = format!(
+        "system.{name}({})",
+        arguments.collect::<Vec<_>>().join(", ")
+    );
+    let list = match function.shape {
+        Shape::Scalar => "vec![value]",
+        Shape::Vector(_) => "value.to_vec()",
+        Shape::Matrix(..) => "value.concat()",
+    };
+    let value = match function.fallible {
+        true => format!("{call}.ok().map(|value| {list})"),
+        false => format!("Some({call}).map(|value| {list})"),
+    };
+    format!("        (\"{}\", {value}),\n", function.name)
+}
+
+/// The value of a parameter: half as much again as its default.
+fn parameter(program: &Program, group: &Group) -> String {
+    let entry = |index: usize| {
+        let value = 1.5 * program.defaults[group.offset + index];
+        format!("L::from_f64({value:?})")
+    };
+    let list = |entries: Vec<String>| format!("[{}]", entries.join(", "));
+    let upper = |n: usize, i: usize, j: usize| i * n - i * (i + 1) / 2 + j;
+    match group.shape {
+        ShapeKind::Scalar => entry(0),
+        ShapeKind::Vector(n) => list((0..n).map(entry).collect()),
+        ShapeKind::Matrix(n) => list(
+            (0..n)
+                .map(|i| list((0..n).map(|j| entry(i * n + j)).collect()))
+                .collect(),
+        ),
+        ShapeKind::Symmetric(n) => {
+            let row = |i: usize| {
+                list(
+                    (0..n)
+                        .map(|j| entry(upper(n, i.min(j), i.max(j))))
+                        .collect(),
+                )
+            };
+            list((0..n).map(row).collect())
+        }
+    }
+}
