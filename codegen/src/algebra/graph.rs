@@ -77,6 +77,18 @@ impl Graph {
         self.shadow.set(reals);
     }
 
+    /// Whether what is equal at the point has to be equal at the first half of the real values, too: there
+    /// the point may be on another branch of the constraints.
+    pub fn watch(&mut self, watched: bool) {
+        self.shadow.watched = watched;
+    }
+
+    /// Whether expressions that are equal at the point differ at real values: they are on different
+    /// branches of the constraints.
+    pub fn is_contradicted(&self) -> bool {
+        self.shadow.contradicted
+    }
+
     /// The real values of a symbol.
     pub fn reals(&self, symbol: usize) -> Reals {
         self.shadow.symbol(symbol)

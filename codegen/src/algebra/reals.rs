@@ -155,7 +155,7 @@ impl Real {
 }
 
 /// Whether b cannot stand for a at a sample.
-pub fn contradict(a: &Reals, b: &Reals) -> bool {
+pub fn contradict(a: &[Real], b: &[Real]) -> bool {
     a.iter().zip(b).any(|(a, b)| a.differs(*b))
 }
 

@@ -17,6 +17,10 @@ pub(super) struct Shadow {
     values: Vec<Reals>,
     /// Whether a square root is below a node.
     rooted: Vec<bool>,
+    /// Whether the first half of the samples speaks of all nodes.
+    pub(super) watched: bool,
+    /// Whether it did.
+    pub(super) contradicted: bool,
     /// Numbers between certain bounds; `None` where none are known.
     numbers: FxHashMap<NodeId, Option<Interval>>,
 }
@@ -52,10 +56,18 @@ impl Shadow {
         node: Node,
         known: Edge,
     ) -> bool {
-        if !self.has_root(node) && !self.rooted[known.node() as usize] {
+        let rooted = self.has_root(node) || self.rooted[known.node() as usize];
+        if !rooted && !self.watched {
             return false;
         }
         self.fill(nodes, constants);
+        if !rooted {
+            let half = SAMPLES / 2;
+            let (a, b) = (self.value(constants, node), self.read(known));
+            let contradicts = contradict(&a[..half], &b[..half]);
+            self.contradicted |= contradicts;
+            return contradicts;
+        }
         contradict(&self.value(constants, node), &self.read(known))
     }
 

@@ -100,6 +100,8 @@ impl Geometry {
             }
         }
         free.generalized = carry(&model.generalized);
+        free.dissipation = carry(&[model.dissipation])[0];
+        free.elements = model.elements.map(&mut |edge| carry(&[edge])[0]);
         let mut calculus = Calculus::new(&free);
         let mut merged = model.clone();
         let y = kinematics::left_inverse(&mut merged)?;

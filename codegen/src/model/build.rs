@@ -13,7 +13,7 @@ use super::{
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
-use crate::syntax::ast::System;
+use crate::syntax::ast::{ItemKind, System};
 
 /// Points are chosen anew this often when a square root has no value there.
 const ATTEMPTS: u64 = 8;
@@ -27,6 +27,7 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
     let system = &joints::expand(system, &mut first);
     let mut variety = Variety::read(system, SEED, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
+    let mut branches = false;
     for seed in SEED..SEED + ATTEMPTS {
         let mut choice = Report::new();
         let point = variety.choose(system, seed, &mut choice);
@@ -35,6 +36,9 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
         errors.iter().cloned().for_each(|error| report.push(error));
         let result = Reading::new(system, &variety, &point, seed, report).read();
         match result {
+            // Another point may be on the branch of the start.
+            Ok(model) if model.graph.is_contradicted() => branches = true,
+            Err((_, Some(graph))) if graph.is_contradicted() => branches = true,
             Ok(model) if model.graph.is_stuck() => variety.points.require_roots(&model.graph),
             Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
             Ok(mut model) => {
@@ -43,6 +47,20 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
             }
             Err((errors, _)) => return Err(errors),
         }
+    }
+    if branches {
+        let statement = system.items.iter();
+        let mut statement =
+            statement.filter(|item| matches!(item.kind, ItemKind::Constraint { .. }));
+        let span = statement.next().map_or(system.name.span, |item| item.span);
+        errors.push(
+            Diagnostic::new(
+                span,
+                "the constraints have several branches, and that of the start was not found apart",
+            )
+            .help("write the branch that is meant: one factor of a product, not the product"),
+        );
+        return Err(errors);
     }
     errors.push(
         Diagnostic::new(
@@ -85,7 +103,9 @@ impl<'a> Reading<'a> {
         let next = &mut next as &mut NextValue;
         graph.set_roots(variety.points.roots);
         let declared = declare(system, &mut graph, next, &mut scope, &mut report);
-        graph.set_reals(samples::sample(&variety.points, &variety.phi, seed));
+        let near = variety.near.as_deref();
+        graph.set_reals(samples::sample(&variety.points, &variety.phi, seed, near));
+        graph.watch(near.is_some());
         Reading {
             system,
             variety,

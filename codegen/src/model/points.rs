@@ -154,14 +154,18 @@ impl Points {
             .filter(is_root)
             .map(Edge::of)
             .collect();
-        self.radicals = copy(graph, &mut self.free, &roots);
+        let radicals = copy(graph, &mut self.free, &roots);
+        // The same roots once more: a graph tells |e| from e by another sign, which is no square.
+        let again = !self.radicals.is_empty() && graph.is_stuck();
+        self.radicals = radicals;
         let varying = |root: &&Edge| self.free.class(root.node()) != 0;
         let count = self.radicals.iter().filter(varying).count();
         let many = count > MOST_STRICT;
         let mut random = Random::new(0x5_71c7);
         for roots in [Roots::OfSquares, Roots::Extended] {
             let skipped = self.roots == Roots::Anything
-                || roots == Roots::OfSquares && (many || self.roots == Roots::Extended);
+                || roots == Roots::Extended && again && self.roots == Roots::Extended
+                || roots == Roots::OfSquares && (many || again || self.roots == Roots::Extended);
             if skipped {
                 continue;
             }

@@ -9,6 +9,10 @@ use crate::algebra::reals::{Real, Reals, SAMPLES};
 
 /// Error of coordinates that solve the user's constraints numerically.
 const SOLVED: f64 = 1e-9;
+/// The same near the start, where parts of the constraints may hardly decide.
+const BLURRED: f64 = 1e-7;
+/// How far from the start those near it are.
+const NEAR: f64 = 0.05;
 /// Error of the others.
 const ROUNDED: f64 = 1e-15;
 
@@ -21,19 +25,38 @@ pub fn pi() -> Vec<Reals> {
 /// are positive, at the others of either sign; at half of them of sizes about 1, at the others of sizes
 /// from 1/100 to 1000. Coordinates of a constraint that was not
 /// solved have no value.
-pub fn sample(points: &Points, phi: &[(Edge, String)], seed: u64) -> Vec<Reals> {
+///
+/// Constraints may have several branches. With the numbers of the start, the first half of the points is
+/// near it, at the parameters that it has: on the branch that matters.
+pub fn sample(
+    points: &Points,
+    phi: &[(Edge, String)],
+    seed: u64,
+    near: Option<&[f64]>,
+) -> Vec<Reals> {
     let mut random = Random::new(seed ^ 0x7ea1);
     let equations = (!points.constraints.is_empty()).then(|| Equations::new(points, phi));
     let mut all = vec![[Real::UNKNOWN; SAMPLES]; points.symbols];
     for sample in 0..SAMPLES {
-        let values = one(points, &mut random, sample);
+        let mut values = one(points, &mut random, sample);
+        let near = near.filter(|_| sample < SAMPLES / 2);
+        if let Some(near) = near {
+            let end = points.first + points.dimension();
+            for (value, start) in values.iter_mut().zip(near).take(end) {
+                *value = *start;
+            }
+            for value in &mut values[points.first..end] {
+                *value += NEAR * number(&mut random);
+            }
+        }
         let solved = equations.as_ref().map(|equations| equations.near(&values));
         for (index, value) in values.into_iter().enumerate() {
             let coordinate = index.checked_sub(points.first);
             all[index][sample] = match (&solved, coordinate) {
                 (Some(x), Some(alpha)) if alpha < points.dimension() => {
                     let x = x.as_ref().and_then(|x| x.get(alpha));
-                    x.map_or(Real::UNKNOWN, |&x| Real::new(x, SOLVED))
+                    let error = if near.is_some() { BLURRED } else { SOLVED };
+                    x.map_or(Real::UNKNOWN, |&x| Real::new(x, error))
                 }
                 _ => Real::new(value, ROUNDED),
             };

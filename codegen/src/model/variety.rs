@@ -6,9 +6,9 @@ use super::expression::Evaluator;
 use super::layout::{Block, blocks, constraint};
 use super::names::Names;
 use super::points::{HIGHEST_DEGREE, Points};
-use super::samples;
 use super::scope::Scope;
 use super::value::Value;
+use super::{defaults, samples, start};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::topoly::is_polynomial;
@@ -35,6 +35,9 @@ pub struct Variety {
     pub complete: bool,
     /// Seed of the graph whose points were chosen last.
     pub seed: u64,
+    /// The numbers of all symbols at the start, for variety whose branch matters: those with constraints
+    /// of the user's.
+    pub near: Option<Vec<f64>>,
     /// Statements that could be evaluated off X.
     read: Vec<usize>,
 }
@@ -83,13 +86,27 @@ impl Variety {
             .flat_map(|c| blocks(c.kind))
             .collect();
         let first = 1 + declared.params.iter().map(|group| group.len).sum::<usize>();
-        let constraints = rows.iter().map(|(edge, _)| *edge).collect();
+        let constraints: Vec<Edge> = rows.iter().map(|(edge, _)| *edge).collect();
+        let near = (!constraints.is_empty()).then(|| {
+            let defaults = defaults::read(system, &mut graph, &scope, &declared, &mut silent);
+            let start = start::read(
+                system,
+                &mut graph,
+                &scope,
+                &declared,
+                &defaults,
+                &mut silent,
+            );
+            declared.numbers(&defaults, start.as_ref())
+        });
+        let near = near.filter(|near| near.iter().all(|number| number.is_finite()));
         let mut variety = Variety {
             points: Points::new(graph, constraints, blocks, first),
             phi: Vec::new(),
             origins: Vec::new(),
             complete,
             seed,
+            near,
             read,
         };
         variety.collect(&declared, &rows);
