@@ -377,3 +377,50 @@ fn mounts_at_exact_and_awkward_angles() {
         faults.join("\n")
     );
 }
+
+/// Arms that were wrong, or were refused, modulo 2⁶¹ − 1: their M at rest, in closed form where short.
+#[test]
+fn arms_of_the_first_attack() {
+    let quarter = "system A {
+        joint a: revolute [0, 0, 1] moves f;
+        joint b: revolute [0, 0, 1] on f at pose(rotx(pi / 4), [1, 0, 0]) moves g;
+        body on g { mass 1; com [1, 2, 3]; inertia diag(1, 2, 3) about com; }
+        gravity [0, 0, -9.81];
+    }";
+    let of = from_text(quarter).expect("an arm");
+    let state = [&[0.0; 2][..], &[0.0; 2], &[], &[]];
+    let mass = value(&of, "mass_matrix", state);
+    let off = 3.0 * 0.5_f64.sqrt();
+    for (found, expected) in mass.iter().zip([7.0, off, off, 8.0]) {
+        assert!((found - expected).abs() < 1e-14, "{mass:?}");
+    }
+    for text in [
+        "system A {
+            joint a: revolute [0, 0, 1] at pose(rpy(-0.3, 0, 1), [0, 0, 0]) moves f;
+            joint b: revolute [0, 0, 1] on f at pose(rpy(pi, 2.47, 1), [0, 0, 0]) moves g;
+            body on g { mass 1; com [1, 0, 0]; inertia diag(1, 1, 1) about com; }
+            gravity [0, 0, 1];
+        }",
+        "system A {
+            joint j0: revolute [1, 1, 0] at pose(rpy(pi, 0, pi), [0, 0, 0]) moves f0;
+            joint j1: revolute [1, 1, 0] on f0 at pose(roty(pi / 12), [1, 0, 0]) moves f1;
+            joint j2: revolute [1, 1, 1] on f1 at pose(rotz(-pi), [0, 0, 0]) moves f2;
+            body on f2 { mass 1; com [1, 0, 0]; inertia diag(1, 1, 1) about com; }
+            gravity [0, 0, 1];
+        }",
+    ] {
+        let of = from_text(text)
+            .unwrap_or_else(|errors| panic!("{}", render(&errors, "arm", text, false)));
+        let mass = value(
+            &of,
+            "mass_matrix",
+            [
+                &vec![0.0; of.active.xi.len()],
+                &vec![0.0; of.active.xi.len()],
+                &[],
+                &[],
+            ],
+        );
+        assert!(mass.iter().all(|entry| entry.is_finite()));
+    }
+}

@@ -178,3 +178,84 @@ fn many_roots_and_roots_of_both_signs_have_points() {
         assert!((found - expected).abs() < CLOSE * expected);
     }
 }
+
+/// Numbers that modulo 2⁶¹ − 1 are other ones: √2 is ±2³¹ there.
+#[test]
+fn powers_of_two_are_no_roots() {
+    let of = generated(
+        "system Powers {
+            coord q; velocity v; rate q = v; kinetic v^2 / 2; start q = 1;
+            output a = 1073741824 * q; output b = cos(pi / 4) * q; output c = (2^61 - 1) * q;
+            output d = 2^31 * q - sqrt(2) * q; output e = sqrt(2) * 2^30 * q;
+        }",
+    );
+    let expected = [
+        ("a", 1073741824.0),
+        ("b", 0.5_f64.sqrt()),
+        ("c", 2_f64.powi(61)),
+        ("d", 2_f64.powi(31) - 2_f64.sqrt()),
+        ("e", 2_f64.sqrt() * 2_f64.powi(30)),
+    ];
+    for (name, expected) in expected {
+        let found = output(&of, name, &[1.0]);
+        assert!((found / expected - 1.0).abs() < 1e-15, "{name}: {found}");
+    }
+}
+
+/// Roots within roots within roots.
+#[test]
+fn eighteen_deep() {
+    let mut text = "2".to_string();
+    let mut expected = 2.0_f64;
+    for _ in 0..18 {
+        text = format!("sqrt(1 + {text})");
+        expected = (1.0 + expected).sqrt();
+    }
+    let of = generated(&format!(
+        "system Deep {{
+            coord x; velocity v; rate x = v; kinetic v^2 / 2; start x = 1;
+            output a = x * {text};
+        }}"
+    ));
+    assert!((output(&of, "a", &[1.0]) - expected).abs() < 1e-14);
+}
+
+/// Roots whose values are far from where points are usually taken.
+#[test]
+fn where_the_start_is_far_away() {
+    for (potential, start, slope) in [
+        ("sqrt(x - 5)", 6.0, 0.5),
+        ("sqrt(-x)", -4.0, -0.25),
+        ("sqrt(1 - x^2 / 100)", 6.0, -0.075),
+    ] {
+        let of = generated(&format!(
+            "system Far {{ coord x; velocity v; rate x = v; kinetic v^2 / 2; potential {potential}; start x = {start}; }}"
+        ));
+        let found = value(&of, "accel", [&[start], &[0.0], &[], &[]])[0];
+        assert!((found + slope).abs() < 1e-15, "{potential}: {found}");
+    }
+}
+
+/// What is true on one branch of a constraint only is not used on another.
+#[test]
+fn branches_of_constraints_are_told_apart() {
+    let text = |start: &str| {
+        format!(
+            "system Branches {{
+                coord x, y; velocity v = rate(y); constraint (x^2 + y^2 - 1) * (x - 3) = 0;
+                kinetic (1 + (x - 3)^2) * v^2 / 2; {start}
+            }}"
+        )
+    };
+    let of = generated(&text("start x = 0.6; start y = 0.8;"));
+    let mass = value(&of, "mass_matrix", [&[0.6, 0.8], &[0.0], &[], &[]]);
+    assert!((mass[0] - 6.76).abs() < 1e-14, "{mass:?}");
+    // On the other branch: the same description is right, or refused for this reason.
+    match hamel_codegen::generate::from_text(&text("start x = 3; start y = 1;")) {
+        Ok(of) => {
+            let mass = value(&of, "mass_matrix", [&[3.0, 1.0], &[0.0], &[], &[]]);
+            assert!((mass[0] - 1.0).abs() < 1e-14, "{mass:?}");
+        }
+        Err(errors) => assert!(errors[0].message.contains("several branches")),
+    }
+}
