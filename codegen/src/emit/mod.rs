@@ -30,6 +30,10 @@ mod docs;
 mod format;
 mod function;
 mod limits;
+#[cfg_attr(
+    not(feature = "files"),
+    allow(dead_code, reason = "only files are laid out")
+)]
 mod lines;
 mod locals;
 mod lower;

@@ -51,8 +51,14 @@ fn interpreted(generated: &Generated, function: &Function, state: &State) -> Exp
     // Several directions, as one may change nothing.
     for turn in 0..3 {
         let near = state.each_ref().map(|list| -> Vec<f64> {
-            let nudge =
-                |i: usize| f64::from(f32::EPSILON) * if (i + turn) % 3 == 0 { -1.0 } else { 1.0 };
+            let nudge = |i: usize| {
+                f64::from(f32::EPSILON)
+                    * if (i + turn).is_multiple_of(3) {
+                        -1.0
+                    } else {
+                        1.0
+                    }
+            };
             let entries = list.iter().enumerate();
             entries.map(|(i, entry)| entry + nudge(i)).collect()
         });
