@@ -6,6 +6,7 @@ use crate::source::Source;
 use clap::Args;
 use hamel_codegen::derive::care::{HELP, MANY, losses};
 use hamel_codegen::derive::check::{Identity, Verdict, check};
+use hamel_codegen::derive::confidence::Confidence;
 use hamel_codegen::derive::geometry::Inspection;
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::generate::Generated;
@@ -51,6 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
             print(&rounding(&generated))?;
+            print(&merging(&generated))?;
             print(&geometry(&generated))?;
             print(&methods(&generated))?;
             let failed = identities
@@ -132,6 +134,14 @@ fn rounding(generated: &Generated) -> String {
             ))
         });
     lines.collect()
+}
+
+/// What speaks for it that expressions of equal value are equal.
+fn merging(generated: &Generated) -> String {
+    let graph = &generated.program.graph;
+    let confidence = Confidence::of_merging(&generated.model, graph);
+    let count = graph.len();
+    format!("  merging   {count} expressions compared by their values: {confidence}\n")
 }
 
 /// Integrable velocities, the Lie algebra of the frame, the pattern of M, symmetries.

@@ -12,6 +12,7 @@ mod merge;
 use super::fp::Fp;
 use super::lane::{Lane, Roots};
 pub use super::node::{Edge, Function, Node, NodeId, Symbol};
+use super::prime::is_unfaithful;
 use super::reals::Reals;
 use super::shadow::Shadow;
 use num_bigint::BigInt;
@@ -32,6 +33,8 @@ pub struct Graph {
     shadow: Shadow,
     /// Rational factors of what stands under square roots, by its node.
     contents: FxHashMap<NodeId, BigRational>,
+    /// Whether a number has no faithful image, because a prime divides it.
+    unfaithful: bool,
     /// Class of the symbols that are constant at run time; products and sums of these are kept
     /// together so that they can be computed once.
     free_class: u8,
@@ -50,6 +53,7 @@ impl Graph {
             lane: Lane::new(seed),
             shadow: Shadow::default(),
             contents: FxHashMap::default(),
+            unfaithful: false,
             free_class,
         };
         // Node 0 is the number 0, node 1 the number 1.
@@ -160,6 +164,11 @@ impl Graph {
         self.lane.is_stuck()
     }
 
+    /// Whether a number was met that one of the primes divides: comparisons say nothing of it.
+    pub fn is_unfaithful(&self) -> bool {
+        self.unfaithful
+    }
+
     /// The number that an edge is, if it is one.
     pub fn as_rational(&self, edge: Edge) -> Option<BigRational> {
         match self.nodes[edge.node() as usize] {
@@ -201,6 +210,7 @@ impl Graph {
         {
             return edge;
         }
+        self.unfaithful |= is_unfaithful(value);
         let image = Fp::from_rational(value).unwrap_or(Fp::ZERO);
         let index = self.constants.len() as u32;
         self.constants.push(value.clone());

@@ -391,8 +391,7 @@ fn confidence(model: &Model, graph: &Graph, sides: &Sides) -> Confidence {
     let mut pairs = sides.left.iter().zip(&sides.right);
     if pairs.any(merged) {
         // The graph found them equal at its own point; what it merged is a sum or product of its nodes.
-        let all: Vec<Edge> = (0..graph.len() as u32).map(Edge::of).collect();
-        return Confidence::new(model, &[(graph, &all)], 2, 1, all.len());
+        return Confidence::of_merging(model, graph);
     }
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
     Confidence::new(model, &[(graph, &roots)], 1, POINTS, sides.left.len())

@@ -23,6 +23,12 @@ pub struct Confidence {
 }
 
 impl Confidence {
+    /// Of the merging of all nodes of a graph: each pair of them could be equal at its point by chance.
+    pub fn of_merging(model: &Model, graph: &Graph) -> Self {
+        let all: Vec<Edge> = (0..graph.len() as u32).map(Edge::of).collect();
+        Confidence::new(model, &[(graph, &all)], 2, 1, all.len() * all.len())
+    }
+
     /// Of sums of `terms` products of expressions of graphs, compared `comparisons` times at each point.
     pub fn new(
         model: &Model,

@@ -36,6 +36,16 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
         errors.iter().cloned().for_each(|error| report.push(error));
         let result = Reading::new(system, &variety, &point, seed, report).read();
         match result {
+            Ok(model) if model.graph.is_unfaithful() => {
+                errors.push(
+                    Diagnostic::new(
+                        system.name.span,
+                        "a number is a multiple of a prime that proofs count with",
+                    )
+                    .help("change the last digit of the longest number, or let it be a parameter"),
+                );
+                return Err(errors);
+            }
             // Another point may be on the branch of the start.
             Ok(model) if model.graph.is_contradicted() => branches = true,
             Err((_, Some(graph))) if graph.is_contradicted() => branches = true,
