@@ -140,7 +140,7 @@ fn forwards(
 #[cfg(test)]
 mod tests {
     use crate::algebra::fp::{Fp, Random};
-    use crate::algebra::graph::{Function, Graph, LANES};
+    use crate::algebra::graph::{Function, Graph};
     use crate::algebra::jets::Seeds;
     use crate::algebra::lane::Lane;
     use crate::algebra::tape::Tape;
@@ -150,7 +150,7 @@ mod tests {
         let mut random = Random::new(11);
         let mut graph = Graph::new(1, 0);
         let mut symbol = |graph: &mut Graph, name: &str| {
-            let value = std::array::from_fn::<_, LANES, _>(|_| random.element());
+            let value = random.element();
             graph.symbol(name, 2, value)
         };
         let symbols: Vec<_> = ["a", "b", "c"].map(|name| symbol(&mut graph, name)).into();

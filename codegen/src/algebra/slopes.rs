@@ -122,7 +122,7 @@ mod tests {
     use super::slopes;
     use crate::algebra::derivation::Derivation;
     use crate::algebra::fp::Random;
-    use crate::algebra::graph::{Function, Graph, LANES};
+    use crate::algebra::graph::{Function, Graph};
     use crate::algebra::numeric::evaluate;
 
     #[test]
@@ -130,7 +130,7 @@ mod tests {
         let mut random = Random::new(7);
         let mut graph = Graph::new(1, 0);
         let mut symbol = |graph: &mut Graph, name: &str| {
-            let value = std::array::from_fn::<_, LANES, _>(|_| random.element());
+            let value = random.element();
             graph.symbol(name, 2, value)
         };
         let (a, b) = (symbol(&mut graph, "a"), symbol(&mut graph, "b"));

@@ -154,7 +154,7 @@ pub fn polynomial_at(
 mod tests {
     use super::Expander;
     use crate::algebra::fp::Random;
-    use crate::algebra::graph::{Graph, LANES};
+    use crate::algebra::graph::Graph;
 
     #[test]
     fn an_expansion_ends_with_its_work() {
@@ -162,7 +162,7 @@ mod tests {
         let mut graph = Graph::new(1, 0);
         let symbols: Vec<_> = (0..6)
             .map(|i| {
-                let value = std::array::from_fn::<_, LANES, _>(|_| random.element());
+                let value = random.element();
                 graph.symbol(&format!("x{i}"), 2, value)
             })
             .collect();
