@@ -7,6 +7,7 @@ use hamel_codegen::algebra::numeric::{evaluate_at, solve};
 use hamel_codegen::algebra::tangent::tangent_at;
 use hamel_codegen::derive::accel::accel;
 use hamel_codegen::derive::adviser::advise;
+use hamel_codegen::derive::care::Care;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::model::Model;
 use std::path::Path;
@@ -30,7 +31,7 @@ fn symbols(graph: &Graph, edges: &[Edge]) -> Vec<usize> {
 
 /// ẋ and ẍ at a point where ξ has these values.
 fn motion(model: &Model, lane: &Lane, xi: &[Fp]) -> (Vec<Fp>, Vec<Fp>) {
-    let (chosen, _) = accel(model).expect("M is regular");
+    let (chosen, _) = accel(model, &Care::default()).expect("M is regular");
     let graph = &model.graph;
     let places = symbols(graph, &model.xi);
     let mut moved = Lane::new(lane_seed());
@@ -123,6 +124,6 @@ fn statements_give_what_was_counted() {
         .collect::<Vec<_>>()
         .join("\n");
     let generated = from_text(&kept).unwrap_or_else(|errors| panic!("{errors:?}\n{kept}"));
-    let (chosen, _) = accel(&generated.model).expect("M is regular");
+    let (chosen, _) = accel(&generated.model, &Care::default()).expect("M is regular");
     assert_eq!(chosen.count, other.accel);
 }
