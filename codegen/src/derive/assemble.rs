@@ -60,7 +60,7 @@ fn put_together(
 ) -> Result<(Program, Vec<Vec<Edge>>), Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
-    if model.n() <= MOST_LITERAL {
+    if model.n() <= MOST_LITERAL && model.wants_inverse() {
         let mut calculus = Calculus::new(&reference);
         let mass = inertia::mass_matrix(&mut reference, &mut calculus);
         inertia::positive_definite(model, &reference.graph, &mass)?;
@@ -72,7 +72,7 @@ fn put_together(
         )
         .help("every velocity needs inertia: check masses and inertias"));
     };
-    if model.n() > MOST_LITERAL {
+    if model.n() > MOST_LITERAL && model.wants_inverse() {
         inertia::positive_definite(model, &computed.graph, &computed.parts.mass)?;
     }
     let potential = energy::potential(&mut reference);

@@ -305,6 +305,18 @@ impl Model {
         self.generate.is_empty() || self.asks(function)
     }
 
+    /// Whether any function is wanted that needs the inverse of M.
+    pub fn wants_inverse(&self) -> bool {
+        const INVERSE: [&str; 5] = [
+            "accel",
+            "velocity_of_momentum",
+            "linearize",
+            "constraint_force",
+            "splitting",
+        ];
+        INVERSE.iter().any(|function| self.wants(function))
+    }
+
     /// Whether a function was asked for by its name.
     pub fn asks(&self, function: &str) -> bool {
         self.generate.iter().any(|name| name == function)
