@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The crates that the command line is made of.
-const CRATES: [&str; 6] = ["codegen", "macros", "runtime", "report", "urdf", "cli"];
+const CRATES: [&str; 7] = [
+    "codegen", "files", "macros", "runtime", "report", "urdf", "cli",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

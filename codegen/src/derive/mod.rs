@@ -52,6 +52,7 @@ pub mod gibbs;
 pub mod hamel_form;
 pub mod inertia;
 pub mod invariants;
+mod kernel;
 pub mod kinematics;
 pub mod levi_civita;
 pub mod linearize;

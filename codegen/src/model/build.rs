@@ -115,7 +115,7 @@ impl<'a> Reading<'a> {
         let declared = declare(system, &mut graph, next, &mut scope, &mut report);
         let near = variety.near.as_deref();
         graph.set_reals(samples::sample(&variety.points, &variety.phi, seed, near));
-        graph.watch(near.is_some());
+        graph.watch(near.is_some() && variety.complete);
         Reading {
             system,
             variety,

@@ -14,7 +14,7 @@ const BLURRED: f64 = 1e-7;
 /// How far from the start those near it are.
 const NEAR: f64 = 0.05;
 /// Error of the others.
-const ROUNDED: f64 = 1e-15;
+const ROUNDED: f64 = 1e-14;
 
 /// π alone: all that numbers need.
 pub fn pi() -> Vec<Reals> {

@@ -10,7 +10,7 @@ use crate::algebra::tangent::tangent_at;
 use crate::derive::calculus::Calculus;
 use crate::derive::check::{Identity, Verdict};
 use crate::derive::confidence::Confidence;
-use crate::derive::constrained::{in_kernel, places};
+use crate::derive::kernel::{in_kernel, places};
 use crate::derive::{energy, inertia};
 use crate::diagnostics::Diagnostic;
 use crate::model::invariants::Invariant;
