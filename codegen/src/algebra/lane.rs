@@ -178,10 +178,14 @@ impl Lane {
             (Residue::ONE, Residue::ZERO),
             |total, (atom, coefficient)| {
                 let (base, count, parts) = split(part(*atom), coefficient);
-                let point = if base == part(Fp::PI) && parts == 1 {
-                    twelfth()
-                } else {
-                    circle_residue(&mut self.draw(64 + parts, base, Residue::ONE))
+                let pi = part(Fp::PI);
+                let (point, count) = match parts {
+                    1 if base == pi => (twelfth(), count),
+                    1 if base == -pi => (twelfth(), -count),
+                    _ => {
+                        let mut random = self.draw(64 + parts, base, Residue::ONE);
+                        (circle_residue(&mut random), count)
+                    }
                 };
                 rotate(total, power(point, count))
             },
@@ -285,4 +289,32 @@ fn power<const K: usize>(base: Turn<K>, count: i64) -> Turn<K> {
         count >>= 1;
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Lane;
+    use crate::algebra::fp::Fp;
+    use crate::algebra::graph::Function;
+    use num_rational::BigRational;
+
+    /// Sines and cosines of twelfths of π are the roots that they are, in both fields.
+    #[test]
+    fn twelfths_of_a_turn_are_exact() {
+        let mut lane = Lane::new(3);
+        let mut at = |function, n: i64| {
+            let form = vec![(Fp::PI, BigRational::new(n.into(), 12.into()))];
+            lane.function(function, Fp::ZERO, &form)
+        };
+        let half = Fp::new(2).inv().expect("odd");
+        assert_eq!(at(Function::Sin, 2), half);
+        assert_eq!(at(Function::Cos, 8), -half);
+        for n in -30..30 {
+            let (sin, cos) = (at(Function::Sin, n), at(Function::Cos, n));
+            assert_eq!(sin * sin + cos * cos, Fp::ONE);
+            assert_eq!(at(Function::Sin, -n), -sin);
+            assert_eq!(at(Function::Sin, n + 12), -sin);
+            assert_eq!(at(Function::Cos, 6 - n), sin);
+        }
+    }
 }
