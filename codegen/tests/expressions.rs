@@ -9,7 +9,7 @@ mod common;
 #[path = "common/precise.rs"]
 mod precise;
 
-use common::{Random, value};
+use common::{Random, attack, value};
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
 use precise::Precise;
@@ -269,28 +269,5 @@ fn faults(seed: u64) -> Vec<String> {
 
 #[test]
 fn roots_powers_and_decimals() {
-    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|tier| tier == "full");
-    let count: u64 = if full { 840 } else { 42 };
-    let workers = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
-    let work = |worker: u64| -> Vec<String> {
-        (worker..count)
-            .step_by(workers as usize)
-            .flat_map(faults)
-            .collect()
-    };
-    let faults: Vec<String> = std::thread::scope(|scope| {
-        let running: Vec<_> = (0..workers)
-            .map(|worker| scope.spawn(move || work(worker)))
-            .collect();
-        running
-            .into_iter()
-            .flat_map(|worker| worker.join().expect("no panic"))
-            .collect()
-    });
-    assert!(
-        faults.is_empty(),
-        "{} faults:\n{}",
-        faults.len(),
-        faults.join("\n")
-    );
+    attack(42, 840, faults);
 }

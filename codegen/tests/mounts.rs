@@ -9,7 +9,7 @@ mod common;
 #[path = "common/precise.rs"]
 mod precise;
 
-use common::{Random, value};
+use common::{Random, attack, value};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
@@ -349,33 +349,12 @@ fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
 
 #[test]
 fn mounts_at_exact_and_awkward_angles() {
-    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|tier| tier == "full");
-    let count: u64 = if full { 2000 } else { 24 };
-    let workers = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
-    let work = |worker: u64| -> Vec<String> {
-        let seeds = (worker..count).step_by(workers as usize);
-        let faults = seeds.filter_map(|seed| {
-            let arm = Arm::random(seed);
-            let fault = verdict(&arm, seed).err()?;
-            Some(format!("seed {seed}: {fault}\n{}", arm.text))
-        });
-        faults.collect()
-    };
-    let faults: Vec<String> = std::thread::scope(|scope| {
-        let running: Vec<_> = (0..workers)
-            .map(|worker| scope.spawn(move || work(worker)))
-            .collect();
-        running
-            .into_iter()
-            .flat_map(|worker| worker.join().expect("no panic"))
-            .collect()
+    attack(24, 2000, |seed| {
+        let arm = Arm::random(seed);
+        let fault = verdict(&arm, seed).err();
+        let said = fault.map(|fault| format!("seed {seed}: {fault}\n{}", arm.text));
+        said.into_iter().collect()
     });
-    assert!(
-        faults.is_empty(),
-        "{} of {count} arms are wrong:\n{}",
-        faults.len(),
-        faults.join("\n")
-    );
 }
 
 /// Arms that were wrong, or were refused, modulo 2⁶¹ − 1: their M at rest, in closed form where short.

@@ -94,3 +94,34 @@ pub fn difference(a: &[f64], b: &[f64]) -> f64 {
         .zip(b)
         .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs() / scale))
 }
+
+/// What is wrong with any of some seeds, on all cores; more of them where `HAMEL_ATTACK` is `full`.
+pub fn attack(few: u64, many: u64, faults: impl Fn(u64) -> Vec<String> + Sync) {
+    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|tier| tier == "full");
+    let count = if full { many } else { few };
+    let workers = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
+    let work = |worker: u64| -> Vec<String> {
+        let seeds = (worker..count).step_by(workers as usize);
+        seeds.flat_map(&faults).collect()
+    };
+    let all: Vec<String> = std::thread::scope(|scope| {
+        let running: Vec<_> = (0..workers)
+            .map(|worker| {
+                scope.spawn({
+                    let work = &work;
+                    move || work(worker)
+                })
+            })
+            .collect();
+        let results = running.into_iter();
+        results
+            .flat_map(|worker| worker.join().expect("no panic"))
+            .collect()
+    });
+    assert!(
+        all.is_empty(),
+        "{} faults in {count} cases:\n{}",
+        all.len(),
+        all.join("\n")
+    );
+}
