@@ -68,7 +68,11 @@ impl Double {
     /// The nearest to a rational: what its nearest `f64` leaves is rounded once more.
     pub fn of_rational(value: &BigRational) -> Self {
         let high = value.to_f64().unwrap_or(f64::NAN);
-        let rest = BigRational::from_float(high).map_or_else(BigRational::zero, |h| value - h);
+        let rest = BigRational::from_float(high).map_or_else(BigRational::zero, |h| {
+            // The difference over the common denominator, not reduced.
+            let (n, d) = (value.numer(), value.denom());
+            BigRational::new_raw(n * h.denom() - h.numer() * d, d * h.denom())
+        });
         sum(high, rest.to_f64().unwrap_or(0.0))
     }
 

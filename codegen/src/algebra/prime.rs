@@ -176,12 +176,12 @@ impl<const K: usize> Residue<K> {
         // Out of Montgomery's form.
         let (mut r0, mut r1) = (Self::P as i64, Self::times(self.0, 1) as i64);
         let (mut t0, mut t1) = (0i64, 1i64);
-        while r1 >= bound {
+        while r1 >= bound && t1.abs() < bound {
             let q = r0 / r1;
             (r0, r1) = (r1, r0 - q * r1);
             (t0, t1) = (t1, t0 - q * t1);
         }
-        if t1 == 0 || t1.abs() >= bound {
+        if r1 >= bound || t1 == 0 || t1.abs() >= bound {
             return None;
         }
         let (n, d) = if t1 < 0 { (-r1, -t1) } else { (r1, t1) };

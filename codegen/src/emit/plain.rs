@@ -22,7 +22,7 @@ pub fn is_statement(text: &str) -> bool {
 pub fn is_value(text: &str) -> bool {
     let mut reader = Reader::new(text);
     let whole = match reader.word("Ok") {
-        true => reader.take("(") && reader.list(true) && reader.take(")"),
+        true => reader.take(b'(') && reader.list(true) && reader.take(b')'),
         false => reader.list(true),
     };
     whole && reader.ends()
@@ -39,42 +39,54 @@ impl<'a> Reader<'a> {
         Reader { text, at: 0 }
     }
 
-    /// What is not read yet, from the next token on.
-    fn rest(&mut self) -> &'a str {
-        let rest = &self.text[self.at..];
-        let found = rest.trim_ascii_start();
-        self.at += rest.len() - found.len();
-        found
+    /// The byte that comes next, whatever it is; 0 at the end.
+    fn byte(&self) -> u8 {
+        self.text.as_bytes().get(self.at).copied().unwrap_or(0)
+    }
+
+    /// The first byte of the next token; 0 at the end.
+    fn next(&mut self) -> u8 {
+        while self.byte().is_ascii_whitespace() {
+            self.at += 1;
+        }
+        self.byte()
     }
 
     fn ends(&mut self) -> bool {
-        self.rest().is_empty()
+        self.next();
+        self.at == self.text.len()
     }
 
-    /// Reads a token that is no word.
-    fn take(&mut self, token: &str) -> bool {
-        let found = self.rest().starts_with(token);
-        if found {
-            self.at += token.len();
-        }
+    /// Reads a token of one byte.
+    fn take(&mut self, token: u8) -> bool {
+        let found = self.next() == token;
+        self.at += usize::from(found);
+        found
+    }
+
+    /// Reads `::`.
+    fn take_colons(&mut self) -> bool {
+        self.next();
+        let found = self.text.as_bytes()[self.at..].starts_with(b"::");
+        self.at += 2 * usize::from(found);
         found
     }
 
     /// Reads as many bytes as belong together.
     fn run(&mut self, belongs: impl Fn(u8) -> bool) -> &'a str {
-        let rest = self.rest();
-        let length = rest.bytes().take_while(|&byte| belongs(byte)).count();
-        self.at += length;
-        &rest[..length]
+        let start = self.at;
+        while belongs(self.byte()) {
+            self.at += 1;
+        }
+        &self.text[start..self.at]
     }
 
     /// A keyword, a name, or nothing; nothing is read where it does not begin with a letter.
     fn next_word(&mut self) -> &'a str {
-        match self.rest().bytes().next() {
-            Some(first) if first.is_ascii_alphabetic() || first == b'_' => {
-                self.run(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
-            }
-            _ => "",
+        let first = self.next();
+        match first.is_ascii_alphabetic() || first == b'_' {
+            true => self.run(|byte| byte.is_ascii_alphanumeric() || byte == b'_'),
+            false => "",
         }
     }
 
@@ -94,73 +106,67 @@ impl<'a> Reader<'a> {
         !word.is_empty() && word != "_" && !is_keyword(word)
     }
 
+    /// Reads digits, with nothing in front of them.
+    fn digits(&mut self) -> bool {
+        !self.run(|byte| byte.is_ascii_digit()).is_empty()
+    }
+
     /// Reads digits alone.
     fn integer(&mut self) -> bool {
-        !self.run(|byte| byte.is_ascii_digit()).is_empty()
+        self.next();
+        self.digits()
     }
 
     /// Reads `1`, `1.5`, `1e300` or `1.5e-300`.
     fn number(&mut self) -> bool {
-        let digits = |reader: &mut Self| {
-            let length = reader.text[reader.at..]
-                .bytes()
-                .take_while(u8::is_ascii_digit)
-                .count();
-            reader.at += length;
-            length > 0
-        };
-        self.rest();
-        let next = |reader: &Self| reader.text.as_bytes().get(reader.at).copied();
-        if !digits(self) {
+        if !self.integer() {
             return false;
         }
-        if next(self) == Some(b'.') {
+        if self.byte() == b'.' {
             self.at += 1;
-            if !digits(self) {
+            if !self.digits() {
                 return false;
             }
         }
-        if next(self) == Some(b'e') {
+        if self.byte() == b'e' {
             self.at += 1;
-            if next(self) == Some(b'-') {
-                self.at += 1;
-            }
-            return digits(self);
+            self.at += usize::from(self.byte() == b'-');
+            return self.digits();
         }
-        !next(self).is_some_and(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+        !(self.byte().is_ascii_alphanumeric() || self.byte() == b'_')
     }
 
     fn statement(&mut self) -> bool {
         if self.word("let") {
-            return self.pattern() && self.take("=") && self.sum() && self.take(";");
+            return self.pattern() && self.take(b'=') && self.sum() && self.take(b';');
         }
         if self.word("if") {
-            return self.take("!") && self.sum() && self.leaves();
+            return self.take(b'!') && self.sum() && self.leaves();
         }
         // A place: `out`, `*out` and `out[1][2]`.
-        self.take("*");
+        self.take(b'*');
         let mut place = self.name();
-        while place && self.take("[") {
-            place = self.integer() && self.take("]");
+        while place && self.take(b'[') {
+            place = self.integer() && self.take(b']');
         }
-        place && self.take("=") && self.sum() && self.take(";")
+        place && self.take(b'=') && self.sum() && self.take(b';')
     }
 
     /// `{ return Err(…); }`
     fn leaves(&mut self) -> bool {
-        let returns = self.take("{") && self.word("return") && self.word("Err") && self.take("(");
+        let returns = self.take(b'{') && self.word("return") && self.word("Err") && self.take(b'(');
         let error = returns && self.path();
-        let of = match self.take("{") {
-            true => self.name() && self.take(":") && self.integer() && self.take("}"),
-            false => self.take("(") && self.integer() && self.take(")"),
+        let of = match self.take(b'{') {
+            true => self.name() && self.take(b':') && self.integer() && self.take(b'}'),
+            false => self.take(b'(') && self.integer() && self.take(b')'),
         };
-        error && of && self.take(")") && self.take(";") && self.take("}")
+        error && of && self.take(b')') && self.take(b';') && self.take(b'}')
     }
 
     /// `a`, `mut a`, `_` or `(a, _)`.
     fn pattern(&mut self) -> bool {
-        if self.take("(") {
-            return self.binding() && self.take(",") && self.binding() && self.take(")");
+        if self.take(b'(') {
+            return self.binding() && self.take(b',') && self.binding() && self.take(b')');
         }
         self.binding()
     }
@@ -178,17 +184,18 @@ impl<'a> Reader<'a> {
             if !self.operand() {
                 return false;
             }
-            if !["+", "-", "*", "/"].iter().any(|sign| self.take(sign)) {
+            if !matches!(self.next(), b'+' | b'-' | b'*' | b'/') {
                 return true;
             }
+            self.at += 1;
         }
     }
 
     fn operand(&mut self) -> bool {
-        let _ = self.take("-") || self.take("&");
-        let whole = match self.rest().bytes().next() {
-            Some(b'(') => self.take("(") && self.sum() && self.take(")"),
-            Some(b'0'..=b'9') => self.number(),
+        let _ = self.take(b'-') || self.take(b'&');
+        let whole = match self.next() {
+            b'(' => self.take(b'(') && self.sum() && self.take(b')'),
+            b'0'..=b'9' => self.number(),
             _ => self.word("self") || self.path(),
         };
         whole && self.behind()
@@ -196,9 +203,9 @@ impl<'a> Reader<'a> {
 
     /// `a`, `S::from_f64`, `::core::f64::consts::PI`.
     fn path(&mut self) -> bool {
-        self.take("::");
+        self.take_colons();
         let mut name = self.name();
-        while name && self.take("::") {
+        while name && self.take_colons() {
             name = self.name();
         }
         name
@@ -207,11 +214,11 @@ impl<'a> Reader<'a> {
     /// Indices, fields and calls.
     fn behind(&mut self) -> bool {
         loop {
-            let right = if self.take("[") {
-                self.integer() && self.take("]")
-            } else if self.take(".") {
+            let right = if self.take(b'[') {
+                self.integer() && self.take(b']')
+            } else if self.take(b'.') {
                 self.integer() || self.name()
-            } else if self.take("(") {
+            } else if self.take(b'(') {
                 self.arguments()
             } else {
                 return true;
@@ -223,12 +230,12 @@ impl<'a> Reader<'a> {
     }
 
     fn arguments(&mut self) -> bool {
-        while !self.take(")") {
+        while !self.take(b')') {
             if !self.sum() {
                 return false;
             }
-            if !self.take(",") {
-                return self.take(")");
+            if !self.take(b',') {
+                return self.take(b')');
             }
         }
         true
@@ -236,16 +243,16 @@ impl<'a> Reader<'a> {
 
     /// A list of sums and, on the outside, of rows.
     fn list(&mut self, outside: bool) -> bool {
-        if !self.take("[") {
+        if !self.take(b'[') {
             return false;
         }
-        while !self.take("]") {
-            let row = outside && self.rest().starts_with('[');
+        while !self.take(b']') {
+            let row = outside && self.next() == b'[';
             if !(if row { self.list(false) } else { self.sum() }) {
                 return false;
             }
-            if !self.take(",") {
-                return self.take("]");
+            if !self.take(b',') {
+                return self.take(b']');
             }
         }
         true

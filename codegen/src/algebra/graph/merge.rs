@@ -15,6 +15,14 @@ impl Graph {
                 (!improves).then_some(edge)?
             }
             None => {
+                // Together with a number it is another number only where the rest is one.
+                if class != 0
+                    && node
+                        .children()
+                        .any(|child| self.as_rational(child).is_some())
+                {
+                    return None;
+                }
                 let (n, d) = value.to_small_rational(29)?;
                 is_plain(n, d).then(|| self.ratio(n, d))?
             }
