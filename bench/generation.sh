@@ -3,8 +3,8 @@
 #
 #     bench/generation.sh REVISION [ROUNDS]
 #
-# Both are built in release, run in turn, and compared by the median of their processor time; the second row is
-# its ratio. The robots are those of tests/robots/install.sh.
+# Both are built in release and run in turn. Printed are the least processor time of each, their ratio, and the
+# median of the ratios of neighbouring runs. The robots are those of tests/robots/install.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -43,6 +43,7 @@ for name, arguments in cases.items():
     for _ in range(rounds):
         for program in (old, new):
             times[program].append(sum(seconds(program, arguments) for _ in range(repeat)) / repeat)
-    before, after = (statistics.median(times[p]) for p in (old, new))
-    print(f"{name:10} {before * 1e3:9.2f} ms -> {after * 1e3:9.2f} ms   {after / before:5.2f}")
+    before, after = (min(times[p]) for p in (old, new))
+    ratio = statistics.median(a / b for b, a in zip(times[old], times[new]))
+    print(f"{name:10} {before * 1e3:9.2f} ms -> {after * 1e3:9.2f} ms   {after / before:5.2f}   {ratio:5.2f}")
 PYTHON
