@@ -9,6 +9,7 @@ use hamel_codegen::derive::check::{Identity, Verdict, check};
 use hamel_codegen::derive::confidence::Confidence;
 use hamel_codegen::derive::geometry::Inspection;
 use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::geometry::lines;
 use std::path::PathBuf;
@@ -48,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             print(&format!("{gap}\x1b[1m{}\x1b[0m\n", path.display()))?;
         }
         let checked = Source::open(path, &arguments.robot).and_then(|source| {
-            let generated = source.derive_all()?;
+            let generated = source.derive_available()?;
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
             print(&rounding(&generated))?;
@@ -160,6 +161,8 @@ fn geometry(generated: &Generated) -> String {
 fn methods(generated: &Generated) -> String {
     let structure = &generated.program.structure;
     let mut lines = structure.lines();
-    lines.push(format!("method {}", choose(structure, None)));
+    if generated.program.function(FunctionId::Accel).is_some() {
+        lines.push(format!("method {}", choose(structure, None)));
+    }
     lines.iter().map(|line| format!("  {line}\n")).collect()
 }

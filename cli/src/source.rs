@@ -1,9 +1,10 @@
 //! A description's file: reading and deriving it, with errors shown in its text.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::functions::{Asked, FunctionId};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::{self, Model};
 use hamel_codegen::render::render;
@@ -91,12 +92,24 @@ impl Source {
         model.map_err(|errors| self.refused(&errors))
     }
 
-    /// Derives these functions, whatever the description's `generate` says.
-    pub fn derive_only(&self, functions: &[&str]) -> Result<Generated, Failure> {
+    /// Derives these functions, whatever the description's `generate` says; those with M⁻¹ in them are
+    /// left out, with a warning, where M is not positive definite.
+    pub fn derive_only(&self, functions: &[FunctionId]) -> Result<Generated, Failure> {
+        self.available(Asked::only(functions))
+    }
+
+    fn available(&self, asked: Asked) -> Result<Generated, Failure> {
         let mut model = self.model()?;
-        model.generate = functions.iter().map(|name| name.to_string()).collect();
-        let derived = progress::during(DERIVING, || Generated::of(model, 0));
-        derived.map_err(|errors| self.refused(&errors))
+        model.asked = asked;
+        let derived = progress::during(DERIVING, || Generated::available(model, 0));
+        let (generated, singular) = derived.map_err(|errors| self.refused(&errors))?;
+        if let Some(Diagnostic { message, .. }) = singular {
+            warn(&format!(
+                "warning: {}: {message}; what needs its inverse is left out\n",
+                self.path
+            ));
+        }
+        Ok(generated)
     }
 
     /// Derives the functions that the description asks for.
@@ -107,14 +120,16 @@ impl Source {
 
     /// Derives all functions, whatever the description's `generate` says.
     pub fn derive_all(&self) -> Result<Generated, Failure> {
-        let mut generated = self.derive()?;
-        if !generated.model.generate.is_empty() {
-            generated.model.generate.clear();
-            let (model, hash) = (generated.model, generated.hash);
-            let derived = progress::during(DERIVING, || Generated::of(model, hash));
-            generated = derived.map_err(|errors| self.refused(&errors))?;
-        }
-        Ok(generated)
+        let mut model = self.model()?;
+        model.asked = Asked::everything();
+        let derived = progress::during(DERIVING, || Generated::of(model, 0));
+        derived.map_err(|errors| self.refused(&errors))
+    }
+
+    /// Derives all functions that exist: those with M⁻¹ in them are left out, with a warning, where M is
+    /// not positive definite.
+    pub fn derive_available(&self) -> Result<Generated, Failure> {
+        self.available(Asked::everything())
     }
 
     /// Derives all functions and the linearisation, whatever the description's `generate` says.

@@ -13,6 +13,7 @@ mod installed;
 use described::{Dynamics, Robot};
 use hamel_codegen::algebra::double::Double;
 use hamel_codegen::algebra::fp::Random;
+use hamel_codegen::functions::{Asked, FunctionId};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model;
 use hamel_codegen::model::layout::{Block, rotation};
@@ -33,7 +34,12 @@ const FEW: [&str; 5] = [
     "solo12.urdf",
     "finger_edu.urdf",
 ];
-const FUNCTIONS: [&str; 4] = ["accel", "mass_matrix", "bias", "potential_force"];
+const FUNCTIONS: [FunctionId; 4] = [
+    FunctionId::Accel,
+    FunctionId::MassMatrix,
+    FunctionId::Bias,
+    FunctionId::PotentialForce,
+];
 
 fn full() -> bool {
     std::env::var("HAMEL_ATTACK").as_deref() == Ok("full")
@@ -111,7 +117,7 @@ fn errors(text: &str, seed: u64) -> Result<Option<[f64; 4]>, String> {
         return Ok(None);
     };
     let mut model = model::build(&system).map_err(shown)?;
-    model.generate = FUNCTIONS.map(str::to_string).to_vec();
+    model.asked = Asked::only(&FUNCTIONS);
     // Bodies without moments, or of freedoms without inertia, have no ξ̇.
     let generated = match Generated::of(model, 0) {
         Ok(generated) => generated,
@@ -155,7 +161,7 @@ fn errors(text: &str, seed: u64) -> Result<Option<[f64; 4]>, String> {
 /// Drives and dampers: products of a few numbers.
 fn applied(generated: &Generated, [x, xi, u]: [&[f64]; 3]) -> Vec<f64> {
     let mut model = generated.model.clone();
-    model.generate = vec!["generalized_force".into()];
+    model.asked = Asked::only(&[FunctionId::GeneralizedForce]);
     let forces = Generated::of(model, 0).expect("the same model");
     let function = forces
         .program

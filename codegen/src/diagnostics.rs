@@ -13,6 +13,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Other places involved, each with a short label.
     pub notes: Vec<(Span, String)>,
+    /// Whether only functions with M⁻¹ in them are in the way: all else can be derived.
+    pub inverse: bool,
 }
 
 impl Diagnostic {
@@ -23,7 +25,14 @@ impl Diagnostic {
             message: message.into(),
             help: None,
             notes: Vec::new(),
+            inverse: false,
         }
+    }
+
+    /// Says that only functions with M⁻¹ in them are in the way.
+    pub fn about_inverse(mut self) -> Self {
+        self.inverse = true;
+        self
     }
 
     /// Adds what to do.

@@ -5,6 +5,7 @@ use crate::derive::invariants;
 use crate::derive::reduction::reduce;
 use crate::diagnostics::Diagnostic;
 use crate::emit::NotRust;
+use crate::functions::{Asked, FunctionId};
 use crate::model::{self, Model};
 use crate::program::Program;
 use crate::syntax::{self, ast};
@@ -47,14 +48,36 @@ fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>>
 impl Generated {
     /// Derives a model, and refuses what it claims falsely.
     pub fn of(model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
-        let linearized = model.asks("linearize");
+        let linearized = model.asked.names(FunctionId::Linearize);
         Generated::with(model, hash, linearized)
     }
 
     /// Derives all functions of a model, the linearisation among them, whatever `generate` says.
     pub fn all(mut model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
-        model.generate.clear();
+        model.asked = Asked::everything();
         Generated::with(model, hash, true)
+    }
+
+    /// Derives what a model is asked for or, where M is not positive definite, all of that but the
+    /// functions with M⁻¹ in them; then the error that they would have is returned, too.
+    ///
+    /// # Errors
+    /// What is wrong beyond that, or where nothing remains.
+    pub fn available(
+        mut model: Model,
+        hash: u64,
+    ) -> Result<(Self, Option<Diagnostic>), Vec<Diagnostic>> {
+        let errors = match Generated::of(model.clone(), hash) {
+            Ok(generated) => return Ok((generated, None)),
+            Err(errors) => errors,
+        };
+        let asked = &mut model.asked;
+        asked.inverse = false;
+        asked.functions.retain(|id| !id.row().inverse);
+        match errors.as_slice() {
+            [error] if error.inverse => Ok((Generated::of(model, hash)?, Some(error.clone()))),
+            _ => Err(errors),
+        }
     }
 
     /// What is said where the generated text is no Rust.

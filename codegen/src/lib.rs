@@ -23,6 +23,7 @@ pub mod derive;
 pub mod diagnostics;
 pub mod emit;
 mod expand;
+pub mod functions;
 pub mod generate;
 pub mod model;
 pub mod program;

@@ -12,7 +12,8 @@ const ROUNDING: f64 = 1e-6;
 /// Radii of gyration that no link has (m).
 const LARGE: f64 = 10.0;
 
-/// Refuses what moves without mass, and warns of inertias that no body has.
+/// Warns of what moves without mass and of inertias that no body has; refuses robots of which nothing that
+/// moves has mass.
 pub(crate) fn check(
     robot: &Robot,
     tree: &Tree,
@@ -46,21 +47,22 @@ pub(crate) fn check(
                 Kind::Planar | Kind::Floating => String::new(),
                 _ => format!(", lock the joint with `--lock {name}=0`"),
             };
-            errors.push(
+            warnings.push(
                 &link.range,
                 format!(
-                    "`{name}` moves `{}`, and neither it nor what it carries has mass: the mass matrix would be singular",
+                    "`{name}` moves `{}`, and neither it nor what it carries has mass: the mass matrix is singular, and there are no accelerations",
                     link.name
                 ),
                 format!("give it an `<inertial>`{lock}, or make the joint fixed"),
             );
         }
     }
-    bare(robot, tree, plan, floating, warnings);
-    if floating && !carries[tree.root] {
+    bare(robot, tree, plan, floating, &carries, warnings);
+    let nothing = |link: usize| !(moves[link] && carries[link]);
+    if moves.contains(&true) && (0..moves.len()).all(nothing) {
         errors.push(
             &robot.links[tree.root].name.range,
-            "the base floats, and nothing of the robot has mass",
+            "nothing of the robot that moves has mass",
             "give the links their `<inertial>`",
         );
     }
@@ -75,9 +77,16 @@ pub(crate) fn check(
     }
 }
 
-/// Warns of what moves by itself and is nowhere given an `<inertial>`: links that move rigidly
-/// together are one.
-fn bare(robot: &Robot, tree: &Tree, plan: &Plan, floating: bool, warnings: &mut Problems<'_>) {
+/// Warns of what moves by itself, carries mass and is nowhere given an `<inertial>`: links that move
+/// rigidly together are one.
+fn bare(
+    robot: &Robot,
+    tree: &Tree,
+    plan: &Plan,
+    floating: bool,
+    carries: &[bool],
+    warnings: &mut Problems<'_>,
+) {
     let mut given: Vec<bool> = robot
         .links
         .iter()
@@ -91,7 +100,8 @@ fn bare(robot: &Robot, tree: &Tree, plan: &Plan, floating: bool, warnings: &mut 
     }
     for (index, link) in robot.links.iter().enumerate() {
         let moves = own[index] && (index != tree.root || floating);
-        if moves && !given[index] {
+        // Where there is nothing with mass behind it either, that was said.
+        if moves && !given[index] && carries[index] {
             let name = &link.name.name;
             warnings.push(
                 &link.name.range,

@@ -149,6 +149,10 @@ fn robots_that_look_wrong() {
             ),
         ),
         ("a link without inertia", pendulum(&two, "")),
+        (
+            "a last link without mass",
+            pendulum(&two.replace(BODY, ""), BODY),
+        ),
         ("degrees", origin("rpy='90 0 0'")),
         ("millimetres", origin("xyz='0 0 350'")),
         (

@@ -16,6 +16,7 @@ use crate::state::strict;
 use clap::Args;
 use geometry::Geometry;
 use hamel::System;
+use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 use std::path::PathBuf;
@@ -69,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     {
         return sample::run(&source, &json, &at.path);
     }
-    let generated = source.derive_all()?;
+    let generated = source.derive_available()?;
     let state = match &at {
         Some(at) => State::parse(&generated, &at.text)
             .map_err(|errors| Failure::usages(&at.path, &errors))?,
@@ -137,6 +138,8 @@ fn motion(
     let singular = constant_singular(&generated.program, params);
     let accel = match system.accel(x, xi, u).ok().filter(|_| !singular) {
         Some(accel) => Json::vector(&accel),
+        // That there is none was said before.
+        None if generated.program.function(FunctionId::Accel).is_none() => Json::Null,
         None => {
             missing.push("the mass matrix is not positive definite, `accel` has no value".into());
             Json::Null

@@ -21,7 +21,8 @@ pub struct Interpreted {
     chart: usize,
     rate: Interpreter,
     chart_rate: Interpreter,
-    accel: Interpreter,
+    /// None where M is not positive definite.
+    accel: Option<Interpreter>,
     correction: Interpreter,
     close: Option<Interpreter>,
     settle: Option<Interpreter>,
@@ -75,7 +76,7 @@ impl Interpreted {
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
             rate: function("rate")?,
             chart_rate: function("chart_rate")?,
-            accel: function("accel")?,
+            accel: function("accel").ok(),
             correction: function("correction")?,
             close: function("close").ok(),
             settle: function("settle").ok(),
@@ -137,8 +138,9 @@ impl Interpreted {
     pub fn output(&self, output: &Output, x: &[f64], xi: &[f64]) -> Vec<f64> {
         let mut xi_dot = Vec::new();
         if output.accelerated {
-            let accel = self.accel.call(x, xi, &self.inputs, &[]);
-            xi_dot = accel.unwrap_or_else(|_| vec![f64::NAN; xi.len()]);
+            let accel = self.accel.as_ref();
+            let accel = accel.and_then(|accel| accel.call(x, xi, &self.inputs, &[]).ok());
+            xi_dot = accel.unwrap_or_else(|| vec![f64::NAN; xi.len()]);
         }
         let value = output.function.call(x, xi, &self.inputs, &xi_dot);
         value.unwrap_or_default()
@@ -236,7 +238,10 @@ impl System for Interpreted {
 
     fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         self.count();
-        self.accel.call(x, xi, u, &[]).map_err(|pivot| {
+        let Some(accel) = &self.accel else {
+            return Err(Singular { pivot: 0 });
+        };
+        accel.call(x, xi, u, &[]).map_err(|pivot| {
             match self.kinematic.get(pivot).copied().flatten() {
                 Some(pivot) => Singular::kinematics(pivot),
                 None => Singular { pivot },

@@ -8,6 +8,7 @@ use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::algebra::graph::{Edge, Function as Elementary, Graph, Node};
+use hamel_codegen::functions::Asked;
 use hamel_codegen::program::Program;
 use hamel_codegen::program::count::{Count, count_nodes};
 use hamel_codegen::program::schedule::Schedule;
@@ -62,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return advice::run(&source, &model, matches!(arguments.format, Format::Json));
     }
     // What is generated on demand alone is counted as well, unless functions were chosen.
-    let generated = match source.model()?.generate.is_empty() {
+    let generated = match source.model()?.asked == Asked::everything() {
         true => source.derive_linearized()?,
         false => source.derive()?,
     };

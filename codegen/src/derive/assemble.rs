@@ -2,7 +2,7 @@
 
 use super::accel::cheapest::Computation;
 use super::accel::parts::Parts;
-use super::accel::{Acceleration, accel};
+use super::accel::{Acceleration, accel, forces};
 use super::calculus::Calculus;
 use super::care::{self, Care};
 use super::reduction::Reduction;
@@ -14,7 +14,7 @@ use crate::diagnostics::Diagnostic;
 use crate::model::value::Value;
 use crate::model::{Model, class};
 use crate::program::structure::Structure;
-use crate::program::{Argument, Function, Program, Shape};
+use crate::program::{Argument, Function, FunctionId, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
 /// Models with more velocities are looked at for lack of inertia by M as it is traced: the literal one, n²
@@ -60,19 +60,24 @@ fn put_together(
 ) -> Result<(Program, Vec<Vec<Edge>>), Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
     let mut reference = model.clone();
-    if model.n() <= MOST_LITERAL && model.wants_inverse() {
+    if model.n() <= MOST_LITERAL && model.asked.wants_inverse() {
         let mut calculus = Calculus::new(&reference);
         let mass = inertia::mass_matrix(&mut reference, &mut calculus);
         inertia::positive_definite(model, &reference.graph, &mass)?;
     }
-    let Some((chosen, computed)) = accel(model, care) else {
+    let forces = (!model.asked.wants_inverse())
+        .then(|| forces(model, care))
+        .flatten()
+        .map(|computed| (Acceleration::none(model.graph.clone()), computed));
+    let Some((chosen, computed)) = forces.or_else(|| accel(model, care)) else {
         return Err(Diagnostic::new(
             model.span,
             "the mass matrix is singular for every configuration",
         )
-        .help("every velocity needs inertia: check masses and inertias"));
+        .help("every velocity needs inertia: check masses and inertias; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it")
+        .about_inverse());
     };
-    if model.n() > MOST_LITERAL && model.wants_inverse() {
+    if model.n() > MOST_LITERAL && model.asked.wants_inverse() {
         inertia::positive_definite(model, &computed.graph, &computed.parts.mass)?;
     }
     let potential = energy::potential(&mut reference);
@@ -142,22 +147,23 @@ impl<'a> Builder<'a> {
         }
     }
 
-    pub(super) fn push(
+    /// Adds a function that always has a value.
+    pub(super) fn push(&mut self, id: FunctionId, shape: Shape, outputs: Vec<Edge>) {
+        self.functions.push(Function::known(id, shape, outputs));
+    }
+
+    /// Adds a function that has a value where the guards are positive.
+    pub(super) fn push_guarded(
         &mut self,
-        name: &str,
-        docs: &[&str],
-        arguments: &[Argument],
+        id: FunctionId,
         shape: Shape,
         outputs: Vec<Edge>,
+        guards: Vec<Edge>,
     ) {
         self.functions.push(Function {
-            name: name.to_string(),
-            docs: docs.iter().map(|line| line.to_string()).collect(),
-            arguments: arguments.to_vec(),
-            shape,
-            outputs,
-            guards: Vec::new(),
-            fallible: false,
+            guards,
+            fallible: true,
+            ..Function::known(id, shape, outputs)
         });
     }
 
@@ -166,41 +172,20 @@ impl<'a> Builder<'a> {
         let rate = rebuild(&model.graph, &mut self.graph, &model.rate);
         let x = model.x.clone();
         let chart = kinematics::chart_rates(&mut self.graph, &model.blocks, &x, &rate);
-        self.push(
-            "rate",
-            &["Rates of the coordinates, ẋ = A(x) ξ (KR18 (5))."],
-            &[Coordinates, Velocities],
-            Shape::Vector(rate.len()),
-            rate,
-        );
-        self.push(
-            "chart_rate",
-            &[
-                "Rates in the charts of the coordinate kinds: ẋ of plain coordinates, θ̇ of a circle, the body",
-                "angular velocity of a quaternion or rotation matrix (KR18 (36)).",
-            ],
-            &[Coordinates, Velocities],
-            Shape::Vector(chart.len()),
-            chart,
-        );
+        self.push(FunctionId::Rate, Shape::Vector(rate.len()), rate);
+        self.push(FunctionId::ChartRate, Shape::Vector(chart.len()), chart);
     }
 
     fn dynamics(&mut self, reference: &Graph, potential: Edge) {
         let n = self.model.n();
         let xi = self.model.xi.clone();
         let guards = self.guards();
-        self.functions.push(Function {
-            name: "accel".into(),
-            docs: vec![
-                "Forward dynamics: ξ̇ from M ξ̇ + Γ ξ ξ + ∂V = f (KR18 (30c)).".into(),
-                format!("Route: {}.", self.chosen.route),
-            ],
-            arguments: vec![Coordinates, Velocities, Inputs],
-            shape: Shape::Vector(n),
-            outputs: self.chosen.xi_dot.clone(),
-            guards,
-            fallible: true,
-        });
+        let route = format!("Route: {}.", self.chosen.route);
+        let xi_dot = self.chosen.xi_dot.clone();
+        self.push_guarded(FunctionId::Accel, Shape::Vector(n), xi_dot, guards);
+        if let Some(accel) = self.functions.last_mut() {
+            accel.docs.push(route);
+        }
         let mass = self.parts.mass.clone();
         let graph = &mut self.graph;
         let bias: Vec<Edge> = self.parts.inertia.iter().map(|&edge| -edge).collect();
@@ -214,69 +199,15 @@ impl<'a> Builder<'a> {
         let potential = rebuild(reference, graph, &[potential])[0];
         let energy = graph.add(kinetic, potential);
         let vector = Shape::Vector(n);
-        self.push(
-            "inverse_dynamics",
-            &["Inverse dynamics: the generalised force f = M ξ̇ + Γ ξ ξ + ∂V that ξ̇ needs (KR18 (30c))."],
-            &[Coordinates, Velocities, Accelerations],
-            vector,
-            inverse,
-        );
-        self.push(
-            "mass_matrix",
-            &["Mass matrix M(x) (KR18 (20)), by rows."],
-            &[Coordinates],
-            Shape::Matrix(n, n),
-            mass.concat(),
-        );
-        self.push(
-            "bias",
-            &["Bias force Γᵢⱼₖ ξʲ ξᵏ (KR18 (30c)): Coriolis, centrifugal and gyroscopic terms."],
-            &[Coordinates, Velocities],
-            vector,
-            bias,
-        );
-        self.push(
-            "potential_force",
-            &["Slope of the potential, ∂ᵢV along the columns of A (KR18 (9)); gravity included."],
-            &[Coordinates],
-            vector,
-            slope,
-        );
-        self.push(
-            "generalized_force",
-            &["Generalised force fᵢ of the applied loads (KR18 (28))."],
-            &[Coordinates, Velocities, Inputs],
-            vector,
-            applied,
-        );
-        self.push(
-            "momentum",
-            &["Generalised momentum p = M ξ = ∂L/∂ξ."],
-            &[Coordinates, Velocities],
-            vector,
-            momentum,
-        );
-        self.push(
-            "kinetic_energy",
-            &["Kinetic energy T = ½ ξᵀ M ξ (J)."],
-            &[Coordinates, Velocities],
-            Shape::Scalar,
-            vec![kinetic],
-        );
-        self.push(
-            "potential_energy",
-            &["Potential energy V(x) (J)."],
-            &[Coordinates],
-            Shape::Scalar,
-            vec![potential],
-        );
-        self.push(
-            "energy",
-            &["Energy T + V (J)."],
-            &[Coordinates, Velocities],
-            Shape::Scalar,
-            vec![energy],
-        );
+        self.push(FunctionId::InverseDynamics, vector, inverse);
+        self.push(FunctionId::MassMatrix, Shape::Matrix(n, n), mass.concat());
+        self.push(FunctionId::Bias, vector, bias);
+        self.push(FunctionId::PotentialForce, vector, slope);
+        self.push(FunctionId::GeneralizedForce, vector, applied);
+        self.push(FunctionId::Momentum, vector, momentum);
+        self.push(FunctionId::KineticEnergy, Shape::Scalar, vec![kinetic]);
+        self.push(FunctionId::PotentialEnergy, Shape::Scalar, vec![potential]);
+        self.push(FunctionId::Energy, Shape::Scalar, vec![energy]);
     }
 
     /// Pivots that vary at run time.
@@ -291,19 +222,12 @@ impl<'a> Builder<'a> {
     /// D, where there is one.
     fn dissipation(&mut self) {
         let model = self.model;
-        let asked = model.generate.iter().any(|name| name == "dissipation");
+        let asked = model.asked.names(FunctionId::Dissipation);
         if model.dissipation == model.graph.zero() && !asked {
             return;
         }
         let value = rebuild(&model.graph, &mut self.graph, &[model.dissipation]);
-        self.push(
-            "dissipation",
-            &["Rayleigh's dissipation function D(x, ξ) (W), half the power that dampers take: its force is",
-              "−∂D/∂ξⁱ, part of the generalised force, and d/dt (T + V) = −2 D + power of all else."],
-            &[Coordinates, Velocities],
-            Shape::Scalar,
-            value,
-        );
+        self.push(FunctionId::Dissipation, Shape::Scalar, value);
     }
 
     /// φ and −Ψ φ, which are wanted off X: copied node by node from the graph with free points.
@@ -317,17 +241,9 @@ impl<'a> Builder<'a> {
         let mut phi = copy(&free, &mut self.graph, &rows);
         phi.extend(self.loops());
         let correction = copy(&free, &mut self.graph, &correction);
+        self.push(FunctionId::Constraint, Shape::Vector(phi.len()), phi);
         self.push(
-            "constraint",
-            &["Geometric constraint φ(x), zero on the configuration manifold (KR18 (3))."],
-            &[Coordinates],
-            Shape::Vector(phi.len()),
-            phi,
-        );
-        self.push(
-            "correction",
-            &["The stabilising direction −Ψ φ(x) of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t)."],
-            &[Coordinates],
+            FunctionId::Correction,
             Shape::Vector(correction.len()),
             correction,
         );
@@ -346,14 +262,18 @@ impl<'a> Builder<'a> {
             } else {
                 &[Coordinates, Velocities, Inputs]
             };
-            self.push(name, &[&docs], arguments, shape, entries);
+            self.functions
+                .push(Function::described(name, docs, arguments, shape, entries));
         }
     }
 
     /// What the methods for systems that split call; an error where it is asked for in vain.
     fn splitting(&mut self, found: Found) -> Result<Structure, Diagnostic> {
         let model = self.model;
-        if let (Err(reasons), true) = (&found.structure.split, model.asks("splitting")) {
+        if let (Err(reasons), true) = (
+            &found.structure.split,
+            model.asked.names(FunctionId::Splitting),
+        ) {
             let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
             return Err(Diagnostic::new(
                 model.span,
@@ -363,7 +283,9 @@ impl<'a> Builder<'a> {
                 "leave `splitting` out of `generate`; `accel` serves the methods for any system",
             ));
         }
-        if let (Some(functions), true) = (&found.functions, model.wants("splitting")) {
+        if let (Some(functions), true) =
+            (&found.functions, model.asked.wants(FunctionId::Splitting))
+        {
             let pivots = functions.add(self);
             let graph = &self.graph;
             let varies = |pivot: &Edge| !graph.is_free(pivot.node());
@@ -377,9 +299,9 @@ impl<'a> Builder<'a> {
     fn finish(mut self, structure: Structure) -> Program {
         let model = self.model;
         let names = names(model, &mut self.graph);
-        self.functions.retain(|function| {
-            let name = function.name.as_str();
-            model.wants(name) || (structure::FUNCTIONS.contains(&name) && model.wants("splitting"))
+        self.functions.retain(|function| match function.id {
+            Some(id) => model.asked.wants(id),
+            None => model.asked.wants_output(&function.name),
         });
         let constants = &model.completion.constants;
         self.kinematic_guards

@@ -89,7 +89,7 @@ pub fn excess(model: &Model, program: &Program, mass: &[Vec<Edge>], losses: &[Op
     let mut worst = 0.0_f64;
     for (function, digits) in program.functions.iter().zip(losses) {
         let mut beyond = digits.unwrap_or(0.0) - ENOUGH;
-        if beyond > 0.0 && is_solved(&function.name) {
+        if beyond > 0.0 && function.id.is_some_and(|id| id.row().inverse) {
             beyond -= *condition.get_or_insert_with(|| condition_digits(model, program, mass));
         }
         worst = worst.max(beyond);
@@ -108,18 +108,6 @@ pub fn note(program: &mut Program, losses: &[Option<f64>]) {
             ]);
         }
     }
-}
-
-/// Whether M is solved with in a function.
-fn is_solved(name: &str) -> bool {
-    let solved = [
-        "accel",
-        "linearize",
-        "velocity_of_momentum",
-        "constraint_force",
-        "settle",
-    ];
-    solved.contains(&name)
 }
 
 /// log₁₀ ‖M‖ ‖M⁻¹‖ (greatest sums of rows), the greatest at the states.

@@ -17,7 +17,7 @@ use crate::algebra::tangent::tangent_at;
 use crate::derive::accel::saddle;
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
-use crate::program::Program;
+use crate::program::{FunctionId, Program};
 
 /// Points at which everything is compared.
 const POINTS: u64 = 4;
@@ -142,7 +142,7 @@ fn is_there(label: &str, reduction: &Reduction, program: &Program) -> bool {
     match label {
         "C" => !reduction.solved.is_empty(),
         "B" => !reduction.kept.is_empty(),
-        "nearby" => program.function("linearize").is_some(),
+        "nearby" => program.function(FunctionId::Linearize).is_some(),
         _ => true,
     }
 }
@@ -407,7 +407,7 @@ impl At<'_> {
 
     /// d/dt (T + V) = f ξ at a ξₐ that satisfies the rows that are kept.
     fn power(&self, kept: &[Fp], random: &[Fp], seed: u64) -> Option<bool> {
-        let Some(accel) = self.program.function("accel") else {
+        let Some(accel) = self.program.function(FunctionId::Accel) else {
             return Some(true);
         };
         let xi_active = in_kernel(kept, random, seed)?;
@@ -427,8 +427,8 @@ impl At<'_> {
     /// [A B] against dual numbers: δξ̇ = DF, and A ḣ = D(ẋ)[A h] − Ȧ h.
     fn nearby(&self, point: &Lane, inner: &Lane) -> Option<bool> {
         let (Some(linear), Some(accel)) = (
-            self.program.function("linearize"),
-            self.program.function("accel"),
+            self.program.function(FunctionId::Linearize),
+            self.program.function(FunctionId::Accel),
         ) else {
             return Some(true);
         };

@@ -14,7 +14,7 @@ use crate::algebra::transplant::rebuild;
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::model::layout::Block;
-use crate::program::Program;
+use crate::program::{FunctionId, Program};
 
 /// Points at which the emitted function is compared.
 const POINTS: usize = 4;
@@ -96,7 +96,7 @@ fn closed_forms(free: &mut Graph, blocks: &[Block], x: &[Edge]) -> Vec<Edge> {
 /// Proves the emitted correction at fresh points of X: its derivative there is −Ψ Φ = A Y − I, KR18
 /// (6), along any direction, be it tangent or not.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    let Some(function) = program.function("correction") else {
+    let Some(function) = program.function(FunctionId::Correction) else {
         return Ok(());
     };
     let failure = || {

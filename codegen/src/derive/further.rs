@@ -1,4 +1,4 @@
-//! Functions beside the equations of motion: momenta, the motion nearby, invariants.
+//! Functions beside the equations of motion: momenta, the linearisation, invariants.
 
 use super::accel::cheapest::Computation;
 use super::assemble::{Builder, shape_of};
@@ -12,8 +12,8 @@ use crate::algebra::graph::Edge;
 use crate::algebra::transplant::{graft, rebuild};
 use crate::model::Model;
 use crate::model::invariants::Quantity;
-use crate::program::{Argument, Function, Shape};
-use Argument::{Coordinates, Inputs, Momenta, Velocities};
+use crate::program::{Argument, Function, FunctionId, Shape};
+use Argument::{Coordinates, Velocities};
 
 impl Builder<'_> {
     /// ṗ of (x, ξ, u), and ξ of (x, p).
@@ -22,7 +22,7 @@ impl Builder<'_> {
             return;
         }
         let n = self.model.n();
-        if self.model.wants("momentum_rate") {
+        if self.model.asked.wants(FunctionId::MomentumRate) {
             let mut candidates = Candidates::with(&self.care);
             let mut graph = self.shared.graph.clone();
             let rate = momentum::rate(self.model, &mut graph, &self.shared.parts);
@@ -31,15 +31,9 @@ impl Builder<'_> {
             let rate = momentum::rate(self.model, &mut graph, &self.parts);
             candidates.offer_own(graph, rate);
             let rate = candidates.cheapest(&mut self.graph);
-            self.push(
-                "momentum_rate",
-                &["Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a))."],
-                &[Coordinates, Velocities, Inputs],
-                Shape::Vector(n),
-                rate,
-            );
+            self.push(FunctionId::MomentumRate, Shape::Vector(n), rate);
         }
-        if !self.model.wants("velocity_of_momentum") {
+        if !self.model.asked.wants(FunctionId::VelocityOfMomentum) {
             return;
         }
         let p = &self.model.momenta;
@@ -58,19 +52,12 @@ impl Builder<'_> {
             let pivots = xi.split_off(n);
             let varying = |edge: &Edge| !self.graph.is_free(edge.node());
             let guards = pivots.into_iter().filter(varying).collect();
-            self.functions.push(Function {
-                name: "velocity_of_momentum".into(),
-                docs: vec!["Velocity coordinates of a generalised momentum, ξ = M⁻¹ p.".into()],
-                arguments: vec![Coordinates, Momenta],
-                shape: Shape::Vector(n),
-                outputs: xi,
-                guards,
-                fallible: true,
-            });
+            let id = FunctionId::VelocityOfMomentum;
+            self.push_guarded(id, Shape::Vector(n), xi, guards);
         }
     }
 
-    /// [A B] of the motion nearby.
+    /// [A B] of the linearisation.
     pub(super) fn linearize(&mut self, full: &Model, reduction: Option<&Reduction>) {
         let Computation { mut graph, parts } = self.shared.clone();
         let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
@@ -89,18 +76,10 @@ impl Builder<'_> {
         let columns = linear.rows.first().map_or(0, Vec::len);
         let outputs = graft(&linear.graph, &mut self.graph, &linear.rows.concat());
         let varying = |edge: &Edge| !self.graph.is_free(edge.node());
-        self.functions.push(Function {
-            name: "linearize".into(),
-            docs: vec![
-                "The motion nearby in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,".into(),
-                "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).".into(),
-            ],
-            arguments: vec![Coordinates, Velocities, Inputs],
-            shape: Shape::Matrix(rows, columns),
-            outputs,
-            guards: self.chosen.pivots.iter().copied().filter(varying).collect(),
-            fallible: true,
-        });
+        let pivots = self.chosen.pivots.iter().copied();
+        let guards = pivots.filter(varying).collect();
+        let shape = Shape::Matrix(rows, columns);
+        self.push_guarded(FunctionId::Linearize, shape, outputs, guards);
     }
 
     /// What is claimed to be constant, as functions that watch it.
@@ -132,7 +111,13 @@ impl Builder<'_> {
                 claim.name
             );
             let arguments = [Coordinates, Velocities];
-            self.push(&claim.name, &[&docs], &arguments, shape, outputs);
+            self.functions.push(Function::described(
+                &claim.name,
+                docs,
+                &arguments,
+                shape,
+                outputs,
+            ));
         }
     }
 }

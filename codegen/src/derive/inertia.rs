@@ -137,7 +137,7 @@ pub fn positive_definite(
         model.velocity_spans.get(pivot).copied().unwrap_or(model.span),
         format!("the mass matrix is not positive definite at the start: pivot {} (`{name}`) is not positive", pivot + 1),
     )
-    .help("every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it"))
+    .help("every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it").about_inverse())
 }
 
 /// The first pivot of Cholesky's factorisation that is not positive, relative to the diagonal.

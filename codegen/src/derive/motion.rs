@@ -11,7 +11,7 @@ use super::tables::Geometry;
 use super::virtual_power;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
-use crate::program::Program;
+use crate::program::{FunctionId, Program};
 
 /// ∂²T/∂ξⁱ∂ξʲ = M_ij, fᵢ by virtual work, (30a) = (30b) and (30a) = (30c) for all ξ̇.
 pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
@@ -66,7 +66,7 @@ pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
 
 /// The emitted ξ̇ in (30c), and d/dt (T + V) = fᵢ ξⁱ.
 pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
-    let Some(accel) = program.function("accel") else {
+    let Some(accel) = program.function(FunctionId::Accel) else {
         return Vec::new();
     };
     let geometry = &mut symbols.geometry;

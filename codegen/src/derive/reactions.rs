@@ -7,8 +7,7 @@ use super::reduction::Reduction;
 use crate::algebra::graph::Edge;
 use crate::algebra::transplant::rebuild;
 use crate::model::Model;
-use crate::program::{Argument, Function, Shape};
-use Argument::{Coordinates, Inputs, Velocities};
+use crate::program::{FunctionId, Shape};
 
 impl Builder<'_> {
     /// φ of the loops that multipliers keep.
@@ -41,18 +40,8 @@ impl Builder<'_> {
         let mut outputs = candidates.cheapest(&mut self.graph);
         outputs.truncate(full.constraints.len());
         let guards = self.guards();
-        self.functions.push(Function {
-            name: "constraint_force".into(),
-            docs: vec![
-                "Multipliers λ of the constraints B(x) ξ = 0, M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ, in their order: the".into(),
-                "generalised force that keeps an inactive velocity at zero, a force where B ξ is a speed.".into(),
-            ],
-            arguments: vec![Coordinates, Velocities, Inputs],
-            shape: Shape::Vector(outputs.len()),
-            outputs,
-            guards,
-            fallible: true,
-        });
+        let shape = Shape::Vector(outputs.len());
+        self.push_guarded(FunctionId::ConstraintForce, shape, outputs, guards);
     }
 
     /// What leads back to the constraints that are kept.
@@ -62,34 +51,16 @@ impl Builder<'_> {
         };
         let guards = self.guards();
         let n = self.model.n();
-        let table: [(&str, &str, &[Argument], Vec<Edge>); 2] = [
-            (
-                "close",
-                "The step along A that closes the loops φ(x) = 0 to first order, −M⁻¹ Bᵀ S⁻¹ φ with S = B M⁻¹ Bᵀ.",
-                &[Coordinates],
-                projections.close,
-            ),
-            (
-                "settle",
-                "The velocities with B ξ = 0 that are nearest in kinetic energy, ξ − M⁻¹ Bᵀ S⁻¹ B ξ.",
-                &[Coordinates, Velocities],
-                projections.settle,
-            ),
-        ];
         let loops = !self.loops().is_empty();
-        for (name, docs, arguments, outputs) in table {
-            if name == "close" && !loops {
-                continue;
-            }
-            self.functions.push(Function {
-                name: name.into(),
-                docs: vec![docs.into()],
-                arguments: arguments.to_vec(),
-                shape: Shape::Vector(n),
-                outputs,
-                guards: guards.clone(),
-                fallible: true,
-            });
+        if loops {
+            let outputs = projections.close;
+            self.push_guarded(FunctionId::Close, Shape::Vector(n), outputs, guards.clone());
         }
+        self.push_guarded(
+            FunctionId::Settle,
+            Shape::Vector(n),
+            projections.settle,
+            guards,
+        );
     }
 }

@@ -15,7 +15,7 @@ use crate::algebra::lane::Lane;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
 use crate::model::Model;
-use crate::program::Program;
+use crate::program::{FunctionId, Program};
 
 /// What is compared at every point.
 pub struct Slopes {
@@ -86,7 +86,7 @@ impl Slopes {
             .iter()
             .filter(|claim| program.function(&claim.name).is_some())
             .collect();
-        let linear = program.function("linearize").is_some();
+        let linear = program.function(FunctionId::Linearize).is_some();
         let mut own = model.clone();
         let mut invariants = Vec::new();
         if !claims.is_empty() {
@@ -263,7 +263,7 @@ fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<R
     let nearby = Nearby::new(model, &here.rate);
     let moving = slope(&nearby.moving)?;
     let changed = slope(&nearby.moved(model, &here.a.concat()))?;
-    let linear = &program.function("linearize")?.outputs;
+    let linear = &program.function(FunctionId::Linearize)?.outputs;
     let found = nearby.found(&evaluate_at(&program.graph, linear, &mut lane.clone())?);
     // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
     let left = difference(&changed.rate, &product(&moving.a, &nearby.columns[..n]));

@@ -234,7 +234,7 @@ impl<'a> Reading<'a> {
             lets: names.lets,
             start_x: start.x,
             start_xi: start.xi,
-            generate: dynamics.generate,
+            asked: dynamics.asked,
             span: system.name.span,
         })
     }

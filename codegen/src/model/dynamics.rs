@@ -10,44 +10,12 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, zero3};
 use crate::diagnostics::{Diagnostic, Report};
+use crate::functions::{Asked, FunctionId};
 use crate::syntax::ast::{Expr, Ident, ItemKind, Span, System};
 use crate::syntax::suggest::closest;
 
-/// The functions that `generate` can name, beside outputs.
-pub const FUNCTIONS: &[&str] = &[
-    "rate",
-    "accel",
-    "inverse_dynamics",
-    "mass_matrix",
-    "bias",
-    "potential_force",
-    "generalized_force",
-    "momentum",
-    "momentum_rate",
-    "velocity_of_momentum",
-    "kinetic_energy",
-    "potential_energy",
-    "energy",
-    "dissipation",
-    "constraint",
-    "constraint_force",
-    "linearize",
-    "splitting",
-];
-
-/// Further functions that a program has, whose names no output can take.
-pub const INTERNAL: &[&str] = &[
-    "chart_rate",
-    "correction",
-    "close",
-    "settle",
-    "centre",
-    "uncentre",
-    "momenta",
-    "velocities",
-    "kick",
-    "rotor_inertia",
-];
+/// What stands in `generate` for everything that a description without it gets.
+const ALL: &str = "all";
 
 /// What the statements about inertia and loads say.
 pub struct Dynamics {
@@ -61,7 +29,7 @@ pub struct Dynamics {
     pub dissipation: Edge,
     pub elements: Elements,
     pub outputs: Vec<(String, Value)>,
-    pub generate: Vec<String>,
+    pub asked: Asked,
 }
 
 /// Reads the statements about inertia and loads.
@@ -86,7 +54,7 @@ pub fn read(
         dissipation: zero,
         elements: Elements::none(graph, declared.xi.len()),
         outputs: Vec::new(),
-        generate: Vec::new(),
+        asked: Asked::everything(),
     };
     let mut gravity: Option<Span> = None;
     let mut has_inertia = false;
@@ -187,11 +155,7 @@ pub fn read(
     }
     let mut outputs = output_names(system, report);
     outputs.extend(super::invariants::names(system));
-    for item in &system.items {
-        if let ItemKind::Generate(names) = &item.kind {
-            dynamics.generate.extend(generate(names, &outputs, report));
-        }
-    }
+    dynamics.asked = asked(system, &outputs, report);
     dynamics
 }
 
@@ -210,8 +174,7 @@ fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
             continue;
         };
         let first = outputs.iter().find(|known| known.name == name.name);
-        let known = |list: &[&str]| list.contains(&name.name.as_str());
-        if first.is_none() && !known(FUNCTIONS) && !known(INTERNAL) {
+        if first.is_none() && !is_taken(&name.name) {
             outputs.push(name);
             continue;
         }
@@ -228,27 +191,51 @@ fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
     outputs
 }
 
-/// The functions that are asked for; unknown ones are reported.
-fn generate(names: &[Ident], outputs: &[&Ident], report: &mut Report) -> Vec<String> {
-    let mut all = Vec::new();
-    for name in names {
-        let outputs = outputs.iter().map(|name| name.name.as_str());
-        let known = FUNCTIONS.iter().copied().chain(outputs);
-        if known.clone().any(|known| known == name.name) {
-            all.push(name.name.clone());
-            continue;
-        }
-        let message = format!("no function to generate is called `{}`", name.name);
-        let error = Diagnostic::new(name.span, message);
-        report.push(match closest(&name.name, known) {
-            Some(near) => error.help(format!("did you mean `{near}`?")),
-            None => error.help(format!(
-                "the functions are {}, and the outputs and invariants by their names",
-                FUNCTIONS.join(", ")
-            )),
-        });
+/// Whether a name is that of a function, which no output or invariant can have.
+pub fn is_taken(name: &str) -> bool {
+    name == ALL || FunctionId::named(name).is_some()
+}
+
+/// What the statements `generate` ask for, everything where there are none; unknown names are reported.
+fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
+    let statements = system.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Generate(names) => Some(names),
+        _ => None,
+    });
+    let names: Vec<&Ident> = statements.flatten().collect();
+    if names.is_empty() {
+        return Asked::everything();
     }
-    all
+    let mut asked = Asked::only(&[]);
+    let functions = FunctionId::ALL.iter().filter(|id| id.row().named);
+    let functions: Vec<&str> = functions.map(|id| id.name()).collect();
+    for name in names {
+        let text = name.name.as_str();
+        let function = FunctionId::named(text).filter(|id| id.row().named);
+        if text == ALL {
+            asked.everything = true;
+        } else if let Some(function) = function {
+            asked.functions.push(function);
+        } else if outputs.iter().any(|output| output.name == text) {
+            asked.outputs.push(text.to_string());
+        } else {
+            let outputs = outputs.iter().map(|output| output.name.as_str());
+            let known = [ALL]
+                .into_iter()
+                .chain(functions.iter().copied())
+                .chain(outputs);
+            let message = format!("no function to generate is called `{text}`");
+            let error = Diagnostic::new(name.span, message);
+            report.push(match closest(text, known) {
+                Some(near) => error.help(format!("did you mean `{near}`?")),
+                None => error.help(format!(
+                    "the functions are {}, and the outputs and invariants by their names; `all` stands for what a description without `generate` gets",
+                    functions.join(", ")
+                )),
+            });
+        }
+    }
+    asked
 }
 
 /// Reads single statements.

@@ -1,7 +1,7 @@
 //! Claims that something is constant along the motion, as far as they can be read without deriving.
 
 use super::declare::Declared;
-use super::dynamics::{FUNCTIONS, INTERNAL, Reader};
+use super::dynamics::{Reader, is_taken};
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
 use super::value::Value;
@@ -129,8 +129,7 @@ fn check_names(system: &System, report: &mut Report) {
     let mut taken: Vec<&Ident> = outputs.collect();
     for name in names(system) {
         let first = taken.iter().find(|known| known.name == name.name);
-        let known = |list: &[&str]| list.contains(&name.name.as_str());
-        if first.is_some() || known(FUNCTIONS) || known(INTERNAL) {
+        if first.is_some() || is_taken(&name.name) {
             let message = format!("there is already a function `{}`", name.name);
             let error = Diagnostic::new(name.span, message).help(format!(
                 "give this invariant a name of its own: `invariant {}_1 = …;`",

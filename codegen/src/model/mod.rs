@@ -44,6 +44,7 @@ mod variety;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
+use crate::functions::Asked;
 use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
 use completion::Completion;
 use elements::Elements;
@@ -54,7 +55,6 @@ use points::Points;
 use value::Value;
 
 pub use build::build;
-pub use dynamics::FUNCTIONS;
 
 /// Classes of symbols, one bit each.
 pub mod class {
@@ -267,8 +267,8 @@ pub struct Model {
     pub start_x: Vec<f64>,
     /// ξ at the start.
     pub start_xi: Vec<f64>,
-    /// The functions to generate; all of them where empty.
-    pub generate: Vec<String>,
+    /// The functions to generate.
+    pub asked: Asked,
     /// The statements that the start is about, for errors found later.
     pub span: Span,
 }
@@ -298,27 +298,5 @@ impl Model {
             numbers.extend_from_slice(part);
         }
         numbers
-    }
-
-    /// Whether a function was asked for.
-    pub fn wants(&self, function: &str) -> bool {
-        self.generate.is_empty() || self.asks(function)
-    }
-
-    /// Whether any function is wanted that needs the inverse of M.
-    pub fn wants_inverse(&self) -> bool {
-        const INVERSE: [&str; 5] = [
-            "accel",
-            "velocity_of_momentum",
-            "linearize",
-            "constraint_force",
-            "splitting",
-        ];
-        INVERSE.iter().any(|function| self.wants(function))
-    }
-
-    /// Whether a function was asked for by its name.
-    pub fn asks(&self, function: &str) -> bool {
-        self.generate.iter().any(|name| name == function)
     }
 }

@@ -12,20 +12,7 @@ use crate::model::layout::Block;
 use crate::model::{Coordinate, Group};
 use structure::Structure;
 
-/// What a generated function takes, in this order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Argument {
-    /// x, ν numbers.
-    Coordinates,
-    /// ξ, n numbers.
-    Velocities,
-    /// ξ̇, n numbers.
-    Accelerations,
-    /// p, n numbers.
-    Momenta,
-    /// u.
-    Inputs,
-}
+pub use crate::functions::{Argument, FunctionId};
 
 /// The shape of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +28,8 @@ pub enum Shape {
 /// One generated function.
 #[derive(Clone, Debug)]
 pub struct Function {
+    /// Which one it is; none for outputs and invariants of the description.
+    pub id: Option<FunctionId>,
     /// Rust name.
     pub name: String,
     /// Documentation: the equation it evaluates, shapes, units; one string a line.
@@ -55,6 +44,43 @@ pub struct Function {
     pub guards: Vec<Edge>,
     /// Whether it returns a `Result`.
     pub fallible: bool,
+}
+
+impl Function {
+    /// A function that the generator knows, without guards.
+    pub fn known(id: FunctionId, shape: Shape, outputs: Vec<Edge>) -> Self {
+        let row = id.row();
+        Function {
+            id: Some(id),
+            name: row.name.into(),
+            docs: row.docs.iter().map(|line| line.to_string()).collect(),
+            arguments: row.arguments.to_vec(),
+            shape,
+            outputs,
+            guards: Vec::new(),
+            fallible: false,
+        }
+    }
+
+    /// An output or invariant of the description.
+    pub fn described(
+        name: &str,
+        docs: String,
+        arguments: &[Argument],
+        shape: Shape,
+        outputs: Vec<Edge>,
+    ) -> Self {
+        Function {
+            id: None,
+            name: name.into(),
+            docs: vec![docs],
+            arguments: arguments.to_vec(),
+            shape,
+            outputs,
+            guards: Vec::new(),
+            fallible: false,
+        }
+    }
 }
 
 /// Everything that is emitted for a system.
@@ -114,8 +140,9 @@ impl Program {
             .position(|&pivot| pivot == guard)
     }
 
-    /// A function by its name.
-    pub fn function(&self, name: &str) -> Option<&Function> {
+    /// A function: one that the generator knows, or an output or invariant by its name.
+    pub fn function(&self, name: impl AsRef<str>) -> Option<&Function> {
+        let name = name.as_ref();
         self.functions.iter().find(|function| function.name == name)
     }
 }

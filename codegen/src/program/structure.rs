@@ -137,6 +137,7 @@ impl fmt::Display for Reason {
             Reason::Rates => f.write_str(
                 "the velocities measure the rates of the coordinates by a determinant that changes with x",
             ),
+            Reason::Mass { on } if on.is_empty() => f.write_str("the mass matrix is singular"),
             Reason::Mass { on } => write!(
                 f,
                 "the mass matrix in the rates of the coordinates depends on {}",

@@ -6,6 +6,7 @@ use super::simplify::Simplifier;
 use crate::algebra::graph::{Edge, Graph};
 use crate::derive::assemble::applied_force;
 use crate::derive::tables::Geometry;
+use crate::functions::FunctionId;
 use crate::generate::Generated;
 use crate::model::Model;
 use crate::model::value::Value;
@@ -73,7 +74,7 @@ impl<'a> Collector<'a> {
             program,
             ..
         } = self.generated;
-        let Some(function) = program.function("accel") else {
+        let Some(function) = program.function(FunctionId::Accel) else {
             return Err(
                 "there is no table `accel`: the description does not generate the function".into(),
             );

@@ -57,6 +57,21 @@ pub struct Acceleration {
 }
 
 impl Acceleration {
+    /// None, where no ξ̇ is wanted; in a graph of the model's symbols.
+    pub fn none(graph: Graph) -> Self {
+        Acceleration {
+            graph,
+            xi_dot: Vec::new(),
+            pivots: Vec::new(),
+            multipliers: Vec::new(),
+            projections: None,
+            loss: 0,
+            count: Count::default(),
+            depth: 0,
+            route: String::new(),
+        }
+    }
+
     /// Digits first, where they count, then operations, then depth.
     fn cost(&self) -> (usize, usize, usize) {
         (self.loss, self.count.weight(), self.depth)
@@ -70,27 +85,15 @@ pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> 
     if !model.constraints.is_empty() {
         return constrained(&given, care);
     }
-    let placements = care.placements().iter();
-    let recursions: Vec<Recursion> = placements
-        .filter_map(|&placement| Recursion::of(&given, placement))
-        .collect();
+    let recursions = recursions(&given, care);
     for recursion in &recursions {
         recursion.search(&mut best, care);
     }
     let traced = || recursions.iter().map(Recursion::parts);
-    if let Some(recursion) = recursions.first() {
-        // What moves in a plane is short for longer.
-        let plain = |variant: &Variant| {
-            let (traced, parts) = trace(&given, *variant);
-            let roots = [parts.mass.concat(), parts.inertia].concat();
-            count(&traced.graph, &roots).flops() < FEW
-        };
-        let short = || !recursion.is_long() || variants(model, false).iter().any(plain);
-        if model.n() > SMALL || !short() {
-            let best = best?;
-            let computed = cheapest(traced().collect(), &best.graph, model, care)?;
-            return Some((best, computed));
-        }
+    if is_long(&given, &recursions) {
+        let best = best?;
+        let computed = cheapest(traced().collect(), &best.graph, model, care)?;
+        return Some((best, computed));
     }
     let mut computations = search(&given, &mut best, care)?;
     if model.n() <= SMALL
@@ -109,6 +112,49 @@ pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> 
     computations.extend(traced());
     let computed = cheapest(computations, &best.graph, model, care)?;
     Some((best, computed))
+}
+
+/// M and the forces as each is cheapest, where ξ̇ is not wanted: M may be singular, and has to be where
+/// some velocity has no inertia. `None` with constraints, whose reduction inverts M.
+pub fn forces(model: &Model, care: &Care) -> Option<Computation> {
+    let given = Setting::given(model);
+    if !model.constraints.is_empty() {
+        return None;
+    }
+    let recursions = recursions(&given, care);
+    let mut computations = Vec::new();
+    if !is_long(&given, &recursions) {
+        for variant in variants(model, model.n() <= SMALL) {
+            let (Model { graph, .. }, parts) = trace(&given, variant);
+            computations.push(Computation { graph, parts });
+        }
+    }
+    computations.extend(recursions.iter().map(Recursion::parts));
+    cheapest(computations, &model.graph, model, care)
+}
+
+/// The recursions over links, where bodies are a tree of them.
+fn recursions(given: &Setting, care: &Care) -> Vec<Recursion> {
+    let placements = care.placements().iter();
+    placements
+        .filter_map(|&placement| Recursion::of(given, placement))
+        .collect()
+}
+
+/// Whether nothing comes near the recursions.
+fn is_long(given: &Setting, recursions: &[Recursion]) -> bool {
+    let Some(recursion) = recursions.first() else {
+        return false;
+    };
+    // What moves in a plane is short for longer.
+    let plain = |variant: &Variant| {
+        let (traced, parts) = trace(given, *variant);
+        let roots = [parts.mass.concat(), parts.inertia].concat();
+        count(&traced.graph, &roots).flops() < FEW
+    };
+    let model = &given.model;
+    let short = || !recursion.is_long() || variants(model, false).iter().any(plain);
+    model.n() > SMALL || !short()
 }
 
 /// The cheapest computation with multipliers.

@@ -15,7 +15,7 @@ use crate::derive::{energy, inertia};
 use crate::diagnostics::Diagnostic;
 use crate::model::invariants::Invariant;
 use crate::model::{Model, class};
-use crate::program::Program;
+use crate::program::{FunctionId, Program};
 
 /// Fresh points for every claim.
 const POINTS: u64 = 4;
@@ -80,7 +80,7 @@ fn confidence(model: &Model, program: &Program) -> Confidence {
     let mut roots = mass.concat();
     roots.extend(own.rate.iter().chain(&energies).copied());
     let accel = program
-        .function("accel")
+        .function(FunctionId::Accel)
         .map_or(&[][..], |accel| &accel.outputs);
     let expressions = [(&own.graph, &roots[..]), (&program.graph, accel)];
     let terms = 4 * (model.n() + 1);
@@ -134,7 +134,7 @@ fn slopes(
     for (&place, value) in velocities.iter().zip(in_kernel(&rows, &xi, seed)?) {
         lane.set_symbol(place, value);
     }
-    let accel = program.function("accel")?;
+    let accel = program.function(FunctionId::Accel)?;
     let xi_dot = evaluate_at(&program.graph, &accel.outputs, &mut lane.clone())?;
     let rate = evaluate_at(graph, &model.rate, &mut lane.clone())?;
     let direction = super::direction(model, &rate, &xi_dot);

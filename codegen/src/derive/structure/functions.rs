@@ -15,8 +15,7 @@ use crate::derive::candidates::Candidates;
 use crate::model::class;
 use crate::program::count::count;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
-use crate::program::{Argument, Shape};
-use Argument::{Coordinates, Inputs, Momenta, Velocities};
+use crate::program::{FunctionId, Shape};
 
 /// The functions, in a graph of their own.
 pub struct Functions {
@@ -170,77 +169,29 @@ impl Functions {
         let n = self.momenta.len();
         let vector = Shape::Vector(n);
         let nu = Shape::Vector(self.centre.as_ref().map_or(0, Vec::len));
-        let table: [Row; 6] = [
+        let inertia = (!self.rotors.is_empty()).then_some(&self.inertia);
+        let table = [
+            (FunctionId::Centre, nu, self.centre.as_ref()),
+            (FunctionId::Uncentre, nu, self.uncentre.as_ref()),
+            (FunctionId::Momenta, vector, Some(&self.momenta)),
+            (FunctionId::Velocities, vector, Some(&self.velocities)),
+            (FunctionId::Kick, vector, Some(&self.kick)),
             (
-                "centre",
-                &["Coordinates with plain ones moved to centres of mass, y = r + R s."],
-                &[Coordinates],
-                nu,
-                self.centre.as_ref(),
-            ),
-            (
-                "uncentre",
-                &["Coordinates x of those at centres of mass: the inverse of `centre`."],
-                &[Coordinates],
-                nu,
-                self.uncentre.as_ref(),
-            ),
-            (
-                "momenta",
-                &[
-                    "Momenta of the free motion in the chart: ẏ of plain coordinates at centres of mass, θ̇ of circles,",
-                    "the angular momentum P = J ω of rotors in body axes. T = ½ ẏᵀ D ẏ + ½ Σ P·J⁻¹P.",
-                ],
-                &[Coordinates, Velocities],
-                vector,
-                Some(&self.momenta),
-            ),
-            (
-                "velocities",
-                &["Velocity coordinates ξ of such momenta: the inverse of `momenta`."],
-                &[Coordinates, Momenta],
-                vector,
-                Some(&self.velocities),
-            ),
-            (
-                "kick",
-                &[
-                    "Rates of these momenta by the forces alone: accelerations of centres of mass and of circles,",
-                    "torques on rotors in body axes, about the centre of mass or the fixed point.",
-                ],
-                &[Coordinates, Inputs],
-                vector,
-                Some(&self.kick),
-            ),
-            (
-                "rotor_inertia",
-                &[
-                    "Inertia J of the rotors: J₁, J₂, J₃ where body axes are principal, else J by rows.",
-                ],
-                &[],
+                FunctionId::RotorInertia,
                 Shape::Vector(self.inertia.len()),
-                (!self.rotors.is_empty()).then_some(&self.inertia),
+                inertia,
             ),
         ];
-        for (name, docs, arguments, shape, outputs) in table {
+        for (id, shape, outputs) in table {
             let Some(outputs) = outputs else { continue };
             let mut candidates = Candidates::with(&builder.care);
             candidates.offer_both(self.graph.clone(), outputs.clone(), &builder.graph);
             let outputs = candidates.cheapest(&mut builder.graph);
-            builder.push(name, docs, arguments, shape, outputs);
+            builder.push(id, shape, outputs);
         }
         rebuild(&self.graph, &mut builder.graph, &self.pivots)
     }
 }
-
-/// A function: name, documentation, arguments, shape, value; none where it is not needed.
-type Row<'a> = (
-    &'a str,
-    &'a [&'a str],
-    &'a [Argument],
-    Shape,
-    Option<&'a Vec<Edge>>,
-);
 
 /// Of two ways to write the same, the one with fewer operations.
 fn cheaper(graph: &Graph, a: Vec<Edge>, b: Vec<Edge>) -> Vec<Edge> {

@@ -38,16 +38,6 @@ use crate::program::structure::{Reason, Splitting, Structure};
 use rates::{Part, parts};
 use variation::Variation;
 
-/// The functions of systems that split.
-pub const FUNCTIONS: &[&str] = &[
-    "centre",
-    "uncentre",
-    "momenta",
-    "velocities",
-    "kick",
-    "rotor_inertia",
-];
-
 /// What was found, and the functions of a system that splits.
 pub struct Found {
     /// The verdicts.

@@ -19,8 +19,8 @@ use crate::algebra::tangent::tangent_at;
 use crate::derive::kinematics::chart_rates;
 use crate::derive::numbers::{Numbers, Values};
 use crate::model::Model;
-use crate::program::Program;
 use crate::program::structure::Structure;
+use crate::program::{FunctionId, Program};
 
 /// What is compared with.
 pub struct Proof {
@@ -38,7 +38,7 @@ pub struct Proof {
 impl Proof {
     /// Prepares for a program; `None` where it has no such functions.
     pub fn new(model: &Model, program: &Program) -> Option<Self> {
-        program.function("kick")?;
+        program.function(FunctionId::Kick)?;
         let mut model = model.clone();
         let rates = chart_rates(&mut model.graph, &model.blocks, &model.x, &model.rate);
         let numbers = |graph: &Graph, edges: &[Edge]| -> Vec<usize> {
@@ -80,7 +80,7 @@ impl Proof {
         if at("momenta", &moving)? != p {
             return wrong("p of ξ of p is p, for the emitted momenta");
         }
-        if program.function("centre").is_some() {
+        if program.function(FunctionId::Centre).is_some() {
             let mut shifted = lane.clone();
             set(&mut shifted, &self.x, &at("centre", lane)?);
             if at("uncentre", &shifted)? != x {
@@ -90,7 +90,7 @@ impl Proof {
         let kick = at("kick", lane)?;
         let spin = evaluate_at(&self.model.graph, &self.rates, &mut moving.clone())?;
         let (p_dot, y_dot) = self.slopes(numbers, program, &moving)?;
-        let mut inertia = match program.function("rotor_inertia") {
+        let mut inertia = match program.function(FunctionId::RotorInertia) {
             Some(_) => at("rotor_inertia", lane)?.into_iter(),
             None => Vec::new().into_iter(),
         };
@@ -168,8 +168,10 @@ impl Proof {
             let duals = tangent_at(&program.graph, edges, &mut moving.clone(), &direction)?;
             Some(duals.into_iter().map(|dual| dual.1).collect())
         };
-        let y = program.function("centre").map_or(&model.x, |f| &f.outputs);
-        let momenta = program.function("momenta")?;
+        let y = program
+            .function(FunctionId::Centre)
+            .map_or(&model.x, |f| &f.outputs);
+        let momenta = program.function(FunctionId::Momenta)?;
         Some((slopes(&momenta.outputs)?, slopes(y)?))
     }
 }

@@ -127,6 +127,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
 /// A function with a line of documentation.
 pub fn function(name: &str, arguments: &[Argument], shape: Shape, outputs: Vec<Edge>) -> Function {
     Function {
+        id: crate::program::FunctionId::named(name),
         name: name.into(),
         docs: vec![format!("The {name} of a sample.")],
         arguments: arguments.to_vec(),

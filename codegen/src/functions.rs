@@ -1,0 +1,298 @@
+//! The functions that a program can have beside the outputs and invariants of its description: one
+//! table of their names, arguments and documentation, of what they serve and of what they need.
+
+use Argument::{Accelerations, Coordinates, Inputs, Momenta, Velocities};
+
+/// What a generated function takes, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Argument {
+    /// x, ν numbers.
+    Coordinates,
+    /// ξ, n numbers.
+    Velocities,
+    /// ξ̇, n numbers.
+    Accelerations,
+    /// p, n numbers.
+    Momenta,
+    /// u.
+    Inputs,
+}
+
+/// What a function is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Serves {
+    /// The trait `System` of the runtime: it comes along with `accel` and `linearize`.
+    System,
+    /// The trait `Split`: it comes along with `splitting`.
+    Split,
+    /// Users who call it.
+    Callers,
+    /// Users who ask for it by its name.
+    Asked,
+}
+
+/// One row of the table.
+#[derive(Debug)]
+pub struct Row {
+    /// Its name in descriptions and in Rust.
+    pub name: &'static str,
+    /// What it takes.
+    pub arguments: &'static [Argument],
+    /// Its documentation, line by line.
+    pub docs: &'static [&'static str],
+    /// What it is wanted for.
+    pub serves: Serves,
+    /// Whether M⁻¹ is in it, so that it exists only where M is positive definite.
+    pub inverse: bool,
+    /// Whether `generate` can name it.
+    pub named: bool,
+}
+
+macro_rules! table {
+    ($($id:ident $name:literal ($($argument:ident),*) $serves:ident $inverse:literal $named:literal [$($line:literal),* $(,)?])*) => {
+        /// A function that the generator knows.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum FunctionId {
+            $(#[doc = concat!("`", $name, "`.")] $id,)*
+        }
+
+        impl FunctionId {
+            /// All of them, in the order of the table.
+            pub const ALL: &'static [FunctionId] = &[$(FunctionId::$id),*];
+
+            /// What is known of it.
+            pub fn row(self) -> &'static Row {
+                match self {
+                    $(FunctionId::$id => &Row {
+                        name: $name,
+                        arguments: &[$($argument),*],
+                        docs: &[$($line),*],
+                        serves: Serves::$serves,
+                        inverse: $inverse,
+                        named: $named,
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+// Identifier, name, arguments, what it serves, whether M⁻¹ is in it, whether `generate` names it.
+table! {
+    Rate "rate" (Coordinates, Velocities) System false true [
+        "Rates of the coordinates, ẋ = A(x) ξ (KR18 (5)).",
+    ]
+    ChartRate "chart_rate" (Coordinates, Velocities) System false false [
+        "Rates in the charts of the coordinate kinds: ẋ of plain coordinates, θ̇ of a circle, the body",
+        "angular velocity of a quaternion or rotation matrix (KR18 (36)).",
+    ]
+    Accel "accel" (Coordinates, Velocities, Inputs) System true true [
+        "Forward dynamics: ξ̇ from M ξ̇ + Γ ξ ξ + ∂V = f (KR18 (30c)).",
+    ]
+    InverseDynamics "inverse_dynamics" (Coordinates, Velocities, Accelerations) Callers false true [
+        "Inverse dynamics: the generalised force f = M ξ̇ + Γ ξ ξ + ∂V that ξ̇ needs (KR18 (30c)).",
+    ]
+    MassMatrix "mass_matrix" (Coordinates) Callers false true [
+        "Mass matrix M(x) (KR18 (20)), by rows.",
+    ]
+    Bias "bias" (Coordinates, Velocities) Callers false true [
+        "Bias force Γᵢⱼₖ ξʲ ξᵏ (KR18 (30c)): Coriolis, centrifugal and gyroscopic terms.",
+    ]
+    PotentialForce "potential_force" (Coordinates) Callers false true [
+        "Slope of the potential, ∂ᵢV along the columns of A (KR18 (9)); gravity included.",
+    ]
+    GeneralizedForce "generalized_force" (Coordinates, Velocities, Inputs) Callers false true [
+        "Generalised force fᵢ of the applied loads (KR18 (28)).",
+    ]
+    Momentum "momentum" (Coordinates, Velocities) Callers false true [
+        "Generalised momentum p = M ξ = ∂L/∂ξ.",
+    ]
+    MomentumRate "momentum_rate" (Coordinates, Velocities, Inputs) Callers false true [
+        "Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a)).",
+    ]
+    VelocityOfMomentum "velocity_of_momentum" (Coordinates, Momenta) Callers true true [
+        "Velocity coordinates of a generalised momentum, ξ = M⁻¹ p.",
+    ]
+    KineticEnergy "kinetic_energy" (Coordinates, Velocities) System false true [
+        "Kinetic energy T = ½ ξᵀ M ξ (J).",
+    ]
+    PotentialEnergy "potential_energy" (Coordinates) System false true [
+        "Potential energy V(x) (J).",
+    ]
+    Energy "energy" (Coordinates, Velocities) Callers false true [
+        "Energy T + V (J).",
+    ]
+    Dissipation "dissipation" (Coordinates, Velocities) Callers false true [
+        "Rayleigh's dissipation function D(x, ξ) (W), half the power that dampers take: its force is",
+        "−∂D/∂ξⁱ, part of the generalised force, and d/dt (T + V) = −2 D + power of all else.",
+    ]
+    Constraint "constraint" (Coordinates) System false true [
+        "Geometric constraint φ(x), zero on the configuration manifold (KR18 (3)).",
+    ]
+    Correction "correction" (Coordinates) System false false [
+        "The stabilising direction −Ψ φ(x) of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t).",
+    ]
+    ConstraintForce "constraint_force" (Coordinates, Velocities, Inputs) Callers true true [
+        "Multipliers λ of the constraints B(x) ξ = 0, M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ, in their order: the",
+        "generalised force that keeps an inactive velocity at zero, a force where B ξ is a speed.",
+    ]
+    Close "close" (Coordinates) System true false [
+        "The step along A that closes the loops φ(x) = 0 to first order, −M⁻¹ Bᵀ S⁻¹ φ with S = B M⁻¹ Bᵀ.",
+    ]
+    Settle "settle" (Coordinates, Velocities) System true false [
+        "The velocities with B ξ = 0 that are nearest in kinetic energy, ξ − M⁻¹ Bᵀ S⁻¹ B ξ.",
+    ]
+    Linearize "linearize" (Coordinates, Velocities, Inputs) Asked true true [
+        "The linearisation in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,",
+        "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).",
+    ]
+    Splitting "splitting" () Split true true []
+    Centre "centre" (Coordinates) Split true false [
+        "Coordinates with plain ones moved to centres of mass, y = r + R s.",
+    ]
+    Uncentre "uncentre" (Coordinates) Split true false [
+        "Coordinates x of those at centres of mass: the inverse of `centre`.",
+    ]
+    Momenta "momenta" (Coordinates, Velocities) Split true false [
+        "Momenta of the free motion in the chart: ẏ of plain coordinates at centres of mass, θ̇ of circles,",
+        "the angular momentum P = J ω of rotors in body axes. T = ½ ẏᵀ D ẏ + ½ Σ P·J⁻¹P.",
+    ]
+    Velocities "velocities" (Coordinates, Momenta) Split true false [
+        "Velocity coordinates ξ of such momenta: the inverse of `momenta`.",
+    ]
+    Kick "kick" (Coordinates, Inputs) Split true false [
+        "Rates of these momenta by the forces alone: accelerations of centres of mass and of circles,",
+        "torques on rotors in body axes, about the centre of mass or the fixed point.",
+    ]
+    RotorInertia "rotor_inertia" () Split true false [
+        "Inertia J of the rotors: J₁, J₂, J₃ where body axes are principal, else J by rows.",
+    ]
+}
+
+impl FunctionId {
+    /// Its name in descriptions and in Rust.
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The function of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|id| id.name() == name)
+    }
+}
+
+impl AsRef<str> for FunctionId {
+    fn as_ref(&self) -> &str {
+        self.name()
+    }
+}
+
+/// What `generate` asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// Whether everything is asked for that needs not be asked for by its name.
+    pub everything: bool,
+    /// Whether this includes what has M⁻¹ in it.
+    pub inverse: bool,
+    /// Functions that are asked for by name.
+    pub functions: Vec<FunctionId>,
+    /// Outputs and invariants that are asked for by name.
+    pub outputs: Vec<String>,
+}
+
+impl Asked {
+    /// Everything that needs not be asked for by its name: what a description without `generate` gets.
+    pub fn everything() -> Self {
+        Asked {
+            everything: true,
+            inverse: true,
+            functions: Vec::new(),
+            outputs: Vec::new(),
+        }
+    }
+
+    /// Everything but what has M⁻¹ in it.
+    pub fn without_inverse() -> Self {
+        Asked {
+            inverse: false,
+            ..Asked::everything()
+        }
+    }
+
+    /// These functions and what they bring along.
+    pub fn only(functions: &[FunctionId]) -> Self {
+        Asked {
+            everything: false,
+            functions: functions.to_vec(),
+            ..Asked::everything()
+        }
+    }
+
+    /// Whether a function is asked for by its name.
+    pub fn names(&self, id: FunctionId) -> bool {
+        self.functions.contains(&id)
+    }
+
+    /// Whether a function is wanted: asked for by its name or with everything, or brought along.
+    pub fn wants(&self, id: FunctionId) -> bool {
+        let row = id.row();
+        let along = match row.serves {
+            Serves::System => self.names(FunctionId::Accel) || self.names(FunctionId::Linearize),
+            Serves::Split => self.names(FunctionId::Splitting),
+            Serves::Callers | Serves::Asked => false,
+        };
+        let whole = self.everything && row.serves != Serves::Asked;
+        self.names(id) || along || (whole && (self.inverse || !row.inverse))
+    }
+
+    /// Whether an output or invariant is wanted.
+    pub fn wants_output(&self, name: &str) -> bool {
+        self.everything || self.outputs.iter().any(|output| output == name)
+    }
+
+    /// Whether any function is wanted that has M⁻¹ in it.
+    pub fn wants_inverse(&self) -> bool {
+        let mut all = FunctionId::ALL.iter();
+        all.any(|&id| id.row().inverse && self.wants(id))
+    }
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        Asked::everything()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Asked, FunctionId, Serves};
+
+    #[test]
+    fn names_are_told_apart() {
+        for &id in FunctionId::ALL {
+            assert_eq!(FunctionId::named(id.name()), Some(id));
+        }
+    }
+
+    #[test]
+    fn a_type_that_is_linearised_can_be_simulated() {
+        let asked = Asked::only(&[FunctionId::Linearize]);
+        for &id in FunctionId::ALL {
+            let system = id.row().serves == Serves::System;
+            assert_eq!(
+                asked.wants(id),
+                system || id == FunctionId::Linearize,
+                "{id:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_needs_no_inverse_does_not_ask_for_one() {
+        assert!(Asked::everything().wants_inverse());
+        assert!(!Asked::without_inverse().wants_inverse());
+        assert!(Asked::without_inverse().wants(FunctionId::Bias));
+        assert!(!Asked::only(&[FunctionId::InverseDynamics]).wants_inverse());
+        assert!(!Asked::only(&[FunctionId::InverseDynamics]).wants(FunctionId::Rate));
+    }
+}
