@@ -1,6 +1,9 @@
 //! Functions beside the equations of motion: momenta, the linearisation, invariants.
 
 use super::accel::cheapest::Computation;
+use super::accel::recursions;
+use super::accel::recursive::Recursion;
+use super::accel::setting::Setting;
 use super::assemble::{Builder, shape_of};
 use super::calculus::Calculus;
 use super::candidates::Candidates;
@@ -21,40 +24,72 @@ impl Builder<'_> {
         if !self.model.spans {
             return;
         }
-        let n = self.model.n();
+        let given = Setting::given(self.model);
+        let recursions = recursions(&given, &self.care);
         if self.model.asked.wants(FunctionId::MomentumRate) {
-            let mut candidates = Candidates::with(&self.care);
-            let mut graph = self.shared.graph.clone();
-            let rate = momentum::rate(self.model, &mut graph, &self.shared.parts);
-            candidates.offer_own(graph, rate);
-            let mut graph = self.graph.clone();
-            let rate = momentum::rate(self.model, &mut graph, &self.parts);
-            candidates.offer_own(graph, rate);
-            let rate = candidates.cheapest(&mut self.graph);
-            self.push(FunctionId::MomentumRate, Shape::Vector(n), rate);
+            self.momentum_rate(&recursions);
         }
-        if !self.model.asked.wants(FunctionId::VelocityOfMomentum) {
+        if self.model.asked.wants(FunctionId::VelocityOfMomentum) {
+            self.velocity_of_momentum(&recursions);
+        }
+    }
+
+    fn momentum_rate(&mut self, recursions: &[Recursion]) {
+        let n = self.model.n();
+        let mut candidates = Candidates::with(&self.care);
+        let traced = recursions.iter().filter_map(Recursion::momentum_rate);
+        let mut recursive = false;
+        for (graph, rate) in traced {
+            candidates.offer_own(graph, rate);
+            recursive = true;
+        }
+        // Of longer trees nothing else comes near.
+        if !recursive || n <= momentum::MOST_WRITTEN_OUT {
+            let contexts = [
+                (&self.shared.graph, &self.shared.parts),
+                (&self.graph, &self.parts),
+            ];
+            for (graph, parts) in contexts {
+                let mut graph = graph.clone();
+                let rate = momentum::rate(self.model, &mut graph, parts);
+                candidates.offer_own(graph, rate);
+            }
+        }
+        let rate = candidates.cheapest(&mut self.graph);
+        self.push(FunctionId::MomentumRate, Shape::Vector(n), rate);
+    }
+
+    fn velocity_of_momentum(&mut self, recursions: &[Recursion]) {
+        let n = self.model.n();
+        let p = &self.model.momenta;
+        let mut candidates = Candidates::with(&self.care);
+        let mut recursive = false;
+        for (graph, solution) in recursions
+            .iter()
+            .filter_map(Recursion::velocity_of_momentum)
+        {
+            candidates.offer_own(graph, [solution.xi_dot, solution.pivots].concat());
+            recursive = true;
+        }
+        if !recursive || n <= momentum::MOST_WRITTEN_OUT {
+            let shared = &self.shared;
+            let contexts = [(&self.graph, &self.parts), (&shared.graph, &shared.parts)];
+            let found = contexts.map(|(graph, parts)| momentum::velocity(graph, parts, p));
+            let cheapest = found.into_iter().flatten().min_by_key(|(cost, ..)| *cost);
+            if let Some((_, graph, solution)) = cheapest {
+                let roots = [solution.xi_dot, solution.pivots].concat();
+                candidates.offer_both(graph, roots, &shared.graph);
+            }
+        }
+        let mut xi = candidates.cheapest(&mut self.graph);
+        if xi.len() < n {
             return;
         }
-        let p = &self.model.momenta;
-        let shared = &self.shared;
-        let contexts = [(&self.graph, &self.parts), (&shared.graph, &shared.parts)];
-        let found = contexts.map(|(graph, parts)| momentum::velocity(graph, parts, p));
-        let cheapest = found.into_iter().flatten().min_by_key(|(cost, ..)| *cost);
-        if let Some((_, graph, solution)) = cheapest {
-            let mut candidates = Candidates::with(&self.care);
-            candidates.offer_both(
-                graph,
-                [solution.xi_dot, solution.pivots].concat(),
-                &shared.graph,
-            );
-            let mut xi = candidates.cheapest(&mut self.graph);
-            let pivots = xi.split_off(n);
-            let varying = |edge: &Edge| !self.graph.is_free(edge.node());
-            let guards = pivots.into_iter().filter(varying).collect();
-            let id = FunctionId::VelocityOfMomentum;
-            self.push_guarded(id, Shape::Vector(n), xi, guards);
-        }
+        let pivots = xi.split_off(n);
+        let varying = |edge: &Edge| !self.graph.is_free(edge.node());
+        let guards = pivots.into_iter().filter(varying).collect();
+        let id = FunctionId::VelocityOfMomentum;
+        self.push_guarded(id, Shape::Vector(n), xi, guards);
     }
 
     /// [A B] of the linearisation.

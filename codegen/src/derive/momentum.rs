@@ -13,7 +13,7 @@ use crate::program::count::count;
 
 /// Models with more velocities get ṗ from what is traced for ξ̇: the n² entries of M and n³ of γ that it
 /// would be written out from are long then, and never the cheaper ones.
-const MOST_WRITTEN_OUT: usize = 8;
+pub const MOST_WRITTEN_OUT: usize = 8;
 
 /// ṗ in the graph of `parts`: ∂ᵢT − γᵢⱼᵏ ξʲ pₖ written out, or Ṁ ξ − Γ ξ ξ with what is there for ξ̇
 /// anyway, M written out or as it is traced, whichever costs least; then −∂V and the applied forces.

@@ -134,7 +134,7 @@ pub fn forces(model: &Model, care: &Care) -> Option<Computation> {
 }
 
 /// The recursions over links, where bodies are a tree of them.
-fn recursions(given: &Setting, care: &Care) -> Vec<Recursion> {
+pub fn recursions(given: &Setting, care: &Care) -> Vec<Recursion> {
     let placements = care.placements().iter();
     placements
         .filter_map(|&placement| Recursion::of(given, placement))

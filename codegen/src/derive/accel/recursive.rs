@@ -3,7 +3,7 @@
 use super::cheapest::Computation;
 use super::parts::Parts;
 use super::setting::Setting;
-use super::solve::{Plan, solve};
+use super::solve::{Plan, Solution, solve};
 use super::{Acceleration, keep};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
@@ -11,7 +11,8 @@ use crate::algebra::linear::zero3;
 use crate::algebra::transplant::map_symbols;
 use crate::derive::care::Care;
 use crate::derive::loads;
-use crate::derive::tree::inverse::{inverse, wrenches};
+use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
+use crate::derive::tree::momentum::swing;
 use crate::derive::tree::nearby::slopes;
 use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;
@@ -149,6 +150,39 @@ impl Recursion {
             momentum: Some(momentum),
         };
         Computation { graph, parts }
+    }
+
+    /// ṗ of (x, ξ, u), in a graph of its own; `None` where a joint varies with x.
+    pub fn momentum_rate(&self) -> Option<(Graph, Vec<Edge>)> {
+        let mut graph = self.model.graph.clone();
+        let still = vec![graph.zero(); self.model.n()];
+        let swing = swing(&mut graph, &self.tree, &self.model.xi)?;
+        let weight = inverse(&mut graph, &self.tree, &still, &still, self.model.gravity);
+        let load = self.load(&mut graph);
+        let rate = (0..self.model.n()).map(|i| {
+            let terms = [swing[i], load[i], -weight[i]];
+            graph.sum(&terms)
+        });
+        let rate = rate.collect();
+        Some((graph, rate))
+    }
+
+    /// ξ = M⁻¹ p by articulated bodies: what ξ̇ is where nothing but p acts; `None` where a velocity is not
+    /// the rate of one freedom, or M is singular everywhere.
+    pub fn velocity_of_momentum(&self) -> Option<(Graph, Solution)> {
+        let mut graph = self.model.graph.clone();
+        if !self.tree.is_plain(&graph, self.model.n()) {
+            return None;
+        }
+        let none = zero3(&graph);
+        let nothing = Wrench {
+            force: none,
+            torque: none,
+        };
+        let wrenches = vec![nothing; self.tree.links.len()];
+        let momenta = &self.model.momenta;
+        let solution = articulated::forward(&mut graph, &self.tree, &wrenches, momenta)?;
+        Some((graph, solution))
     }
 
     /// ∂(f − M ξ̇ − Γ ξ ξ − ∂V) along displacements, velocities and inputs at constant ξ̇: n rows of

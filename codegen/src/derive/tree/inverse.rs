@@ -184,12 +184,24 @@ pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &Motion) -> Wrench 
 
 /// The generalised force of wrenches on links: Σ over what hangs on each joint.
 pub fn collect(graph: &mut Graph, tree: &Tree, wrenches: &[Wrench], n: usize) -> Vec<Edge> {
+    collect_with(graph, tree, wrenches, n, |_, _, total| *total)
+}
+
+/// The same of what becomes of the wrench on all that hangs on a joint, before the joint feels it.
+pub(super) fn collect_with(
+    graph: &mut Graph,
+    tree: &Tree,
+    wrenches: &[Wrench],
+    n: usize,
+    mut becomes: impl FnMut(&mut Graph, usize, &Wrench) -> Wrench,
+) -> Vec<Edge> {
     let mut totals = wrenches.to_vec();
     let mut forces = vec![graph.zero(); n];
     for (index, link) in tree.links.iter().enumerate().rev() {
         let total = totals[index];
+        let felt = becomes(graph, index, &total);
         for freedom in &link.freedoms {
-            let force = freedom.felt(graph, &total);
+            let force = freedom.felt(graph, &felt);
             for &(i, k) in &freedom.rate {
                 let share = graph.mul(k, force);
                 forces[i] = graph.add(forces[i], share);

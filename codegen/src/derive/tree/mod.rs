@@ -10,6 +10,7 @@ pub mod composite;
 mod draft;
 pub mod inverse;
 pub mod mass;
+pub mod momentum;
 pub mod nearby;
 mod reframe;
 mod regroup;
