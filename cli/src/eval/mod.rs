@@ -4,7 +4,7 @@ mod geometry;
 mod sample;
 
 use crate::failure::{Failure, print, warn};
-use crate::interpreted::{Interpreted, constant_singular, function};
+use crate::interpreted::{Interpreted, function};
 use crate::json::Json;
 use crate::names;
 use crate::robot::RobotOptions;
@@ -134,11 +134,10 @@ fn motion(
         let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);
         Ok(Json::vector(&value.unwrap_or_default()))
     };
-    let singular = constant_singular(&generated.program, params);
-    let accel = match system.accel(x, xi, u).ok().filter(|_| !singular) {
-        Some(accel) => Json::vector(&accel),
-        None => {
-            missing.push("the mass matrix is not positive definite, `accel` has no value".into());
+    let accel = match system.motion(x, xi, u) {
+        Ok(accel) => Json::vector(&accel),
+        Err(why) => {
+            missing.push(format!("{why}: `accel` has no value"));
             Json::Null
         }
     };

@@ -5,6 +5,7 @@ use crate::failure::{Failure, print};
 use crate::interpreted::{constant_singular, function};
 use crate::json::Json;
 use crate::names;
+use crate::singular;
 use crate::source::Source;
 use crate::state::joints::rows;
 use crate::state::sample::{ORDER, Sample};
@@ -136,7 +137,8 @@ fn members(generated: &Generated, sample: &Sample) -> Result<Members, Failure> {
     ];
     let mut missing = Vec::new();
     if accel.value.is_none() {
-        missing.push("the mass matrix is not positive definite, `accel` has no value".to_string());
+        let why = singular::at(&mass, &names::velocities(model));
+        missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));
     let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();

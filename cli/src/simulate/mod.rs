@@ -8,7 +8,7 @@ mod summary;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::interpreted::{Interpreted, constant_singular};
+use crate::interpreted::Interpreted;
 use crate::method::{self, Chosen, Stepper};
 use crate::robot::RobotOptions;
 use crate::source::Source;
@@ -102,11 +102,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let generated = Source::open(&arguments.file, &arguments.robot)?.derive_all()?;
     let state = State::read(&generated, arguments.at.as_deref())?;
-    if constant_singular(&generated.program, &state.params) {
-        let message = "the mass matrix is not positive definite with these parameters";
-        return Err(Failure::failed(message));
-    }
     let system = Interpreted::new(&generated, &state)?;
+    system.check_parameters(&state.x)?;
     let until = arguments.until;
     let step = arguments
         .step
