@@ -113,3 +113,88 @@ fn parameters_that_leave_no_inertia_name_the_velocity() {
         );
     }
 }
+
+/// The names beside the lines of a plot, and its headings.
+fn labels(description: &str, name: &str) -> Vec<String> {
+    let file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let plot = file.display().to_string();
+    let arguments = ["simulate", "-", "--until", "0.5", "--plot", &plot];
+    let output = hamel(&arguments, description);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let drawing = std::fs::read_to_string(&file).expect("the plot");
+    let texts = drawing.split("<text").skip(1).map(|rest| {
+        let (_, rest) = rest.split_once('>').expect("a tag");
+        rest.split("</text>")
+            .next()
+            .expect("a text")
+            .trim()
+            .to_string()
+    });
+    texts.collect()
+}
+
+#[test]
+fn coordinates_of_joints_and_outputs_are_plotted() {
+    let arm = "system Arm {
+        joint shoulder: continuous [0, 0, 1] moves upper;
+        joint elbow: revolute [0, 1, 0] on upper at pose(rotx(pi/2), [0, 0, 0.4]) moves fore;
+        joint slide: planar [0, 0, 1] moves cart;
+        joint left: spherical on cart moves one;
+        joint right: spherical on cart moves two;
+        body on upper { mass 2; com [0, 0, 0.2]; inertia diag(0.03, 0.03, 0.004) about com; }
+        body on fore { mass 1; com [0.2, 0, 0]; inertia diag(0.002, 0.02, 0.02) about com; }
+        body on cart { mass 1; inertia diag(1, 1, 1) about com; }
+        body on one { mass 1; inertia diag(1, 1, 1) about com; }
+        body on two { mass 1; inertia diag(1, 1, 1) about com; }
+        output reach = sin(elbow);
+        output pair = [sin(elbow), cos(elbow)];
+        gravity [0, 0, -9.81];
+        start elbow = 0.5; start shoulder_dot = 20;
+    }";
+    let labels = labels(arm, "arm.svg");
+    for expected in [
+        "coordinates",
+        "shoulder",
+        "elbow",
+        "coordinate slide_r",
+        "slide_r[2]",
+        "slide",
+        "angles of rotation",
+        "left",
+        "right",
+        "velocities",
+        "shoulder_dot",
+        "velocity left_dot",
+        "outputs",
+        "reach",
+        "output pair",
+        "pair[2]",
+    ] {
+        assert!(
+            labels.iter().any(|label| label == expected),
+            "{expected}: {labels:?}"
+        );
+    }
+}
+
+#[test]
+fn the_only_attitude_is_on_the_sphere_alone() {
+    let body = "system Body {
+        joint base: free moves hull;
+        body on hull { mass 1; inertia diag(1, 2, 3) about com; }
+        output speed = norm(base_v);
+        start base_w = [0, 1, 0]; start base_v = [1, 0, 0];
+    }";
+    let labels = labels(body, "body.svg");
+    for expected in ["coordinate base_r", "base_r[3]", "velocity base_w", "speed"] {
+        assert!(
+            labels.iter().any(|label| label == expected),
+            "{expected}: {labels:?}"
+        );
+    }
+    assert!(labels.iter().any(|label| label.starts_with("body axis")));
+    assert!(
+        !labels.iter().any(|label| label.contains("angles")),
+        "{labels:?}"
+    );
+}

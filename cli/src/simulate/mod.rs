@@ -1,6 +1,7 @@
 //! `hamel simulate`: a run in time, interpreted.
 
 mod balance;
+mod panels;
 mod picture;
 mod record;
 mod rotor;
@@ -74,8 +75,8 @@ pub struct Arguments {
     /// A sample every N steps; about 1000 samples where it is left out.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     every: Option<u64>,
-    /// Plot of velocities, what is conserved, and attitude over time; of a body that is nearly free,
-    /// with Poinsot's construction.
+    /// Plot of coordinates, velocities, outputs and what is conserved over time, with the path of a body
+    /// axis where there is one attitude, and with Poinsot's construction of a body that is nearly free.
     #[arg(long, value_name = "F.svg")]
     plot: Option<PathBuf>,
     #[command(flatten)]

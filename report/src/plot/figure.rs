@@ -2,6 +2,7 @@
 
 use super::line::Point;
 use super::theme;
+use super::width::fitted;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
@@ -237,11 +238,15 @@ pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> Drawn {
     area.draw(&Polygon::new(points, colour)).map_err(failed)
 }
 
-/// Fills all and writes a heading and a sentence below it.
+/// Fills all and writes a heading and a sentence below it, as far as there is room.
 pub fn headed(area: &Area, title: &str, subtitle: &str) -> Drawn {
+    const LEFT: f64 = 24.0;
     area.fill(&theme::GROUND.0).map_err(failed)?;
+    let widest = f64::from(area.dim_in_pixel().0) / FINE - 2.0 * LEFT;
     let head = letters(18.0, theme::INK.0, Anchor::Start, true);
-    write(area, title, (24.0, 28.0), &head)?;
+    let title = fitted(title, 18.0, true, widest);
+    write(area, &title, (LEFT, 28.0), &head)?;
     let sub = letters(13.0, theme::SOFT.0, Anchor::Start, false);
-    write(area, subtitle, (24.0, 50.0), &sub)
+    let subtitle = fitted(subtitle, 13.0, false, widest);
+    write(area, &subtitle, (LEFT, 50.0), &sub)
 }
