@@ -3,6 +3,7 @@
 use super::line::Point;
 use super::theme;
 use super::width::fitted;
+use crate::code::plain;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
@@ -71,7 +72,7 @@ impl Figure {
         Ok(Figure {
             width,
             height,
-            title: title.to_string(),
+            title: plain(title),
             elements,
         })
     }
@@ -244,9 +245,9 @@ pub fn headed(area: &Area, title: &str, subtitle: &str) -> Drawn {
     area.fill(&theme::GROUND.0).map_err(failed)?;
     let widest = f64::from(area.dim_in_pixel().0) / FINE - 2.0 * LEFT;
     let head = letters(18.0, theme::INK.0, Anchor::Start, true);
-    let title = fitted(title, 18.0, true, widest);
+    let title = fitted(&plain(title), 18.0, true, widest);
     write(area, &title, (LEFT, 28.0), &head)?;
     let sub = letters(13.0, theme::SOFT.0, Anchor::Start, false);
-    let subtitle = fitted(subtitle, 13.0, false, widest);
+    let subtitle = fitted(&plain(subtitle), 13.0, false, widest);
     write(area, &subtitle, (LEFT, 50.0), &sub)
 }
