@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// State; see `hamel eval --help`.
+    /// State, by coordinates or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     /// How to write the matrices.
@@ -67,8 +67,9 @@ struct Linear {
 
 /// Linearises and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let generated = Source::open(&arguments.file, &arguments.robot)?.derive_linearized()?;
-    let state = State::read(&generated, arguments.at.as_deref())?;
+    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let generated = source.derive_linearized()?;
+    let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;
     let system = Interpreted::new(&generated, &state)?;

@@ -71,7 +71,7 @@ pub struct Arguments {
     /// A reference solution.
     #[arg(long, value_name = "SOLUTION.json")]
     reference: Option<PathBuf>,
-    /// Start, parameters and inputs; see `hamel eval --help`.
+    /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     /// Write report.json, report.md, index.html and a picture for each description.
@@ -136,8 +136,9 @@ fn compare(
     arguments: &Arguments,
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
-    let generated = Source::open(file, &arguments.robot)?.derive_all()?;
-    let mut state = State::read(&generated, arguments.at.as_deref())?;
+    let source = Source::open(file, &arguments.robot)?;
+    let generated = source.derive_all()?;
+    let mut state = State::read(&source, &generated, arguments.at.as_deref())?;
     let fields = solution
         .map(|solution| Fields::of(solution, &generated.program))
         .transpose()?;

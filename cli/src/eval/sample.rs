@@ -7,6 +7,7 @@ use crate::json::Json;
 use crate::names;
 use crate::singular;
 use crate::source::Source;
+use crate::state::file::File;
 use crate::state::joints::rows;
 use crate::state::sample::{ORDER, Sample};
 use hamel_codegen::generate::Generated;
@@ -32,12 +33,9 @@ const REACHED: f64 = 1e-9;
 /// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
 /// friction and other loads of the description are part of it, not added to it. Without a force
 /// the loads of the description act, with zero input.
-pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
+pub fn run(source: &Source, at: &File) -> Result<(), Failure> {
+    let File { path, json } = at;
     let generated = source.derive_only(&FUNCTIONS)?;
-    let joints: &[(String, String)] = match &source.robot {
-        Some(robot) => &robot.imported.joints,
-        None => &[],
-    };
     let (list, several) = match json.get("samples") {
         Some(Value::Array(list)) => (list.as_slice(), true),
         _ => (std::slice::from_ref(json), false),
@@ -47,7 +45,7 @@ pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
     let mut errors = Vec::new();
     let mut samples = Vec::new();
     for (index, one) in list.iter().enumerate() {
-        match Sample::parse(one, order, &generated, joints) {
+        match Sample::parse(one, order, &generated, source.joints()) {
             Ok(sample) => samples.push(sample),
             Err(found) if several => {
                 errors.extend(

@@ -66,7 +66,7 @@ pub struct Arguments {
     /// Rate at which rk4 leads back to the constraint (1/s); 10 where it is left out.
     #[arg(long, value_name = "L", value_parser = rate, allow_negative_numbers = true)]
     lambda: Option<f64>,
-    /// Start, parameters and inputs; see `hamel eval --help`.
+    /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     /// Samples as .csv or .json, or a plot as .svg.
@@ -91,18 +91,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
-    if arguments
-        .at
-        .as_deref()
-        .is_some_and(|at| at.as_os_str() == "-")
-        && arguments.file.as_os_str() == "-"
-    {
-        return Err(Failure::usage(
-            "description and state cannot both be read from standard input",
-        ));
-    }
-    let generated = Source::open(&arguments.file, &arguments.robot)?.derive_all()?;
-    let state = State::read(&generated, arguments.at.as_deref())?;
+    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let generated = source.derive_all()?;
+    let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let system = Interpreted::new(&generated, &state)?;
     system.check_parameters(&state.x)?;
     let until = arguments.until;
