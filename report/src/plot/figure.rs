@@ -242,8 +242,9 @@ pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> Drawn {
 /// Fills all and writes a heading and a sentence below it, as far as there is room.
 pub fn headed(area: &Area, title: &str, subtitle: &str) -> Drawn {
     const LEFT: f64 = 24.0;
+    const RIGHT: f64 = 10.0;
     area.fill(&theme::GROUND.0).map_err(failed)?;
-    let widest = f64::from(area.dim_in_pixel().0) / FINE - 2.0 * LEFT;
+    let widest = f64::from(area.dim_in_pixel().0) / FINE - LEFT - RIGHT;
     let head = letters(18.0, theme::INK.0, Anchor::Start, true);
     let title = fitted(&plain(title), 18.0, true, widest);
     write(area, &title, (LEFT, 28.0), &head)?;

@@ -20,7 +20,7 @@ pub fn fitted(text: &str, size: f64, bold: bool, widest: f64) -> String {
 }
 
 /// Letters that are not bold, over those that are.
-const REGULAR: f64 = 0.92;
+const REGULAR: f64 = 0.9;
 
 /// The width of a bold letter, over the size of the font.
 fn letter(letter: char) -> f64 {
