@@ -10,6 +10,7 @@ use nalgebra::DMatrix;
 const ROUNDING: f64 = 1e-12;
 /// What is said where no inertia is missing.
 const CONFIGURATION: &str = "the mechanism is at a singular configuration, where its velocities do not determine its motion";
+const DEPENDENT: &str = "the constraints on the velocities depend on one another";
 
 /// Which function had no value, and at which x.
 #[derive(Clone, Debug)]
@@ -22,14 +23,14 @@ pub enum Failed {
 
 /// What a mass matrix that is not positive definite is told as, by the names of its rows.
 pub fn of_mass(mass: &DMatrix<f64>, names: &[String]) -> Option<String> {
-    let place = pivot(mass)?;
+    let (place, part) = weakest(mass)?;
+    (part <= ROUNDING).then(|| told(place, names))
+}
+
+fn told(place: usize, names: &[String]) -> String {
+    let name = names.get(place).map_or("", String::as_str);
     let number = place + 1;
-    Some(match names.get(place) {
-        Some(name) => {
-            format!("the mass matrix is not positive definite at pivot {number} (`{name}`)")
-        }
-        None => format!("the mass matrix is not positive definite at pivot {number}"),
-    })
+    format!("the mass matrix is not positive definite at pivot {number} (`{name}`)")
 }
 
 /// What is said of a state where ξ̇ has no value, from the mass matrix there.
@@ -37,15 +38,20 @@ pub fn at(mass: &DMatrix<f64>, names: &[String]) -> String {
     of_mass(mass, names).unwrap_or_else(|| CONFIGURATION.into())
 }
 
-/// The first row whose inertia, with the rows before it eliminated, is not positive.
-fn pivot(mass: &DMatrix<f64>) -> Option<usize> {
+/// The first row whose inertia, with the rows before it eliminated, is not positive, else the one that keeps
+/// the least part of its inertia; with that part.
+fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
     let mut rest = mass.clone();
+    let mut weakest: Option<(usize, f64)> = None;
     for k in 0..rest.nrows() {
         let pivot = rest[(k, k)];
-        // A NaN is not positive either.
-        let positive = pivot > ROUNDING * mass[(k, k)].abs();
-        if !positive {
-            return Some(k);
+        // What is not a number is not positive either.
+        let part = Some(pivot / mass[(k, k)].abs()).filter(|part| *part > ROUNDING);
+        let Some(part) = part else {
+            return Some((k, 0.0));
+        };
+        if weakest.is_none_or(|(_, least)| part < least) {
+            weakest = Some((k, part));
         }
         for i in k + 1..rest.nrows() {
             let factor = rest[(i, k)] / pivot;
@@ -54,7 +60,7 @@ fn pivot(mass: &DMatrix<f64>) -> Option<usize> {
             }
         }
     }
-    None
+    weakest
 }
 
 impl Interpreted {
@@ -85,14 +91,17 @@ impl Interpreted {
         }
         match self.failed() {
             Some(Failed::Motion(x)) => {
-                let told = of_mass(&self.mass(&x), self.velocity_names());
-                told.unwrap_or_else(|| {
-                    "the constraints on the velocities depend on one another".into()
-                })
+                let mass = self.mass(&x);
+                match (of_mass(&mass, self.velocity_names()), weakest(&mass)) {
+                    (Some(why), _) => why,
+                    // Without constraints no other pivot can have failed.
+                    (None, Some((place, _))) if !self.is_constrained() => {
+                        told(place, self.velocity_names())
+                    }
+                    _ => DEPENDENT.into(),
+                }
             }
-            Some(Failed::Projection) => {
-                "the constraints on the velocities depend on one another".into()
-            }
+            Some(Failed::Projection) => DEPENDENT.into(),
             None => cause.to_string(),
         }
     }

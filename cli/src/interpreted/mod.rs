@@ -40,6 +40,7 @@ pub struct Interpreted {
     evaluations: Cell<u64>,
     velocity_names: Vec<String>,
     constant_singular: bool,
+    constrained: bool,
     /// What had no value last.
     failed: RefCell<Option<Failed>>,
 }
@@ -97,6 +98,7 @@ impl Interpreted {
             evaluations: Cell::new(0),
             velocity_names: names::velocities(&generated.active),
             constant_singular: constant_singular(program, &state.params),
+            constrained: !generated.model.constraints.is_empty(),
             failed: RefCell::new(None),
         })
     }
@@ -114,6 +116,11 @@ impl Interpreted {
     /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
     pub fn constant_singular(&self) -> bool {
         self.constant_singular
+    }
+
+    /// Whether there are constraints on the velocities.
+    pub fn is_constrained(&self) -> bool {
+        self.constrained
     }
 
     /// What had no value last, where something had none.
