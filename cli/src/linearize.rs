@@ -1,8 +1,9 @@
 //! `hamel linearize`: the motion near a state, with its eigenvalues.
 
+use crate::columns::aligned;
 use crate::eigenvalues::eigenvalues;
 use crate::failure::{Failure, print};
-use crate::interpreted::{Interpreted, constant_singular, function};
+use crate::interpreted::{Interpreted, function};
 use crate::json::Json;
 use crate::names;
 use crate::number::short;
@@ -10,7 +11,6 @@ use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
-use hamel::System;
 use std::path::PathBuf;
 
 /// A larger acceleration is no rounding of zero.
@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// State; see `hamel eval --help`.
+    /// State, by coordinates or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     /// How to write the matrices.
@@ -67,23 +67,17 @@ struct Linear {
 
 /// Linearises and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let generated = Source::open(&arguments.file, &arguments.robot)?.derive_linearized()?;
-    let state = State::read(&generated, arguments.at.as_deref())?;
+    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let generated = source.derive_linearized()?;
+    let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;
-    let singular = || {
-        Failure::failed(
-            "the mass matrix is not positive definite at this state: there is no linearisation",
-        )
-    };
-    if constant_singular(program, params) {
-        return Err(singular());
-    }
-    let xi_dot = Interpreted::new(&generated, &state)?.accel(x, xi, u);
-    let xi_dot = xi_dot.map_err(|_| singular())?;
+    let system = Interpreted::new(&generated, &state)?;
+    let none = |why: String| Failure::failed(format!("there is no linearisation: {why}"));
+    let xi_dot = system.motion(x, xi, u).map_err(none)?;
     let flat = function(program, "linearize", params)?
         .call(x, xi, u, &[])
-        .map_err(|_| singular())?;
+        .map_err(|_| none(system.at(x)))?;
     let inputs: Vec<String> = generated
         .model
         .inputs
@@ -181,37 +175,13 @@ fn text(linear: &Linear) -> String {
 
 /// Numbers below the names of their columns, after the names of their rows.
 fn table(rows: &[String], columns: &[String], values: &[Vec<f64>]) -> String {
-    let cells: Vec<Vec<String>> = values
-        .iter()
-        .map(|row| row.iter().map(|&value| short(value)).collect())
-        .collect();
-    let first = rows
-        .iter()
-        .map(|name| name.chars().count())
-        .max()
-        .unwrap_or(0);
-    let widths: Vec<usize> = columns
-        .iter()
-        .enumerate()
-        .map(|(j, name)| {
-            let numbers = cells.iter().filter_map(|row| row.get(j));
-            let widest = numbers.map(|cell| cell.chars().count()).max().unwrap_or(0);
-            widest.max(name.chars().count())
-        })
-        .collect();
-    let line = |head: &str, entries: &[String]| {
-        let mut line = format!("  {head:first$}");
-        for (entry, width) in entries.iter().zip(&widths) {
-            line.push_str(&format!("  {entry:>width$}"));
-        }
-        line.push('\n');
-        line
-    };
-    let mut text = line("", columns);
-    for (name, row) in rows.iter().zip(&cells) {
-        text.push_str(&line(name, row));
+    let heading = std::iter::once(String::new()).chain(columns.iter().cloned());
+    let mut lines: Vec<Vec<String>> = vec![heading.collect()];
+    for (name, row) in rows.iter().zip(values) {
+        let numbers = row.iter().map(|&value| short(value));
+        lines.push(std::iter::once(name.clone()).chain(numbers).collect());
     }
-    text
+    aligned(&lines, "  ")
 }
 
 fn json(linear: &Linear) -> Json {

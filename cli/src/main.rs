@@ -8,12 +8,14 @@
 //! | `robot` | robots in URDF as descriptions, and the options for them |
 //! | `state` | reading the numbers of a state |
 //! | `interpreted` | a described system that the integrators can run |
+//! | `singular` | which velocity has no inertia where a run or an evaluation fails |
 //! | `method` | the methods by their names, and which systems they are for |
-//! | `json`, `names` | how results are written; pictures and numbers are those of `hamel-report` |
+//! | `json`, `names`, `columns` | how results are written; pictures and numbers are those of `hamel-report` |
 //! | `progress` | what long work shows |
 //! | `failure` | errors and exit statuses |
 
 mod check;
+mod columns;
 mod compare;
 mod eigenvalues;
 mod emit;
@@ -29,6 +31,7 @@ mod ops;
 mod progress;
 mod robot;
 mod simulate;
+mod singular;
 mod source;
 mod state;
 mod tables;

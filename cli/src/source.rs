@@ -13,6 +13,8 @@ use hamel_codegen::urdf;
 use std::io::Read;
 use std::path::Path;
 
+/// The path of standard input in messages.
+const STDIN: &str = "<stdin>";
 /// What is shown while a derivation takes its time.
 const DERIVING: &str = "deriving";
 
@@ -31,7 +33,7 @@ impl Source {
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let stdin = path.as_os_str() == "-";
         let name = if stdin {
-            "<stdin>".to_string()
+            STDIN.to_string()
         } else {
             path.display().to_string()
         };
@@ -58,6 +60,19 @@ impl Source {
                     "cannot read {name}: byte {place} is not UTF-8"
                 )))
             }
+        }
+    }
+
+    /// Whether it was standard input.
+    pub fn is_stdin(&self) -> bool {
+        self.path == STDIN
+    }
+
+    /// The joints of a robot by their names in its file and in the description; none of a description.
+    pub fn joints(&self) -> &[(String, String)] {
+        match &self.robot {
+            Some(robot) => &robot.imported.joints,
+            None => &[],
         }
     }
 

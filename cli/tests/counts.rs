@@ -85,6 +85,24 @@ fn number(counts: &Value, function: &str, kind: &str) -> u64 {
         .unwrap_or_else(|| panic!("{function} has no {kind}"))
 }
 
+/// ξ = M⁻¹ p is ξ̇ without bias and gravity, p = M ξ a recursion outwards and inwards as inverse dynamics
+/// is, and ṗ two of them.
+fn momenta_cost_no_more_than_motions(name: &str, counts: &Value) {
+    let flops = |function: &str| number(counts, function, "flops");
+    let inverse = flops("inverse_dynamics");
+    for (function, most) in [
+        ("velocity_of_momentum", flops("accel")),
+        ("momentum_rate", inverse * 22 / 10),
+        ("momentum", inverse),
+    ] {
+        let flops = flops(function);
+        assert!(
+            flops <= most,
+            "{name}: {function} has {flops} operations, the bar is {most}"
+        );
+    }
+}
+
 fn row(counts: &Value, function: &str) -> String {
     let of = |kind: &str| number(counts, function, kind);
     format!(
@@ -110,6 +128,7 @@ fn robots_cost_no_more_than_their_bars() {
         let path = folder.join(robot.urdf).display().to_string();
         let counts = counts(&path, robot.options, "");
         let _ = writeln!(table, "{}", robot.name);
+        momenta_cost_no_more_than_motions(robot.name, &counts);
         for (function, bar) in FUNCTIONS.into_iter().zip(robot.flops) {
             let flops = number(&counts, function, "flops");
             assert!(
@@ -176,12 +195,32 @@ fn fixtures() {
     ] {
         let counts = counts(&format!("{folder}{name}.eom"), &[], "");
         let _ = writeln!(table, "{name}");
+        momenta_cost_no_more_than_motions(name, &counts);
         for function in FUNCTIONS {
             table += &row(&counts, function);
         }
         table.push('\n');
     }
     insta::assert_snapshot!(table);
+}
+
+/// Joints with two freedoms each, whose M is long as it is written.
+#[test]
+fn a_chain_of_universal_joints() {
+    let mut text = String::from("system Chain {\n");
+    for i in 0..12 {
+        let on = match i {
+            0 => String::new(),
+            _ => format!("on f{} at pose(identity(3), [0.3, 0, 0]) ", i - 1),
+        };
+        let _ = writeln!(
+            text,
+            "joint j{i}: universal [0, 0, 1], [0, 1, 0] {on}moves f{i};\n\
+             body on f{i} {{ mass 1; com [0.1, 0.2, 0.05]; inertia diag(1, 2, 2.5) about com; }}"
+        );
+    }
+    text += "gravity [0, 0, -9.81];\ngenerate all;\n}\n";
+    momenta_cost_no_more_than_motions("chain", &counts("-", &[], &text));
 }
 
 /// A cart with n pendulums in a row, point masses at the ends of rods.

@@ -196,3 +196,119 @@ fn any_state_closes_its_loops_or_is_refused() {
     }
     assert!(kept * 3 > rounds, "{kept} of {rounds}");
 }
+
+/// A wheel on a slider that flies in all directions.
+const FLYING: &str = "system Flying {
+    joint base: free moves hull;
+    joint wheel: continuous [0, 0, 1] on hull at pose(rotz(0), [0.3, 0, 0]) moves disk;
+    joint slide: prismatic [0, 1, 0] on hull moves block { force u; }
+    input u;
+    body on hull { mass 2; inertia diag(1, 2, 3) about com; }
+    body on disk { mass 1; com [0.1, 0, 0]; inertia diag(0.1, 0.1, 0.2) about com; }
+    body on block { mass 1; inertia diag(0.1, 0.1, 0.1) about com; }
+    start slide = 0.1;
+}";
+const BY_JOINTS: &str = r#"{"configuration": {"wheel": 0.3, "base": {"position": [1, 2, 3], "rotation": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}},
+    "velocity": {"slide": 0.4, "base": {"linear": [0.1, 0, 0], "angular": [0, 0.2, 0]}}}"#;
+const BY_COORDINATES: &str = r#"{"coord": {"wheel": 0.3, "base_r": [1, 2, 3], "base_R": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]},
+    "velocity": {"slide_dot": 0.4, "base_v": [0.1, 0, 0], "base_w": [0, 0.2, 0]}}"#;
+
+fn flying(name: &str) -> String {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, FLYING).expect("scratch");
+    path.display().to_string()
+}
+
+#[test]
+fn every_command_takes_a_state_by_coordinates_or_by_joints() {
+    let file = flying("flying.eom");
+    let run = |arguments: &[&str], state: &str| {
+        let output = hamel(&[arguments, &["--at", "-"]].concat(), state);
+        assert!(
+            output.status.success(),
+            "{arguments:?}: {}",
+            text(&output.stderr)
+        );
+        text(&output.stdout)
+    };
+    for arguments in [
+        &["simulate", &file, "--until", "0.1"][..],
+        &["linearize", &file, "--format", "json"],
+    ] {
+        let found = run(arguments, BY_JOINTS);
+        assert_eq!(found, run(arguments, BY_COORDINATES));
+        assert_ne!(found, run(arguments, "{}"));
+    }
+    let compare = [
+        "compare",
+        &file,
+        "--until",
+        "0.1",
+        "--steps",
+        "4",
+        "--methods",
+        "rkmk4",
+        "--format",
+        "json",
+    ];
+    let error = |state: &str| {
+        let report: Value = serde_json::from_str(&run(&compare, state)).expect("JSON");
+        let error = &report["cases"][0]["methods"][0]["runs"][0]["error"];
+        error.as_f64().expect("an error")
+    };
+    assert_eq!(error(BY_JOINTS), error(BY_COORDINATES));
+    assert_ne!(error(BY_JOINTS), error("{}"));
+    let x = |state: &str| {
+        let all: Value = serde_json::from_str(&run(&["eval", &file], state)).expect("JSON");
+        (numbers(&all["x"]), numbers(&all["xi"]))
+    };
+    assert_eq!(x(BY_JOINTS), x(BY_COORDINATES));
+}
+
+#[test]
+fn a_force_and_a_list_of_states_are_for_eval_alone() {
+    let file = flying("forced.eom");
+    for (state, message) in [
+        (
+            r#"{"configuration": {}, "force": {"slide": 1}}"#,
+            "force: only `hamel eval` takes a force",
+        ),
+        (
+            r#"{"samples": [{"configuration": {}}]}"#,
+            "samples: only `hamel eval` takes several states",
+        ),
+    ] {
+        assert!(hamel(&["eval", &file, "--at", "-"], state).status.success());
+        for arguments in [
+            &["simulate", &file, "--until", "0.1", "--at", "-"][..],
+            &["linearize", &file, "--at", "-"],
+            &["compare", &file, "--until", "0.1", "--at", "-"],
+        ] {
+            let output = hamel(arguments, state);
+            let errors = text(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+            assert!(errors.contains(message), "{arguments:?}: {errors}");
+        }
+    }
+    let wrong = r#"{"configuration": {"wheels": 1}}"#;
+    let output = hamel(&["linearize", &file, "--at", "-"], wrong);
+    let errors = text(&output.stderr);
+    assert!(
+        errors.contains("configuration.wheels: unknown name; did you mean `wheel`?"),
+        "{errors}"
+    );
+    for command in [
+        &["eval"][..],
+        &["linearize"],
+        &["simulate", "--until", "1"],
+        &["compare"],
+    ] {
+        let output = hamel(&[command, &["-", "--at", "-"]].concat(), FLYING);
+        let errors = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{command:?}: {errors}");
+        assert!(
+            errors.contains("cannot both be read from standard input"),
+            "{command:?}: {errors}"
+        );
+    }
+}

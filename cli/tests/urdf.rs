@@ -85,6 +85,23 @@ fn states_by_joint() {
     near(&free["generalized_force"][0], -6.0);
 }
 
+/// Joints go by the names that they have in the robot's file, for every command.
+#[test]
+fn a_run_starts_at_a_state_by_joint() {
+    let robot = scratch("started.urdf", CART);
+    let out = scratch("started.csv", "");
+    let state = r#"{"configuration": {"slide-x": 0.3}, "velocity": {"slide-x": 2}}"#;
+    let arguments = [
+        "simulate", &robot, "--until", "0.1", "--at", "-", "--out", &out,
+    ];
+    let output = hamel(&arguments, state);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let samples = std::fs::read_to_string(&out).expect("the samples");
+    let lines: Vec<&str> = samples.lines().collect();
+    assert_eq!(lines[0], "t,slide_x,hinge.c,hinge.s,slide_x_dot,hinge_dot");
+    assert_eq!(lines[1], "0.0,0.3,1.0,0.0,2.0,0.0");
+}
+
 /// Lists of forces in another order, and several states at once.
 #[test]
 fn several_states_in_an_order_of_their_own() {

@@ -55,6 +55,7 @@ impl Generated {
     /// Derives all functions of a model, the linearisation among them, whatever `generate` says.
     pub fn all(mut model: Model, hash: u64) -> Result<Self, Vec<Diagnostic>> {
         model.asked = Asked::everything();
+        model.asked.functions.push(FunctionId::Linearize);
         Generated::with(model, hash, true)
     }
 

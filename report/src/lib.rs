@@ -13,6 +13,7 @@
 //! | [`data`] | the results, as they stand in JSON |
 //! | [`work`] | work to reach an error, between the runs measured |
 //! | [`markdown`], [`json`], [`page`], [`readme`] | what people and programs read |
+//! | `code` | code between backticks, in pages and pictures |
 //! | [`plot`] | pictures as SVG |
 //! | [`number`] | numbers as people read them |
 //!
@@ -23,6 +24,7 @@
 //! `maud` (MIT or Apache-2.0), which escapes whatever is inserted.
 
 pub mod auto;
+mod code;
 pub mod controlled;
 pub mod counted;
 pub mod data;

@@ -1,5 +1,6 @@
 //! Reports as one HTML page that needs nothing else: pictures inline, light and dark.
 
+use crate::code::{marked, plain};
 use crate::data::{Case, MethodRun, Report};
 use crate::markdown::{how, name, worked};
 use crate::number::short;
@@ -36,33 +37,33 @@ pub fn write(report: &Report, figures: &[Option<Figure>], further: &[Picture]) -
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (report.title) }
+                title { (plain(&report.title)) }
                 style { (PreEscaped(STYLE)) (PreEscaped(sheet())) }
             }
             body {
                 main {
-                    h1 { (report.title) }
+                    h1 { (marked(&report.title)) }
                     @for paragraph in how(report).split("\n\n") {
-                        p.soft { (paragraph) }
+                        p.soft { (marked(paragraph)) }
                     }
                     nav aria-label="cases" {
                         ul {
                             @for case in &report.cases {
-                                li { a href=(format!("#{}", case.name)) { (case.title) } }
+                                li { a href=(format!("#{}", case.name)) { (marked(&case.title)) } }
                             }
                         }
                     }
                     (peers(report))
                     @if let Some(verdict) = auto::verdict(report) {
-                        h2 { "What auto takes" }
-                        p { (verdict) }
+                        h2 { (marked("What `auto` takes")) }
+                        p { (marked(&verdict)) }
                     }
                     @for (index, case) in report.cases.iter().enumerate() {
                         (section(case, figure(index)))
                     }
                     @for picture in further {
                         section {
-                            h2 { (picture.title) }
+                            h2 { (marked(&picture.title)) }
                             (PreEscaped(picture.figure.inline()))
                         }
                     }
@@ -82,9 +83,9 @@ fn peers(report: &Report) -> Markup {
                 tbody {
                     @for peer in &report.peers {
                         tr {
-                            td { (peer.name) }
+                            td { (marked(&peer.name)) }
                             td { @if peer.available { "yes" } @else { "not available" } }
-                            td { (peer.note) }
+                            td { (marked(&peer.note)) }
                             td { code { (peer.start) } }
                         }
                     }
@@ -97,16 +98,16 @@ fn peers(report: &Report) -> Markup {
 fn section(case: &Case, figure: Option<&Figure>) -> Markup {
     html! {
         section id=(case.name) {
-            h2 { (case.title) }
+            h2 { (marked(&case.title)) }
             p.soft {
-                "t = " (short(case.until)) "; error: " (case.error) ", against " (case.reference)
+                "t = " (short(case.until)) "; error: " (marked(&case.error)) ", against " (marked(&case.reference))
                 @if let Some(error) = case.reference_error { " (itself off by " (format!("{error:.0e}")) ")" }
             }
             @if let Some(figure) = figure { (PreEscaped(figure.inline())) }
             (summary(case))
             (tolerances(case))
             @for missing in &case.missing {
-                p.soft { code { (missing.method) } " was not run: " (missing.why) "." }
+                p.soft { code { (missing.method) } " was not run: " (marked(&missing.why)) "." }
             }
         }
     }
@@ -147,7 +148,7 @@ fn tolerances(case: &Case) -> Markup {
                 caption { "steps chosen by their error" }
                 thead { tr { @for cell in &head { th scope="col" { (cell) } } } }
                 tbody {
-                    @for row in &rows { tr { @for cell in row { td { (cell) } } } }
+                    @for row in &rows { tr { @for cell in row { td { (marked(cell)) } } } }
                 }
             }
         }

@@ -26,12 +26,17 @@ pub struct Problem<'a, Sys: System<Scalar = f64>, U> {
     pub error: Judge<'a>,
     /// Constants of the motion but the energy, of (x, ξ); none where there are none.
     pub momenta: Quantities<'a>,
+    /// What is said of a step that was not taken.
+    pub said: Told<'a>,
     /// Whether T + V is constant.
     pub conservative: bool,
 }
 
 /// A number of (x, ξ).
 pub type Judge<'a> = Box<dyn Fn(&[f64], &[f64]) -> f64 + 'a>;
+
+/// The words for an error.
+pub type Told<'a> = Box<dyn Fn(&StepError) -> String + 'a>;
 
 /// Numbers of (x, ξ).
 pub type Quantities<'a> = Box<dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a>;
@@ -146,7 +151,7 @@ where
             } else {
                 f64::NAN
             },
-            failure: result.err().map(|error| error.to_string()),
+            failure: result.err().map(|error| (self.said)(&error)),
             statistics: None,
         }
     }
@@ -177,7 +182,7 @@ where
             } else {
                 f64::NAN
             },
-            failure: result.err().map(|error| error.to_string()),
+            failure: result.as_ref().err().map(|error| (self.said)(error)),
             statistics: result.ok(),
         }
     }

@@ -1,7 +1,7 @@
 //! What the writers make of a small case: structure, escaping, numbers.
 
 use hamel_report::data::{
-    Case, Drift, Kind, Machine, MethodRun, MethodRuns, Missing, Peer, Report,
+    Case, Choice, Drift, Kind, Machine, MethodRun, MethodRuns, Missing, Peer, Report,
 };
 use hamel_report::plot::precision;
 use hamel_report::{json, markdown, page, readme};
@@ -149,6 +149,61 @@ fn the_page_needs_nothing_else() {
         assert!(!text.contains(word), "{word}");
     }
     assert_eq!(text.matches("<svg").count(), text.matches("</svg>").count());
+}
+
+/// Every text of a report that a writer may put between backticks.
+fn marked() -> Report {
+    let mut report = report();
+    report.title = "Speed of `a < b`".into();
+    report.peers[0].note = "needs the feature `ode`".into();
+    let case = &mut report.cases[0];
+    case.title = "A top: see `top & co`".into();
+    case.error = "the norm of `R`".into();
+    case.reference = "`rkmk8` with 3200 steps".into();
+    case.missing[0].why = "it is for `Split` systems".into();
+    case.auto = Some(Choice {
+        method: "rkmk4".into(),
+        reason: "it fits".into(),
+    });
+    case.methods.push(MethodRuns {
+        method: "rkmk8 adaptive".into(),
+        kind: Kind::Method,
+        order: Some(8),
+        runs: vec![MethodRun {
+            tolerance: Some(1e-5),
+            failure: Some("take `hamel::adapter`".into()),
+            ..MethodRun::default()
+        }],
+    });
+    report
+}
+
+#[test]
+fn the_page_sets_code_apart() {
+    let report = marked();
+    let figure = precision(&report.cases[0]).expect("a picture");
+    let further = page::Picture {
+        title: "The motion of `top`".into(),
+        figure: figure.clone(),
+    };
+    let text = page::write(&report, &[Some(figure)], &[further]);
+    let literal = text.lines().find(|line| line.contains('`'));
+    assert_eq!(literal, None);
+    for part in [
+        "<title>Speed of a &lt; b</title>",
+        "<h1>Speed of <code>a &lt; b</code></h1>",
+        "<h2>A top: see <code>top &amp; co</code></h2>",
+        "<code>≤</code> marks",
+        "the method that <code>auto</code> takes",
+        "<code>rkmk8</code> with 3200 steps",
+        "take <code>hamel::adapter</code>",
+        "The motion of <code>top</code>",
+        "A top: see top &amp; co",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    let text = markdown::write(&report, |_| None);
+    assert!(text.contains("take `hamel::adapter`") && text.contains("against `rkmk8` with"));
 }
 
 #[test]

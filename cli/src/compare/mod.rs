@@ -4,7 +4,7 @@ mod reference;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::interpreted::{Interpreted, constant_singular};
+use crate::interpreted::Interpreted;
 use crate::method::{self, Named, Stepper};
 use crate::robot::RobotOptions;
 use crate::source::Source;
@@ -71,7 +71,7 @@ pub struct Arguments {
     /// A reference solution.
     #[arg(long, value_name = "SOLUTION.json")]
     reference: Option<PathBuf>,
-    /// Start, parameters and inputs; see `hamel eval --help`.
+    /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     /// Write report.json, report.md, index.html and a picture for each description.
@@ -136,8 +136,9 @@ fn compare(
     arguments: &Arguments,
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
-    let generated = Source::open(file, &arguments.robot)?.derive_all()?;
-    let mut state = State::read(&generated, arguments.at.as_deref())?;
+    let source = Source::open(file, &arguments.robot)?;
+    let generated = source.derive_all()?;
+    let mut state = State::read(&source, &generated, arguments.at.as_deref())?;
     let fields = solution
         .map(|solution| Fields::of(solution, &generated.program))
         .transpose()?;
@@ -145,11 +146,8 @@ fn compare(
     if let Some(fields) = &fields {
         fields.start(&mut state)?;
     }
-    if constant_singular(&generated.program, &state.params) {
-        let message = "the mass matrix is not positive definite with these parameters";
-        return Err(Failure::failed(message));
-    }
     let system = Interpreted::new(&generated, &state)?;
+    system.check_parameters(&state.x)?;
     let structure = &generated.program.structure;
     let (methods, missing) = method::fitting(&arguments.methods, &system, structure);
     let inputs = |_: f64, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
@@ -167,6 +165,7 @@ fn compare(
         inputs,
         error: Box::new(|_, _| f64::NAN),
         momenta: Box::new(momenta),
+        said: Box::new(|error| system.said(error)),
         conservative: true,
     };
     let mut steps = arguments.steps.clone();
@@ -199,8 +198,9 @@ fn compare(
             let best = best(&methods);
             let failed = |error: hamel::StepError| {
                 Failure::failed(format!(
-                    "the reference run of {} with {finest} steps failed: {error}",
-                    best.name
+                    "the reference run of {} with {finest} steps failed: {}",
+                    best.name,
+                    system.said(&error)
                 ))
             };
             let (x, xi) = problem.end(&best.stepper, finest).map_err(failed)?;

@@ -4,15 +4,14 @@ mod geometry;
 mod sample;
 
 use crate::failure::{Failure, print, warn};
-use crate::interpreted::{Interpreted, constant_singular, function};
+use crate::interpreted::{Interpreted, function};
 use crate::json::Json;
 use crate::names;
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
+use crate::state::file::File;
 use crate::state::joints::{joints, rows};
-use crate::state::sample::is_sample;
-use crate::state::strict;
 use clap::Args;
 use geometry::Geometry;
 use hamel::System;
@@ -34,11 +33,12 @@ const MOST_SHOWN: usize = 64;
 /// that are left out, and a state that contradicts them is refused.
 /// Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk.
 ///
-/// STATE.json may also be about joints: {"configuration": {"elbow": 0.3, "root_joint": {"position": […],
+/// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3, "root_joint": {"position": […],
 /// "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […], "angular": […]}},
 /// "force": […]}, angles in rad, forces by joint or in the order of the rows. Then `velocities` names
 /// each row by its joint, `bias` is Γ ξ ξ + ∂V, gravity in it, and `accel` is M⁻¹ (force − bias): force is
-/// all of the generalised force, friction in it.
+/// all of the generalised force, friction in it. `force`, and a list {"samples": […]} of such states, are
+/// for `eval` alone.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel eval heavy_top.eom
@@ -49,7 +49,7 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// State, `-` for standard input.
+    /// State, by coordinates or by joints; `-` for standard input.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     /// Print γ and Γ of systems with more than 64 velocities, too.
@@ -62,18 +62,14 @@ pub struct Arguments {
 /// Evaluates and prints; where something has no value it is `null`, and the command fails.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
-    let at = arguments.at.as_deref().map(Source::read).transpose()?;
-    // What is no JSON is refused below, with its place.
-    if let Some(at) = &at
-        && let Ok(json) = strict::parse(&at.text)
-        && is_sample(&json)
-    {
-        return sample::run(&source, &json, &at.path);
+    let at = arguments.at.as_deref();
+    let at = at.map(|path| File::read(path, &source)).transpose()?;
+    if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {
+        return sample::run(&source, at);
     }
     let generated = source.derive_available()?;
     let state = match &at {
-        Some(at) => State::parse(&generated, &at.text)
-            .map_err(|errors| Failure::usages(&at.path, &errors))?,
+        Some(at) => at.state(&source, &generated)?,
         None => State::start(&generated.active),
     };
     let mut members = vec![
@@ -135,13 +131,12 @@ fn motion(
         let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);
         Ok(Json::vector(&value.unwrap_or_default()))
     };
-    let singular = constant_singular(&generated.program, params);
-    let accel = match system.accel(x, xi, u).ok().filter(|_| !singular) {
-        Some(accel) => Json::vector(&accel),
+    let accel = match system.motion(x, xi, u) {
+        Ok(accel) => Json::vector(&accel),
         // That there is none was said before.
-        None if generated.program.function(FunctionId::Accel).is_none() => Json::Null,
-        None => {
-            missing.push("the mass matrix is not positive definite, `accel` has no value".into());
+        Err(_) if generated.program.function(FunctionId::Accel).is_none() => Json::Null,
+        Err(why) => {
+            missing.push(format!("{why}: `accel` has no value"));
             Json::Null
         }
     };

@@ -5,7 +5,9 @@ use crate::failure::{Failure, print};
 use crate::interpreted::{constant_singular, function};
 use crate::json::Json;
 use crate::names;
+use crate::singular;
 use crate::source::Source;
+use crate::state::file::File;
 use crate::state::joints::rows;
 use crate::state::sample::{ORDER, Sample};
 use hamel_codegen::functions::FunctionId;
@@ -32,12 +34,9 @@ const REACHED: f64 = 1e-9;
 /// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
 /// friction and other loads of the description are part of it, not added to it. Without a force
 /// the loads of the description act, with zero input.
-pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
+pub fn run(source: &Source, at: &File) -> Result<(), Failure> {
+    let File { path, json } = at;
     let generated = source.derive_only(&FUNCTIONS)?;
-    let joints: &[(String, String)] = match &source.robot {
-        Some(robot) => &robot.imported.joints,
-        None => &[],
-    };
     let (list, several) = match json.get("samples") {
         Some(Value::Array(list)) => (list.as_slice(), true),
         _ => (std::slice::from_ref(json), false),
@@ -47,7 +46,7 @@ pub fn run(source: &Source, json: &Value, path: &str) -> Result<(), Failure> {
     let mut errors = Vec::new();
     let mut samples = Vec::new();
     for (index, one) in list.iter().enumerate() {
-        match Sample::parse(one, order, &generated, joints) {
+        match Sample::parse(one, order, &generated, source.joints()) {
             Ok(sample) => samples.push(sample),
             Err(found) if several => {
                 errors.extend(
@@ -138,7 +137,8 @@ fn members(generated: &Generated, sample: &Sample) -> Result<Members, Failure> {
     let mut missing = Vec::new();
     // Where there is no such function, that was said before.
     if accel.value.is_none() && generated.program.function(FunctionId::Accel).is_some() {
-        missing.push("the mass matrix is not positive definite, `accel` has no value".to_string());
+        let why = singular::at(&mass, &names::velocities(model));
+        missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));
     let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();

@@ -3,6 +3,8 @@
 mod momenta;
 
 use crate::failure::Failure;
+use crate::names;
+use crate::singular::Failed;
 use crate::state::State;
 use hamel::{Block, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
@@ -11,7 +13,7 @@ use hamel_codegen::model::layout;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Argument, Program, Shape};
 use momenta::Functions;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 /// A program with its parameters set; x, ξ and u are `Vec`s.
 pub struct Interpreted {
@@ -37,6 +39,11 @@ pub struct Interpreted {
     invariants: Vec<Output>,
     functions: Functions,
     evaluations: Cell<u64>,
+    velocity_names: Vec<String>,
+    constant_singular: bool,
+    constrained: bool,
+    /// What had no value last.
+    failed: RefCell<Option<Failed>>,
 }
 
 /// An output of the description, or an invariant.
@@ -90,12 +97,45 @@ impl Interpreted {
             invariants: invariants.collect::<Result<_, Failure>>()?,
             functions: Functions::new(program, &state.params)?,
             evaluations: Cell::new(0),
+            velocity_names: names::velocities(&generated.active),
+            constant_singular: constant_singular(program, &state.params),
+            constrained: !generated.model.constraints.is_empty(),
+            failed: RefCell::new(None),
         })
     }
 
     /// How often ξ̇, a kick or ṗ was evaluated.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
+    }
+
+    /// The names of the entries of ξ.
+    pub fn velocity_names(&self) -> &[String] {
+        &self.velocity_names
+    }
+
+    /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
+    pub fn constant_singular(&self) -> bool {
+        self.constant_singular
+    }
+
+    /// Whether there are constraints on the velocities.
+    pub fn is_constrained(&self) -> bool {
+        self.constrained
+    }
+
+    /// What had no value last, where something had none.
+    pub fn failed(&self) -> Option<Failed> {
+        self.failed.borrow().clone()
+    }
+
+    fn projection(&self, pivot: usize) -> Singular {
+        self.fails(Failed::Projection);
+        Singular { pivot }
+    }
+
+    fn fails(&self, what: Failed) {
+        self.failed.replace(Some(what));
     }
 
     fn count(&self) {
@@ -242,6 +282,7 @@ impl System for Interpreted {
             return Err(Singular { pivot: 0 });
         };
         accel.call(x, xi, u, &[]).map_err(|pivot| {
+            self.fails(Failed::Motion(x.clone()));
             match self.kinematic.get(pivot).copied().flatten() {
                 Some(pivot) => Singular::kinematics(pivot),
                 None => Singular { pivot },
@@ -258,7 +299,7 @@ impl System for Interpreted {
             .close
             .as_ref()
             .map(|close| close.call(x, &[], &[], &[]));
-        step.transpose().map_err(|pivot| Singular { pivot })
+        step.transpose().map_err(|pivot| self.projection(pivot))
     }
 
     fn settle(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
@@ -266,7 +307,7 @@ impl System for Interpreted {
             .settle
             .as_ref()
             .map(|settle| settle.call(x, xi, &[], &[]));
-        settled.transpose().map_err(|pivot| Singular { pivot })
+        settled.transpose().map_err(|pivot| self.projection(pivot))
     }
 
     fn constraint_norm(&self, x: &Vec<f64>) -> f64 {

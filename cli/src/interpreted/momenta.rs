@@ -3,6 +3,7 @@
 
 use super::Interpreted;
 use crate::failure::Failure;
+use crate::singular::Failed;
 use hamel::rotor::{Rotor, Symmetry};
 use hamel::{Canonical, Singular, Split};
 use hamel_codegen::program::Program;
@@ -147,9 +148,10 @@ impl Canonical for Interpreted {
 
     fn velocity_of_momentum(&self, x: &Vec<f64>, p: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         match &self.functions.velocity {
-            Some(velocity) => velocity
-                .call_with([x, &[], &[], &[], p])
-                .map_err(|pivot| Singular { pivot }),
+            Some(velocity) => velocity.call_with([x, &[], &[], &[], p]).map_err(|pivot| {
+                self.fails(Failed::Motion(x.clone()));
+                Singular { pivot }
+            }),
             None => Ok(vec![f64::NAN; p.len()]),
         }
     }

@@ -1,5 +1,6 @@
 //! `hamel ops --advise`: what ξ̇ costs in other velocity coordinates.
 
+use crate::columns;
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::source::Source;
@@ -23,25 +24,35 @@ pub fn run(source: &Source, model: &Model, as_json: bool) -> Result<(), Failure>
 }
 
 fn text(choices: &[Choice]) -> String {
-    let mut text = format!(
-        "\x1b[1m{:>6}{:>6}{:>6}{:>5}{:>8}{:>6}\x1b[0m  velocities\n",
-        "accel", "mul", "add", "div", "sincos", "rate"
-    );
-    for choice in choices {
+    let numbers = |choice: &Choice| {
         let Choice { accel, rate, .. } = choice;
-        text.push_str(&format!(
-            "{:>6}{:>6}{:>6}{:>5}{:>8}{:>6}  {}\n",
+        let counts = [
             accel.flops(),
             accel.mul,
             accel.add,
             accel.div,
             accel.sincos,
             rate.flops(),
-            choice.label
-        ));
+        ];
+        counts.map(|count| count.to_string()).to_vec()
+    };
+    // The first column is to the left elsewhere: here it is empty, so that all numbers are to the right.
+    let first = |row: Vec<String>| [vec![String::new()], row].concat();
+    let heading = ["accel", "mul", "add", "div", "sincos", "rate"].map(String::from);
+    let rows: Vec<Vec<String>> = std::iter::once(heading.to_vec())
+        .chain(choices.iter().map(numbers))
+        .map(first)
+        .collect();
+    let widths = columns::widths(&rows);
+    let line = |row: &[String]| columns::line(row, &widths, "");
+    let heading = line(&rows[0]);
+    let indent = heading.chars().count() + 2;
+    let mut text = format!("\x1b[1m{heading}\x1b[0m  velocities\n");
+    for (choice, row) in choices.iter().zip(&rows[1..]) {
+        text.push_str(&format!("{}  {}\n", line(row), choice.label));
         if !choice.as_written {
             for statement in &choice.statements {
-                text.push_str(&format!("{:39}{statement}\n", ""));
+                text.push_str(&format!("{:indent$}{statement}\n", ""));
             }
         }
     }
@@ -79,4 +90,36 @@ fn json(model: &Model, choices: &[Choice]) -> Json {
         ("system", Json::Text(model.name.clone())),
         ("choices", Json::List(choices.collect())),
     ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::text;
+    use hamel_codegen::derive::adviser::Choice;
+    use hamel_codegen::generate::from_text;
+    use hamel_codegen::program::count::Count;
+
+    #[test]
+    fn counts_of_any_width_stand_apart() {
+        let description = "system S { coord q; velocity w; rate q = w; kinetic w^2 / 2; }";
+        let count = Count {
+            add: 1_074_233,
+            mul: 1_074_233_000,
+            ..Count::default()
+        };
+        let choice = Choice {
+            label: "angles".into(),
+            statements: vec!["rate q = w;".into()],
+            as_written: false,
+            accel: count,
+            rate: count,
+            model: from_text(description).expect("sound").model,
+        };
+        let table = text(&[choice]).replace("\x1b[1m", "");
+        let lines: Vec<&str> = table.lines().collect();
+        let cells = |line: &str| line.split("  ").filter(|cell| !cell.is_empty()).count();
+        assert_eq!((cells(lines[0]), cells(lines[1])), (7, 7), "{table}");
+        // Statements stand below the labels.
+        assert_eq!(lines[1].find("angles"), lines[2].find("rate q"), "{table}");
+    }
 }

@@ -2,6 +2,7 @@
 
 mod advice;
 
+use crate::columns;
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::robot::RobotOptions;
@@ -18,7 +19,8 @@ use std::path::PathBuf;
 ///
 /// "shared" is what the generated code does on a call; "unshared" is the same result with every
 /// expression written out, where nothing is computed once for several uses and nothing when
-/// parameters are set. flops are add + mul + div; negation is free.
+/// parameters are set. flops are add + mul + div; negation is free. A count that does not fit into
+/// 128 bits is written as `> 3.4e38`, and as null in JSON.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  hamel ops heavy_top.eom\n  hamel ops heavy_top.eom --format json\n  hamel ops heavy_top.eom --advise"
@@ -46,13 +48,15 @@ enum Format {
 
 /// add, mul, div, sqrt, sincos, other.
 type Operations = [u128; 6];
+/// The same of expressions written out; `None` where a count does not fit into 128 bits.
+type Written = [Option<u128>; 6];
 const KINDS: [&str; 6] = ["add", "mul", "div", "sqrt", "sincos", "other"];
 
 /// One row: a function with its counts.
 struct Row {
     name: String,
     shared: Operations,
-    unshared: Operations,
+    unshared: Written,
 }
 
 /// Counts and prints.
@@ -109,22 +113,29 @@ fn operations(count: Count) -> Operations {
 }
 
 fn flops(operations: &Operations) -> u128 {
-    operations[..3]
-        .iter()
-        .fold(0, |sum: u128, &count| sum.saturating_add(count))
+    operations[..3].iter().sum()
 }
 
-fn sum(a: Operations, b: Operations) -> Operations {
-    std::array::from_fn(|kind| a[kind].saturating_add(b[kind]))
+/// The flops of expressions written out.
+fn flops_written(operations: &Written) -> Option<u128> {
+    operations[..3]
+        .iter()
+        .try_fold(0, |sum: u128, count| sum.checked_add((*count)?))
+}
+
+fn sum(a: Written, b: Written) -> Written {
+    std::array::from_fn(|kind| a[kind]?.checked_add(b[kind]?))
 }
 
 /// The operations of the roots as trees: every use of a node counts again.
-fn tree(graph: &Graph, roots: &[Edge]) -> Operations {
-    let mut costs = vec![[0; 6]; graph.len()];
+fn tree(graph: &Graph, roots: &[Edge]) -> Written {
+    const NONE: Written = [Some(0); 6];
+    let mut costs = vec![NONE; graph.len()];
     for id in graph.reachable(roots) {
-        let mut cost = graph.node(id).children().fold([0; 6], |cost, child| {
-            sum(cost, costs[child.node() as usize])
-        });
+        let mut cost = graph
+            .node(id)
+            .children()
+            .fold(NONE, |cost, child| sum(cost, costs[child.node() as usize]));
         let kind = match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => None,
             Node::Add(..) => Some(0),
@@ -135,47 +146,37 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Operations {
             Node::Apply(..) | Node::Atan2(..) => Some(5),
         };
         if let Some(kind) = kind {
-            cost[kind] = cost[kind].saturating_add(1);
+            cost[kind] = cost[kind].and_then(|count| count.checked_add(1));
         }
         costs[id as usize] = cost;
     }
     roots
         .iter()
-        .fold([0; 6], |cost, root| sum(cost, costs[root.node() as usize]))
+        .fold(NONE, |cost, root| sum(cost, costs[root.node() as usize]))
 }
 
-/// A count in at most eight characters: `123456`, `1.2e9`.
-fn compact(count: u128) -> String {
-    if count < 10_000_000 {
-        count.to_string()
-    } else {
-        format!("{:.1e}", count as f64)
+/// A count in few characters: `123456`, `1.2e9`, `> 3.4e38`.
+fn compact(count: Option<u128>) -> String {
+    match count {
+        Some(count) if count < 10_000_000 => count.to_string(),
+        Some(count) => format!("{:.1e}", count as f64),
+        None => format!("> {:.1e}", u128::MAX as f64),
     }
 }
 
 fn text(rows: &[Row], hoisted: Operations, kept: usize) -> String {
-    let width = rows
-        .iter()
-        .map(|row| row.name.len())
-        .max()
-        .unwrap_or(0)
-        .max(8);
-    let mut text = format!("\x1b[1m{:width$}", "function");
-    for kind in KINDS {
-        text.push_str(&format!("{kind:>7}"));
-    }
-    text.push_str(&format!("{:>7}{:>10}\x1b[0m\n", "flops", "unshared"));
+    let heading = std::iter::once("function")
+        .chain(KINDS)
+        .chain(["flops", "unshared"]);
+    let mut lines: Vec<Vec<String>> = vec![heading.map(String::from).collect()];
     for row in rows {
-        text.push_str(&format!("{:width$}", row.name));
-        for count in row.shared {
-            text.push_str(&format!("{count:>7}"));
-        }
-        text.push_str(&format!(
-            "{:>7}{:>10}\n",
-            flops(&row.shared),
-            compact(flops(&row.unshared))
-        ));
+        let mut line = vec![row.name.clone()];
+        line.extend(row.shared.iter().map(u128::to_string));
+        line.push(flops(&row.shared).to_string());
+        line.push(compact(flops_written(&row.unshared)));
+        lines.push(line);
     }
+    let mut text = columns::headed(&lines);
     let operations: u128 = hoisted.iter().sum();
     text.push_str(&match (operations, kept) {
         (0, _) => "nothing to be computed when parameters are set\n".to_string(),
@@ -191,16 +192,17 @@ fn text(rows: &[Row], hoisted: Operations, kept: usize) -> String {
 }
 
 fn json(program: &Program, rows: &[Row], hoisted: Operations, kept: usize) -> Json {
-    let counts = |operations: &Operations| {
-        let mut members: Vec<(&str, Json)> =
-            KINDS.into_iter().zip(operations.map(Json::Count)).collect();
-        members.push(("flops", Json::Count(flops(operations))));
-        Json::object(members)
+    let number = |count: Option<u128>| count.map_or(Json::Null, Json::Count);
+    let written = |operations: Written| {
+        let members = KINDS.into_iter().zip(operations.map(number));
+        let flops = ("flops", number(flops_written(&operations)));
+        Json::object(members.chain([flops]))
     };
+    let counts = |operations: &Operations| written(operations.map(Some));
     let functions = rows.iter().map(|row| {
         let members = [
             ("shared", counts(&row.shared)),
-            ("unshared", counts(&row.unshared)),
+            ("unshared", written(row.unshared)),
         ];
         (row.name.as_str(), Json::object(members))
     });
@@ -215,4 +217,31 @@ fn json(program: &Program, rows: &[Row], hoisted: Operations, kept: usize) -> Js
             ]),
         ),
     ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Row, text};
+
+    #[test]
+    fn counts_of_any_width_stand_apart() {
+        let row = |name: &str, count: u128, unshared| Row {
+            name: name.into(),
+            shared: [count; 6],
+            unshared: [unshared; 6],
+        };
+        let rows = [
+            row("accel", 1_074_233_000, Some(u128::MAX / 4)),
+            row("rate", 7, None),
+        ];
+        let table = text(&rows, [0; 6], 0);
+        for line in table.lines().take(3) {
+            let cells = line.split("  ").filter(|cell| !cell.is_empty());
+            assert_eq!(cells.count(), 9, "{table}");
+        }
+        assert!(
+            table.contains("  2.6e38\n") && table.contains("  > 3.4e38\n"),
+            "{table}"
+        );
+    }
 }

@@ -1,6 +1,7 @@
 //! `hamel simulate`: a run in time, interpreted.
 
 mod balance;
+mod panels;
 mod picture;
 mod record;
 mod rotor;
@@ -8,7 +9,7 @@ mod summary;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::interpreted::{Interpreted, constant_singular};
+use crate::interpreted::Interpreted;
 use crate::method::{self, Chosen, Stepper};
 use crate::robot::RobotOptions;
 use crate::source::Source;
@@ -65,7 +66,7 @@ pub struct Arguments {
     /// Rate at which rk4 leads back to the constraint (1/s); 10 where it is left out.
     #[arg(long, value_name = "L", value_parser = rate, allow_negative_numbers = true)]
     lambda: Option<f64>,
-    /// Start, parameters and inputs; see `hamel eval --help`.
+    /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
     /// Samples as .csv or .json, or a plot as .svg.
@@ -74,8 +75,8 @@ pub struct Arguments {
     /// A sample every N steps; about 1000 samples where it is left out.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     every: Option<u64>,
-    /// Plot of velocities, what is conserved, and attitude over time; of a body that is nearly free,
-    /// with Poinsot's construction.
+    /// Plot of coordinates, velocities, outputs and what is conserved over time, with the path of a body
+    /// axis where there is one attitude, and with Poinsot's construction of a body that is nearly free.
     #[arg(long, value_name = "F.svg")]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -90,23 +91,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
-    if arguments
-        .at
-        .as_deref()
-        .is_some_and(|at| at.as_os_str() == "-")
-        && arguments.file.as_os_str() == "-"
-    {
-        return Err(Failure::usage(
-            "description and state cannot both be read from standard input",
-        ));
-    }
-    let generated = Source::open(&arguments.file, &arguments.robot)?.derive_all()?;
-    let state = State::read(&generated, arguments.at.as_deref())?;
-    if constant_singular(&generated.program, &state.params) {
-        let message = "the mass matrix is not positive definite with these parameters";
-        return Err(Failure::failed(message));
-    }
+    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let generated = source.derive_all()?;
+    let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let system = Interpreted::new(&generated, &state)?;
+    system.check_parameters(&state.x)?;
     let until = arguments.until;
     let step = arguments
         .step

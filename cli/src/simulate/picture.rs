@@ -8,29 +8,11 @@ use hamel_codegen::model::layout::Block;
 use hamel_report::plot::{Panel, Path, Picture};
 
 impl Run<'_> {
-    /// What a plot shows: velocities by groups of one unit, what is conserved, and how a body turns.
+    /// What a plot shows: coordinates, velocities, outputs, what is conserved, and how a body turns.
     pub fn picture(&self, system: &Interpreted) -> Picture {
         let time: Vec<f64> = self.track.iter().map(|sample| sample.t).collect();
-        let line = |index: usize| {
-            (
-                self.velocity_names[index].clone(),
-                self.track.iter().map(|sample| sample.xi[index]).collect(),
-            )
-        };
-        let mut panels: Vec<Panel> = Vec::new();
-        let mut scalars = Panel::new("velocities");
-        for group in &self.program.velocities {
-            if group.len == 1 {
-                scalars.lines.push(line(group.offset));
-            } else {
-                let mut panel = Panel::new(&format!("velocity {}", group.name));
-                panel.lines = (group.offset..group.offset + group.len).map(line).collect();
-                panels.push(panel);
-            }
-        }
-        if !scalars.lines.is_empty() {
-            panels.push(scalars);
-        }
+        let path = self.attitude();
+        let mut panels = self.panels(system, path.is_some());
         panels.push(self.drift());
         let subtitle = self
             .program
@@ -42,7 +24,7 @@ impl Run<'_> {
             subtitle,
             time,
             panels,
-            path: self.attitude(),
+            path,
             poinsot: poinsot(system, &self.track),
         }
     }

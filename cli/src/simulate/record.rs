@@ -210,11 +210,7 @@ impl<'a> Run<'a> {
             Err(StepError::Singular { time, cause }) => Some(format!(
                 "the run ends at t = {}: {}",
                 short(time),
-                match cause.kinematic_pivot() {
-                    Some(_) =>
-                        "the mechanism is at a singular configuration, where its velocities do not determine its motion",
-                    None => "the mass matrix is not positive definite",
-                }
+                system.singular(cause)
             )),
             Err(StepError::NonFinite { time }) => Some(format!(
                 "the run ends at t = {}: the next state is not finite; try a shorter step than {}",

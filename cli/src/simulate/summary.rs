@@ -1,6 +1,7 @@
 //! What a run comes to, for a terminal.
 
 use super::record::{Run, Sample};
+use crate::columns::aligned;
 use crate::number::{digits, error, grouped, short};
 use hamel_codegen::syntax::ast::CoordKind;
 
@@ -188,34 +189,4 @@ fn spread(run: &Run, of: impl Fn(&Sample) -> f64) -> (f64, f64) {
                 f64::max(change, (value - first).abs()),
             )
         })
-}
-
-/// Columns, the first one to the left, numbers to the right.
-fn aligned(rows: &[Vec<String>], indent: &str) -> String {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns)
-        .map(|column| {
-            rows.iter()
-                .filter_map(|row| row.get(column))
-                .map(|cell| cell.chars().count())
-                .max()
-                .unwrap_or(0)
-        })
-        .collect();
-    let mut text = String::new();
-    for row in rows {
-        let cells = row.iter().zip(&widths).enumerate();
-        let line: Vec<String> = cells
-            .map(|(column, (cell, &width))| {
-                if column == 0 {
-                    format!("{cell:<width$}")
-                } else {
-                    format!("{cell:>width$}")
-                }
-            })
-            .collect();
-        text.push_str(format!("{indent}{}", line.join("  ")).trim_end());
-        text.push('\n');
-    }
-    text
 }

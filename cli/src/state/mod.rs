@@ -1,11 +1,13 @@
 //! The numbers of a state: the description's own, changed by what a JSON file says.
 //!
-//! `{"param": {…}, "coord": {…}, "velocity": {…}, "input": {…}}`, all optional. Every mistake is
-//! reported with its path in the file, all at once. What a file does not give is completed as the
+//! `{"param": {…}, "coord": {…}, "velocity": {…}, "input": {…}}`, all optional, or, by joints,
+//! `{"configuration": {…}, "velocity": {…}}`. Every mistake is reported with its path in the file, all at
+//! once. What a file does not give is completed as the
 //! start of a description is, so that loops are closed and constraints on velocities are kept; what it
 //! gives is kept, and refused where it contradicts them.
 
 mod complete;
+pub mod file;
 pub mod joints;
 mod read;
 pub mod sample;
@@ -15,11 +17,13 @@ mod tests;
 
 use crate::failure::Failure;
 use crate::source::Source;
+use file::File;
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::model::layout::Block;
 use read::Reader;
+use serde_json::Value;
 use std::path::Path;
 
 /// Larger values of |φ(x)| are no rounding of a state that was written down.
@@ -49,23 +53,24 @@ impl State {
         }
     }
 
-    /// The start, changed by a file where there is one.
-    pub fn read(generated: &Generated, at: Option<&Path>) -> Result<Self, Failure> {
-        let Some(path) = at else {
-            return Ok(State::start(&generated.active));
-        };
-        let source = Source::read(path)?;
-        State::parse(generated, &source.text)
-            .map_err(|errors| Failure::usages(&source.path, &errors))
+    /// The start of a description, changed by a file where there is one.
+    pub fn read(
+        source: &Source,
+        generated: &Generated,
+        at: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        match at {
+            Some(path) => File::read(path, source)?.state(source, generated),
+            None => Ok(State::start(&generated.active)),
+        }
     }
 
-    /// The start, changed by a JSON text.
-    pub fn parse(generated: &Generated, text: &str) -> Result<Self, Vec<String>> {
-        let json = strict::parse(text).map_err(|error| vec![error])?;
+    /// The start, changed by a JSON value with coordinates.
+    pub fn of(generated: &Generated, json: &Value) -> Result<Self, Vec<String>> {
         let model = &generated.active;
         let mut state = State::start(model);
         let mut reader = Reader::new(model);
-        reader.state(&json, model, &mut state);
+        reader.state(json, model, &mut state);
         reader.finish(generated, &mut state)?;
         Ok(state)
     }

@@ -1,6 +1,6 @@
 //! States as users write them: what is read, and what is refused.
 
-use super::State;
+use super::{State, strict};
 use hamel_codegen::generate::{Generated, from_text};
 
 const SYSTEM: &str = "system Mixed {
@@ -19,12 +19,16 @@ fn model() -> Generated {
     from_text(SYSTEM).expect("a sound description")
 }
 
+fn read(text: &str) -> Result<State, Vec<String>> {
+    State::of(&model(), &strict::parse(text).expect("JSON"))
+}
+
 #[test]
 fn every_shape_is_read() {
     let text = r#"{"param": {"m": 3, "J": [[1, 0.1, 0.2], [0.1, 2, 0.3], [0.2, 0.3, 3]]},
         "coord": {"q": 0.5, "X": {"p": [1, 2, 3], "R": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}},
         "velocity": {"w": [4, 5, 6]}}"#;
-    let state = State::parse(&model(), text).expect("a sound state");
+    let state = read(text).expect("a sound state");
     assert_eq!(state.params, [3.0, 1.0, 0.1, 0.2, 2.0, 0.3, 3.0]);
     assert_eq!(state.x[..2], [0.5_f64.cos(), 0.5_f64.sin()]);
     assert_eq!(
@@ -39,7 +43,7 @@ fn every_mistake_is_named_at_once() {
     let text = r#"{"param": {"mm": 1, "J": [[1, 2, 0], [3, 1, 0], [0, 0, 1]]},
         "coord": {"q": [1, 0, 0], "X": {"p": [1, "2", 3], "r": 1}},
         "velocity": {"w": 4}, "inputs": {}, "input": []}"#;
-    let errors = State::parse(&model(), text).expect_err("mistakes");
+    let errors = read(text).expect_err("mistakes");
     let expected = [
         "inputs: unknown name; did you mean `input`?",
         "param.mm: unknown name; known are m, J",
@@ -57,7 +61,7 @@ fn every_mistake_is_named_at_once() {
 fn states_off_the_manifold_are_refused() {
     let stretched =
         r#"{"coord": {"q": [1, 0.1], "X": {"R": [[1, 0, 0], [0, 1.1, 0], [0, 0, 1]]}}}"#;
-    let errors = State::parse(&model(), stretched).expect_err("off");
+    let errors = read(stretched).expect_err("off");
     assert_eq!(
         errors[0],
         "coord.q: violates q.c^2 + q.s^2 = 1, the difference is 1.00e-2"
@@ -68,6 +72,6 @@ fn states_off_the_manifold_are_refused() {
         "{errors:?}"
     );
     let reflected = r#"{"coord": {"X": {"R": [[1, 0, 0], [0, 1, 0], [0, 0, -1]]}}}"#;
-    let errors = State::parse(&model(), reflected).expect_err("reflected");
+    let errors = read(reflected).expect_err("reflected");
     assert_eq!(errors, ["coord.X: a reflection, its determinant is -1"]);
 }

@@ -3,6 +3,7 @@
 use super::figure::{Anchor, Area, Drawn, FINE, failed, letters, stroke, unit, write};
 use super::line::Point;
 use super::theme;
+use super::width::fitted;
 use crate::number::digits;
 use plotters::chart::ChartBuilder;
 use plotters::coord::combinators::IntoLogRange;
@@ -213,7 +214,8 @@ impl Axes {
     /// Those of the library that draws.
     pub fn name(&self, area: &Area, name: &str) -> Drawn {
         let style = letters(12.0, theme::INK.0, Anchor::Start, true);
-        write(area, name, (self.frame.x, self.frame.y - 13.0), &style)
+        let name = fitted(name, 12.0, true, self.frame.width);
+        write(area, &name, (self.frame.x, self.frame.y - 13.0), &style)
     }
 
     /// Writes what the lower edge is, below it.

@@ -3,10 +3,28 @@
 use super::axes::{Axes, Axis, Frame};
 use super::figure::{Anchor, Area, Drawn, letters, line, stroke, write};
 use super::line::{Point, by_column, simplify};
+use super::width::width;
 use super::{Panel, theme};
 
 /// Distance of two labels.
 const LABEL: f64 = 15.0;
+/// Size of labels, where they begin beside a frame, and what stays free behind them.
+const SIZE: f64 = 12.0;
+const BEGIN: f64 = 14.0;
+const MARGIN: f64 = 10.0;
+
+/// The room beside a frame that names of lines take.
+pub fn room<'a>(names: impl Iterator<Item = &'a str>) -> f64 {
+    let widest = names
+        .map(|name| width(name, SIZE, true))
+        .fold(0.0, f64::max);
+    BEGIN + widest + MARGIN
+}
+
+/// The least height of a frame with so many lines.
+pub fn height(lines: usize) -> f64 {
+    LABEL * lines.saturating_sub(1) as f64
+}
 
 /// A panel; the last one carries the labels of the time axis.
 pub fn panel(area: &Area, panel: &Panel, time: &[f64], frame: Frame, last: bool) -> Drawn {
@@ -69,8 +87,8 @@ pub fn names(area: &Area, ends: &[(usize, &str, f64)], frame: Frame) -> Drawn {
         let colour = theme::series(index);
         let lead = [(right + 2.0, end), (right + 11.0, place)];
         line(area, &lead, stroke(colour, 1.0))?;
-        let style = letters(12.0, colour, Anchor::Start, true);
-        write(area, name, (right + 14.0, place), &style)?;
+        let style = letters(SIZE, colour, Anchor::Start, true);
+        write(area, name, (right + BEGIN, place), &style)?;
     }
     Ok(())
 }

@@ -2,6 +2,8 @@
 
 use super::line::Point;
 use super::theme;
+use super::width::fitted;
+use crate::code::plain;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
@@ -70,7 +72,7 @@ impl Figure {
         Ok(Figure {
             width,
             height,
-            title: title.to_string(),
+            title: plain(title),
             elements,
         })
     }
@@ -237,11 +239,16 @@ pub fn fill(area: &Area, points: &[Point], colour: RGBAColor) -> Drawn {
     area.draw(&Polygon::new(points, colour)).map_err(failed)
 }
 
-/// Fills all and writes a heading and a sentence below it.
+/// Fills all and writes a heading and a sentence below it, as far as there is room.
 pub fn headed(area: &Area, title: &str, subtitle: &str) -> Drawn {
+    const LEFT: f64 = 24.0;
+    const RIGHT: f64 = 10.0;
     area.fill(&theme::GROUND.0).map_err(failed)?;
+    let widest = f64::from(area.dim_in_pixel().0) / FINE - LEFT - RIGHT;
     let head = letters(18.0, theme::INK.0, Anchor::Start, true);
-    write(area, title, (24.0, 28.0), &head)?;
+    let title = fitted(&plain(title), 18.0, true, widest);
+    write(area, &title, (LEFT, 28.0), &head)?;
     let sub = letters(13.0, theme::SOFT.0, Anchor::Start, false);
-    write(area, subtitle, (24.0, 50.0), &sub)
+    let subtitle = fitted(&plain(subtitle), 13.0, false, widest);
+    write(area, &subtitle, (LEFT, 50.0), &sub)
 }

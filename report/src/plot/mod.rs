@@ -10,12 +10,14 @@ mod line;
 mod precision;
 mod sphere;
 mod theme;
+mod width;
 mod windows;
 
 pub use figure::{Figure, PlotError, escape};
 pub use precision::{Precision, precision};
 pub use sphere::Poinsot;
 pub use theme::sheet;
+pub use width::width;
 pub use windows::drifts;
 
 use axes::Frame;
@@ -71,6 +73,7 @@ const TITLE: f64 = 26.0;
 const GAP: f64 = 22.0;
 const FOOT: f64 = 50.0;
 const LEFT: f64 = 66.0;
+/// Least room for the names of lines.
 const LABELS: f64 = 78.0;
 /// Width and height of a sphere with its names.
 const SPHERE: (f64, f64) = (380.0, 410.0);
@@ -82,18 +85,20 @@ const RADIUS: f64 = 140.0;
 /// Those of the library that draws; none are known.
 pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
     let spheres = usize::from(picture.path.is_some()) + usize::from(picture.poinsot.is_some());
-    let wide = if spheres > 0 { 590.0 } else { 800.0 };
+    let across = if spheres > 0 { 446.0 } else { 656.0 };
+    let lines = picture.panels.iter().flat_map(|panel| &panel.lines);
+    let names = chart::room(lines.map(|(name, _)| name.as_str()));
+    let wide = LEFT + across + names.max(LABELS);
     let upper = if picture.panels.len() > 2 {
         140.0
     } else {
         200.0
     };
+    // The names of all lines have room below each other.
     let height_of = |index: usize| {
-        if index + 1 == picture.panels.len() {
-            92.0
-        } else {
-            upper
-        }
+        let last = index + 1 == picture.panels.len();
+        let lines = picture.panels[index].lines.len();
+        chart::height(lines).max(if last { 92.0 } else { upper })
     };
     let charts: f64 = (0..picture.panels.len())
         .map(|index| TITLE + height_of(index) + GAP)
@@ -109,7 +114,7 @@ pub fn run(picture: &Picture) -> Result<Figure, PlotError> {
             let frame = Frame {
                 x: LEFT,
                 y: top,
-                width: wide - LEFT - LABELS,
+                width: across,
                 height: height_of(index),
             };
             let last = index + 1 == picture.panels.len();

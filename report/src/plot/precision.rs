@@ -6,6 +6,7 @@ use super::figure::{
 };
 use super::line::Point;
 use super::theme;
+use super::width::width;
 use crate::data::{Case, Kind, MethodRun, MethodRuns};
 use plotters::style::ShapeStyle;
 
@@ -46,6 +47,9 @@ const WIDE: f64 = 350.0;
 const HIGH: f64 = 330.0;
 /// Height of a line of the legend.
 const ROW: f64 = 17.0;
+/// Where names stand in a line of the legend, and the least room for them.
+const NAME: f64 = 29.0;
+const LEAST: f64 = 105.0;
 
 /// Error against evaluations, and error against time where it was measured.
 ///
@@ -62,7 +66,10 @@ pub fn precision(case: &Case) -> Result<Figure, PlotError> {
     }
     let legend = 112.0 + ROW * case.methods.len() as f64;
     let height = (100.0 + HIGH + 64.0).max(legend);
-    let width = 90.0 + panels.len() as f64 * (WIDE + 70.0) + 130.0;
+    let left = 70.0 + panels.len() as f64 * (WIDE + 70.0);
+    let names = case.methods.iter();
+    let names = names.map(|method| width(&method.method, 12.0, method.kind == Kind::Method));
+    let width = left + NAME + names.fold(LEAST, f64::max) + 16.0;
     let subtitle = format!("t = {}; {}", crate::number::short(case.until), case.error);
     Figure::draw(width, height, &case.title, |area| {
         headed(area, &case.title, &subtitle)?;
@@ -77,13 +84,13 @@ pub fn precision(case: &Case) -> Result<Figure, PlotError> {
             diagram(area, case, panel, frame)?;
         }
         for (index, method) in case.methods.iter().enumerate() {
-            let at = (width - 150.0, 108.0 + ROW * index as f64);
+            let at = (left, 108.0 + ROW * index as f64);
             let end = (at.0 + 22.0, at.1);
             line(area, &[at, end], style(index, method))?;
             mark(area, (at.0 + 11.0, at.1), index, method)?;
             let bold = method.kind == Kind::Method;
             let text = letters(12.0, theme::series(index), Anchor::Start, bold);
-            write(area, &method.method, (at.0 + 29.0, at.1), &text)?;
+            write(area, &method.method, (at.0 + NAME, at.1), &text)?;
         }
         Ok(())
     })

@@ -1,7 +1,7 @@
 //! Drift: the largest deviation of the energy in every window of long runs.
 
 use super::axes::{Axes, Axis, Frame};
-use super::chart::names;
+use super::chart::{names, room};
 use super::figure::{Figure, PlotError, headed, line, stroke};
 use super::line::Point;
 use super::theme;
@@ -15,7 +15,10 @@ const LARGEST: f64 = 1e3;
 /// # Errors
 /// Those of the library that draws; none are known.
 pub fn drifts(title: &str, subtitle: &str, runs: &[&Drift]) -> Result<Figure, PlotError> {
-    Figure::draw(800.0, 430.0, title, |area| {
+    const RIGHT: f64 = 640.0;
+    let beside = room(runs.iter().map(|run| run.method.as_str()));
+    let width = f64::max(800.0, RIGHT + beside);
+    Figure::draw(width, 430.0, title, |area| {
         headed(area, title, subtitle)?;
         let steps = runs.iter().map(|run| run.steps).max().unwrap_or(1) as f64;
         let energies = runs.iter().flat_map(|run| run.energy.iter());
@@ -24,7 +27,7 @@ pub fn drifts(title: &str, subtitle: &str, runs: &[&Drift]) -> Result<Figure, Pl
             frame: Frame {
                 x: 70.0,
                 y: 100.0,
-                width: 570.0,
+                width: RIGHT - 70.0,
                 height: 270.0,
             },
             across: Axis::exact(0.0, steps),

@@ -1,0 +1,159 @@
+//! Singular states in the names of the description: which velocity has no inertia.
+
+use crate::failure::Failure;
+use crate::interpreted::Interpreted;
+use crate::number::short;
+use hamel::{Singular, StepError, System};
+use nalgebra::DMatrix;
+
+/// Pivots that are smaller than this part of the diagonal entry that they began as are rounding of zero.
+const ROUNDING: f64 = 1e-12;
+/// What is said where no inertia is missing.
+const CONFIGURATION: &str = "the mechanism is at a singular configuration, where its velocities do not determine its motion";
+const DEPENDENT: &str = "the constraints on the velocities depend on one another";
+
+/// Which function had no value, and at which x.
+#[derive(Clone, Debug)]
+pub enum Failed {
+    /// ξ̇, or the velocities of momenta.
+    Motion(Vec<f64>),
+    /// The step that closes loops, or the one that keeps constraints on velocities.
+    Projection,
+}
+
+/// What a mass matrix that is not positive definite is told as, by the names of its rows.
+pub fn of_mass(mass: &DMatrix<f64>, names: &[String]) -> Option<String> {
+    let (place, part) = weakest(mass)?;
+    (part <= ROUNDING).then(|| told(place, names))
+}
+
+fn told(place: usize, names: &[String]) -> String {
+    let name = names.get(place).map_or("", String::as_str);
+    let number = place + 1;
+    format!("the mass matrix is not positive definite at pivot {number} (`{name}`)")
+}
+
+/// What is said of a state where ξ̇ has no value, from the mass matrix there.
+pub fn at(mass: &DMatrix<f64>, names: &[String]) -> String {
+    of_mass(mass, names).unwrap_or_else(|| CONFIGURATION.into())
+}
+
+/// The first row whose inertia, with the rows before it eliminated, is not positive, else the one that keeps
+/// the least part of its inertia; with that part.
+fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
+    let mut rest = mass.clone();
+    let mut weakest: Option<(usize, f64)> = None;
+    for k in 0..rest.nrows() {
+        let pivot = rest[(k, k)];
+        // What is not a number is not positive either.
+        let part = Some(pivot / mass[(k, k)].abs()).filter(|part| *part > ROUNDING);
+        let Some(part) = part else {
+            return Some((k, 0.0));
+        };
+        if weakest.is_none_or(|(_, least)| part < least) {
+            weakest = Some((k, part));
+        }
+        for i in k + 1..rest.nrows() {
+            let factor = rest[(i, k)] / pivot;
+            for j in k + 1..rest.ncols() {
+                rest[(i, j)] -= factor * rest[(k, j)];
+            }
+        }
+    }
+    weakest
+}
+
+impl Interpreted {
+    /// An error where the mass matrix is constant in time, and not positive definite with the parameters.
+    pub fn check_parameters(&self, x: &[f64]) -> Result<(), Failure> {
+        match self.constant_singular() {
+            true => Err(Failure::failed(format!(
+                "{} with these parameters",
+                self.at(x)
+            ))),
+            false => Ok(()),
+        }
+    }
+
+    /// ξ̇, or why it has no value.
+    pub fn motion(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, String> {
+        match self.accel(x, xi, u) {
+            Ok(_) if self.constant_singular() => Err(self.at(x)),
+            Ok(xi_dot) => Ok(xi_dot),
+            Err(cause) => Err(self.singular(cause)),
+        }
+    }
+
+    /// What is said of a failure of ξ̇, of a projection or of a change to velocities.
+    pub fn singular(&self, cause: Singular) -> String {
+        if cause.kinematic_pivot().is_some() {
+            return CONFIGURATION.into();
+        }
+        match self.failed() {
+            Some(Failed::Motion(x)) => {
+                let mass = self.mass(&x);
+                match (of_mass(&mass, self.velocity_names()), weakest(&mass)) {
+                    (Some(why), _) => why,
+                    // Without constraints no other pivot can have failed.
+                    (None, Some((place, _))) if !self.is_constrained() => {
+                        told(place, self.velocity_names())
+                    }
+                    _ => DEPENDENT.into(),
+                }
+            }
+            Some(Failed::Projection) => DEPENDENT.into(),
+            None => cause.to_string(),
+        }
+    }
+
+    /// What is said of a step that was not taken.
+    pub fn said(&self, error: &StepError) -> String {
+        match error {
+            StepError::Singular { cause, time } => {
+                let why = self.singular(*cause);
+                format!("{why}, in the step from t = {}", short(*time))
+            }
+            other => other.to_string(),
+        }
+    }
+
+    /// What is said of a state where ξ̇ has no value.
+    pub fn at(&self, x: &[f64]) -> String {
+        at(&self.mass(x), self.velocity_names())
+    }
+
+    /// M at x.
+    fn mass(&self, x: &[f64]) -> DMatrix<f64> {
+        let n = self.velocity_names().len();
+        let still = self.momentum(x, &vec![0.0; n]);
+        let mut mass = DMatrix::zeros(n, n);
+        for column in 0..n {
+            let mut xi = vec![0.0; n];
+            xi[column] = 1.0;
+            let momenta = self.momentum(x, &xi);
+            for (row, (p, start)) in momenta.iter().zip(&still).take(n).enumerate() {
+                mass[(row, column)] = p - start;
+            }
+        }
+        mass
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_mass;
+    use nalgebra::DMatrix;
+
+    #[test]
+    fn the_velocity_without_inertia_is_named() {
+        let names = ["a", "w[1]", "w[2]"].map(String::from);
+        let told = |entries: [f64; 9]| of_mass(&DMatrix::from_row_slice(3, 3, &entries), &names);
+        assert_eq!(told([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);
+        // Row 2 is half of row 1: what is left of it is rounding.
+        let dependent = told([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
+        let expected = "the mass matrix is not positive definite at pivot 2 (`w[1]`)";
+        assert_eq!(dependent.as_deref(), Some(expected));
+        let nowhere = told([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]);
+        assert!(nowhere.is_some_and(|why| why.ends_with("pivot 3 (`w[2]`)")));
+    }
+}

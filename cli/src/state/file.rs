@@ -1,0 +1,74 @@
+//! A file that gives a state, in either of its forms: by coordinates, or by joints.
+
+use super::sample::{Sample, is_sample};
+use super::{State, strict};
+use crate::failure::Failure;
+use crate::source::Source;
+use hamel_codegen::generate::Generated;
+use serde_json::Value;
+use std::path::Path;
+
+/// What only `hamel eval` takes, with what is said elsewhere.
+const OF_EVAL: [(&str, &str); 2] = [
+    (
+        "force",
+        "only `hamel eval` takes a force: here the loads of the description act, with zero inputs",
+    ),
+    (
+        "samples",
+        "only `hamel eval` takes several states: here one is expected",
+    ),
+];
+
+/// A file that was read, and is JSON.
+pub struct File {
+    /// Its path as given, or `<stdin>`.
+    pub path: String,
+    /// What it holds.
+    pub json: Value,
+}
+
+impl File {
+    /// Reads a file beside a description, or standard input where the path is `-`.
+    pub fn read(path: &Path, description: &Source) -> Result<Self, Failure> {
+        if path.as_os_str() == "-" && description.is_stdin() {
+            return Err(Failure::usage(
+                "description and state cannot both be read from standard input",
+            ));
+        }
+        let Source { path, text, .. } = Source::read(path)?;
+        match strict::parse(&text) {
+            Ok(json) => Ok(File { path, json }),
+            Err(error) => Err(Failure::usages(&path, &[error])),
+        }
+    }
+
+    /// Whether it is about joints.
+    pub fn is_by_joints(&self) -> bool {
+        is_sample(&self.json)
+    }
+
+    /// The state, in whichever form it is given; a force, or a list of states, is refused.
+    pub fn state(&self, source: &Source, generated: &Generated) -> Result<State, Failure> {
+        let state = match self.is_by_joints() {
+            true => self.by_joints(source, generated),
+            false => State::of(generated, &self.json),
+        };
+        state.map_err(|errors| Failure::usages(&self.path, &errors))
+    }
+
+    fn by_joints(&self, source: &Source, generated: &Generated) -> Result<State, Vec<String>> {
+        let refused = OF_EVAL
+            .iter()
+            .filter(|(part, _)| self.json.get(part).is_some());
+        let refused: Vec<String> = refused
+            .map(|(part, why)| format!("{part}: {why}"))
+            .collect();
+        match refused.is_empty() {
+            true => {
+                Sample::parse(&self.json, None, generated, source.joints()).map(|read| read.state)
+            }
+            false => Err(refused),
+        }
+    }
+}
