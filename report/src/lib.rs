@@ -13,6 +13,7 @@
 //! | [`data`] | the results, as they stand in JSON |
 //! | [`work`] | work to reach an error, between the runs measured |
 //! | [`markdown`], [`json`], [`page`], [`readme`] | what people and programs read |
+//! | [`summary`] | the runs behind the block of a README |
 //! | [`plot`] | pictures as SVG |
 //! | [`number`] | numbers as people read them |
 //!
@@ -37,4 +38,5 @@ pub mod plot;
 pub mod problem;
 pub mod readme;
 pub mod solution;
+pub mod summary;
 pub mod work;
