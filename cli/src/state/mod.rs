@@ -9,6 +9,7 @@ mod complete;
 pub mod joints;
 mod read;
 pub mod sample;
+mod solved;
 pub mod strict;
 #[cfg(test)]
 mod tests;
@@ -64,7 +65,7 @@ impl State {
         let json = strict::parse(text).map_err(|error| vec![error])?;
         let model = &generated.active;
         let mut state = State::start(model);
-        let mut reader = Reader::new(model);
+        let mut reader = Reader::new(generated);
         reader.state(&json, model, &mut state);
         reader.finish(generated, &mut state)?;
         Ok(state)
