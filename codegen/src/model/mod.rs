@@ -54,7 +54,7 @@ use points::Points;
 use value::Value;
 
 pub use build::build;
-pub use dynamics::FUNCTIONS;
+pub use dynamics::{FUNCTIONS, INTERNAL};
 
 /// Classes of symbols, one bit each.
 pub mod class {
