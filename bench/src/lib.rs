@@ -12,7 +12,7 @@
 //! | [`cases`] | the hard cases of `hamel-cases`, and what is constant in each |
 //! | [`peers`] | other programs, each an optional feature or script |
 //! | [`runner`] | what is measured of a case |
-//! | [`output`] | the files |
+//! | [`output`] | the files, and what is kept of them in the repository |
 
 pub mod cases;
 pub mod methods;

@@ -7,9 +7,13 @@ use hamel_report::data::{Case, Drift, Report};
 use hamel_report::number::grouped;
 use hamel_report::page::{self, Picture};
 use hamel_report::plot::{Figure, PlotError, drifts, precision};
+use hamel_report::summary::summary;
 use hamel_report::{json, markdown, readme};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// The runs behind the block of the README, in the repository.
+pub const SUMMARY: &str = "docs/summary.json";
 
 /// Writes `report.json`, `report.md`, `index.html` and the pictures; the names of the files.
 ///
@@ -80,15 +84,19 @@ fn file_of(case: &Case) -> Option<String> {
     job.picture.then(|| format!("{}.svg", case.name))
 }
 
-/// Rewrites the block of a README that is made from the report.
+/// What is kept of a whole report in the repository at `root`: the block of `README.md`, and the runs that it is
+/// made of, in [`SUMMARY`].
 ///
 /// # Errors
-/// Where there is no such file, or it has no block.
-pub fn rewrite(report: &Report, path: &Path) -> Result<(), BenchError> {
-    let text = fs::read_to_string(path).map_err(|error| unwritten(path, &error))?;
+/// Where there is no README, or it has no block.
+pub fn keep(report: &Report, root: &Path) -> Result<(), BenchError> {
+    let path = root.join("README.md");
+    let text = fs::read_to_string(&path).map_err(|error| unwritten(&path, &error))?;
     let new = readme::replaced(&text, &readme::block(report))
         .ok_or_else(|| BenchError(format!("{}: no block of the report", path.display())))?;
-    written(path, &new)
+    let kept = json::write(&summary(report)).map_err(|error| BenchError(error.to_string()))?;
+    written(&root.join(SUMMARY), &kept)?;
+    written(&path, &new)
 }
 
 /// Writes a file, whole or not at all.

@@ -1,6 +1,10 @@
-//! What the README says of speed and error is what the report says.
+//! What the README says of speed and error is what was measured: its block is made of `docs/summary.json`, which the
+//! command of the report writes beside it.
 
 use hamel_bench::cases::ALL;
+use hamel_bench::output::SUMMARY;
+use hamel_report::data::Report;
+use hamel_report::summary::summary;
 use hamel_report::{json, readme};
 use std::path::{Path, PathBuf};
 
@@ -13,9 +17,13 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
+fn measured() -> Report {
+    json::read(&read(SUMMARY)).expect("a report")
+}
+
 #[test]
-fn the_block_of_the_readme_is_that_of_the_report() {
-    let report = json::read(&read("docs/report/report.json")).expect("a report");
+fn the_block_of_the_readme_is_what_was_measured() {
+    let report = measured();
     let readme = read("README.md");
     let present = readme::present(&readme).expect("a block");
     assert_eq!(
@@ -24,15 +32,20 @@ fn the_block_of_the_readme_is_that_of_the_report() {
         "run the command of the report"
     );
     assert!(present.lines().count() > 10, "{present}");
+    // The README names the command, with the features that a full report has.
+    let (command, folder) = report.command.split_once(" -- ").expect("arguments");
+    for part in [command, folder] {
+        assert!(readme.contains(part), "{part}");
+    }
 }
 
 #[test]
-fn the_report_holds_every_case_and_reads_back() {
-    let text = read("docs/report/report.json");
-    let report = json::read(&text).expect("a report");
+fn the_summary_holds_every_case_and_nothing_else() {
+    let report = measured();
     let names: Vec<&str> = report.cases.iter().map(|case| case.name.as_str()).collect();
     assert_eq!(names, ALL.iter().map(|job| job.name).collect::<Vec<_>>());
-    assert_eq!(json::write(&report).expect("JSON"), text);
+    assert_eq!(summary(&report), report);
+    assert_eq!(json::write(&report).expect("JSON"), read(SUMMARY));
     // Every other program is named, measured or not.
     for name in ["Rapier", "ode_solvers", "MuJoCo"] {
         assert!(
@@ -44,8 +57,7 @@ fn the_report_holds_every_case_and_reads_back() {
 
 #[test]
 fn every_case_ends_at_a_time_of_its_reference() {
-    let report = json::read(&read("docs/report/report.json")).expect("a report");
-    for case in &report.cases {
+    for case in &measured().cases {
         let path = format!("tests/reference/{}.json", case.name);
         let solution = hamel_report::solution::Solution::parse(&read(&path)).expect("a solution");
         assert!(

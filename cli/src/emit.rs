@@ -42,7 +42,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => name,
     };
     let name = name.to_string_lossy();
-    let code = builder::source(&source.text, &name).map_err(|errors| source.refused(&errors))?;
+    let generated = source.derive()?;
+    let code = builder::written(&generated, &name).map_err(|errors| source.refused(&errors))?;
     let Some(out) = &arguments.out else {
         return print(&code);
     };

@@ -1,15 +1,16 @@
-//! A description's file: reading and deriving it, with errors shown in its text.
+//! A description's file: reading and deriving it, with errors and warnings shown in its text.
 
-use crate::failure::{Failure, warn};
+use crate::failure::{self, Failure};
 use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::functions::{Asked, FunctionId};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::{self, Model};
-use hamel_codegen::render::render;
+use hamel_codegen::render::{render, warnings};
 use hamel_codegen::syntax;
 use hamel_codegen::urdf;
+use std::cell::Cell;
 use std::io::Read;
 use std::path::Path;
 
@@ -26,6 +27,8 @@ pub struct Source {
     pub text: String,
     /// The robot that the description is made from, if it is.
     pub robot: Option<Robot>,
+    /// Whether the warnings were shown.
+    warned: Cell<bool>,
 }
 
 impl Source {
@@ -53,6 +56,7 @@ impl Source {
                 path: name,
                 text,
                 robot: None,
+                warned: Cell::new(false),
             }),
             Err(error) => {
                 let place = error.utf8_error().valid_up_to();
@@ -98,13 +102,16 @@ impl Source {
             path: self.path,
             text: robot.imported.text.clone(),
             robot: Some(robot),
+            warned: self.warned,
         })
     }
 
     /// What the description says, not derived yet.
     pub fn model(&self) -> Result<Model, Failure> {
         let model = syntax::parse_text(&self.text).and_then(|system| model::build(&system));
-        model.map_err(|errors| self.refused(&errors))
+        let model = model.map_err(|errors| self.refused(&errors))?;
+        self.warn(&model);
+        Ok(model)
     }
 
     /// Derives these functions, whatever the description's `generate` says; those with M⁻¹ in them are
@@ -119,7 +126,7 @@ impl Source {
         let derived = progress::during(DERIVING, || Generated::available(model, 0));
         let (generated, singular) = derived.map_err(|errors| self.refused(&errors))?;
         if let Some(Diagnostic { message, .. }) = singular {
-            warn(&format!(
+            failure::warn(&format!(
                 "warning: {}: {message}; what needs its inverse is left out\n",
                 self.path
             ));
@@ -130,7 +137,9 @@ impl Source {
     /// Derives the functions that the description asks for.
     pub fn derive(&self) -> Result<Generated, Failure> {
         let derived = progress::during(DERIVING, || from_text(&self.text));
-        derived.map_err(|errors| self.refused(&errors))
+        let derived = derived.map_err(|errors| self.refused(&errors))?;
+        self.warn(&derived.model);
+        Ok(derived)
     }
 
     /// Derives all functions, whatever the description's `generate` says.
@@ -152,6 +161,13 @@ impl Source {
         let model = self.model()?;
         let derived = progress::during(DERIVING, || Generated::all(model, 0));
         derived.map_err(|errors| self.refused(&errors))
+    }
+
+    /// Shows the warnings on standard error, once. The text of a robot is the importer's, not the user's.
+    fn warn(&self, model: &Model) {
+        if self.robot.is_none() && !self.warned.replace(true) {
+            failure::warn(&warnings(&model.warnings, &self.path, &self.text, true));
+        }
     }
 
     /// The errors with their source underlined.

@@ -44,6 +44,22 @@ fn robots() -> Vec<PathBuf> {
     found
 }
 
+/// The text that `hamel emit` makes of UR5: frames of the generator's choice, recursions over a tree, folded
+/// numbers. Other code that is locked stands in `tests/tests/snapshots.rs`.
+#[test]
+fn code_of_ur5() {
+    let Some(folder) = installed() else {
+        eprintln!(
+            "the code of UR5 is not tested: its URDF is absent; tests/robots/install.sh installs it"
+        );
+        return;
+    };
+    let path = folder.join("ur_description/urdf/ur5_robot.urdf");
+    let robot = std::fs::read_to_string(path).expect("UR5");
+    // From standard input, so that no path stands in the text.
+    insta::assert_snapshot!(emitted(&["-"], &robot));
+}
+
 /// With `HAMEL_ATTACK=full` all robots, in all ways of reading them.
 #[test]
 fn robots_are_rust() {

@@ -11,8 +11,8 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::emit;
-use crate::generate::from_text;
-use crate::render::render;
+use crate::generate::{Generated, from_text};
+use crate::render::{render, warnings};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -88,7 +88,8 @@ impl Builder {
     }
 
     /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before anything is reported;
-    /// files whose bytes would not change are not touched.
+    /// files whose bytes would not change are not touched. What a description declares and does not use becomes
+    /// a warning of the package.
     pub fn generate(self) -> Result<(), BuildError> {
         let out_dir = match self
             .out_dir
@@ -141,15 +142,16 @@ fn generate_file(path: &Path, kind: &Kind, target: &Path) -> Result<(), String> 
     let shown = path.display().to_string();
     let code = match kind {
         Kind::Description => {
-            source(&text, &name(path)).map_err(|errors| render(&errors, &shown, &text, false))
+            let refused = |errors: Vec<Diagnostic>| render(&errors, &shown, &text, false);
+            let generated = from_text(&text).map_err(refused)?;
+            warn(&warnings(&generated.model.warnings, &shown, &text, false));
+            written(&generated, &name(path)).map_err(refused)
         }
         #[cfg(feature = "urdf")]
         Kind::Urdf(options) => {
             use crate::urdf::{import, refused, warnings};
             let imported = import(&text, options, &shown, false)?;
-            for line in warnings(&imported, &shown, &text, false).lines() {
-                println!("cargo:warning={line}");
-            }
+            warn(&warnings(&imported, &shown, &text, false));
             let description = name(&path.with_extension("eom"));
             source(&imported.text, &description)
                 .map_err(|errors| refused(&errors, &imported, &shown, &text, false))
@@ -158,9 +160,20 @@ fn generate_file(path: &Path, kind: &Kind, target: &Path) -> Result<(), String> 
     hamel_files::update(target, &code).map_err(|error| error.to_string())
 }
 
+/// Cargo shows these lines as warnings of the package.
+fn warn(text: &str) {
+    for line in text.lines() {
+        println!("cargo::warning={line}");
+    }
+}
+
 /// The generated file of a description; `name` stands in the command that its header shows.
 pub fn source(text: &str, name: &str) -> Result<String, Vec<Diagnostic>> {
-    let generated = from_text(text)?;
+    written(&from_text(text)?, name)
+}
+
+/// The same of what was derived already.
+pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnostic>> {
     let options = emit::Options {
         source_hash: generated.hash,
         command: format!("hamel emit {name}"),

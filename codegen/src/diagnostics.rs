@@ -1,8 +1,8 @@
-//! Placed errors, collected so that one build reports all of them.
+//! Placed errors, collected so that one build reports all of them; placed warnings have the same form.
 
 use crate::syntax::ast::Span;
 
-/// One error: where, what is wrong, and what to do about it.
+/// One error or warning: where, what is wrong, and what to do about it.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     /// The place it is about.

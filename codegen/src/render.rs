@@ -1,4 +1,4 @@
-//! Errors as people read them: underlined source in a terminal, or errors of the compiler.
+//! Errors and warnings as people read them: underlined source in a terminal, or errors of the compiler.
 
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, TokenStream, TokenTree};
 
@@ -37,10 +37,10 @@ fn compile_error(error: &Diagnostic) -> [TokenTree; 8] {
     ]
 }
 
-#[cfg(feature = "files")]
-pub use text::render;
 #[cfg(feature = "urdf")]
 pub(crate) use text::{Level, Note, notes, span_bytes};
+#[cfg(feature = "files")]
+pub use text::{render, warnings};
 
 #[cfg(feature = "files")]
 mod text {
@@ -56,8 +56,20 @@ mod text {
     ///
     /// `path` is how the file is named, `source` the text that was parsed; `color` adds terminal colours.
     pub fn render(errors: &[Diagnostic], path: &str, source: &str, color: bool) -> String {
+        let mut rendered = listed(errors, Level::Error, path, source, color);
+        let plural = if errors.len() == 1 { "" } else { "s" };
+        rendered.push_str(&format!("{} error{plural}\n", errors.len()));
+        rendered
+    }
+
+    /// The warnings in the order of the text, each with its source underlined; empty where there are none.
+    pub fn warnings(list: &[Diagnostic], path: &str, source: &str, color: bool) -> String {
+        listed(list, Level::Warning, path, source, color)
+    }
+
+    fn listed(list: &[Diagnostic], level: Level, path: &str, source: &str, color: bool) -> String {
         let renderer = renderer(color);
-        let mut placed: Vec<_> = errors
+        let mut placed: Vec<_> = list
             .iter()
             .map(|error| (place(error.span, source), error))
             .collect();
@@ -69,11 +81,9 @@ mod text {
 
         let mut rendered = String::new();
         for (range, error) in placed {
-            rendered.push_str(&renderer.render(&[group(error, range, path, source)]));
+            rendered.push_str(&renderer.render(&[group(error, level, range, path, source)]));
             rendered.push_str("\n\n");
         }
-        let plural = if errors.len() == 1 { "" } else { "s" };
-        rendered.push_str(&format!("{} error{plural}\n", errors.len()));
         rendered
     }
 
@@ -86,15 +96,23 @@ mod text {
         renderer.decor_style(DecorStyle::Ascii)
     }
 
-    /// Errors or warnings about a text that is no description.
-    #[cfg(feature = "urdf")]
+    /// What is wrong, or looks as if it were.
     #[derive(Clone, Copy, PartialEq, Eq)]
     pub(crate) enum Level {
         Error,
         Warning,
     }
 
-    /// One of them.
+    impl Level {
+        fn title(self) -> annotate_snippets::Level<'static> {
+            match self {
+                Level::Error => annotate_snippets::Level::ERROR,
+                Level::Warning => annotate_snippets::Level::WARNING,
+            }
+        }
+    }
+
+    /// An error or a warning about a text that is no description.
     #[cfg(feature = "urdf")]
     pub(crate) struct Note {
         pub(crate) range: Range<usize>,
@@ -116,14 +134,11 @@ mod text {
         sorted.sort_by_key(|note| (note.range.start, note.range.end));
         let mut rendered = String::new();
         for note in sorted {
-            let title = match level {
-                Level::Error => annotate_snippets::Level::ERROR,
-                Level::Warning => annotate_snippets::Level::WARNING,
-            };
             let places = vec![(AnnotationKind::Primary, note.range.clone(), "")];
             let help = note.help.iter();
             let help = help.map(|help| annotate_snippets::Level::HELP.message(help.as_str()));
-            let group = title
+            let group = level
+                .title()
                 .primary_title(note.message.as_str())
                 .element(snippet(places, path, source))
                 .elements(help);
@@ -139,11 +154,12 @@ mod text {
 
     fn group<'a>(
         error: &'a Diagnostic,
+        level: Level,
         range: Option<Range<usize>>,
         path: &'a str,
         source: &'a str,
     ) -> Group<'a> {
-        let group = annotate_snippets::Level::ERROR.primary_title(error.message.as_str());
+        let group = level.title().primary_title(error.message.as_str());
         let mut messages = Vec::new();
         let group =
             match range {

@@ -6,6 +6,9 @@ use proc_macro::TokenStream;
 ///
 /// The grammar is that of `.eom` files; errors are placed in the description. The expansion names
 /// `::hamel`, so the crate `hamel` has to be a dependency.
+///
+/// Warnings, such as that of a parameter that nothing uses, are not shown: stable Rust has none for macros.
+/// `hamel check` and the build script show them.
 #[proc_macro]
 pub fn rigid_eom(input: TokenStream) -> TokenStream {
     hamel_codegen::expand(input.into()).into()

@@ -14,6 +14,7 @@
 //! | [`work`] | work to reach an error, between the runs measured |
 //! | [`markdown`], [`json`], [`page`], [`readme`] | what people and programs read |
 //! | `code` | code between backticks, in pages and pictures |
+//! | [`summary`] | the runs behind the block of a README |
 //! | [`plot`] | pictures as SVG |
 //! | [`number`] | numbers as people read them |
 //!
@@ -39,4 +40,5 @@ pub mod plot;
 pub mod problem;
 pub mod readme;
 pub mod solution;
+pub mod summary;
 pub mod work;

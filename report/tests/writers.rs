@@ -4,6 +4,7 @@ use hamel_report::data::{
     Case, Choice, Drift, Kind, Machine, MethodRun, MethodRuns, Missing, Peer, Report,
 };
 use hamel_report::plot::precision;
+use hamel_report::summary::summary;
 use hamel_report::{json, markdown, page, readme};
 
 /// error = 1/n⁴ with 4 n evaluations and 1 µs a step, so that 1e-6 takes 10^1.5 steps and 1e-9
@@ -204,6 +205,19 @@ fn the_page_sets_code_apart() {
     }
     let text = markdown::write(&report, |_| None);
     assert!(text.contains("take `hamel::adapter`") && text.contains("against `rkmk8` with"));
+}
+
+#[test]
+fn the_summary_says_what_the_readme_says() {
+    let whole = report();
+    let small = summary(&whole);
+    assert_eq!(readme::block(&small), readme::block(&whole));
+    assert_eq!(summary(&small), small);
+    let [rkmk4] = &small.cases[0].methods[..] else {
+        panic!("one method is in the block: {small:?}");
+    };
+    let steps: Vec<u64> = rkmk4.runs.iter().map(|run| run.steps).collect();
+    assert_eq!(steps, [100, 1000]);
 }
 
 #[test]

@@ -11,6 +11,7 @@ pub mod file;
 pub mod joints;
 mod read;
 pub mod sample;
+mod solved;
 pub mod strict;
 #[cfg(test)]
 mod tests;
@@ -69,7 +70,7 @@ impl State {
     pub fn of(generated: &Generated, json: &Value) -> Result<Self, Vec<String>> {
         let model = &generated.active;
         let mut state = State::start(model);
-        let mut reader = Reader::new(model);
+        let mut reader = Reader::new(generated);
         reader.state(json, model, &mut state);
         reader.finish(generated, &mut state)?;
         Ok(state)

@@ -1,6 +1,7 @@
 //! JSON values to numbers, with the path of every mistake.
 
 use super::State;
+use super::solved::solved;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
@@ -19,15 +20,19 @@ pub struct Reader {
     given_x: Vec<bool>,
     /// Entries of ξ that were given.
     given_xi: Vec<bool>,
+    /// Velocities that no state has, with the reason.
+    solved: Vec<(String, String)>,
 }
 
 impl Reader {
     /// Nothing was given yet.
-    pub fn new(model: &Model) -> Self {
+    pub fn new(generated: &Generated) -> Self {
+        let model = &generated.active;
         Reader {
             errors: Vec::new(),
             given_x: vec![false; model.nu()],
             given_xi: vec![false; model.n()],
+            solved: solved(generated),
         }
     }
 
@@ -152,10 +157,13 @@ impl Reader {
             } else {
                 format!("{at}.{name}")
             };
-            let message = match (closest(name, names.iter().copied()), names) {
-                (Some(meant), _) => format!("unknown name; did you mean `{meant}`?"),
-                (None, []) => "unknown name; the description has none".into(),
-                (None, _) => format!("unknown name; known are {}", names.join(", ")),
+            let reason = self.solved.iter().find(|(solved, _)| solved == name);
+            let reason = reason.filter(|_| matches!(at, "velocity" | "configuration" | "force"));
+            let message = match (reason, closest(name, names.iter().copied()), names) {
+                (Some((_, why)), ..) => why.clone(),
+                (None, Some(meant), _) => format!("unknown name; did you mean `{meant}`?"),
+                (None, None, []) => "unknown name; the description has none".into(),
+                (None, None, _) => format!("unknown name; known are {}", names.join(", ")),
             };
             self.error(&path, message);
         }

@@ -56,7 +56,7 @@ impl Sample {
             joints: joints(model, names),
             force: None,
         };
-        let mut reader = Reader::new(model);
+        let mut reader = Reader::new(generated);
         match json {
             Value::Object(parts) => reader.sample(parts, order, &mut sample),
             other => reader.error("", format!("an object expected, {} found", kind(other))),

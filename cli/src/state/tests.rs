@@ -75,3 +75,32 @@ fn states_off_the_manifold_are_refused() {
     let errors = read(reflected).expect_err("reflected");
     assert_eq!(errors, ["coord.X: a reflection, its determinant is -1"]);
 }
+
+/// A blade that cannot slip sideways; its angular velocity has one component that is not zero.
+const SLEIGH: &str = "system Sleigh {
+    coord x, y, q;
+    velocity u, v, w: vec3;
+    rate x = cos(q) * u - sin(q) * v;
+    rate y = sin(q) * u + cos(q) * v;
+    rate q = w[3];
+    coord a, b;
+    rate a = w[1];
+    rate b = w[2];
+    inactive v, w[1], w[2];
+    kinetic (u^2 + v^2 + dot(w, w)) / 2;
+}";
+
+#[test]
+fn velocities_that_were_solved_away_are_named_as_such() {
+    let generated = from_text(SLEIGH).expect("a sound description");
+    let text = r#"{"velocity": {"u": 1, "v": 0, "w": [0, 0, 2], "z": 1}}"#;
+    let read = |text: &str| State::of(&generated, &strict::parse(text).expect("JSON"));
+    let errors = read(text).expect_err("mistakes");
+    let expected = [
+        "velocity.v: solved away, since constraints give it by u, w_3; leave it out",
+        "velocity.w: solved away in part, since constraints give the rest by u, w_3; give w_3",
+        "velocity.z: unknown name; known are u, w_3",
+    ];
+    assert_eq!(errors, expected);
+    read(r#"{"velocity": {"u": 1, "w_3": 2}}"#).expect("a sound state");
+}

@@ -3,8 +3,12 @@
 //! | what | pattern |
 //! |---|---|
 //! | type | as written |
-//! | function, parameter's field and accessor | `snake_case` of the name as written |
+//! | functions that every description can have | `rate`, `accel` …, whether they are generated or not |
+//! | parameter's field and accessor | `snake_case` of the name as written |
+//! | the same of `M` beside a parameter `m` | `m_upper` |
 //! | parameter's setter | `set_` + accessor |
+//! | function of an output or an invariant | `snake_case` of the name as written |
+//! | the same where that is taken | `snake_case` + `_output` |
 //! | field of kept constants | `k` |
 //! | private functions | `constants`, `update`, function + `_part1` … |
 //! | arguments | `x`, `xi`, `u`, `xi_dot`; `slots`, `out` in parts |
@@ -13,7 +17,12 @@
 //!
 //! ASCII only: Greek letters by their names, combining dots as `_dot`, other letters as `u` + hex
 //! code. A name that is taken gets `_2`, `_3` …; a keyword gets `_`.
+//!
+//! Names are given in the order of the table, those of one row in the order of the text. So the names of
+//! parameters depend on the parameters alone: an output more or less, and what is asked for by `generate`,
+//! change none of them. Fields have a scope of their own, since Rust tells them from methods.
 
+use crate::functions::FunctionId;
 use crate::program::{Argument, Program};
 use rustc_hash::FxHashSet;
 
@@ -136,6 +145,22 @@ pub fn type_name(name: &str) -> String {
     legal(text, TYPES)
 }
 
+/// Names in lower snake case; of two that differ by case alone, the one with capitals gets `_upper`.
+fn cased(names: &[&str]) -> Vec<String> {
+    let is_lower = |name: &str| !name.chars().any(char::is_uppercase);
+    let snakes: Vec<String> = names.iter().map(|name| snake(name)).collect();
+    let lower = |wanted: &String| {
+        let mut all = names.iter().zip(&snakes);
+        all.any(|(name, snake)| snake == wanted && is_lower(name))
+    };
+    let each = names.iter().zip(&snakes);
+    each.map(|(name, snake)| match lower(snake) && !is_lower(name) {
+        true => format!("{}_upper", snake.trim_end_matches('_')),
+        false => snake.clone(),
+    })
+    .collect()
+}
+
 fn spell(letter: char) -> String {
     let greek = GREEK.iter().find(|(letters, _)| letters.contains(letter));
     match (letter, greek) {
@@ -233,25 +258,38 @@ impl Names {
     /// Names for all that is public, then for what is private.
     pub fn new(program: &Program) -> Self {
         let mut methods = Unique::new(METHODS);
+        let known = FunctionId::ALL.iter();
+        methods.taken.extend(known.map(|id| id.name().to_string()));
         let mut fields = Unique::default();
-        let functions = program.functions.iter();
-        let functions = functions.map(|function| methods.claim(&snake(&function.name)));
-        let functions: Vec<String> = functions.collect();
+        let groups = program.params.iter();
+        let params = cased(&groups.map(|group| group.name.as_str()).collect::<Vec<_>>());
         let mut accessors = Vec::new();
-        for group in &program.params {
+        for wanted in &params {
             let taken = methods.taken.clone();
             let free = |name: &str| !taken.contains(&format!("set_{name}"));
-            let accessor = methods.claim_where(&snake(&group.name), free);
+            let accessor = methods.claim_where(wanted, free);
             methods.claim(&format!("set_{accessor}"));
             accessors.push(accessor);
         }
-        let groups = program.params.iter();
+        let own = program.functions.iter().filter(|f| f.id.is_none());
+        let own: Vec<&str> = own.map(|function| function.name.as_str()).collect();
+        let mut own = cased(&own).into_iter();
+        let mut named = Vec::new();
+        for function in &program.functions {
+            let wanted = match function.id {
+                Some(_) => None,
+                None => own.next(),
+            };
+            named.push(match wanted {
+                None => function.name.clone(),
+                Some(wanted) if methods.is_free(&wanted) => methods.claim(&wanted),
+                Some(wanted) => methods.claim(&format!("{}_output", wanted.trim_end_matches('_'))),
+            });
+        }
         Names {
             type_name: type_name(&program.name),
-            functions,
-            fields: groups
-                .map(|group| fields.claim(&snake(&group.name)))
-                .collect(),
+            functions: named,
+            fields: params.iter().map(|wanted| fields.claim(wanted)).collect(),
             accessors,
             kept: fields.claim("k"),
             constants: methods.claim("constants"),

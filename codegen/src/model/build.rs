@@ -8,7 +8,7 @@ use super::scope::Scope;
 use super::variety::Variety;
 use super::{
     Model, class, closure, defaults, dynamics, invariants, joints, kinematics, pfaffian, samples,
-    start,
+    start, unused,
 };
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
@@ -24,6 +24,7 @@ const SEED: u64 = 0x4a6d_656c;
 /// Reads a description; all its independent errors are reported together.
 pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
     let mut first = Report::new();
+    let warnings = unused::warnings(system);
     let system = &joints::expand(system, &mut first);
     let mut variety = Variety::read(system, SEED, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
@@ -53,6 +54,7 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
             Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
+                model.warnings = warnings;
                 return Ok(model);
             }
             Err((errors, _)) => return Err(errors),
@@ -236,6 +238,7 @@ impl<'a> Reading<'a> {
             start_xi: start.xi,
             asked: dynamics.asked,
             span: system.name.span,
+            warnings: Vec::new(),
         })
     }
 

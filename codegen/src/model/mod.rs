@@ -39,11 +39,13 @@ pub mod scope;
 mod start;
 pub mod states;
 mod tangency;
+mod unused;
 pub mod value;
 mod variety;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
+use crate::diagnostics::Diagnostic;
 use crate::functions::Asked;
 use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
 use completion::Completion;
@@ -271,6 +273,8 @@ pub struct Model {
     pub asked: Asked,
     /// The statements that the start is about, for errors found later.
     pub span: Span,
+    /// What is legal and looks like a mistake.
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Model {

@@ -3,9 +3,12 @@
 mod sample;
 mod sketch;
 
-use super::names::{snake, type_name};
+use super::names::{Names, snake, type_name};
 use super::{Options, rust, statements, tokens};
+use crate::program::Shape;
+use crate::syntax::ast::ShapeKind;
 use sample::{everything, pendulum, random};
+use sketch::{Declared, function, sketch};
 use std::collections::HashSet;
 
 fn methods(file: &syn::File) -> Vec<&syn::ImplItemFn> {
@@ -183,21 +186,78 @@ fn names_are_unique() {
         }
         for name in [
             "type_",
-            "new_2",
-            "clone_2",
+            "new_output",
+            "clone_output",
             "k",
             "set_k",
             "set_k_2",
             "set_set_k_2",
             "theta",
-            "theta_2",
-            "rate",
+            "theta_upper",
+            "rate_2",
             "self_",
             "ue9",
         ] {
             assert!(seen.contains(name), "{name} in {seen:?}");
         }
     }
+}
+
+/// The names of the parameters, and those of the functions after them.
+fn named(params: &[&str], functions: &[&str]) -> (Vec<String>, Vec<String>) {
+    let params: Vec<_> = params.iter().map(|&p| (p, ShapeKind::Scalar)).collect();
+    let declared = Declared {
+        params: &params,
+        coordinates: &[],
+        velocities: &[],
+        inputs: &[],
+    };
+    let (mut program, _) = sketch("A", &declared);
+    let of = |name: &&str| function(name, &[], Shape::Vector(0), Vec::new());
+    program.functions = functions.iter().map(of).collect();
+    let names = Names::new(&program);
+    assert_eq!(names.fields, names.accessors);
+    (names.accessors, names.functions)
+}
+
+#[test]
+fn names_of_parameters_depend_on_parameters_alone() {
+    let (params, functions) = named(&["M", "m"], &["rate"]);
+    assert_eq!(params, ["m_upper", "m"]);
+    assert_eq!(functions, ["rate"]);
+    let (same, functions) = named(&["M", "m"], &["rate", "m", "set_m", "M_upper", "E", "e"]);
+    assert_eq!(same, params);
+    assert_eq!(
+        functions,
+        [
+            "rate",
+            "m_output",
+            "set_m_output",
+            "m_upper_output",
+            "e_upper",
+            "e"
+        ]
+    );
+    // Capitals alone are no reason for another name; letters of the same name are told apart by numbers.
+    assert_eq!(named(&["M", "Theta"], &["m"]).0, ["m", "theta"]);
+    assert_eq!(
+        named(&["Θ", "θ", "theta"], &[]).0,
+        ["theta_upper", "theta", "theta_2"]
+    );
+}
+
+#[test]
+fn names_of_parameters_do_not_depend_on_what_is_generated() {
+    let declared = Declared {
+        params: &[("energy", ShapeKind::Scalar)],
+        coordinates: &[],
+        velocities: &[],
+        inputs: &[],
+    };
+    let (program, _) = sketch("A", &declared);
+    let names = Names::new(&program);
+    assert_eq!(names.fields, ["energy"]);
+    assert_eq!(names.accessors, ["energy_2"]);
 }
 
 #[test]

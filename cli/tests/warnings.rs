@@ -1,0 +1,40 @@
+//! What a description declares and does not use is said on standard error, and changes nothing else.
+
+mod common;
+
+use common::{hamel, text};
+
+const UNUSED: &str = "system A { param k = 2; coord q; velocity w; rate q = w; kinetic w^2 / 2; }";
+
+#[test]
+fn warnings_are_shown_once_and_end_nothing() {
+    for command in ["check", "ops", "tables", "emit", "eval", "linearize"] {
+        let output = hamel(&[command, "-"], UNUSED);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{command}: {said}");
+        assert_eq!(said.matches("warning:").count(), 1, "{command}: {said}");
+        for part in [
+            "warning: the parameter `k` is never used",
+            "<stdin>:1:18",
+            "help: remove it, or call it `_k`",
+        ] {
+            assert!(said.contains(part), "{command}: {said}");
+        }
+        assert!(!text(&output.stdout).contains("warning"), "{command}");
+    }
+}
+
+#[test]
+fn the_advice_is_heeded() {
+    let output = hamel(&["emit", "-"], &UNUSED.replace("param k", "param _k"));
+    assert_eq!(text(&output.stderr), "");
+    assert!(text(&output.stdout).contains("pub fn set_k("));
+}
+
+#[test]
+fn errors_come_without_warnings() {
+    let output = hamel(&["check", "-"], &UNUSED.replace("w^2", "z^2"));
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(!said.contains("warning"), "{said}");
+}
