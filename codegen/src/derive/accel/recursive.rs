@@ -7,12 +7,12 @@ use super::solve::{Plan, Solution, solve};
 use super::{Acceleration, keep};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
-use crate::algebra::linear::zero3;
+use crate::algebra::linear::{Vec3, zero3};
 use crate::algebra::transplant::map_symbols;
 use crate::derive::care::Care;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
-use crate::derive::tree::momentum::swing;
+use crate::derive::tree::momentum::{swing, total};
 use crate::derive::tree::nearby::slopes;
 use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;
@@ -165,6 +165,14 @@ impl Recursion {
         });
         let rate = rate.collect();
         Some((graph, rate))
+    }
+
+    /// The momentum of everything in a graph of its own: linear and about the origin of the world, in its
+    /// axes. The links have to be the description's: others move as these do and have other momenta.
+    pub fn total_momentum(&self) -> (Graph, Vec3, Vec3) {
+        let mut graph = self.model.graph.clone();
+        let (linear, angular) = total(&mut graph, &self.tree, &self.model.xi);
+        (graph, linear, angular)
     }
 
     /// ξ = M⁻¹ p by articulated bodies: what ξ̇ is where nothing but p acts; `None` where a velocity is not
