@@ -78,37 +78,95 @@ impl Acceleration {
     }
 }
 
+/// Candidates that are alike: of each family the best is polished before they are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Family {
+    /// Recursions over links.
+    Links,
+    /// Bodies traced in these axes, in the model's velocities or in the twist of its one body.
+    Traced { twist: bool, axes: Axes },
+    /// Expanded and factored anew.
+    Polynomial,
+}
+
+/// The best candidates so far, one of each family.
+pub(super) struct Best<'a> {
+    care: &'a Care,
+    families: Vec<(Family, Acceleration)>,
+}
+
+impl<'a> Best<'a> {
+    fn new(care: &'a Care) -> Self {
+        Best {
+            care,
+            families: Vec::new(),
+        }
+    }
+
+    /// Keeps a candidate that is better than what its family has.
+    pub(super) fn keep(&mut self, family: Family, mut candidate: Acceleration) {
+        candidate.loss = self
+            .care
+            .loss(&candidate.graph, &candidate.xi_dot, &candidate.pivots);
+        match self.families.iter_mut().find(|(known, _)| *known == family) {
+            Some((_, best)) if candidate.cost() < best.cost() => *best = candidate,
+            Some(_) => {}
+            None => self.families.push((family, candidate)),
+        }
+    }
+
+    /// The weight of the cheapest.
+    fn least(&self) -> usize {
+        let weights = self.families.iter().map(|(_, best)| best.count.weight());
+        weights.min().unwrap_or(usize::MAX)
+    }
+
+    /// The best as it is.
+    fn cheapest(self) -> Option<Acceleration> {
+        let all = self.families.into_iter().map(|(_, best)| best);
+        all.min_by_key(Acceleration::cost)
+    }
+
+    /// The best after resubstitution.
+    fn polished(self, model: &Model) -> Option<Acceleration> {
+        let care = self.care;
+        let all = self.families.into_iter();
+        let all = all.map(|(_, best)| polished(best, model, care));
+        all.min_by_key(Acceleration::cost)
+    }
+}
+
 /// The cheapest computation of ξ̇; M and the forces as each is cheapest, in a graph where ξ̇ is, too.
 pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> {
-    let mut best: Option<Acceleration> = None;
+    let mut best = Best::new(care);
     let given = Setting::given(model);
     if !model.constraints.is_empty() {
         return constrained(&given, care);
     }
     let recursions = recursions(&given, care);
     for recursion in &recursions {
-        recursion.search(&mut best, care);
+        recursion.search(&mut best);
     }
     let traced = || recursions.iter().map(Recursion::parts);
     if is_long(&given, &recursions) {
-        let best = best?;
+        let best = best.cheapest()?;
         let computed = cheapest(traced().collect(), &best.graph, model, care)?;
         return Some((best, computed));
     }
-    let mut computations = search(&given, &mut best, care)?;
+    let mut computations = search(&given, &mut best)?;
     if model.n() <= SMALL
         && model.spans
         && let Some(twist) = Setting::twist(model)
     {
-        search(&twist, &mut best, care);
+        search(&twist, &mut best);
     }
     if model.n() <= SMALL && model.spans && !care.is_taken() {
-        let most = best.as_ref().map_or(usize::MAX, |best| best.count.weight());
+        let most = best.least();
         for candidate in polynomial::candidates(model, most) {
-            keep(&mut best, candidate, care);
+            best.keep(Family::Polynomial, candidate);
         }
     }
-    let best = polished(best?, model, care);
+    let best = best.polished(model)?;
     computations.extend(traced());
     let computed = cheapest(computations, &best.graph, model, care)?;
     Some((best, computed))
@@ -265,11 +323,11 @@ fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
 
 /// Counts the candidates of a setting; what was traced, that of the best of them first, and for systems
 /// that are not small alone.
-fn search(
-    setting: &Setting,
-    best: &mut Option<Acceleration>,
-    care: &Care,
-) -> Option<Vec<Computation>> {
+fn search(setting: &Setting, best: &mut Best) -> Option<Vec<Computation>> {
+    let family = |variant: &Variant| Family::Traced {
+        twist: setting.back.is_some(),
+        axes: variant.axes,
+    };
     let small = setting.model.n() <= SMALL;
     let mut chosen: Option<(usize, Variant)> = None;
     let mut computations = Vec::new();
@@ -282,7 +340,7 @@ fn search(
                 if chosen.is_none_or(|(least, _)| weight < least) {
                     chosen = Some((weight, variant));
                 }
-                keep(best, candidate, care);
+                best.keep(family(&variant), candidate);
             }
         }
         let graph = traced.graph;
@@ -300,23 +358,13 @@ fn search(
             let (traced, parts) = trace(setting, variant);
             for plan in all_plans(&traced.graph, &parts) {
                 if let Some(candidate) = attempt(setting, &traced, &parts, &plan, &variant) {
-                    keep(best, candidate, care);
+                    best.keep(family(&variant), candidate);
                 }
             }
         }
     }
     computations.truncate(if small { computations.len() } else { 1 });
     Some(computations)
-}
-
-fn keep(best: &mut Option<Acceleration>, mut candidate: Acceleration, care: &Care) {
-    candidate.loss = care.loss(&candidate.graph, &candidate.xi_dot, &candidate.pivots);
-    let better = best
-        .as_ref()
-        .is_none_or(|best| candidate.cost() < best.cost());
-    if better {
-        *best = Some(candidate);
-    }
 }
 
 fn variants(model: &Model, small: bool) -> Vec<Variant> {
