@@ -1,10 +1,10 @@
 //! Trees: ξ̇, M and forces by recursion over links.
 
+use super::best::{Acceleration, Best, Family};
 use super::cheapest::Computation;
 use super::parts::Parts;
 use super::setting::Setting;
 use super::solve::{Plan, Solution, solve};
-use super::{Acceleration, Best, Family};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::{Vec3, zero3};
