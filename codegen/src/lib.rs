@@ -16,7 +16,7 @@
 //! | [`tables`] | what people read |
 //! | [`generate`], [`expand()`], [`Builder`] | the doors; `urdf` with the feature of that name |
 
-pub mod algebra;
+pub use hamel_algebra as algebra;
 #[cfg(feature = "files")]
 pub mod builder;
 pub mod derive;

@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 
 /// The crates that the command line is made of.
 const CRATES: [&str; 7] = [
-    "codegen", "files", "macros", "runtime", "report", "urdf", "cli",
+    "algebra", "codegen", "files", "macros", "runtime", "report", "urdf", "cli",
 ];
 
 fn root() -> PathBuf {

@@ -6,7 +6,7 @@ use super::accel::{Acceleration, accel, forces};
 use super::calculus::Calculus;
 use super::care::{self, Care};
 use super::reduction::Reduction;
-use super::structure::{self, Found};
+use super::structure::{self, Found, Functions};
 use super::{constrained, correction, energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
@@ -98,7 +98,14 @@ fn put_together(
     }
     let Computation { graph, parts } = &builder.shared;
     let found = structure::analyse(full, model, graph, parts);
-    let structure = builder.splitting(found)?;
+    let mut others = Vec::new();
+    if found.functions.is_some() && model.n() <= MOST_LITERAL {
+        // Apart from what ξ̇ is computed from.
+        let mut apart = model.graph.clone();
+        let parts = builder.parts.grafted(&builder.graph, &mut apart);
+        others.extend(structure::analyse(full, model, &apart, &parts).functions);
+    }
+    let structure = builder.splitting(found, &others)?;
     let mass = builder.parts.mass.clone();
     Ok((builder.finish(structure), mass))
 }
@@ -268,7 +275,7 @@ impl<'a> Builder<'a> {
     }
 
     /// What the methods for systems that split call; an error where it is asked for in vain.
-    fn splitting(&mut self, found: Found) -> Result<Structure, Diagnostic> {
+    fn splitting(&mut self, found: Found, others: &[Functions]) -> Result<Structure, Diagnostic> {
         let model = self.model;
         if let (Err(reasons), true) = (
             &found.structure.split,
@@ -286,7 +293,7 @@ impl<'a> Builder<'a> {
         if let (Some(functions), true) =
             (&found.functions, model.asked.wants(FunctionId::Splitting))
         {
-            let pivots = functions.add(self);
+            let pivots = functions.add(others, self);
             let graph = &self.graph;
             let varies = |pivot: &Edge| !graph.is_free(pivot.node());
             if self.chosen.pivots.iter().any(varies) {

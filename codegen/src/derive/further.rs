@@ -11,8 +11,10 @@ use super::invariants::quantity;
 use super::linearize::{Displacements, Motion, linearize};
 use super::momentum;
 use super::reduction::Reduction;
-use crate::algebra::graph::Edge;
-use crate::algebra::transplant::{graft, rebuild};
+use super::tree::Placement;
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::transplant::graft;
 use crate::model::Model;
 use crate::model::invariants::Quantity;
 use crate::program::{Argument, Function, FunctionId, Shape};
@@ -121,6 +123,11 @@ impl Builder<'_> {
     pub(super) fn invariants(&mut self) {
         let mut model = self.model.clone();
         let mut calculus = Calculus::new(&model);
+        let given = Setting::given(self.model);
+        let total = (!self.model.invariants.is_empty())
+            .then(|| Recursion::of(&given, Placement::Described))
+            .flatten()
+            .map(|recursion| recursion.total_momentum());
         for claim in &self.model.invariants {
             // The energy has its function already.
             if matches!(claim.quantity, Quantity::Energy) && claim.name == "energy" {
@@ -133,8 +140,21 @@ impl Builder<'_> {
                 (quantity, _) => {
                     let zero = model.graph.zero();
                     let value = quantity::value(&mut model, &mut calculus, (zero, zero), quantity);
-                    let entries = rebuild(&model.graph, &mut self.graph, &value.entries());
-                    (shape_of(&value), entries)
+                    let mut candidates = Candidates::with(&self.care);
+                    candidates.offer_both(model.graph.clone(), value.entries(), &self.graph);
+                    if let Some((graph, linear, angular)) = &total {
+                        let mut graph = graph.clone();
+                        let found = quantity::of_total(&mut graph, (*linear, *angular), quantity);
+                        // The definition decides, by values at the graph's point in two fields.
+                        let values = |graph: &Graph, entries: &[Edge]| -> Vec<Fp> {
+                            entries.iter().map(|&entry| graph.value(entry)).collect()
+                        };
+                        let defined = values(&model.graph, &value.entries());
+                        if let Some(found) = found.filter(|f| values(&graph, f) == defined) {
+                            candidates.offer_own(graph, found);
+                        }
+                    }
+                    (shape_of(&value), candidates.cheapest(&mut self.graph))
                 }
             };
             let when = match claim.when.as_str() {

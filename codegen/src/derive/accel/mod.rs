@@ -4,6 +4,7 @@
 //! Γ ξ ξ) and in how they solve. Every candidate is built in a graph of its own and counted
 //! exactly; the cheapest is kept.
 
+mod best;
 pub mod cheapest;
 pub mod parts;
 pub mod polynomial;
@@ -13,14 +14,14 @@ pub mod setting;
 pub mod solve;
 
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::resubstitute::resubstitute;
 use crate::derive::care::Care;
 use crate::model::Model;
-use crate::program::count::{Count, count, depth};
+use crate::program::count::{count, depth};
+pub use best::Acceleration;
+use best::{Best, Family};
 use cheapest::{Computation, cheapest};
 use parts::{Axes, Parts, Reference, Variant, parts};
 use recursive::Recursion;
-use saddle::Projections;
 use setting::Setting;
 use solve::{Plan, solve};
 
@@ -33,82 +34,37 @@ const FEW: usize = 1000;
 /// Graphs with more nodes get two orders of elimination and no further plans.
 const LARGE: usize = 3000;
 
-/// The chosen computation of ξ̇.
-#[derive(Clone, Debug)]
-pub struct Acceleration {
-    /// The graph that it lives in: the model's, with the route's nodes added.
-    pub graph: Graph,
-    /// ξ̇.
-    pub xi_dot: Vec<Edge>,
-    /// Pivots that have to be positive, in order of elimination.
-    pub pivots: Vec<Edge>,
-    /// Multipliers of the constraints that the model keeps.
-    pub multipliers: Vec<Edge>,
-    /// What leads back to these constraints, where there are some.
-    pub projections: Option<Projections>,
-    /// The digits that rounding takes of it, in steps, as far as they count.
-    pub loss: usize,
-    /// Its operations.
-    pub count: Count,
-    /// Its longest chain of operations after one another: of two equal counts the flatter is faster.
-    pub depth: usize,
-    /// What was chosen, for people.
-    pub route: String,
-}
-
-impl Acceleration {
-    /// None, where no ξ̇ is wanted; in a graph of the model's symbols.
-    pub fn none(graph: Graph) -> Self {
-        Acceleration {
-            graph,
-            xi_dot: Vec::new(),
-            pivots: Vec::new(),
-            multipliers: Vec::new(),
-            projections: None,
-            loss: 0,
-            count: Count::default(),
-            depth: 0,
-            route: String::new(),
-        }
-    }
-
-    /// Digits first, where they count, then operations, then depth.
-    fn cost(&self) -> (usize, usize, usize) {
-        (self.loss, self.count.weight(), self.depth)
-    }
-}
-
 /// The cheapest computation of ξ̇; M and the forces as each is cheapest, in a graph where ξ̇ is, too.
 pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> {
-    let mut best: Option<Acceleration> = None;
+    let mut best = Best::new(care);
     let given = Setting::given(model);
     if !model.constraints.is_empty() {
         return constrained(&given, care);
     }
     let recursions = recursions(&given, care);
     for recursion in &recursions {
-        recursion.search(&mut best, care);
+        recursion.search(&mut best);
     }
     let traced = || recursions.iter().map(Recursion::parts);
     if is_long(&given, &recursions) {
-        let best = best?;
+        let best = best.cheapest()?;
         let computed = cheapest(traced().collect(), &best.graph, model, care)?;
         return Some((best, computed));
     }
-    let mut computations = search(&given, &mut best, care)?;
+    let mut computations = search(&given, &mut best)?;
     if model.n() <= SMALL
         && model.spans
         && let Some(twist) = Setting::twist(model)
     {
-        search(&twist, &mut best, care);
+        search(&twist, &mut best);
     }
     if model.n() <= SMALL && model.spans && !care.is_taken() {
-        let most = best.as_ref().map_or(usize::MAX, |best| best.count.weight());
+        let most = best.least();
         for candidate in polynomial::candidates(model, most) {
-            keep(&mut best, candidate, care);
+            best.keep(Family::Polynomial, candidate);
         }
     }
-    let best = polished(best?, model, care);
+    let best = best.polished(model)?;
     computations.extend(traced());
     let computed = cheapest(computations, &best.graph, model, care)?;
     Some((best, computed))
@@ -227,49 +183,13 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
     Some((best, Computation { graph, parts }))
 }
 
-/// The chosen computation after resubstitution.
-fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
-    let roots: Vec<Edge> = chosen
-        .xi_dot
-        .iter()
-        .chain(&chosen.pivots)
-        .copied()
-        .collect();
-    let Some((graph, edges)) = resubstitute(&chosen.graph, &roots, &model.graph) else {
-        return chosen;
-    };
-    let (xi_dot, pivots) = edges.split_at(chosen.xi_dot.len());
-    let varying = edges
-        .iter()
-        .copied()
-        .filter(|edge| !graph.is_free(edge.node()))
-        .collect::<Vec<_>>();
-    let polished = Acceleration {
-        loss: care.loss(&graph, xi_dot, pivots),
-        count: count(&graph, &varying),
-        depth: depth(&graph, &varying),
-        route: chosen.route.clone(),
-        xi_dot: xi_dot.to_vec(),
-        pivots: pivots.to_vec(),
-        multipliers: Vec::new(),
-        projections: None,
-        graph,
-    };
-    let cost = |a: &Acceleration| (a.loss, a.count.weight());
-    if cost(&polished) < cost(&chosen) {
-        polished
-    } else {
-        chosen
-    }
-}
-
 /// Counts the candidates of a setting; what was traced, that of the best of them first, and for systems
 /// that are not small alone.
-fn search(
-    setting: &Setting,
-    best: &mut Option<Acceleration>,
-    care: &Care,
-) -> Option<Vec<Computation>> {
+fn search(setting: &Setting, best: &mut Best) -> Option<Vec<Computation>> {
+    let family = |variant: &Variant| Family::Traced {
+        twist: setting.back.is_some(),
+        axes: variant.axes,
+    };
     let small = setting.model.n() <= SMALL;
     let mut chosen: Option<(usize, Variant)> = None;
     let mut computations = Vec::new();
@@ -282,7 +202,7 @@ fn search(
                 if chosen.is_none_or(|(least, _)| weight < least) {
                     chosen = Some((weight, variant));
                 }
-                keep(best, candidate, care);
+                best.keep(family(&variant), candidate);
             }
         }
         let graph = traced.graph;
@@ -300,23 +220,13 @@ fn search(
             let (traced, parts) = trace(setting, variant);
             for plan in all_plans(&traced.graph, &parts) {
                 if let Some(candidate) = attempt(setting, &traced, &parts, &plan, &variant) {
-                    keep(best, candidate, care);
+                    best.keep(family(&variant), candidate);
                 }
             }
         }
     }
     computations.truncate(if small { computations.len() } else { 1 });
     Some(computations)
-}
-
-fn keep(best: &mut Option<Acceleration>, mut candidate: Acceleration, care: &Care) {
-    candidate.loss = care.loss(&candidate.graph, &candidate.xi_dot, &candidate.pivots);
-    let better = best
-        .as_ref()
-        .is_none_or(|best| candidate.cost() < best.cost());
-    if better {
-        *best = Some(candidate);
-    }
 }
 
 fn variants(model: &Model, small: bool) -> Vec<Variant> {

@@ -1,18 +1,17 @@
 //! Trees: ξ̇, M and forces by recursion over links.
 
+use super::best::{Acceleration, Best, Family};
 use super::cheapest::Computation;
 use super::parts::Parts;
 use super::setting::Setting;
 use super::solve::{Plan, Solution, solve};
-use super::{Acceleration, keep};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
-use crate::algebra::linear::zero3;
+use crate::algebra::linear::{Vec3, zero3};
 use crate::algebra::transplant::map_symbols;
-use crate::derive::care::Care;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
-use crate::derive::tree::momentum::swing;
+use crate::derive::tree::momentum::{swing, total};
 use crate::derive::tree::nearby::slopes;
 use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;
@@ -69,7 +68,7 @@ impl Recursion {
     }
 
     /// Counts articulated bodies, and M with elimination from the leaves and from the root.
-    pub fn search(&self, best: &mut Option<Acceleration>, care: &Care) {
+    pub(super) fn search(&self, best: &mut Best) {
         let n = self.model.n();
         let rest = vec![self.model.graph.zero(); n];
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
@@ -80,7 +79,7 @@ impl Recursion {
             if let Some(solution) = articulated::forward(&mut graph, &self.tree, &forces, &load) {
                 let route = "links traced, articulated bodies".to_string();
                 let candidate = candidate(graph, solution.xi_dot, solution.pivots, route);
-                keep(best, candidate, care);
+                best.keep(Family::Links, candidate);
             }
         }
         let mut graph = self.model.graph.clone();
@@ -113,7 +112,7 @@ impl Recursion {
             if let Some(solution) = solve(&mut graph, &given, &plan) {
                 let route = format!("links traced, composite bodies, M eliminated {way}");
                 let candidate = candidate(graph, solution.xi_dot, solution.pivots, route);
-                keep(best, candidate, care);
+                best.keep(Family::Links, candidate);
             }
         }
     }
@@ -165,6 +164,14 @@ impl Recursion {
         });
         let rate = rate.collect();
         Some((graph, rate))
+    }
+
+    /// The momentum of everything in a graph of its own: linear and about the origin of the world, in its
+    /// axes. The links have to be the description's: others move as these do and have other momenta.
+    pub fn total_momentum(&self) -> (Graph, Vec3, Vec3) {
+        let mut graph = self.model.graph.clone();
+        let (linear, angular) = total(&mut graph, &self.tree, &self.model.xi);
+        (graph, linear, angular)
     }
 
     /// ξ = M⁻¹ p by articulated bodies: what ξ̇ is where nothing but p acts; `None` where a velocity is not

@@ -1,7 +1,7 @@
 //! Energy and momenta in world axes: P = Σ m ċ and L_p = Σ (c − p) × m ċ + R Θ ω over the bodies
 //! with their centres of mass c and inertia Θ about them, and over particles.
 
-use crate::algebra::graph::Edge;
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, apply3, cross, scale3, sub3, zero3};
 use crate::derive::calculus::Calculus;
 use crate::model::Model;
@@ -37,6 +37,31 @@ pub fn value(
         }
         Quantity::Value(value) => value.clone(),
     }
+}
+
+/// The same from the momentum of everything, linear and about the origin of the world; `None` for what it
+/// does not give.
+pub fn of_total(
+    graph: &mut Graph,
+    (linear, angular): (Vec3, Vec3),
+    quantity: &Quantity,
+) -> Option<Vec<Edge>> {
+    let (total, along) = match quantity {
+        Quantity::LinearMomentum { of: None, along } => (linear, along),
+        Quantity::AngularMomentum {
+            of: None,
+            about,
+            along,
+        } => {
+            let lever = cross(graph, *about, linear);
+            (sub3(graph, angular, lever), along)
+        }
+        _ => return None,
+    };
+    Some(match along {
+        Some(along) => vec![graph.dot(along, &total)],
+        None => total.to_vec(),
+    })
 }
 
 /// One mass in motion, world axes.

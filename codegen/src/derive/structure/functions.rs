@@ -164,28 +164,34 @@ impl Functions {
         self.kick.iter().all(|&edge| edge == self.graph.zero())
     }
 
-    /// Adds the functions to a program; returns the pivots that have to be positive.
-    pub fn add(&self, builder: &mut Builder) -> Vec<Edge> {
-        let n = self.momenta.len();
-        let vector = Shape::Vector(n);
-        let nu = Shape::Vector(self.centre.as_ref().map_or(0, Vec::len));
-        let inertia = (!self.rotors.is_empty()).then_some(&self.inertia);
-        let table = [
-            (FunctionId::Centre, nu, self.centre.as_ref()),
-            (FunctionId::Uncentre, nu, self.uncentre.as_ref()),
-            (FunctionId::Momenta, vector, Some(&self.momenta)),
-            (FunctionId::Velocities, vector, Some(&self.velocities)),
-            (FunctionId::Kick, vector, Some(&self.kick)),
-            (
-                FunctionId::RotorInertia,
-                Shape::Vector(self.inertia.len()),
-                inertia,
-            ),
-        ];
-        for (id, shape, outputs) in table {
-            let Some(outputs) = outputs else { continue };
+    /// The value of a function; none where it is not needed.
+    fn value(&self, id: FunctionId) -> Option<&Vec<Edge>> {
+        match id {
+            FunctionId::Centre => self.centre.as_ref(),
+            FunctionId::Uncentre => self.uncentre.as_ref(),
+            FunctionId::Momenta => Some(&self.momenta),
+            FunctionId::Velocities => Some(&self.velocities),
+            FunctionId::Kick => Some(&self.kick),
+            FunctionId::RotorInertia => (!self.rotors.is_empty()).then_some(&self.inertia),
+            _ => None,
+        }
+    }
+
+    /// Adds the functions to a program, each as it is cheapest here or in `others`, which were found from
+    /// other computations of M and the forces; returns the pivots that have to be positive.
+    pub fn add(&self, others: &[Functions], builder: &mut Builder) -> Vec<Edge> {
+        for &id in FunctionId::ALL {
+            let Some(outputs) = self.value(id) else {
+                continue;
+            };
             let mut candidates = Candidates::with(&builder.care);
             candidates.offer_both(self.graph.clone(), outputs.clone(), &builder.graph);
+            for other in others.iter().filter(|other| other.rotors == self.rotors) {
+                if let Some(outputs) = other.value(id) {
+                    candidates.offer_both(other.graph.clone(), outputs.clone(), &builder.graph);
+                }
+            }
+            let shape = Shape::Vector(outputs.len());
             let outputs = candidates.cheapest(&mut builder.graph);
             builder.push(id, shape, outputs);
         }

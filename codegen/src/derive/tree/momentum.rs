@@ -1,4 +1,5 @@
-//! ∂ᵢT − γᵢⱼᵏ ξʲ pₖ by recursion: what turns momenta p = M ξ where no force acts, KR18 (30a).
+//! Momenta by recursion: that of everything, and ∂ᵢT − γᵢⱼᵏ ξʲ pₖ, which turns p = M ξ where no force acts,
+//! KR18 (30a).
 //!
 //! pᵢ = Sᵢ · h, with the freedom's twist Sᵢ and the momentum h = (k about the link's origin, l) of all that
 //! hangs on its joint. Forces change h; what is left of ṗᵢ is Ṡᵢ · h with Ṡᵢ = V × Sᵢ, where V = (ω, v) is the
@@ -6,9 +7,38 @@
 //! (torque k × ω + l × v, force l × ω).
 
 use super::Tree;
-use super::inverse::{Wrench, collect_with, motions, wrench};
+use super::inverse::{Motion, Wrench, carried, collect_with, motions, wrench};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{add3, cross, zero3};
+use crate::algebra::linear::{Vec3, add3, cross, zero3};
+
+/// The momentum of each link about its origin, in its axes, and the twists of the links.
+fn momenta(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec<Wrench>, Vec<Motion>) {
+    // As accelerations from rest the rates give twists, and the wrenches that go with them are momenta.
+    let (none, still) = (zero3(graph), vec![graph.zero(); xi.len()]);
+    let twists = motions(graph, tree, &still, xi, none);
+    let links = tree.links.iter().zip(&twists);
+    let momenta = links.map(|(link, twist)| wrench(graph, &link.mass, twist));
+    (momenta.collect(), twists)
+}
+
+/// The momentum of everything, linear and about the origin of the world, in its axes.
+pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
+    let (mut momenta, _) = momenta(graph, tree, xi);
+    let none = zero3(graph);
+    let mut total = Wrench {
+        force: none,
+        torque: none,
+    };
+    for (index, link) in tree.links.iter().enumerate().rev() {
+        let moved = carried(graph, link, &momenta[index]);
+        let onto = match link.parent {
+            Some(parent) => &mut momenta[parent],
+            None => &mut total,
+        };
+        *onto = onto.plus(graph, &moved);
+    }
+    (total.force, total.torque)
+}
 
 /// The part of ṗ that is quadratic in ξ; `None` where a freedom's twist varies in the axes of its link.
 pub fn swing(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec<Edge>> {
@@ -16,15 +46,7 @@ pub fn swing(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec<Edge>> {
     if tree.links.iter().any(|link| link.drift != (none, none)) {
         return None;
     }
-    // As accelerations from rest the rates give twists, and the wrenches that go with them are momenta.
-    let still = vec![graph.zero(); xi.len()];
-    let twists = motions(graph, tree, &still, xi, none);
-    let momenta: Vec<Wrench> = tree
-        .links
-        .iter()
-        .zip(&twists)
-        .map(|(link, twist)| wrench(graph, &link.mass, twist))
-        .collect();
+    let (momenta, twists) = momenta(graph, tree, xi);
     let turned = |graph: &mut Graph, index: usize, h: &Wrench| {
         let (omega, v) = (twists[index].alpha, twists[index].a);
         let spin = cross(graph, h.torque, omega);

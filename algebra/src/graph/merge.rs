@@ -1,0 +1,146 @@
+//! Which node an expression gets: one that is there already, or a new one.
+
+use super::{Edge, Function, Graph, Node, NodeId};
+use crate::fp::Fp;
+use crate::shadow::Shadow;
+
+impl Graph {
+    /// A node with the value of another one, or the small rational that it is; an expression that is
+    /// constant at run time does not give way to one that is not, nor any to what real samples say
+    /// is another number.
+    pub(super) fn known(&mut self, node: Node, value: Fp, class: u8) -> Option<Edge> {
+        let known = match self.lookup(value) {
+            Some(edge) => {
+                let improves = class & !self.free_class == 0 && !self.is_free(edge.node());
+                (!improves).then_some(edge)?
+            }
+            None => {
+                // Together with a number it is another number only where the rest is one.
+                if class != 0
+                    && node
+                        .children()
+                        .any(|child| self.as_rational(child).is_some())
+                {
+                    return None;
+                }
+                let (n, d) = value.to_small_rational(29)?;
+                is_plain(n, d).then(|| self.ratio(n, d))?
+            }
+        };
+        (!self.disputes(node, class, known)).then_some(known)
+    }
+
+    /// Whether real numbers contradict that a node is what has its values modulo the primes.
+    pub(crate) fn disputes(&mut self, node: Node, class: u8, known: Edge) -> bool {
+        if self.node(known.node()) == node && !known.is_negative() {
+            return false;
+        }
+        let (nodes, constants) = (&self.nodes, &self.constants);
+        // No random point protects numbers: they are compared with certainty.
+        if class == 0 && self.classes[known.node() as usize] == 0 {
+            return self.shadow.disputes_number(nodes, constants, node, known);
+        }
+        self.shadow.disputes(nodes, constants, node, known)
+    }
+
+    /// The real values of nodes, where square roots take part in some of the given ones.
+    pub(crate) fn sampled(&self, ids: &[NodeId]) -> Option<Shadow> {
+        self.shadow.filled(&self.nodes, &self.constants, ids)
+    }
+
+    /// The number whose square a number is, where it is there already.
+    pub(super) fn known_number_root(&mut self, square: Edge) -> Option<Edge> {
+        if self.class(square.node()) != 0 {
+            return None;
+        }
+        let root = self.value(square).sqrt()?;
+        let node = Node::Apply(Function::Sqrt, square);
+        for value in [root, root.flipped()] {
+            let Some(known) = self.lookup(value) else {
+                continue;
+            };
+            for known in [known, -known] {
+                if self.class(known.node()) == 0 && !self.disputes(node, 0, known) {
+                    return Some(known);
+                }
+            }
+        }
+        None
+    }
+
+    /// A node that later expressions do not merge with.
+    pub(crate) fn push_unmerged(&mut self, node: Node) -> Edge {
+        if let Node::Apply(function, argument) = node {
+            self.note_content(function, argument);
+        }
+        let id = self.nodes.len() as NodeId;
+        let class = node
+            .children()
+            .fold(0, |class, child| class | self.class(child.node()));
+        self.nodes.push(node);
+        self.shadow.follow(node);
+        self.values.push(Fp::ZERO);
+        self.classes.push(class);
+        Edge::of(id)
+    }
+
+    /// A sum, product or quotient that does not merge with what has its value but is computed in
+    /// another way.
+    pub(crate) fn push_apart(&mut self, node: Node) -> Edge {
+        let value = |edge: Edge| self.value(edge);
+        let value = match node {
+            Node::Add(a, b) => value(a) + value(b),
+            Node::Mul(a, b) => value(a) * value(b),
+            Node::Div(a, b) => value(a) * value(b).inv().unwrap_or(value(b)),
+            _ => return self.push_unmerged(node),
+        };
+        match self.lookup(value) {
+            Some(edge) if self.node(edge.node()) == node => edge,
+            _ => {
+                let class = node
+                    .children()
+                    .fold(0, |c, child| c | self.class(child.node()));
+                self.push(node, value, class)
+            }
+        }
+    }
+
+    pub(crate) fn lookup(&self, value: Fp) -> Option<Edge> {
+        let (key, negative) = canonical(value);
+        self.by_value.get(&key).map(|edge| edge.signed(negative))
+    }
+
+    pub(super) fn push(&mut self, node: Node, value: Fp, class: u8) -> Edge {
+        let id = self.nodes.len() as NodeId;
+        self.nodes.push(node);
+        self.shadow.follow(node);
+        self.values.push(value);
+        self.classes.push(class);
+        let (key, negative) = canonical(value);
+        let edge = Edge::of(id).signed(negative);
+        let known = *self.by_value.entry(key).or_insert(edge);
+        if !self.is_free(known.node()) && self.is_free(id) {
+            self.by_value.insert(key, edge);
+        }
+        Edge::of(id)
+    }
+}
+
+/// Whether n/d is a fraction that descriptions lead to: small, or with a decimal-like denominator.
+/// A number that is irrational, and so the same at both points, is one of these by chance only once
+/// in a million.
+fn is_plain(n: i64, d: i64) -> bool {
+    let mut rest = d;
+    for factor in [2, 3, 5, 7] {
+        while rest % factor == 0 {
+            rest /= factor;
+        }
+    }
+    rest == 1 || (n.abs() < 1 << 16 && d < 1 << 16)
+}
+
+/// The representative of {v, −v}, and whether v is its negative.
+fn canonical(value: Fp) -> (Fp, bool) {
+    let negative = value.is_negative();
+    (if negative { -value } else { value }, negative)
+}

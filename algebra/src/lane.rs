@@ -1,0 +1,320 @@
+//! One point of the variety in each of the two fields: the values of all symbols, and of sin, cos, exp, √.
+//!
+//! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a
+//! random point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that
+//! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
+//! exp is treated likewise. Square roots keep the laws of positive numbers (`roots`).
+
+use super::fp::{Fp, Random};
+use super::graph::Function;
+use super::prime::Residue;
+use super::roots;
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::ToPrimitive;
+
+/// Σ coefficient · atom, the argument of a function with a group law; atoms by their values. Of a
+/// square root: the rational factor of its argument (`Graph::form`).
+pub type LinearForm = Vec<(Fp, BigRational)>;
+
+/// The part of an angle that gets a random circle point: halves, thirds, quarters and sixths of an
+/// atom are then whole multiples of it.
+const PARTS: i64 = 12;
+
+/// Which square roots have values at a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Roots {
+    /// Those of squares of F_p: √a √b = √(ab).
+    #[default]
+    OfSquares,
+    /// Those of squares of F_p(i), where √a √b may be −√(ab).
+    Extended,
+    /// All; where F_p(i) has no root, any value stands for it, whose square is another one: what is proved
+    /// with it holds, but not all that holds is proved.
+    Anything,
+}
+
+/// A point: values of symbols, and a seed from which the values of functions follow. Values of
+/// functions depend on values of arguments alone, so that two graphs agree at the same point; those in
+/// one field do not depend on what is in the other.
+#[derive(Clone, Debug)]
+pub struct Lane {
+    seed: u64,
+    symbols: Vec<Fp>,
+    /// In which field a square root was asked of a non-square: the point should be chosen anew there.
+    stuck: [bool; 2],
+    /// Which roots have values.
+    pub roots: Roots,
+}
+
+impl Lane {
+    /// A point without symbols yet.
+    pub fn new(seed: u64) -> Self {
+        Lane {
+            seed,
+            symbols: Vec::new(),
+            stuck: [false; 2],
+            roots: Roots::default(),
+        }
+    }
+
+    /// The same functions, without symbols.
+    pub fn fresh(&self) -> Self {
+        Lane {
+            roots: self.roots,
+            ..Lane::new(self.seed)
+        }
+    }
+
+    /// Adds the next symbol.
+    pub fn push_symbol(&mut self, value: Fp) {
+        self.symbols.push(value);
+    }
+
+    /// Gives a symbol another value; functions follow where their arguments change.
+    pub fn set_symbol(&mut self, index: usize, value: Fp) {
+        if let Some(known) = self.symbols.get_mut(index) {
+            *known = value;
+        }
+    }
+
+    /// The value of a symbol.
+    pub fn symbol(&self, index: usize) -> Fp {
+        self.symbols[index]
+    }
+
+    /// Whether a square root was asked of a non-square, in either field.
+    pub fn is_stuck(&self) -> bool {
+        self.stuck != [false; 2]
+    }
+
+    /// In which of the fields a square root was asked of a non-square.
+    pub fn stuck(&self) -> [bool; 2] {
+        self.stuck
+    }
+
+    /// Value of a function of one argument; `form` is `Graph::form` of the argument.
+    pub fn function(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
+        match function {
+            Function::Sin => Fp(self.angle(form, &first).1, self.angle(form, &second).1),
+            Function::Cos => Fp(self.angle(form, &first).0, self.angle(form, &second).0),
+            Function::Exp => Fp(self.exp(form, &first), self.exp(form, &second)),
+            Function::Sqrt => {
+                let roots = (
+                    self.root(argument.0, form, &first),
+                    self.root(argument.1, form, &second),
+                );
+                self.stuck[0] |= roots.0.is_none();
+                self.stuck[1] |= roots.1.is_none();
+                let other = self.opaque(function, argument, Fp::ZERO);
+                Fp(roots.0.unwrap_or(other.0), roots.1.unwrap_or(other.1))
+            }
+            Function::Log | Function::Atan2 => self.opaque(function, argument, Fp::ZERO),
+        }
+    }
+
+    /// f′ of a function of one argument with its value there; `None` where it has none. `Atan2` has two
+    /// arguments and is a node of its own.
+    pub fn slope(
+        &mut self,
+        function: Function,
+        argument: Fp,
+        form: &LinearForm,
+        value: Fp,
+    ) -> Option<Fp> {
+        Some(match function {
+            Function::Sin => self.function(Function::Cos, argument, form),
+            Function::Cos => -self.function(Function::Sin, argument, form),
+            Function::Exp => value,
+            Function::Log => argument.inv()?,
+            Function::Sqrt => (value + value).inv()?,
+            Function::Atan2 => Fp::ZERO,
+        })
+    }
+
+    /// √(c e) = √c √e with the factor c of the form; a number without a form has any root.
+    fn root<const K: usize>(
+        &self,
+        argument: Residue<K>,
+        form: &LinearForm,
+        _: Part<K>,
+    ) -> Option<Residue<K>> {
+        let anything = || {
+            (self.roots == Roots::Anything).then(|| {
+                self.draw(Function::Sqrt as u64, argument, Residue::ZERO)
+                    .residue()
+            })
+        };
+        let Some((_, factor)) = form.first() else {
+            return argument.sqrt().or_else(anything);
+        };
+        let rest = argument * Residue::from_rational(factor)?.inv()?;
+        let root = rest.principal_root();
+        let root = root.or_else(|| rest.sqrt().filter(|_| self.roots != Roots::OfSquares));
+        let root = root.map(|root| Some(roots::of_rational::<K>(factor)? * root));
+        root.unwrap_or_else(anything)
+    }
+
+    /// A value without any law but equality of arguments.
+    pub fn opaque(&self, function: Function, a: Fp, b: Fp) -> Fp {
+        let tag = function as u64;
+        Fp(
+            self.draw(tag, a.0, b.0).residue(),
+            self.draw(tag, a.1, b.1).residue(),
+        )
+    }
+
+    /// A random stream that belongs to a tag and two values.
+    fn draw<const K: usize>(&self, tag: u64, a: Residue<K>, b: Residue<K>) -> Random {
+        let mut seed = self.seed ^ (K as u64) << 63;
+        for part in [tag, a.bits(), b.bits()] {
+            seed = Random::new(seed ^ part.wrapping_mul(0x2545_f491_4f6c_dd1d)).bits();
+        }
+        Random::new(seed)
+    }
+
+    fn angle<const K: usize>(&self, form: &LinearForm, part: Part<K>) -> Turn<K> {
+        form.iter().fold(
+            (Residue::ONE, Residue::ZERO),
+            |total, (atom, coefficient)| {
+                let (base, count, parts) = split(part(*atom), coefficient);
+                let pi = part(Fp::PI);
+                let (point, count) = match parts {
+                    1 if base == pi => (twelfth(), count),
+                    1 if base == -pi => (twelfth(), -count),
+                    _ => {
+                        let mut random = self.draw(64 + parts, base, Residue::ONE);
+                        (circle_residue(&mut random), count)
+                    }
+                };
+                rotate(total, power(point, count))
+            },
+        )
+    }
+
+    fn exp<const K: usize>(&self, form: &LinearForm, part: Part<K>) -> Residue<K> {
+        form.iter()
+            .fold(Residue::ONE, |total, (atom, coefficient)| {
+                let (base, count, parts) = split(part(*atom), coefficient);
+                let magnitude = self
+                    .draw(96 + parts, base, Residue::ONE)
+                    .residue::<K>()
+                    .pow(count.unsigned_abs());
+                total
+                    * if count < 0 {
+                        magnitude.inv().unwrap_or(Residue::ONE)
+                    } else {
+                        magnitude
+                    }
+            })
+    }
+}
+
+/// Cosine and sine.
+type Turn<const K: usize> = (Residue<K>, Residue<K>);
+
+/// One of the two fields.
+type Part<'a, const K: usize> = &'a dyn Fn(Fp) -> Residue<K>;
+
+fn first(value: Fp) -> Residue<0> {
+    value.0
+}
+
+fn second(value: Fp) -> Residue<1> {
+    value.1
+}
+
+/// Writes c·atom as a whole number of parts of a base, signs made canonical; where c is no
+/// multiple of a part, c·atom is a base of its own.
+fn split<const K: usize>(atom: Residue<K>, coefficient: &BigRational) -> (Residue<K>, i64, u64) {
+    let parts = coefficient * BigRational::from_integer(BigInt::from(PARTS));
+    let whole = parts
+        .is_integer()
+        .then(|| parts.to_integer().to_i64())
+        .flatten();
+    let (base, count, parts) = match whole {
+        Some(count) => (atom, count, 1),
+        None => (
+            atom * Residue::from_rational(coefficient).unwrap_or(Residue::ONE),
+            1,
+            0,
+        ),
+    };
+    if base.is_negative() {
+        (-base, -count, parts)
+    } else {
+        (base, count, parts)
+    }
+}
+
+/// A random point (c, s) of the unit circle: ((1 − t²), 2t)/(1 + t²); 1 + t² ≠ 0 as p ≡ 3 mod 4.
+fn circle_residue<const K: usize>(random: &mut Random) -> Turn<K> {
+    let t = random.residue();
+    let scale = (Residue::ONE + t * t).inv().unwrap_or(Residue::ONE);
+    ((Residue::ONE - t * t) * scale, (t + t) * scale)
+}
+
+/// The same in both fields.
+pub fn circle_point(random: &mut Random) -> (Fp, Fp) {
+    let (a, b) = (circle_residue(random), circle_residue(random));
+    (Fp(a.0, b.0), Fp(a.1, b.1))
+}
+
+/// Cosine and sine of π/12, (√3 ± 1) √2 / 4.
+fn twelfth<const K: usize>() -> Turn<K> {
+    let root = |n: i64| {
+        let number = BigRational::from_integer(BigInt::from(n));
+        roots::of_rational::<K>(&number).unwrap_or(Residue::ONE)
+    };
+    let quarter = Residue::new(4).inv().unwrap_or(Residue::ONE) * root(2);
+    (
+        (root(3) + Residue::ONE) * quarter,
+        (root(3) - Residue::ONE) * quarter,
+    )
+}
+
+fn rotate<const K: usize>(a: Turn<K>, b: Turn<K>) -> Turn<K> {
+    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
+}
+
+fn power<const K: usize>(base: Turn<K>, count: i64) -> Turn<K> {
+    let mut base = if count < 0 { (base.0, -base.1) } else { base };
+    let mut count = count.unsigned_abs();
+    let mut result = (Residue::ONE, Residue::ZERO);
+    while count > 0 {
+        if count & 1 == 1 {
+            result = rotate(result, base);
+        }
+        base = rotate(base, base);
+        count >>= 1;
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Lane;
+    use crate::fp::Fp;
+    use crate::graph::Function;
+    use num_rational::BigRational;
+
+    /// Sines and cosines of twelfths of π are the roots that they are, in both fields.
+    #[test]
+    fn twelfths_of_a_turn_are_exact() {
+        let mut lane = Lane::new(3);
+        let mut at = |function, n: i64| {
+            let form = vec![(Fp::PI, BigRational::new(n.into(), 12.into()))];
+            lane.function(function, Fp::ZERO, &form)
+        };
+        let half = Fp::new(2).inv().expect("odd");
+        assert_eq!(at(Function::Sin, 2), half);
+        assert_eq!(at(Function::Cos, 8), -half);
+        for n in -30..30 {
+            let (sin, cos) = (at(Function::Sin, n), at(Function::Cos, n));
+            assert_eq!(sin * sin + cos * cos, Fp::ONE);
+            assert_eq!(at(Function::Sin, -n), -sin);
+            assert_eq!(at(Function::Sin, n + 12), -sin);
+            assert_eq!(at(Function::Cos, 6 - n), sin);
+        }
+    }
+}

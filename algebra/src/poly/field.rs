@@ -1,0 +1,149 @@
+//! A field (F, +, ·): what polynomial arithmetic needs from its coefficients.
+//!
+//! Q is used where a computation is a proof, F_p where it is fast, and the pair of two such fields where
+//! expressions are read.
+
+use crate::fp::Fp;
+use crate::prime::Residue;
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+use std::fmt::Debug;
+
+/// A field with exact equality.
+pub trait Field: Clone + PartialEq + Debug {
+    /// 0.
+    fn zero() -> Self;
+    /// 1.
+    fn one() -> Self;
+    /// The image of an integer.
+    fn integer(value: i64) -> Self;
+    /// The image of a rational; `None` where its denominator is 0 in the field.
+    fn from_rational(value: &BigRational) -> Option<Self>;
+    /// a + b.
+    fn add(&self, other: &Self) -> Self;
+    /// a − b.
+    fn sub(&self, other: &Self) -> Self;
+    /// a b.
+    fn mul(&self, other: &Self) -> Self;
+    /// −a.
+    fn neg(&self) -> Self;
+    /// 1 / a; `None` for 0.
+    fn inv(&self) -> Option<Self>;
+    /// Whether a = 0.
+    fn is_zero(&self) -> bool;
+    /// Whether a = 1.
+    fn is_one(&self) -> bool {
+        *self == Self::one()
+    }
+    /// The size in machine words, for limits on work.
+    fn words(&self) -> usize {
+        1
+    }
+}
+
+impl Field for BigRational {
+    fn zero() -> Self {
+        Zero::zero()
+    }
+    fn one() -> Self {
+        One::one()
+    }
+    fn integer(value: i64) -> Self {
+        BigRational::from_integer(value.into())
+    }
+    fn from_rational(value: &BigRational) -> Option<Self> {
+        Some(value.clone())
+    }
+    fn add(&self, other: &Self) -> Self {
+        self + other
+    }
+    fn sub(&self, other: &Self) -> Self {
+        self - other
+    }
+    fn mul(&self, other: &Self) -> Self {
+        self * other
+    }
+    fn neg(&self) -> Self {
+        -self.clone()
+    }
+    fn inv(&self) -> Option<Self> {
+        (!Zero::is_zero(self)).then(|| self.recip())
+    }
+    fn is_zero(&self) -> bool {
+        Zero::is_zero(self)
+    }
+    fn words(&self) -> usize {
+        ((self.numer().bits() + self.denom().bits()) / 64) as usize + 1
+    }
+}
+
+/// The operations that numbers modulo primes have by the same names.
+macro_rules! modular {
+    () => {
+        fn zero() -> Self {
+            Self::ZERO
+        }
+        fn one() -> Self {
+            Self::ONE
+        }
+        fn integer(value: i64) -> Self {
+            Self::from_i64(value)
+        }
+        fn from_rational(value: &BigRational) -> Option<Self> {
+            Self::from_rational(value)
+        }
+        fn add(&self, other: &Self) -> Self {
+            *self + *other
+        }
+        fn sub(&self, other: &Self) -> Self {
+            *self - *other
+        }
+        fn mul(&self, other: &Self) -> Self {
+            *self * *other
+        }
+        fn neg(&self) -> Self {
+            -*self
+        }
+        fn inv(&self) -> Option<Self> {
+            Self::inv(*self)
+        }
+        fn is_zero(&self) -> bool {
+            Self::is_zero(*self)
+        }
+    };
+}
+
+impl<const K: usize> Field for Residue<K> {
+    modular!();
+}
+
+/// Not quite a field: what is 0 in one part alone has no inverse, which happens by chance only.
+impl Field for Fp {
+    modular!();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laws<F: Field>() {
+        let (a, b) = (F::integer(-6), F::integer(4));
+        assert_eq!(a.add(&b), F::integer(-2));
+        assert_eq!(a.sub(&b), F::integer(-10));
+        assert_eq!(a.mul(&b), F::integer(-24));
+        assert_eq!(a.neg(), F::integer(6));
+        assert_eq!(a.inv().map(|inverse| inverse.mul(&a)), Some(F::one()));
+        assert_eq!(F::zero().inv(), None);
+        let ratio = BigRational::new((-6).into(), 4.into());
+        assert_eq!(F::from_rational(&ratio).map(|r| r.mul(&b)), Some(a));
+        assert!(F::zero().is_zero() && F::one().is_one() && !b.is_zero());
+    }
+
+    #[test]
+    fn all_fields_obey_the_laws() {
+        laws::<BigRational>();
+        laws::<Residue<0>>();
+        laws::<Residue<1>>();
+        laws::<Fp>();
+    }
+}

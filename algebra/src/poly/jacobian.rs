@@ -1,0 +1,52 @@
+//! Variables left free by a system g(x) = 0, from the rank of its Jacobian J = ∂g/∂x.
+//!
+//! At a point, x_v can be varied alone with the others following unless e_v is in the row space of
+//! J. The point used here is random and not on the variety, which is right for constants in
+//! general position (rods of arbitrary lengths). For dependent equations it finds fewer variables.
+
+use super::monomial::Var;
+use super::polynomial::Poly;
+use crate::echelon::Echelon;
+use crate::fp::Random;
+use crate::prime::Residue;
+
+/// Those of the given variables that are free one at a time, in the given order.
+pub(super) fn free_variables<const K: usize>(
+    system: &[Poly<Residue<K>>],
+    variables: &[Var],
+    random: &mut Random,
+) -> Vec<Var> {
+    let last = variables.iter().max().map_or(0, |&v| v as usize + 1);
+    let point: Vec<Residue<K>> = (0..last).map(|_| random.residue()).collect();
+    let at = |v: Var| point.get(v as usize).copied().unwrap_or(Residue::ZERO);
+    let row = |f: &Poly<Residue<K>>| -> Vec<Residue<K>> {
+        let entries = variables.iter().map(|&v| f.derivative(v).eval(&at));
+        entries.collect()
+    };
+    let Echelon { rows, pivots } = Echelon::new(system.iter().map(row).collect());
+    let fixed = |column: usize| {
+        let own = pivots.iter().position(|&pivot| pivot == column);
+        own.is_some_and(|row| rows[row].iter().filter(|entry| !entry.is_zero()).count() == 1)
+    };
+    let free = (0..variables.len()).filter(|&column| !fixed(column));
+    free.map(|column| variables[column]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Fp = Residue<0>;
+
+    #[test]
+    fn constraints_take_freedom() {
+        let (x, y, z): (Poly<Fp>, _, _) = (Poly::var(0), Poly::var(1), Poly::var(2));
+        let mut random = Random::new(1);
+        let mut free = |system: &[Poly<Fp>]| free_variables(system, &[2, 0, 1], &mut random);
+        assert_eq!(free(&[]), [2, 0, 1]);
+        assert_eq!(free(&[x.mul(&x).add(&y)]), [2, 0, 1]);
+        assert_eq!(free(&[x.mul(&x).add(&y), x.sub(&y)]), [2]);
+        assert_eq!(free(&[z.pow(2), x.sub(&y)]), [0, 1]);
+        assert_eq!(free(&[x.add(&z), x.sub(&y), y.mul(&z)]), Vec::<u32>::new());
+    }
+}

@@ -1,0 +1,193 @@
+//! Roots of a univariate polynomial f = Σ f_k x^k in the field of its coefficients, F_p or F_p(i), by
+//! Cantor and Zassenhaus.
+//!
+//! gcd(f, x^q − x) = Π (x − r) over the roots r in the field of q elements; it is split by gcd with
+//! (x + a)^{(q−1)/2} − 1 for random a, which has each root with probability ½.
+
+use crate::fp::Random;
+use crate::prime::Residue;
+
+/// The distinct roots of Σ f_k x^k, ascending; none for the zero polynomial.
+pub fn roots<const K: usize>(coefficients: &[Residue<K>], random: &mut Random) -> Vec<Residue<K>> {
+    let f = monic(coefficients.to_vec());
+    if f.len() < 2 {
+        return Vec::new();
+    }
+    let x = vec![Residue::ZERO, Residue::ONE];
+    let whole = f.iter().any(|coefficient| !coefficient.is_prime());
+    let mut frobenius = power(x.clone(), Residue::<K>::P, &f);
+    if whole {
+        frobenius = power(frobenius, Residue::<K>::P, &f);
+    }
+    let mut result = Vec::new();
+    let product = gcd(f, subtract(frobenius, &x));
+    split(product, whole, random, &mut result);
+    result.sort_unstable();
+    result
+}
+
+/// Collects the roots of a monic product of distinct linear factors.
+fn split<const K: usize>(
+    f: Vec<Residue<K>>,
+    whole: bool,
+    random: &mut Random,
+    result: &mut Vec<Residue<K>>,
+) {
+    match f.as_slice() {
+        [] | [_] => {}
+        [constant, _] => result.push(-*constant),
+        _ => loop {
+            let mut shift = random.residue();
+            if whole {
+                shift = shift + Residue::I * random.residue();
+            }
+            let mut half = power(vec![shift, Residue::ONE], (Residue::<K>::P - 1) / 2, &f);
+            if whole {
+                half = power(half, Residue::<K>::P + 1, &f);
+            }
+            let factor = gcd(f.clone(), subtract(half, &[Residue::ONE]));
+            if factor.len() > 1 && factor.len() < f.len() {
+                let (cofactor, _) = divide(f, &factor);
+                split(factor, whole, random, result);
+                split(cofactor, whole, random, result);
+                return;
+            }
+        },
+    }
+}
+
+fn trim<const K: usize>(mut f: Vec<Residue<K>>) -> Vec<Residue<K>> {
+    while f.last().is_some_and(|leading| leading.is_zero()) {
+        f.pop();
+    }
+    f
+}
+
+fn monic<const K: usize>(f: Vec<Residue<K>>) -> Vec<Residue<K>> {
+    let mut f = trim(f);
+    if let Some(inverse) = f.last().and_then(|leading| leading.inv()) {
+        f.iter_mut().for_each(|c| *c = *c * inverse);
+    }
+    f
+}
+
+fn subtract<const K: usize>(mut f: Vec<Residue<K>>, g: &[Residue<K>]) -> Vec<Residue<K>> {
+    f.resize(f.len().max(g.len()), Residue::ZERO);
+    f.iter_mut().zip(g).for_each(|(a, &b)| *a = *a - b);
+    trim(f)
+}
+
+/// Quotient and remainder by a monic g.
+fn divide<const K: usize>(
+    mut f: Vec<Residue<K>>,
+    g: &[Residue<K>],
+) -> (Vec<Residue<K>>, Vec<Residue<K>>) {
+    if f.len() < g.len() {
+        return (Vec::new(), f);
+    }
+    let degree = g.len() - 1;
+    for top in (degree..f.len()).rev() {
+        let factor = f[top];
+        for (k, &c) in g[..degree].iter().enumerate() {
+            f[top - degree + k] = f[top - degree + k] - factor * c;
+        }
+    }
+    let quotient = f.split_off(degree);
+    (quotient, trim(f))
+}
+
+fn multiply<const K: usize>(
+    f: &[Residue<K>],
+    g: &[Residue<K>],
+    modulus: &[Residue<K>],
+) -> Vec<Residue<K>> {
+    let mut product = vec![Residue::ZERO; f.len() + g.len()];
+    for (i, &a) in f.iter().enumerate() {
+        for (j, &b) in g.iter().enumerate() {
+            product[i + j] = product[i + j] + a * b;
+        }
+    }
+    divide(trim(product), modulus).1
+}
+
+/// base^exponent modulo a monic polynomial.
+fn power<const K: usize>(
+    base: Vec<Residue<K>>,
+    mut exponent: u64,
+    modulus: &[Residue<K>],
+) -> Vec<Residue<K>> {
+    let mut square = divide(base, modulus).1;
+    let mut result = divide(vec![Residue::ONE], modulus).1;
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            result = multiply(&result, &square, modulus);
+        }
+        square = multiply(&square, &square, modulus);
+        exponent >>= 1;
+    }
+    result
+}
+
+fn gcd<const K: usize>(f: Vec<Residue<K>>, g: Vec<Residue<K>>) -> Vec<Residue<K>> {
+    let (mut f, mut g) = (monic(f), monic(g));
+    while !g.is_empty() {
+        let rest = divide(f, &g).1;
+        f = g;
+        g = monic(rest);
+    }
+    f
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    type Fp = Residue<1>;
+
+    proptest! {
+        #[test]
+        fn all_roots_are_found(list in prop::collection::btree_set(-50i64..50, 0..12), seed: u64) {
+            // (x² + 1) Π (x − r), the first root twice; x² + 1 has no root.
+            let mut random = Random::new(seed);
+            let mut f = vec![Fp::ONE, Fp::ZERO, random.residue()];
+            f[0] = f[2];
+            let big = vec![Fp::ZERO; 40].into_iter().chain([Fp::ONE]).collect::<Vec<_>>();
+            for &r in list.iter().chain(list.first()) {
+                f = multiply(&f, &[Fp::from_i64(-r), Fp::ONE], &big);
+            }
+            let mut expected: Vec<Fp> = list.iter().map(|&r| Fp::from_i64(r)).collect();
+            expected.sort_unstable();
+            prop_assert_eq!(roots(&f, &mut random), expected);
+        }
+    }
+
+    /// x² − z for z outside of F_p, and (x − a)(x − b)(x − c) for such a, b, c.
+    #[test]
+    fn roots_beyond_the_prime_field_are_found() {
+        let mut random = Random::new(3);
+        let mut number = || random.residue() + Fp::I * random.residue();
+        let (a, b, c) = (number(), number(), number());
+        let f = [-(a * b * c), a * b + b * c + c * a, -(a + b + c), Fp::ONE];
+        let mut expected = vec![a, b, c];
+        expected.sort_unstable();
+        assert_eq!(roots(&f, &mut Random::new(4)), expected);
+        let mut squares = 0;
+        for _ in 0..40 {
+            let z = number();
+            let found = roots(&[-z, Fp::ZERO, Fp::ONE], &mut Random::new(5));
+            assert!(found.iter().all(|&root| root * root == z));
+            assert_eq!(found.len(), if z.sqrt().is_some() { 2 } else { 0 });
+            squares += found.len() / 2;
+        }
+        assert!(squares > 8 && squares < 32);
+    }
+
+    #[test]
+    fn constants_have_no_roots() {
+        let mut random = Random::new(1);
+        assert!(roots::<1>(&[], &mut random).is_empty());
+        assert!(roots(&[Fp::ZERO, Fp::ZERO], &mut random).is_empty());
+        assert!(roots(&[Fp::ONE], &mut random).is_empty());
+    }
+}

@@ -1,0 +1,416 @@
+//! A prime field F_p extended by i, i² = −1: F_p(i), for the two primes of the project.
+//!
+//! The primes are the largest p ≡ 3 mod 4 below π 2⁶⁰ and e 2⁶⁰ modulo which all primes below 40 are
+//! squares: of 62 bits and otherwise without structure, so that no power of 2, no root of a small integer
+//! and no root of unity is near a small rational there (the tests look). As −1 is no square, every element
+//! of F_p has its roots in F_p(i): so an element is a + b i, where b is 0 unless a root made it otherwise;
+//! roots of small numbers are in F_p, so that roots of what they are added to exist, too. Elements are held as a R, R = 2⁶⁴, after
+//! P. Montgomery, *Modular multiplication without trial division* (1985).
+
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_rational::BigRational;
+use num_traits::{Signed, ToPrimitive};
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// The primes p and q.
+pub const PRIMES: [u64; 2] = [3_622_009_729_038_446_591, 3_133_965_575_612_089_391];
+
+/// An element a + b i of F_p(i) for the K-th of the primes, always reduced.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct Residue<const K: usize>(u64, u64);
+
+impl<const K: usize> Residue<K> {
+    /// The modulus p.
+    pub const P: u64 = PRIMES[K];
+    /// −1/p mod 2⁶⁴, by Newton's iteration.
+    const NEGATIVE_INVERSE: u64 = {
+        let mut inverse = Self::P;
+        let mut digits = 3;
+        while digits < 64 {
+            inverse = inverse.wrapping_mul(2u64.wrapping_sub(Self::P.wrapping_mul(inverse)));
+            digits *= 2;
+        }
+        inverse.wrapping_neg()
+    };
+    /// R mod p.
+    const R: u64 = ((1u128 << 64) % Self::P as u128) as u64;
+    /// R² mod p.
+    const R2: u64 = (Self::R as u128 * Self::R as u128 % Self::P as u128) as u64;
+    /// R³ mod p.
+    const R3: u64 = (Self::R2 as u128 * Self::R as u128 % Self::P as u128) as u64;
+
+    /// 0.
+    pub const ZERO: Self = Residue(0, 0);
+    /// 1.
+    pub const ONE: Self = Residue(Self::R, 0);
+    /// i.
+    pub const I: Self = Residue(0, Self::R);
+
+    /// The class of a non-negative integer.
+    pub const fn new(value: u64) -> Self {
+        Residue(Self::times(value % Self::P, Self::R2), 0)
+    }
+
+    /// The class of an integer.
+    pub fn from_i64(value: i64) -> Self {
+        let magnitude = Self::new(value.unsigned_abs());
+        if value < 0 { -magnitude } else { magnitude }
+    }
+
+    /// The class of an integer of any size.
+    pub fn from_integer(value: &BigInt) -> Self {
+        if let Some(small) = value.to_i64() {
+            return Self::from_i64(small);
+        }
+        // `mod_floor` by a positive modulus is in 0..p, so it fits.
+        Self::new(
+            value
+                .mod_floor(&BigInt::from(Self::P))
+                .to_u64()
+                .unwrap_or(0),
+        )
+    }
+
+    /// The class of a rational; `None` where p divides the denominator.
+    pub fn from_rational(value: &BigRational) -> Option<Self> {
+        let numerator = Self::from_integer(value.numer());
+        if value.is_integer() {
+            return Some(numerator);
+        }
+        Some(numerator * Self::from_integer(value.denom()).inv()?)
+    }
+
+    /// 64 bits that depend on a and b, for random streams.
+    pub fn bits(self) -> u64 {
+        self.0 ^ self.1.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+
+    /// Whether it is an element of F_p.
+    pub fn is_prime(self) -> bool {
+        self.1 == 0
+    }
+
+    /// Which of ±self stands for both: whether it is the other one.
+    pub fn is_negative(self) -> bool {
+        let leading = if self.0 == 0 { self.1 } else { self.0 };
+        leading > Self::P / 2
+    }
+
+    /// Whether this is 0.
+    pub fn is_zero(self) -> bool {
+        self.0 | self.1 == 0
+    }
+
+    /// self^exponent by squaring.
+    pub fn pow(self, mut exponent: u64) -> Self {
+        let mut base = self;
+        let mut result = Self::ONE;
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                result = result * base;
+            }
+            base = base * base;
+            exponent >>= 1;
+        }
+        result
+    }
+
+    /// The inverse; `None` for 0.
+    pub fn inv(self) -> Option<Self> {
+        if self.is_zero() {
+            return None;
+        }
+        if self.1 != 0 {
+            let conjugate = Residue(self.0, Self::negated(self.1));
+            return Some(conjugate * (self * conjugate).inv()?);
+        }
+        // Extended Euclid on (p, a R); the cofactors stay within ±p.
+        let (mut r0, mut r1) = (Self::P as i64, self.0 as i64);
+        let (mut t0, mut t1) = (0i64, 1i64);
+        while r1 != 0 {
+            let q = r0 / r1;
+            (r0, r1) = (r1, r0 - q * r1);
+            (t0, t1) = (t1, t0 - q * t1);
+        }
+        // 1/(a R) times R³ is R²/a, which a product of Montgomery's kind divides by R.
+        let inverse = t0.rem_euclid(Self::P as i64) as u64;
+        Some(Residue(Self::times(inverse, Self::R3), 0))
+    }
+
+    /// A square root: of a in F_p it is ±a^((p+1)/4) or i times that of −a; of the rest of F_p(i)
+    /// half the elements have one (Adj and Rodríguez-Henríquez, algorithm 9), `None` for the others.
+    pub fn sqrt(self) -> Option<Self> {
+        if self.1 == 0 {
+            let root = self.pow(Self::P.div_ceil(4));
+            return Some(if root * root == self {
+                root
+            } else {
+                Self::I * (-self).pow(Self::P.div_ceil(4))
+            });
+        }
+        let power = self.pow((Self::P - 3) / 4);
+        let root = power * self;
+        let alpha = power * root;
+        let root = if alpha == -Self::ONE {
+            Self::I * root
+        } else {
+            (Self::ONE + alpha).pow((Self::P - 1) / 2) * root
+        };
+        (root * root == self).then_some(root)
+    }
+
+    /// √a as the square of F_p that it is, where a is a square; `None` elsewhere. p ≡ 3 mod 4, so
+    /// a^((p+1)/4) is it.
+    pub fn principal_root(self) -> Option<Self> {
+        let root = self.is_prime().then(|| self.pow(Self::P.div_ceil(4)))?;
+        (root * root == self).then_some(root)
+    }
+
+    /// The rational n/d with |n|, d < 2^bits (bits ≤ 29) that this is the class of, if there is one.
+    pub fn to_small_rational(self, bits: u32) -> Option<(i64, i64)> {
+        if self.1 != 0 {
+            return None;
+        }
+        let bound = 1i64 << bits.min(29);
+        // Out of Montgomery's form.
+        let (mut r0, mut r1) = (Self::P as i64, Self::times(self.0, 1) as i64);
+        let (mut t0, mut t1) = (0i64, 1i64);
+        while r1 >= bound && t1.abs() < bound {
+            let q = r0 / r1;
+            (r0, r1) = (r1, r0 - q * r1);
+            (t0, t1) = (t1, t0 - q * t1);
+        }
+        if r1 >= bound || t1 == 0 || t1.abs() >= bound {
+            return None;
+        }
+        let (n, d) = if t1 < 0 { (-r1, -t1) } else { (r1, t1) };
+        (n.gcd(&d) == 1).then_some((n, d))
+    }
+
+    fn plus(a: u64, b: u64) -> u64 {
+        let sum = a + b;
+        if sum >= Self::P { sum - Self::P } else { sum }
+    }
+
+    fn negated(a: u64) -> u64 {
+        if a == 0 { 0 } else { Self::P - a }
+    }
+
+    /// a b / R mod p.
+    const fn times(a: u64, b: u64) -> u64 {
+        let product = a as u128 * b as u128;
+        let factor = (product as u64).wrapping_mul(Self::NEGATIVE_INVERSE);
+        let sum = ((product + factor as u128 * Self::P as u128) >> 64) as u64;
+        if sum >= Self::P { sum - Self::P } else { sum }
+    }
+}
+
+impl<const K: usize> std::fmt::Debug for Residue<K> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let plain = |a: u64| Self::times(a, 1);
+        write!(f, "{} + {} i mod {}", plain(self.0), plain(self.1), Self::P)
+    }
+}
+
+impl<const K: usize> Add for Residue<K> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Residue(Self::plus(self.0, other.0), Self::plus(self.1, other.1))
+    }
+}
+
+impl<const K: usize> Neg for Residue<K> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Residue(Self::negated(self.0), Self::negated(self.1))
+    }
+}
+
+impl<const K: usize> Sub for Residue<K> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<const K: usize> Mul for Residue<K> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let (Residue(a, b), Residue(c, d)) = (self, other);
+        if b | d == 0 {
+            return Residue(Self::times(a, c), 0);
+        }
+        Residue(
+            Self::plus(Self::times(a, c), Self::negated(Self::times(b, d))),
+            Self::plus(Self::times(a, d), Self::times(b, c)),
+        )
+    }
+}
+
+/// Whether p divides the numerator or the denominator of a number other than 0, for one of the primes:
+/// such a number has no faithful image.
+pub fn is_unfaithful(value: &BigRational) -> bool {
+    let divides =
+        |n: &BigInt, p: u64| n.abs() >= BigInt::from(p) && n.is_multiple_of(&BigInt::from(p));
+    let small = |n: &BigInt| n.bits() < 61;
+    if small(value.numer()) && small(value.denom()) {
+        return false;
+    }
+    PRIMES
+        .iter()
+        .any(|&p| divides(value.numer(), p) || divides(value.denom(), p))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fp::Random;
+
+    fn laws<const K: usize>() {
+        let mut random = Random::new(1);
+        let one = Residue::<K>::ONE;
+        for _ in 0..200 {
+            let [a, b, c] = std::array::from_fn(|_| random.residue::<K>());
+            assert_eq!(a * (b + c), a * b + a * c);
+            assert_eq!((a - b) + b, a);
+            assert_eq!(a.inv().map(|inverse| inverse * a), Some(one));
+            assert_eq!(a.pow(Residue::<K>::P - 1), one);
+            let root = (a * a).sqrt();
+            assert!(root == Some(a) || root == Some(-a));
+        }
+        assert_eq!(Residue::<K>::ZERO.inv(), None);
+        assert_eq!(Residue::<K>::new(3) * Residue::new(5), Residue::new(15));
+        assert_eq!(Residue::<K>::from_i64(-7) + Residue::new(7), Residue::ZERO);
+    }
+
+    #[test]
+    fn field_laws_hold() {
+        laws::<0>();
+        laws::<1>();
+    }
+
+    fn roots<const K: usize>() {
+        let mut random = Random::new(2);
+        let mut roots = 0;
+        for _ in 0..100 {
+            let a = random.residue::<K>();
+            let root = a.sqrt().expect("it has one in F_p(i)");
+            assert_eq!(root * root, a);
+            let b = root + random.residue();
+            assert_eq!(b.inv().map(|inverse| inverse * b), Some(Residue::ONE));
+            let square = (b * b).sqrt();
+            assert!(square == Some(b) || square == Some(-b));
+            roots += usize::from(b.sqrt().is_some_and(|root| root * root == b));
+        }
+        assert!(roots > 40 && roots < 100);
+        // −1 is no square, because p ≡ 3 mod 4.
+        let i = Residue::<K>::I;
+        assert!(matches!((-Residue::<K>::ONE).sqrt(), Some(root) if root == i || root == -i));
+        assert!(i.is_negative() != (-i).is_negative());
+    }
+
+    #[test]
+    fn roots_of_all_elements_of_the_prime_field_exist() {
+        roots::<0>();
+        roots::<1>();
+    }
+
+    /// Small powers of 2, roots of small integers, and what generates the roots of unity of low order
+    /// are nowhere near a small rational, which p = 2⁶¹ − 1 fails: there √2 = ±2³¹.
+    fn unstructured<const K: usize>() {
+        const BITS: u32 = 22;
+        let small = |a: Residue<K>| a.to_small_rational(BITS);
+        let two = Residue::<K>::new(2);
+        for exponent in BITS..1024 {
+            assert_eq!(small(two.pow(u64::from(exponent))), None, "2^{exponent}");
+        }
+        for base in [3u64, 5, 7, 10] {
+            let first = (f64::from(BITS) * 2f64.ln() / (base as f64).ln()).ceil() as u64;
+            for exponent in first..256 {
+                let power = Residue::<K>::new(base).pow(exponent);
+                assert_eq!(small(power), None, "{base}^{exponent}");
+            }
+        }
+        let is_square = |n: u64| n.isqrt() * n.isqrt() == n;
+        for n in (2..2000).filter(|&n| !is_square(n)) {
+            let root = Residue::<K>::new(n).sqrt().expect("in F_p(i)");
+            // Either in F_p, or i times what is.
+            let real = if root.is_prime() {
+                root
+            } else {
+                -(Residue::I * root)
+            };
+            assert_eq!(small(real), None, "root of {n}");
+            // Times small factors, and roots of roots.
+            for factor in 1..50 {
+                assert_eq!(
+                    small(real * Residue::new(factor)),
+                    None,
+                    "{factor} root {n}"
+                );
+            }
+            if let Some(fourth) = real.principal_root() {
+                assert_eq!(small(fourth), None, "fourth root of {n}");
+            }
+        }
+        // Elements of low order in the group of F_p(i): ζ + 1/ζ = 2 cos(2π/order).
+        let order = u128::from(Residue::<K>::P) * u128::from(Residue::<K>::P) - 1;
+        let mut random = Random::new(9);
+        for n in (3..200u128).filter(|n| order % n == 0) {
+            let any = random.residue::<K>() + Residue::I * random.residue();
+            let mut zeta = Residue::<K>::ONE;
+            let (mut exponent, mut base) = (order / n, any);
+            while exponent > 0 {
+                if exponent & 1 == 1 {
+                    zeta = zeta * base;
+                }
+                base = base * base;
+                exponent >>= 1;
+            }
+            let cosine = zeta + zeta.inv().expect("not 0");
+            if let Some((numerator, denominator)) = small(cosine) {
+                assert!(
+                    numerator.abs() < 3 && denominator == 1,
+                    "{n}: {numerator}/{denominator}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_primes_have_no_structure() {
+        unstructured::<0>();
+        unstructured::<1>();
+        assert!(PRIMES[0] != PRIMES[1]);
+        for p in PRIMES {
+            assert!(p >= 1 << 61 && p % 4 == 3);
+            let is_square =
+                |n: u64| BigInt::from(n).modpow(&((p - 1) / 2).into(), &p.into()) == 1.into();
+            assert!(
+                [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37]
+                    .into_iter()
+                    .all(is_square)
+            );
+            // Miller and Rabin with the first primes as bases decide below 2^64.
+            let n = BigInt::from(p);
+            let odd = BigInt::from((p - 1) / 2);
+            for base in [2u32, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37] {
+                let power = BigInt::from(base).modpow(&odd, &n);
+                assert!(
+                    power == BigInt::from(1) || power == &n - 1,
+                    "{p} is no prime"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn multiples_of_the_primes_are_noticed() {
+        let whole = |n: u64| BigRational::from_integer(BigInt::from(n));
+        assert!(is_unfaithful(&whole(PRIMES[0])) && is_unfaithful(&whole(PRIMES[1]).recip()));
+        assert!(!is_unfaithful(&whole((1 << 61) - 1)) && !is_unfaithful(&whole(0)));
+        let product = whole(PRIMES[0]) * whole(PRIMES[1]);
+        assert!(is_unfaithful(&(product * whole(12))));
+    }
+}

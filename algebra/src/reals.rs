@@ -1,0 +1,235 @@
+//! Real values of expressions beside those modulo p: they tell e from −e and from |e|.
+//!
+//! A square root modulo p is one of two, so expressions that differ modulo p by nothing may differ
+//! as real numbers by the sign of a root. Where a root takes part, equal values modulo p therefore
+//! count only if no real sample contradicts: both are the same number, and the one that is kept has a
+//! value wherever the other has one. Values carry a bound of their rounding errors; where the value of a
+//! symbol is not known, a sample says nothing.
+
+use super::graph::Function;
+
+/// Number of real samples: |e| and e differ at one of them but for bad luck.
+pub const SAMPLES: usize = 8;
+
+/// A real number and a bound of its error. Where the number is NaN, an error of 0 says that there is
+/// none, such as a root of −1; any other error that it is not known.
+#[derive(Clone, Copy, Debug)]
+pub struct Real {
+    value: f64,
+    error: f64,
+}
+
+/// A real number at each sample.
+pub type Reals = [Real; SAMPLES];
+
+impl Real {
+    /// No value.
+    pub const UNKNOWN: Real = Real {
+        value: f64::NAN,
+        error: f64::NAN,
+    };
+
+    /// No number.
+    pub const UNDEFINED: Real = Real {
+        value: f64::NAN,
+        error: 0.0,
+    };
+
+    /// A number that is off by at most `error`.
+    pub fn new(value: f64, error: f64) -> Self {
+        Real { value, error }
+    }
+
+    /// Whether there is a number, and it is known.
+    fn is_known(self) -> bool {
+        !self.value.is_nan()
+    }
+
+    fn is_undefined(self) -> bool {
+        self.value.is_nan() && self.error == 0.0
+    }
+
+    /// What operations make of operands of which one is no known number.
+    fn without(self, b: Real) -> Self {
+        if self.is_undefined() || b.is_undefined() {
+            Real::UNDEFINED
+        } else {
+            Real::UNKNOWN
+        }
+    }
+
+    /// Rounded once more.
+    fn rounded(value: f64, error: f64) -> Self {
+        if !value.is_finite() || !error.is_finite() {
+            return Real::UNKNOWN;
+        }
+        Real {
+            value,
+            error: error + value.abs() * f64::EPSILON,
+        }
+    }
+
+    /// −a where asked.
+    pub fn signed(self, negative: bool) -> Self {
+        Real {
+            value: if negative { -self.value } else { self.value },
+            error: self.error,
+        }
+    }
+
+    /// a + b.
+    pub fn plus(self, b: Real) -> Self {
+        if !self.is_known() || !b.is_known() {
+            return self.without(b);
+        }
+        Real::rounded(self.value + b.value, self.error + b.error)
+    }
+
+    /// a · b.
+    pub fn times(self, b: Real) -> Self {
+        if !self.is_known() || !b.is_known() {
+            return self.without(b);
+        }
+        let error = self.value.abs() * b.error + self.error * b.value.abs() + self.error * b.error;
+        Real::rounded(self.value * b.value, error)
+    }
+
+    /// a / b; unknown where b may be 0.
+    pub fn over(self, b: Real) -> Self {
+        if !self.is_known() || !b.is_known() {
+            return self.without(b);
+        }
+        let least = b.value.abs() - b.error;
+        if least > 0.0 {
+            let quotient = self.value / b.value;
+            Real::rounded(quotient, (self.error + quotient.abs() * b.error) / least)
+        } else {
+            Real::UNKNOWN
+        }
+    }
+
+    /// A function of one argument.
+    pub fn apply(self, function: Function) -> Self {
+        if !self.is_known() {
+            return self.without(self);
+        }
+        let Real { value, error } = self;
+        match function {
+            Function::Sin => Real::rounded(value.sin(), error),
+            Function::Cos => Real::rounded(value.cos(), error),
+            Function::Exp => Real::rounded(value.exp(), value.exp() * error.exp_m1()),
+            Function::Log if value > error => Real::rounded(value.ln(), error / (value - error)),
+            Function::Sqrt if value + error >= 0.0 => {
+                let (least, most) = ((value - error).max(0.0).sqrt(), (value + error).sqrt());
+                Real::rounded(value.max(0.0).sqrt(), most - least)
+            }
+            Function::Log if value + error >= 0.0 => Real::UNKNOWN,
+            Function::Log | Function::Sqrt => Real::UNDEFINED,
+            Function::Atan2 => Real::UNKNOWN,
+        }
+    }
+
+    /// atan2(a, b).
+    pub fn atan2(self, b: Real) -> Self {
+        if !self.is_known() || !b.is_known() {
+            return self.without(b);
+        }
+        let radius = self.value.hypot(b.value) - self.error - b.error;
+        // At the cut the value jumps by 2π.
+        if radius > 0.0 && (b.value > b.error || self.value.abs() > self.error) {
+            Real::rounded(self.value.atan2(b.value), (self.error + b.error) / radius)
+        } else {
+            Real::UNKNOWN
+        }
+    }
+
+    /// Whether b cannot stand for this: it is a different number, whatever the errors, or none where this
+    /// is one.
+    fn differs(self, b: Real) -> bool {
+        if self.is_known() && b.is_undefined() {
+            return true;
+        }
+        let apart = (self.value - b.value).abs();
+        apart > 4.0 * (self.error + b.error) && apart > f64::MIN_POSITIVE
+    }
+}
+
+/// Whether b cannot stand for a at a sample.
+pub fn contradict(a: &[Real], b: &[Real]) -> bool {
+    a.iter().zip(b).any(|(a, b)| a.differs(*b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Real;
+    use crate::graph::Function;
+
+    fn exact(value: f64) -> Real {
+        Real::new(value, 0.0)
+    }
+
+    #[test]
+    fn equal_numbers_agree_and_others_differ() {
+        let root = |n: f64| exact(n).apply(Function::Sqrt);
+        let (two, three) = (root(2.0), root(3.0));
+        // √3 − √2 = √(5 − 2√6), and its negative is another number.
+        let difference = three.plus(two.signed(true));
+        let nested = exact(5.0)
+            .plus(exact(-2.0).times(root(6.0)))
+            .apply(Function::Sqrt);
+        assert!(!difference.differs(nested) && difference.signed(true).differs(nested));
+        assert!(!two.times(three).differs(root(6.0)));
+        // What cancels is 0 within its error, and not another small number.
+        let zero = root(6.0).plus(two.times(three).signed(true));
+        assert!(!zero.differs(exact(0.0)) && zero.differs(exact(1e-12)));
+    }
+
+    #[test]
+    fn what_has_no_value_contradicts_nothing() {
+        let unknown = [
+            Real::UNKNOWN,
+            exact(1.0).over(Real::new(0.0, 1e-16)),
+            exact(0.0).apply(Function::Log),
+            Real::new(0.0, 1e-16).atan2(exact(-1.0)),
+        ];
+        for value in unknown {
+            assert!(!value.differs(exact(3.0)) && !exact(3.0).differs(value.plus(exact(1.0))));
+        }
+    }
+
+    /// √x √x may become x, but not the other way round where x < 0.
+    #[test]
+    fn what_has_no_value_stands_for_nothing_that_has_one() {
+        let none = exact(-1.0).apply(Function::Sqrt);
+        assert!(exact(-1.0).differs(none.times(none)) && !none.times(none).differs(exact(-1.0)));
+        assert!(!none.differs(none.plus(exact(1.0))));
+        let blurred = Real::new(-1e-17, 1e-16).apply(Function::Sqrt);
+        assert!(!exact(1e-9).differs(blurred) && exact(1.0).differs(blurred));
+        assert!(exact(2.0).differs(exact(-1.0).apply(Function::Log)));
+    }
+
+    #[test]
+    fn errors_bound_what_a_perturbation_does() {
+        let (a, b, h) = (0.8, 1.7, 1e-7);
+        let functions = [
+            Function::Sin,
+            Function::Cos,
+            Function::Exp,
+            Function::Log,
+            Function::Sqrt,
+        ];
+        let one = |of: &dyn Fn(Real) -> Real| {
+            let (blurred, moved) = (of(Real::new(a, h)), of(exact(a + h)));
+            let change = (blurred.value - moved.value).abs();
+            assert!(change > 0.0 && change <= blurred.error * (1.0 + 1e-6));
+        };
+        for function in functions {
+            one(&|x| x.apply(function));
+        }
+        one(&|x| x.times(exact(b)));
+        one(&|x| exact(b).over(x));
+        one(&|x| x.over(exact(b)));
+        one(&|x| x.atan2(exact(b)));
+        one(&|x| x.plus(exact(b)));
+    }
+}

@@ -1,0 +1,264 @@
+//! Resubstitution: a node that is a sum or product of two other nodes which are there anyway is
+//! computed from these, and what only served its old definition goes.
+//!
+//! Values modulo p decide: for every node n and every node x that does not depend on n, a node of
+//! value n − x, n + x or n / x is looked up. No node is ever added, so the count can only fall.
+
+use super::fp::Fp;
+use super::graph::Graph;
+use super::node::{Edge, Node, NodeId};
+use super::shadow::Shadow;
+use super::transplant::rebuild;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Larger expressions are left as they are.
+const LARGEST: usize = 400;
+
+/// Rebuilds the roots in `base`, a graph with the same symbols, with fewer operations where some can
+/// be saved; `None` where nothing was found.
+pub fn resubstitute(graph: &Graph, roots: &[Edge], base: &Graph) -> Option<(Graph, Vec<Edge>)> {
+    // Asked before the inverses of many values are taken.
+    let varying = |id: &&NodeId| !graph.is_free(**id);
+    if graph.reachable(roots).iter().filter(varying).count() > LARGEST {
+        return None;
+    }
+    let mut network = Network::new(graph, roots);
+    if network.alive(None).len() > LARGEST || !network.improve() {
+        return None;
+    }
+    let mut result = base.clone();
+    let edges = network.rebuild(&mut result);
+    Some((result, edges))
+}
+
+/// Current definitions of the nodes that vary at run time.
+struct Network<'a> {
+    graph: &'a Graph,
+    roots: &'a [Edge],
+    definitions: FxHashMap<NodeId, Node>,
+    /// 1 / value of every node whose value is nowhere zero.
+    /// Real values, where square roots take part.
+    shadow: Option<Shadow>,
+    inverses: FxHashMap<NodeId, Fp>,
+}
+
+impl<'a> Network<'a> {
+    fn new(graph: &'a Graph, roots: &'a [Edge]) -> Self {
+        let nodes = graph.reachable(roots);
+        let inverse = |id: NodeId| Some((id, graph.value(Edge::of(id)).inv()?));
+        Network {
+            graph,
+            roots,
+            shadow: graph.sampled(&nodes),
+            inverses: nodes.iter().copied().filter_map(inverse).collect(),
+            definitions: nodes.iter().map(|&id| (id, graph.node(id))).collect(),
+        }
+    }
+
+    fn children(&self, id: NodeId) -> impl Iterator<Item = NodeId> + use<> {
+        self.definitions
+            .get(&id)
+            .copied()
+            .into_iter()
+            .flat_map(Node::children)
+            .map(Edge::node)
+    }
+
+    /// Nodes that the roots need, children first; `leaf` and run-time constants count as given.
+    fn alive(&self, leaf: Option<NodeId>) -> Vec<NodeId> {
+        let mut order = Vec::new();
+        let mut seen = FxHashSet::default();
+        let mut stack: Vec<(NodeId, bool)> = self
+            .roots
+            .iter()
+            .rev()
+            .map(|root| (root.node(), false))
+            .collect();
+        while let Some((id, done)) = stack.pop() {
+            if done {
+                order.push(id);
+            } else if seen.insert(id) {
+                stack.push((id, true));
+                if Some(id) != leaf && !self.graph.is_free(id) {
+                    stack.extend(self.children(id).map(|child| (child, false)));
+                }
+            }
+        }
+        order
+    }
+
+    /// Operations at run time of a set of nodes.
+    fn cost(&self, nodes: &[NodeId]) -> usize {
+        let costs = |id: &&NodeId| {
+            !self.graph.is_free(**id)
+                && matches!(
+                    self.definitions.get(id),
+                    Some(Node::Add(..) | Node::Mul(..) | Node::Div(..))
+                )
+        };
+        nodes.iter().filter(costs).count()
+    }
+
+    /// Replaces definitions until none saves an operation; whether one did.
+    fn improve(&mut self) -> bool {
+        let mut improved = false;
+        loop {
+            let order = self.alive(None);
+            let total = self.cost(&order);
+            let mut uses: FxHashMap<NodeId, usize> = FxHashMap::default();
+            for child in order
+                .iter()
+                .filter(|id| !self.graph.is_free(**id))
+                .flat_map(|&id| self.children(id))
+            {
+                *uses.entry(child).or_default() += usize::from(!self.graph.is_free(child));
+            }
+            let found = order.iter().find_map(|&id| {
+                let operation = matches!(
+                    self.definitions.get(&id),
+                    Some(Node::Add(..) | Node::Mul(..))
+                );
+                if self.graph.is_free(id)
+                    || !operation
+                    || !self.children(id).any(|child| uses.get(&child) == Some(&1))
+                {
+                    return None;
+                }
+                let rest = self.alive(Some(id));
+                // The node itself is among the rest and keeps its cost.
+                (self.cost(&rest) < total)
+                    .then(|| self.other_definition(id, &rest))
+                    .flatten()
+                    .map(|node| (id, node))
+            });
+            let Some((id, node)) = found else {
+                return improved;
+            };
+            self.definitions.insert(id, node);
+            improved = true;
+        }
+    }
+
+    /// A sum or product of two nodes among `rest` with the value of `id`.
+    fn other_definition(&self, id: NodeId, rest: &[NodeId]) -> Option<Node> {
+        // What depends on the node cannot define it; children stand first in the order.
+        let mut above: FxHashSet<NodeId> = [id].into_iter().collect();
+        for &node in rest {
+            if self.children(node).any(|child| above.contains(&child)) {
+                above.insert(node);
+            }
+        }
+        let usable: Vec<NodeId> = rest
+            .iter()
+            .copied()
+            .filter(|node| !above.contains(node))
+            .collect();
+        let by_value: FxHashMap<Fp, NodeId> = usable
+            .iter()
+            .map(|&node| (self.value(node), node))
+            .collect();
+        let signed = |value: Fp| -> Option<Edge> {
+            let found = |value: &Fp| by_value.get(value).map(|&node| Edge::of(node));
+            found(&value).or_else(|| found(&-value).map(|edge| -edge))
+        };
+        let target = self.value(id);
+        let agrees = |node: &Node| {
+            let refused = self.shadow.as_ref().map(|shadow| shadow.refuses(id, *node));
+            !refused.unwrap_or(false)
+        };
+        usable.iter().find_map(|&x| {
+            let inverse = self.inverses.get(&x)?;
+            let value = self.value(x);
+            let difference = target - value;
+            if let Some(y) = signed(difference) {
+                return Some(Node::Add(Edge::of(x), y)).filter(agrees);
+            }
+            let sum = target + value;
+            if let Some(y) = signed(sum) {
+                return Some(Node::Add(-Edge::of(x), y)).filter(agrees);
+            }
+            let quotient = target * *inverse;
+            let y = signed(quotient).filter(|y| !y.is_negative())?;
+            Some(Node::Mul(Edge::of(x), y)).filter(agrees)
+        })
+    }
+
+    fn value(&self, id: NodeId) -> Fp {
+        self.graph.value(Edge::of(id))
+    }
+
+    fn rebuild(&self, into: &mut Graph) -> Vec<Edge> {
+        let mut image: FxHashMap<NodeId, Edge> = FxHashMap::default();
+        let read = |image: &FxHashMap<NodeId, Edge>, edge: Edge| {
+            image
+                .get(&edge.node())
+                .copied()
+                .map_or(Edge::of(0), |known| known.signed(edge.is_negative()))
+        };
+        let alive = self.alive(None);
+        let is_constant = |id: &&NodeId| self.graph.is_free(**id);
+        let constants: Vec<Edge> = alive
+            .iter()
+            .filter(is_constant)
+            .map(|&id| Edge::of(id))
+            .collect();
+        let moved = rebuild(self.graph, into, &constants);
+        image.extend(constants.iter().map(|edge| edge.node()).zip(moved));
+        for id in alive {
+            let Some(&node) = self
+                .definitions
+                .get(&id)
+                .filter(|_| !self.graph.is_free(id))
+            else {
+                continue;
+            };
+            let made = match node {
+                Node::Constant(index) => into.rational(self.graph.constant(index)),
+                Node::Symbol(index) => Edge::of(into.symbols()[index as usize].node),
+                Node::Add(a, b) => into.add(read(&image, a), read(&image, b)),
+                Node::Mul(a, b) => into.mul(read(&image, a), read(&image, b)),
+                Node::Div(a, b) => into
+                    .div(read(&image, a), read(&image, b))
+                    .unwrap_or(into.zero()),
+                Node::Apply(function, a) => into.apply(function, read(&image, a)),
+                Node::Atan2(y, x) => into.atan2(read(&image, y), read(&image, x)),
+            };
+            image.insert(id, made);
+        }
+        self.roots.iter().map(|&root| read(&image, root)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fp::Random;
+
+    /// (a b + c) and (a b + c + d), the second built from scratch as ((a b + d) + c): resubstitution
+    /// finds that it is the first plus d.
+    #[test]
+    fn a_sum_that_is_there_is_used() {
+        let mut graph = Graph::new(3, 1);
+        let mut random = Random::new(4);
+        let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| {
+            let value = random.element();
+            graph.symbol(name, 2, value)
+        });
+        let base = graph.clone();
+        let product = graph.mul(a, b);
+        let first = graph.add(product, c);
+        let other = graph.add(product, d);
+        let second = graph.add(other, c);
+        // d has to be there for something else too.
+        let third = graph.mul(c, d);
+        let roots = [first, second, third];
+        let (better, edges) = resubstitute(&graph, &roots, &base).expect("one operation less");
+        let cost = |graph: &Graph, roots: &[Edge]| {
+            Network::new(graph, roots).cost(&graph.reachable(roots))
+        };
+        assert_eq!((cost(&graph, &roots), cost(&better, &edges)), (5, 4));
+        for (old, new) in roots.iter().zip(&edges) {
+            assert_eq!(graph.value(*old), better.value(*new));
+        }
+    }
+}

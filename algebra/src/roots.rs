@@ -1,0 +1,128 @@
+//! Square roots modulo p that keep the laws of real roots: √(ab) = √a √b for a, b > 0.
+//!
+//! A root modulo p is one of two, and nothing there tells which is positive. Roots of the primes
+//! are chosen freely, those of positive rationals are their products; of expressions only those
+//! points are used at which they are squares of F_p, whose roots that are squares themselves are
+//! closed under multiplication.
+
+use super::prime::Residue;
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_rational::BigRational;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+/// Primes below this are split off; what is left is a square or one more free choice.
+const LARGEST_PRIME: u32 = 1 << 12;
+
+/// √c of a positive rational c; `None` where c ≤ 0 or p divides its denominator.
+pub fn of_rational<const K: usize>(c: &BigRational) -> Option<Residue<K>> {
+    if !c.is_positive() {
+        return None;
+    }
+    Some(of_integer(c.numer()) * of_integer(c.denom()).inv()?)
+}
+
+/// √n for n > 0, the product of the roots of its primes.
+fn of_integer<const K: usize>(n: &BigInt) -> Residue<K> {
+    let (mut rest, mut root) = (n.clone(), Residue::ONE);
+    let mut prime = 2;
+    while prime < LARGEST_PRIME && !rest.is_one() {
+        // What stays below 2^64 is divided faster there.
+        if let Some(small) = rest.to_u64() {
+            let (small, factor) = split(small, prime);
+            return root * factor * of_rough(&BigInt::from(small));
+        }
+        let divisor = BigInt::from(prime);
+        loop {
+            let (quotient, remainder) = rest.div_rem(&divisor);
+            if !remainder.is_zero() {
+                break;
+            }
+            rest = quotient;
+            root = root * chosen(u64::from(prime));
+        }
+        prime += if prime == 2 { 1 } else { 2 };
+    }
+    root * of_rough(&rest)
+}
+
+/// What is left of n without its primes from `first` on, and the product of their roots.
+fn split<const K: usize>(mut n: u64, first: u32) -> (u64, Residue<K>) {
+    let mut root = Residue::ONE;
+    let mut prime = u64::from(first);
+    while prime < u64::from(LARGEST_PRIME) && n > 1 {
+        while n.is_multiple_of(prime) {
+            n /= prime;
+            root = root * chosen(prime);
+        }
+        prime += if prime == 2 { 1 } else { 2 };
+    }
+    (n, root)
+}
+
+/// √n of a number without small primes.
+fn of_rough<const K: usize>(n: &BigInt) -> Residue<K> {
+    let whole = n.sqrt();
+    if &whole * &whole == *n {
+        return Residue::from_integer(&whole);
+    }
+    let residue = Residue::from_integer(n);
+    residue.sqrt().unwrap_or(Residue::ONE)
+}
+
+/// The root of a prime, in F_p or F_p(i).
+fn chosen<const K: usize>(prime: u64) -> Residue<K> {
+    Residue::new(prime).sqrt().unwrap_or(Residue::ONE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_rational;
+    use crate::fp::Random;
+    use crate::prime::Residue;
+    use num_bigint::BigInt;
+    use num_rational::BigRational;
+
+    #[test]
+    fn roots_of_products_are_products_of_roots() {
+        let number = |n: i64, d: i64| BigRational::new(BigInt::from(n), BigInt::from(d));
+        let numbers: Vec<BigRational> = (1..40)
+            .flat_map(|n| [1, 2, 7, 30, 1009 * 1013].map(|d| number(n, d)))
+            .chain([number(4099 * 4111, 3), number(4099, 1), number(i64::MAX, 7)])
+            .collect();
+        for a in &numbers {
+            let root = of_rational::<1>(a).expect("positive");
+            assert_eq!(Some(root * root), Residue::from_rational(a), "{a}");
+            for b in numbers.iter().take(80) {
+                let product = of_rational::<1>(&(a * b)).expect("positive");
+                assert_eq!(
+                    product,
+                    root * of_rational(b).expect("positive"),
+                    "{a}, {b}"
+                );
+            }
+        }
+        // Squares have the root that is a number; nothing has the root of a negative number.
+        assert_eq!(
+            of_rational::<0>(&number(9, 16)),
+            Residue::from_rational(&number(3, 4))
+        );
+        assert_eq!(of_rational::<0>(&number(-1, 4)), None);
+        assert_eq!(of_rational::<0>(&number(0, 1)), None);
+    }
+
+    #[test]
+    fn principal_roots_are_closed_under_products() {
+        let mut random = Random::new(5);
+        let mut found = 0;
+        for _ in 0..200 {
+            let (a, b) = (random.residue::<0>(), random.residue());
+            if let (Some(x), Some(y)) = (a.principal_root(), b.principal_root()) {
+                assert_eq!(x * x, a);
+                assert_eq!((a * b).principal_root(), Some(x * y));
+                found += 1;
+            }
+        }
+        assert!(found > 20);
+    }
+}

@@ -1,0 +1,106 @@
+//! Short expressions as text, for messages.
+
+use super::graph::{Edge, Graph, Node};
+
+/// How tightly the outermost operation binds.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Whole,
+}
+
+/// The expression as it is written in a description; `None` where it is longer than `most`.
+pub fn short(graph: &Graph, edge: Edge, most: usize) -> Option<String> {
+    let text = write(graph, edge, most, most)?.0;
+    (text.chars().count() <= most).then_some(text)
+}
+
+fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String, Binding)> {
+    let depth = depth.checked_sub(1)?;
+    if let Some(number) = graph.as_rational(edge) {
+        let binding = match number.is_integer() {
+            true if !edge.is_negative() => Binding::Whole,
+            _ => Binding::Sum,
+        };
+        return Some((number.to_string(), binding));
+    }
+    if edge.is_negative() {
+        let inner = within(graph, edge.abs(), Binding::Product, most, depth)?;
+        return Some((format!("-{inner}"), Binding::Sum));
+    }
+    let (text, binding) = match graph.node(edge.node()) {
+        Node::Constant(_) => return None,
+        Node::Symbol(index) => (
+            graph.symbols().get(index as usize)?.name.clone(),
+            Binding::Whole,
+        ),
+        Node::Add(a, b) => {
+            let left = within(graph, a, Binding::Sum, most, depth)?;
+            let sign = if b.is_negative() { '-' } else { '+' };
+            let right = within(graph, b.abs(), Binding::Product, most, depth)?;
+            (format!("{left} {sign} {right}"), Binding::Sum)
+        }
+        Node::Mul(a, b) if a == b => (
+            format!("{}^2", within(graph, a, Binding::Whole, most, depth)?),
+            Binding::Product,
+        ),
+        Node::Mul(a, b) => {
+            let left = within(graph, a, Binding::Product, most, depth)?;
+            let right = within(graph, b, Binding::Product, most, depth)?;
+            (format!("{left} * {right}"), Binding::Product)
+        }
+        Node::Div(a, b) => {
+            let left = within(graph, a, Binding::Product, most, depth)?;
+            let right = within(graph, b, Binding::Whole, most, depth)?;
+            (format!("{left} / {right}"), Binding::Product)
+        }
+        Node::Apply(function, a) => {
+            let name = function.name();
+            let inner = within(graph, a, Binding::Sum, most, depth)?;
+            (format!("{name}({inner})"), Binding::Whole)
+        }
+        Node::Atan2(y, x) => {
+            let y = within(graph, y, Binding::Sum, most, depth)?;
+            let x = within(graph, x, Binding::Sum, most, depth)?;
+            (format!("atan2({y}, {x})"), Binding::Whole)
+        }
+    };
+    (text.chars().count() <= most).then_some((text, binding))
+}
+
+/// An operand, in parentheses where its operation binds less tightly than asked for.
+fn within(graph: &Graph, edge: Edge, least: Binding, most: usize, depth: usize) -> Option<String> {
+    let (text, binding) = write(graph, edge, most, depth)?;
+    Some(if binding < least {
+        format!("({text})")
+    } else {
+        text
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fp::Random;
+
+    #[test]
+    fn parentheses_stand_where_they_are_needed() {
+        let mut graph = Graph::new(3, 1);
+        let value = |seed: u64| Random::new(seed).element();
+        let a = graph.symbol("a", 2, value(11));
+        let b = graph.symbol("b", 2, value(23));
+        let sum = graph.sub(a, b);
+        let product = graph.mul(sum, b);
+        let quotient = graph
+            .div(product, sum)
+            .and_then(|_| graph.div(a, product))
+            .expect("not 0");
+        assert_eq!(short(&graph, -product, 40).as_deref(), Some("-b * (a - b)"));
+        assert_eq!(
+            short(&graph, quotient, 40).as_deref(),
+            Some("a / (b * (a - b))")
+        );
+        assert_eq!(short(&graph, quotient, 10), None);
+    }
+}

@@ -1,0 +1,184 @@
+//! From graph nodes to polynomials, where they are polynomials of bearable size.
+//!
+//! A symbol is the variable of its index; any other node that is no sum or product (a function, a
+//! quotient) is a variable of its own, numbered from `OPAQUE` by its node.
+
+use super::fp::Fp;
+use super::graph::{Edge, Graph, Node, NodeId};
+use super::poly::field::Field;
+use super::poly::monomial::Var;
+use super::poly::polynomial::Poly;
+use num_rational::BigRational;
+use rustc_hash::FxHashMap;
+
+/// Variables from here on are nodes that are no polynomials themselves.
+pub const OPAQUE: Var = 1 << 24;
+
+/// Largest number of terms of an intermediate polynomial.
+pub const MOST_TERMS: usize = 4000;
+
+/// Highest degree of an intermediate polynomial: towers of powers reach degrees that no exponent
+/// could hold.
+pub const HIGHEST_DEGREE: u32 = 100;
+
+/// a b, unless it has too many terms or too high a degree.
+fn product<F: Field>(a: &Poly<F>, b: &Poly<F>) -> Option<Poly<F>> {
+    if a.degree() + b.degree() > HIGHEST_DEGREE {
+        return None;
+    }
+    a.mul_limited(b, MOST_TERMS)
+}
+
+/// Polynomials over Q of nodes; remembers what it has expanded.
+pub struct Expander {
+    memo: FxHashMap<NodeId, Option<Poly<BigRational>>>,
+    /// Products and sums of terms that may still be made.
+    work: usize,
+}
+
+impl Default for Expander {
+    fn default() -> Self {
+        Expander::within(usize::MAX)
+    }
+}
+
+impl Expander {
+    /// One that gives up after so many products and sums of terms: what is not expanded by then has no
+    /// polynomial.
+    pub fn within(work: usize) -> Self {
+        Expander {
+            memo: FxHashMap::default(),
+            work,
+        }
+    }
+
+    /// The polynomial of an expression; `None` where it has too many terms.
+    pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
+        for id in graph.reachable(&[edge]) {
+            if !self.memo.contains_key(&id) {
+                let polynomial = self.local(graph, id);
+                self.memo.insert(id, polynomial);
+            }
+        }
+        self.signed(edge)
+    }
+
+    fn signed(&self, edge: Edge) -> Option<Poly<BigRational>> {
+        let polynomial = self.memo.get(&edge.node())?.as_ref()?;
+        Some(if edge.is_negative() {
+            polynomial.neg()
+        } else {
+            polynomial.clone()
+        })
+    }
+
+    /// Takes from the work that is left; `None` where it does not suffice.
+    fn spend(&mut self, work: usize) -> Option<()> {
+        let left = self.work.checked_sub(work);
+        self.work = left.unwrap_or(0);
+        left.map(|_| ())
+    }
+
+    fn terms(&self, edge: Edge) -> Option<usize> {
+        Some(self.memo.get(&edge.node())?.as_ref()?.terms().len())
+    }
+
+    fn local(&mut self, graph: &Graph, id: NodeId) -> Option<Poly<BigRational>> {
+        match graph.node(id) {
+            Node::Add(a, b) => self.spend(self.terms(a)? + self.terms(b)?)?,
+            Node::Mul(a, b) => self.spend(self.terms(a)? * self.terms(b)?)?,
+            _ => {}
+        }
+        match graph.node(id) {
+            Node::Constant(index) => Some(Poly::constant(graph.constant(index).clone())),
+            Node::Symbol(index) => Some(Poly::var(index)),
+            Node::Add(a, b) => {
+                let sum = self.signed(a)?.add(&self.signed(b)?);
+                (sum.terms().len() <= MOST_TERMS).then_some(sum)
+            }
+            Node::Mul(a, b) => product(&self.signed(a)?, &self.signed(b)?),
+            Node::Div(..) | Node::Apply(..) | Node::Atan2(..) => Some(Poly::var(OPAQUE + id)),
+        }
+    }
+}
+
+/// Whether an expression is polynomial in the symbols of some classes.
+pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
+    graph
+        .reachable(&[edge])
+        .into_iter()
+        .all(|id| match graph.node(id) {
+            Node::Apply(..) | Node::Atan2(..) => graph.class(id) & classes == 0,
+            Node::Div(_, b) => graph.class(b.node()) & classes == 0,
+            _ => true,
+        })
+}
+
+/// The polynomial of an expression over F_p in the symbols that are `unknown`, all others having
+/// the given values; `None` where it is no polynomial in them.
+pub fn polynomial_at(
+    graph: &Graph,
+    edge: Edge,
+    values: &[Fp],
+    unknown: &dyn Fn(usize) -> bool,
+) -> Option<Poly<Fp>> {
+    let mut memo: FxHashMap<NodeId, Poly<Fp>> = FxHashMap::default();
+    let read = |memo: &FxHashMap<NodeId, Poly<Fp>>, edge: Edge| {
+        let polynomial = memo.get(&edge.node())?;
+        Some(if edge.is_negative() {
+            polynomial.neg()
+        } else {
+            polynomial.clone()
+        })
+    };
+    for id in graph.reachable(&[edge]) {
+        let polynomial = match graph.node(id) {
+            Node::Constant(index) => Poly::constant(Fp::from_rational(graph.constant(index))?),
+            Node::Symbol(index) if unknown(index as usize) => Poly::var(index),
+            Node::Symbol(index) => Poly::constant(*values.get(index as usize)?),
+            Node::Add(a, b) => read(&memo, a)?.add(&read(&memo, b)?),
+            Node::Mul(a, b) => product(&read(&memo, a)?, &read(&memo, b)?)?,
+            Node::Div(a, b) => {
+                let divisor = read(&memo, b)?.as_constant()?.inv()?;
+                read(&memo, a)?.scale(&divisor)
+            }
+            // Functions of parameters: any fixed value serves, the same in both graphs by its law.
+            Node::Apply(..) | Node::Atan2(..) => return None,
+        };
+        memo.insert(id, polynomial);
+    }
+    read(&memo, edge)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Expander;
+    use crate::fp::Random;
+    use crate::graph::Graph;
+
+    #[test]
+    fn an_expansion_ends_with_its_work() {
+        let mut random = Random::new(5);
+        let mut graph = Graph::new(1, 0);
+        let symbols: Vec<_> = (0..6)
+            .map(|i| {
+                let value = random.element();
+                graph.symbol(&format!("x{i}"), 2, value)
+            })
+            .collect();
+        let sum = graph.sum(&symbols);
+        let square = graph.mul(sum, sum);
+        let fourth = graph.mul(square, square);
+        let terms = |work: usize, edge| {
+            let polynomial = Expander::within(work).expand(&graph, edge);
+            polynomial.map(|polynomial| polynomial.terms().len())
+        };
+        // 20 terms added up, 36 products, and 21² more.
+        assert_eq!(terms(19, sum), None);
+        assert_eq!(terms(20, sum), Some(6));
+        assert_eq!(terms(56, square), Some(21));
+        assert_eq!(terms(56, fourth), None);
+        assert_eq!(terms(20 + 36 + 441, fourth), Some(126));
+        assert_eq!(terms(20 + 36 + 440, fourth), None);
+    }
+}

@@ -1,0 +1,148 @@
+//! Computations of ξ̇ compared: of each family of candidates the best is polished first.
+
+use super::parts::Axes;
+use super::saddle::Projections;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::resubstitute::resubstitute;
+use crate::derive::care::Care;
+use crate::model::Model;
+use crate::program::count::{Count, count, depth};
+
+/// The chosen computation of ξ̇.
+#[derive(Clone, Debug)]
+pub struct Acceleration {
+    /// The graph that it lives in: the model's, with the route's nodes added.
+    pub graph: Graph,
+    /// ξ̇.
+    pub xi_dot: Vec<Edge>,
+    /// Pivots that have to be positive, in order of elimination.
+    pub pivots: Vec<Edge>,
+    /// Multipliers of the constraints that the model keeps.
+    pub multipliers: Vec<Edge>,
+    /// What leads back to these constraints, where there are some.
+    pub projections: Option<Projections>,
+    /// The digits that rounding takes of it, in steps, as far as they count.
+    pub loss: usize,
+    /// Its operations.
+    pub count: Count,
+    /// Its longest chain of operations after one another: of two equal counts the flatter is faster.
+    pub depth: usize,
+    /// What was chosen, for people.
+    pub route: String,
+}
+
+impl Acceleration {
+    /// None, where no ξ̇ is wanted; in a graph of the model's symbols.
+    pub fn none(graph: Graph) -> Self {
+        Acceleration {
+            graph,
+            xi_dot: Vec::new(),
+            pivots: Vec::new(),
+            multipliers: Vec::new(),
+            projections: None,
+            loss: 0,
+            count: Count::default(),
+            depth: 0,
+            route: String::new(),
+        }
+    }
+
+    /// Digits first, where they count, then operations, then depth.
+    pub(super) fn cost(&self) -> (usize, usize, usize) {
+        (self.loss, self.count.weight(), self.depth)
+    }
+}
+
+/// Candidates that are alike: of each family the best is polished before they are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Family {
+    /// Recursions over links.
+    Links,
+    /// Bodies traced in these axes, in the model's velocities or in the twist of its one body.
+    Traced { twist: bool, axes: Axes },
+    /// Expanded and factored anew.
+    Polynomial,
+}
+
+/// The best candidates so far, one of each family.
+pub(super) struct Best<'a> {
+    care: &'a Care,
+    families: Vec<(Family, Acceleration)>,
+}
+
+impl<'a> Best<'a> {
+    pub(super) fn new(care: &'a Care) -> Self {
+        Best {
+            care,
+            families: Vec::new(),
+        }
+    }
+
+    /// Keeps a candidate that is better than what its family has.
+    pub(super) fn keep(&mut self, family: Family, mut candidate: Acceleration) {
+        candidate.loss = self
+            .care
+            .loss(&candidate.graph, &candidate.xi_dot, &candidate.pivots);
+        match self.families.iter_mut().find(|(known, _)| *known == family) {
+            Some((_, best)) if candidate.cost() < best.cost() => *best = candidate,
+            Some(_) => {}
+            None => self.families.push((family, candidate)),
+        }
+    }
+
+    /// The weight of the cheapest.
+    pub(super) fn least(&self) -> usize {
+        let weights = self.families.iter().map(|(_, best)| best.count.weight());
+        weights.min().unwrap_or(usize::MAX)
+    }
+
+    /// The best as it is.
+    pub(super) fn cheapest(self) -> Option<Acceleration> {
+        let all = self.families.into_iter().map(|(_, best)| best);
+        all.min_by_key(Acceleration::cost)
+    }
+
+    /// The best after resubstitution.
+    pub(super) fn polished(self, model: &Model) -> Option<Acceleration> {
+        let care = self.care;
+        let all = self.families.into_iter();
+        let all = all.map(|(_, best)| polished(best, model, care));
+        all.min_by_key(Acceleration::cost)
+    }
+}
+
+/// The chosen computation after resubstitution.
+fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
+    let roots: Vec<Edge> = chosen
+        .xi_dot
+        .iter()
+        .chain(&chosen.pivots)
+        .copied()
+        .collect();
+    let Some((graph, edges)) = resubstitute(&chosen.graph, &roots, &model.graph) else {
+        return chosen;
+    };
+    let (xi_dot, pivots) = edges.split_at(chosen.xi_dot.len());
+    let varying = edges
+        .iter()
+        .copied()
+        .filter(|edge| !graph.is_free(edge.node()))
+        .collect::<Vec<_>>();
+    let polished = Acceleration {
+        loss: care.loss(&graph, xi_dot, pivots),
+        count: count(&graph, &varying),
+        depth: depth(&graph, &varying),
+        route: chosen.route.clone(),
+        xi_dot: xi_dot.to_vec(),
+        pivots: pivots.to_vec(),
+        multipliers: Vec::new(),
+        projections: None,
+        graph,
+    };
+    let cost = |a: &Acceleration| (a.loss, a.count.weight());
+    if cost(&polished) < cost(&chosen) {
+        polished
+    } else {
+        chosen
+    }
+}
