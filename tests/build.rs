@@ -1,4 +1,4 @@
-//! The build script's door: every model of `models/` and `models/multibody/` becomes a module of this crate.
+//! The build script's front end: every model of `models/` and `models/multibody/` becomes a module of this crate.
 
 use std::path::PathBuf;
 

@@ -19,7 +19,7 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Where to write; standard output where it is left out.
+    /// Where to write; default standard output.
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,
     /// Write nothing; status 1 where OUT is not what would be written.

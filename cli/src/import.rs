@@ -26,7 +26,7 @@ pub struct Arguments {
     /// Robot, `-` for standard input.
     #[arg(value_name = "ROBOT.urdf")]
     file: PathBuf,
-    /// Where to write; standard output where it is left out.
+    /// Where to write; default standard output.
     #[arg(short, long, value_name = "F.eom")]
     out: Option<PathBuf>,
     #[command(flatten)]

@@ -45,7 +45,7 @@ const EXAMPLES: &str = "\
 Examples:
   hamel check heavy_top.eom                     prove the identities behind the equations
   hamel tables heavy_top.eom --of gamma,M       what stands in the paper
-  hamel linearize heavy_top.eom                 the motion nearby, with eigenvalues
+  hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
   hamel simulate heavy_top.eom --until 10       a first run
   hamel compare heavy_top.eom --until 10        error of methods against what they cost
   hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation

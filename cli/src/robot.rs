@@ -21,11 +21,11 @@ pub struct RobotOptions {
     /// How joints move that mimic another one.
     #[arg(long, value_enum, value_name = "HOW")]
     mimic: Option<Mimic>,
-    /// Name of the system; the robot's where it is left out.
+    /// Name of the system; by default the robot's.
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
     /// Angles this near to a multiple of π/2 (rad) are that multiple, and entries this small beside
-    /// the largest of their vector or matrix are 0; 1e-9 where it is left out, 0 keeps every digit.
+    /// the largest of their vector or matrix are 0; default 1e-9, 0 keeps every digit.
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     rounding: Option<f64>,
 }

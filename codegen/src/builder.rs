@@ -1,4 +1,4 @@
-//! The build script's door: `.eom` files in, formatted `.rs` files in `OUT_DIR`.
+//! The build script's front end: `.eom` files in, formatted `.rs` files in `OUT_DIR`.
 //!
 //! ```no_run
 //! // build.rs

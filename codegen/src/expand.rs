@@ -1,4 +1,4 @@
-//! The macro's door: tokens in, tokens out, errors as `compile_error!` at their places.
+//! The macro's front end: tokens in, tokens out, errors as `compile_error!` at their places.
 
 use crate::diagnostics::Diagnostic;
 use crate::emit;

@@ -1,4 +1,4 @@
-//! From a description to its program: what all doors call.
+//! From a description to its program: what all front ends call.
 
 use crate::derive::assemble::assemble;
 use crate::derive::invariants;
@@ -20,7 +20,7 @@ pub struct Generated {
     pub active: Model,
     /// Its functions, validated.
     pub program: Program,
-    /// Hash of the description's tokens: the same through every door.
+    /// Hash of the description's tokens: the same through every front end.
     pub hash: u64,
 }
 

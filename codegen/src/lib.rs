@@ -14,7 +14,7 @@
 //! | [`program`] | binding times, operation counts, interpretation |
 //! | [`emit`] | Rust text; no algebra |
 //! | [`tables`] | what people read |
-//! | [`generate`], [`expand()`], [`Builder`] | the doors; `urdf` with the feature of that name |
+//! | [`generate`], [`expand()`], [`Builder`] | the front ends; `urdf` with the feature of that name |
 
 pub use hamel_algebra as algebra;
 #[cfg(feature = "files")]

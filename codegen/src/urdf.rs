@@ -1,4 +1,4 @@
-//! The door for robots in URDF: `hamel_urdf` makes a description of them, and errors about that
+//! The front end for robots in URDF: `hamel_urdf` makes a description of them, and errors about that
 //! description are shown at the place in the URDF that its lines are made from.
 
 use crate::diagnostics::Diagnostic;

@@ -1,4 +1,4 @@
-//! The build script's door.
+//! The build script's front end.
 
 fn main() -> Result<(), hamel_codegen::BuildError> {
     hamel_codegen::Builder::new()

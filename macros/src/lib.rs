@@ -1,4 +1,4 @@
-//! The proc macro door of hamel: a shell over [`hamel_codegen::expand`].
+//! The proc macro front end of hamel: a shell over [`hamel_codegen::expand`].
 
 use proc_macro::TokenStream;
 

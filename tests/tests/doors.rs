@@ -1,4 +1,4 @@
-//! Three doors, one generator: the same text gives the same function bodies through the macro, the
+//! Three front ends, one generator: the same text gives the same function bodies through the macro, the
 //! build script and the generator that the command line calls.
 
 use hamel_codegen::builder::source;

@@ -1,4 +1,4 @@
-//! Claims of constancy: proved where they are true, refused at every door where they are not, and
+//! Claims of constancy: proved where they are true, refused at every front end where they are not, and
 //! watched by generated functions.
 
 use hamel::methods::General;

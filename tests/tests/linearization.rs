@@ -1,4 +1,4 @@
-//! The motion nearby against published eigenvalues: the Whipple bicycle and the rolling disk.
+//! The linearisation against published eigenvalues: the Whipple bicycle and the rolling disk.
 //!
 //! J. P. Meijaard, J. M. Papadopoulos, A. Ruina, A. L. Schwab, *Linearized dynamics equations for the
 //! balance and steer of a bicycle: a benchmark and review*, Proc. R. Soc. A 463 (2007), table 2.

@@ -1,7 +1,7 @@
 //! Reviewed snapshots of what every model gives: its tables and its operation counts, and of a few the code.
 //!
 //! What they lock has been proved before: generation validates every function, and `checks.rs`
-//! checks every identity. The code of every model is compiled by `build.rs`, is the same through every door
+//! checks every identity. The code of every model is compiled by `build.rs`, is the same through every front end
 //! (`doors.rs`), and repeats to the byte.
 
 use hamel_codegen::builder::source;

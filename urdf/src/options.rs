@@ -22,7 +22,7 @@ pub enum Mimic {
 pub struct Options {
     /// Name of the file, for the header of the description.
     pub file: String,
-    /// Name of the system; from the robot's name where it is left out.
+    /// Name of the system; by default the robot's name.
     pub name: Option<String>,
     /// Whether the base moves freely; else it stands in the world.
     pub floating: bool,

@@ -59,7 +59,7 @@ pub struct Arguments {
     /// Descriptions, or robots in URDF.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Methods, see `hamel simulate --help`; all that fit where it is left out.
+    /// Methods, see `hamel simulate --help`; by default all that fit.
     #[arg(long, value_name = "M", value_delimiter = ',')]
     methods: Vec<String>,
     /// Length of the run; the last time of the reference, or 10.

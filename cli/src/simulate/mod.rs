@@ -54,7 +54,7 @@ pub struct Arguments {
     /// Length of the run, in the unit of time of the description (s).
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     until: f64,
-    /// Length of a step; 0.001, within a thousand to a million steps, where it is left out.
+    /// Length of a step; default 0.001, adjusted so that a run takes 10³ to 10⁶ steps.
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     step: Option<f64>,
     /// How to step; `auto` takes what fits the system and says why. --help tells them apart.
@@ -63,7 +63,7 @@ pub struct Arguments {
     /// Error that a step may make, for rkmk54 and rkmk8, which then choose their steps themselves.
     #[arg(long, value_name = "E", value_parser = positive, allow_negative_numbers = true, conflicts_with = "step")]
     tol: Option<f64>,
-    /// Rate at which rk4 leads back to the constraint (1/s); 10 where it is left out.
+    /// Rate at which rk4 leads back to the constraint (1/s); default 10.
     #[arg(long, value_name = "L", value_parser = rate, allow_negative_numbers = true)]
     lambda: Option<f64>,
     /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
@@ -72,7 +72,7 @@ pub struct Arguments {
     /// Samples as .csv or .json, or a plot as .svg.
     #[arg(long, value_name = "F")]
     out: Option<PathBuf>,
-    /// A sample every N steps; about 1000 samples where it is left out.
+    /// A sample every N steps; by default about 1000 samples.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     every: Option<u64>,
     /// Plot of coordinates, velocities, outputs and what is conserved over time, with the path of a body

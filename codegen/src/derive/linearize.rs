@@ -1,4 +1,4 @@
-//! The motion nearby, without redundant directions: with δx = A(x) h and ξ̇ = F(x, ξ, u)
+//! The linearisation, without redundant directions: with δx = A(x) h and ξ̇ = F(x, ξ, u)
 //!
 //! ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = (∂ⱼF) hʲ + (∂F/∂ξ) δξ + (∂F/∂u) δu.
 //!

@@ -18,13 +18,13 @@
 //! | `numbers` | the three forms at points modulo p: what every build is compared with | (30) |
 //! | `energy` | T, V, momentum | |
 //! | `momentum` | ṗ, and ξ from p | (30a) |
-//! | `linearize` | the motion nearby, in displacement coordinates | (12) |
+//! | `linearize` | the linearisation, in displacement coordinates | (12) |
 //! | `invariants` | claims of constancy along the motion, proved or refuted | |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
 //! | `tree` | links and joints: inverse dynamics, M, ξ̇ and slopes by recursion | |
 //! | `adviser` | other velocity coordinates for the same motion, and their cost | |
 //! | `assemble` | the program of all generated functions | |
-//! | `further` | momenta, the motion nearby and invariants as functions | |
+//! | `further` | momenta, the linearisation and invariants as functions | |
 //! | `structure` | whether a system splits into free motion and kicks; which method fits | |
 //! | `confidence` | what equality at random points says | |
 //! | `check` | the identities that any derivation has to satisfy | (6), (12), (13), (21) |

@@ -1,4 +1,4 @@
-//! Validation of the motion nearby, [A B], and of invariants, at a point modulo p.
+//! Validation of the linearisation, [A B], and of invariants, at a point modulo p.
 //!
 //! Slopes are taken by dual numbers, and M ξ̇ = F is solved in numbers: no derivative of the generator's
 //! own takes part. Where M, inverse dynamics and f are emitted, they have been compared with the
@@ -22,7 +22,7 @@ pub struct Slopes {
     /// Names of the invariants with their entries in the graph of a model.
     invariants: Vec<(String, Vec<Edge>)>,
     model: Model,
-    /// What slopes are taken of, where the motion nearby is wanted.
+    /// What slopes are taken of, where the linearisation is wanted.
     source: Option<Source>,
 }
 
@@ -181,9 +181,9 @@ impl Slopes {
     }
 }
 
-/// What is broken where a part of the motion nearby is wrong.
-const KINEMATIC: &str = "ḣ of the motion nearby";
-const DYNAMIC: &str = "δξ̇ of the motion nearby";
+/// What is broken where a part of the linearisation is wrong.
+const KINEMATIC: &str = "ḣ of the linearisation";
+const DYNAMIC: &str = "δξ̇ of the linearisation";
 
 /// All columns at once, (h, δξ, δu) of random numbers: one wrong entry goes unnoticed with probability
 /// 1/p.

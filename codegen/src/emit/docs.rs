@@ -104,7 +104,7 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
         let kinematic = |guard: &Edge| program.kinematic_pivot(*guard).is_some();
         if function.guards.iter().any(kinematic) {
             lines.push(
-                "`Singular::kinematics` where a pivot of [Y; Φ] has lost its sign: a locked configuration."
+                "`Singular::kinematics` where a pivot of [Y; Φ] has changed sign: the mechanism is at a kinematic singularity."
                     .into(),
             );
         }

@@ -21,7 +21,7 @@
 //! | `system` | `impl hamel::System` |
 //! | `methods` | `impl hamel::Split`, `impl hamel::Canonical` |
 //!
-//! Text is built first and parsed second, so that all doors share every byte. What is no Rust is an
+//! Text is built first and parsed second, so that all front ends share every byte. What is no Rust is an
 //! error, and does not leave the generator.
 
 mod chunk;

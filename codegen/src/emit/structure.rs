@@ -120,7 +120,7 @@ fn constructor(emitter: &Emitter) -> String {
     if groups().any(|(group, _)| matches!(group.shape, ShapeKind::Symmetric(_))) {
         lines.extend([
             String::new(),
-            "Symmetric matrices are read above their diagonal.".into(),
+            "Of symmetric matrices only the upper triangle is read.".into(),
         ]);
     }
     lines.extend(errors());

@@ -184,7 +184,7 @@ impl Structure {
 
     /// Which methods fit, for the documentation of a generated type.
     pub fn documentation(&self) -> Vec<String> {
-        let mut lines = vec!["Methods for any system fit.".to_string()];
+        let mut lines = vec!["Works with all general-purpose integrators.".to_string()];
         match &self.split {
             Ok(splitting) => {
                 if splitting.free {

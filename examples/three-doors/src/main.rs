@@ -1,5 +1,5 @@
-//! One mechanism through two of the three doors: the macro and the build script give the same
-//! functions. The third door is the command line: `hamel emit examples/three-doors/pendulum.eom`.
+//! One mechanism through two of the three front ends: the macro and the build script give the same
+//! functions. The third front end is the command line: `hamel emit examples/three-doors/pendulum.eom`.
 
 use hamel::methods::Rkmk4;
 use hamel::{Monitor, State, integrate};

@@ -1,5 +1,5 @@
 //! Forward dynamics of a spatial chain of 16 links with run-time parameters, and its derivatives: more
-//! than 20,000 statements, cut into parts that rustc bears with debug information on. Beside it a tree of
+//! than 20,000 statements, cut into parts that rustc compiles comfortably with debug information on. Beside it a tree of
 //! the size of a humanoid robot.
 
 include!(concat!(env!("OUT_DIR"), "/chain.rs"));

@@ -36,7 +36,7 @@ struct Draft<'a> {
     all: Vec<String>,
 }
 
-/// A description; `system` is the name of its type, a random one where it is left out.
+/// A description; `system` is the name of its type, a random one by default.
 pub fn description(random: &mut Random, system: Option<&str>) -> String {
     let mut draft = Draft {
         random,

@@ -134,7 +134,7 @@ impl<'a> Reader<'a, '_, '_> {
             self.errors.push(
                 &range.unwrap_or_else(|| tag(self.text, element)),
                 format!("the {name} {} is negative", number.text),
-                "a joint that takes energy has a positive one",
+                "a joint that dissipates energy has a positive one",
             );
             return None;
         }
