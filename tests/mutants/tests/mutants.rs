@@ -1,4 +1,4 @@
-//! Wrong signs in the implementation itself, `mutants/*.txt`: `hamel check` notices each and names an
+//! Wrong signs in the implementation itself, `cases/*.txt`: `hamel check` notices each and names an
 //! identity that it breaks.
 //!
 //! A mutant is a title, the `file` to change, a `model` to check, what it `breaks`, and lines of code
@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The crates that the command line is made of.
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 8] = [
     "algebra", "codegen", "files", "macros", "runtime", "report", "urdf", "cli",
 ];
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 fn read(path: &Path) -> String {
@@ -153,7 +153,7 @@ impl Copy {
 }
 
 fn mutants() -> Vec<Mutant> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("mutants");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let entries = fs::read_dir(folder).expect("mutants");
     let mut paths: Vec<PathBuf> = entries
         .map(|entry| entry.expect("an entry").path())

@@ -1,0 +1,121 @@
+//! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask bless`.
+//!
+//! Each task is a list of commands, run in order from the root of the repository; the first that fails
+//! ends it.
+
+use std::path::Path;
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+/// Commands, each with variables of its environment in front: `NAME=value program arguments …`.
+type Task = &'static [&'static str];
+
+/// Seconds once everything is built: format, and what the stages say of themselves.
+const QUICK: Task = &[
+    "cargo fmt --all --check",
+    "cargo test --locked -p hamel-algebra -p hamel-codegen --lib",
+    "cargo test --locked -p hamel-tests --test layers --test wrong",
+];
+
+/// Everything that has to hold before a change lands.
+const CI: Task = &[
+    "cargo fmt --all --check",
+    "cargo clippy --workspace --all-targets --locked -- -D warnings",
+    "RUSTDOCFLAGS=-Dwarnings cargo doc --workspace --no-deps --locked",
+    // The runtime without std, and generated code in a crate without std.
+    "cargo check -p hamel --no-default-features --locked",
+    "cargo check -p hamel --no-default-features --features wide --locked",
+    "cargo check --manifest-path tests/nostd/Cargo.toml --locked",
+    // The URDF files of the robots in tests/reference/robots.
+    "bash tests/robots/install.sh",
+    // The README's test command.
+    "cargo test --workspace --locked",
+    // Generated systems in the stiff solvers of another crate.
+    "cargo test --manifest-path tests/diffsol/Cargo.toml --locked",
+    // Thousands of statements, and wrong signs in the generator itself.
+    "cargo test --manifest-path tests/big/Cargo.toml --locked",
+    "cargo test --manifest-path tests/mutants/Cargo.toml --locked",
+];
+
+/// The random attacks at full size: an hour.
+const ATTACK: Task = &[
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test expressions --test mounts --test rounding",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test free_rotation --test stiff",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files",
+    "bash tests/robots/install.sh",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --bin hamel --test states --test emitted --test shaken",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests-emitted",
+    "bash tests/robots/pinocchio.sh",
+];
+
+/// Takes the snapshots as they are now; `git diff` shows what to review.
+const BLESS: Task = &[
+    "INSTA_UPDATE=always INSTA_FORCE_PASS=1 cargo test --workspace --locked --no-fail-fast",
+    "git --no-pager diff --stat -- *.snap",
+];
+
+const TASKS: [(&str, Task, &str); 4] = [
+    (
+        "quick",
+        QUICK,
+        "format, unit tests and the shape of the repository: seconds once built",
+    ),
+    (
+        "ci",
+        CI,
+        "everything that has to hold before a change lands",
+    ),
+    (
+        "attack",
+        ATTACK,
+        "the random attacks at full size, and all robots against Pinocchio: an hour",
+    ),
+    ("bless", BLESS, "takes the snapshots as they are now"),
+];
+
+fn main() -> ExitCode {
+    let asked: Vec<String> = std::env::args().skip(1).collect();
+    let found = TASKS.iter().find(|(name, ..)| asked == [*name]);
+    let Some((_, commands, _)) = found else {
+        eprintln!("cargo xtask TASK, where TASK is one of");
+        for (name, _, what) in TASKS {
+            eprintln!("  {name:7} {what}");
+        }
+        return ExitCode::from(2);
+    };
+    for command in *commands {
+        println!("\n== {command}");
+        let begin = Instant::now();
+        if !run(command) {
+            eprintln!("\nfailed: {command}");
+            return ExitCode::FAILURE;
+        }
+        println!("== {:.0} s", begin.elapsed().as_secs_f64());
+    }
+    ExitCode::SUCCESS
+}
+
+/// Runs a command; no argument of these has a space in it.
+fn run(command: &str) -> bool {
+    let words: Vec<&str> = command.split_whitespace().collect();
+    let variables = words.iter().take_while(|word| is_variable(word)).count();
+    let (variables, words) = words.split_at(variables);
+    let Some((program, arguments)) = words.split_first() else {
+        return false;
+    };
+    let variables = variables.iter().filter_map(|word| word.split_once('='));
+    let status = Command::new(program)
+        .args(arguments)
+        .envs(variables)
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .status();
+    status.is_ok_and(|status| status.success())
+}
+
+fn is_variable(word: &str) -> bool {
+    let name = word.split_once('=').map_or("", |(name, _)| name);
+    !name.is_empty()
+        && name
+            .bytes()
+            .all(|byte| byte.is_ascii_uppercase() || byte == b'_')
+}
