@@ -58,9 +58,10 @@ fn shaken(text: &str, power: i32, random: &mut Random) -> String {
         let (angles, rest) = part.split_once('"').expect("a quoted attribute");
         let moved: Vec<String> = angles
             .split_whitespace()
-            .map(|angle| {
-                let angle: f64 = angle.parse().expect("an angle");
-                (angle + number(random) * 10.0_f64.powi(-power)).to_string()
+            .map(|text| match text.parse::<f64>() {
+                Ok(angle) => (angle + number(random) * 10.0_f64.powi(-power)).to_string(),
+                // Some files have texts there that the import refuses.
+                Err(_) => text.to_string(),
             })
             .collect();
         all += &format!("rpy=\"{}\"{rest}", moved.join(" "));

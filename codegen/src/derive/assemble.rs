@@ -5,12 +5,14 @@ use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel, forces};
 use super::calculus::Calculus;
 use super::care::{self, Care};
+use super::invariants::quantity;
 use super::reduction::Reduction;
 use super::structure::{self, Found, Functions};
 use super::{constrained, correction, energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
+use crate::model::invariants::Quantity;
 use crate::model::value::Value;
 use crate::model::{Model, class};
 use crate::program::structure::Structure;
@@ -19,7 +21,7 @@ use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
 /// Models with more velocities are looked at for lack of inertia by M as it is traced: the literal one, n²
 /// entries of all bodies, would take longer than all else.
-const MOST_LITERAL: usize = 8;
+pub(super) const MOST_LITERAL: usize = 8;
 
 /// Derives the functions of a model that are wanted; `reduction` solves its constraints. The program is
 /// the cheapest one, or, where rounding takes too much of that, the one that keeps more digits.
@@ -100,10 +102,20 @@ fn put_together(
     let found = structure::analyse(full, model, graph, parts);
     let mut others = Vec::new();
     if found.functions.is_some() && model.n() <= MOST_LITERAL {
-        // Apart from what ξ̇ is computed from.
-        let mut apart = model.graph.clone();
-        let parts = builder.parts.grafted(&builder.graph, &mut apart);
-        others.extend(structure::analyse(full, model, &apart, &parts).functions);
+        // Apart from what ξ̇ is computed from; and with the momenta of all bodies at hand.
+        let mut moving = model.clone();
+        let (zero, mut calculus) = (model.graph.zero(), Calculus::new(model));
+        let angular = Quantity::AngularMomentum {
+            of: None,
+            about: [zero; 3],
+            along: None,
+        };
+        quantity::value(&mut moving, &mut calculus, (zero, zero), &angular);
+        for graph in [&model.graph, &moving.graph] {
+            let mut apart = graph.clone();
+            let parts = builder.parts.shared(&builder.graph, &mut apart);
+            others.extend(structure::analyse(full, model, &apart, &parts).functions);
+        }
     }
     let structure = builder.splitting(found, &others)?;
     let mass = builder.parts.mass.clone();

@@ -1,14 +1,14 @@
 //! Functions beside the equations of motion: momenta, the linearisation, invariants.
 
 use super::accel::cheapest::Computation;
-use super::accel::recursions;
 use super::accel::recursive::Recursion;
 use super::accel::setting::Setting;
-use super::assemble::{Builder, shape_of};
+use super::accel::{Acceleration, recursions};
+use super::assemble::{Builder, MOST_LITERAL, shape_of};
 use super::calculus::Calculus;
 use super::candidates::Candidates;
 use super::invariants::quantity;
-use super::linearize::{Displacements, Motion, linearize};
+use super::linearize::{Displacements, Linear, Motion, linearize};
 use super::momentum;
 use super::reduction::Reduction;
 use super::tree::Placement;
@@ -17,6 +17,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::graft;
 use crate::model::Model;
 use crate::model::invariants::Quantity;
+use crate::program::count::count;
 use crate::program::{Argument, Function, FunctionId, Shape};
 use Argument::{Coordinates, Velocities};
 
@@ -94,27 +95,49 @@ impl Builder<'_> {
         self.push_guarded(id, Shape::Vector(n), xi, guards);
     }
 
-    /// [A B] of the linearisation.
+    /// [A B] of the linearisation: of ξ̇ as it is computed, or as it would be by the cheapest candidate that
+    /// was not polished, whichever has the shorter slopes.
     pub(super) fn linearize(&mut self, full: &Model, reduction: Option<&Reduction>) {
-        let Computation { mut graph, parts } = self.shared.clone();
-        let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
+        let shared = &self.shared;
+        let apart = |motion: &Acceleration| {
+            let mut graph = motion.graph.clone();
+            let parts = shared.parts.shared(&shared.graph, &mut graph);
+            Computation { graph, parts }
+        };
+        let chosen = &self.chosen;
+        let mut motions = vec![(chosen, shared.clone())];
+        if self.model.n() <= MOST_LITERAL {
+            motions.push((chosen, apart(chosen)));
+        }
+        motions.extend(chosen.other.as_deref().map(|other| (other, apart(other))));
+        let mut best: Option<(usize, Linear, &Acceleration)> = None;
+        for (motion, Computation { mut graph, parts }) in motions {
+            let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
+                return;
+            };
+            let right = parts.right(&mut graph);
+            let nearby = Motion {
+                graph: &graph,
+                xi_dot: &motion.xi_dot,
+                nearby,
+                // With multipliers M F is not the right-hand side.
+                implicit: (self.model.constraints.is_empty()).then_some((&parts.mass, &right)),
+            };
+            let linear = linearize(self.model, &nearby, &self.care);
+            let weight = count(&linear.graph, &linear.rows.concat()).weight();
+            if best.as_ref().is_none_or(|(least, ..)| weight < *least) {
+                best = Some((weight, linear, motion));
+            }
+        }
+        let Some((_, linear, motion)) = best else {
             return;
         };
-        let right = parts.right(&mut graph);
-        let motion = Motion {
-            graph: &graph,
-            xi_dot: &self.chosen.xi_dot,
-            nearby,
-            // With multipliers M F is not the right-hand side.
-            implicit: (self.model.constraints.is_empty()).then_some((&parts.mass, &right)),
-        };
-        let linear = linearize(self.model, &motion, &self.care);
         let rows = linear.rows.len();
         let columns = linear.rows.first().map_or(0, Vec::len);
         let outputs = graft(&linear.graph, &mut self.graph, &linear.rows.concat());
+        let pivots = graft(&motion.graph, &mut self.graph, &motion.pivots);
         let varying = |edge: &Edge| !self.graph.is_free(edge.node());
-        let pivots = self.chosen.pivots.iter().copied();
-        let guards = pivots.filter(varying).collect();
+        let guards = pivots.into_iter().filter(varying).collect();
         let shape = Shape::Matrix(rows, columns);
         self.push_guarded(FunctionId::Linearize, shape, outputs, guards);
     }

@@ -29,6 +29,8 @@ pub struct Acceleration {
     pub depth: usize,
     /// What was chosen, for people.
     pub route: String,
+    /// The cheapest candidate before polishing, where another one was cheaper after it.
+    pub other: Option<Box<Acceleration>>,
 }
 
 impl Acceleration {
@@ -44,6 +46,7 @@ impl Acceleration {
             count: Count::default(),
             depth: 0,
             route: String::new(),
+            other: None,
         }
     }
 
@@ -105,9 +108,15 @@ impl<'a> Best<'a> {
     /// The best after resubstitution.
     pub(super) fn polished(self, model: &Model) -> Option<Acceleration> {
         let care = self.care;
+        let families = self.families.iter().enumerate();
+        let (plain, _) = families.min_by_key(|(_, (_, best))| best.cost())?;
         let all = self.families.into_iter();
-        let all = all.map(|(_, best)| polished(best, model, care));
-        all.min_by_key(Acceleration::cost)
+        let mut all: Vec<Acceleration> = all.map(|(_, best)| polished(best, model, care)).collect();
+        let (first, _) = all.iter().enumerate().min_by_key(|(_, best)| best.cost())?;
+        let other = (first != plain).then(|| Box::new(all[plain].clone()));
+        let mut best = all.swap_remove(first);
+        best.other = other;
+        Some(best)
     }
 }
 
@@ -133,6 +142,7 @@ fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
         count: count(&graph, &varying),
         depth: depth(&graph, &varying),
         route: chosen.route.clone(),
+        other: None,
         xi_dot: xi_dot.to_vec(),
         pivots: pivots.to_vec(),
         multipliers: Vec::new(),

@@ -165,6 +165,7 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
             );
             let projections = saddle::projections(&mut graph, &traced, &factored);
             let acceleration = Acceleration {
+                other: None,
                 graph,
                 xi_dot: solution.xi_dot,
                 pivots,
@@ -277,6 +278,7 @@ fn attempt(
         route = route.replacen("traced", "traced in its own twist", 1);
     }
     Some(Acceleration {
+        other: None,
         graph,
         xi_dot,
         pivots: solution.pivots,

@@ -248,6 +248,7 @@ impl System {
         let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
         let modulo = if self.reduced { " modulo φ" } else { "" };
         Acceleration {
+            other: None,
             loss: 0,
             multipliers: Vec::new(),
             projections: None,

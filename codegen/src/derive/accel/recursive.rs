@@ -238,6 +238,7 @@ fn candidate(graph: Graph, xi_dot: Vec<Edge>, pivots: Vec<Edge>, route: String) 
     let mut roots = xi_dot.clone();
     roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
     Acceleration {
+        other: None,
         count: count(&graph, &roots),
         depth: depth(&graph, &roots),
         graph,
