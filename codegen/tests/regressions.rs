@@ -77,3 +77,21 @@ fn multiples_of_the_primes_are_refused() {
         assert_eq!(found, number.parse::<f64>().expect("a number"));
     }
 }
+
+/// Twists of a link's freedoms may vary in its axes although their drift is 0: those of a spin in axes of the
+/// world do. What is found by recursion for constant twists must not be taken for these.
+#[test]
+fn spins_in_axes_of_the_world() {
+    let body = |i: usize| {
+        format!(
+            "coord R{i}: SO3; velocity w{i}: vec3; rate R{i} = hat(w{i}) * R{i};
+             frame top{i} = pose(R{i}, [0, 0, {i}]);
+             body on top{i} {{ mass {i}.5; com [0.1, -0.2, 0.3]; inertia diag(2, 3, 4) about com; }}"
+        )
+    };
+    let bodies: String = (1..=3).map(body).collect();
+    let of = generated(&format!(
+        "system Tops {{ {bodies} gravity [0, 0, -9.81]; }}"
+    ));
+    assert!(of.program.function("momentum_rate").is_some());
+}

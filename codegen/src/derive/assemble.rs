@@ -5,14 +5,12 @@ use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel, forces};
 use super::calculus::Calculus;
 use super::care::{self, Care};
-use super::invariants::quantity;
 use super::reduction::Reduction;
 use super::structure::{self, Found, Functions};
 use super::{constrained, correction, energy, inertia, kinematics, loads};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
-use crate::model::invariants::Quantity;
 use crate::model::value::Value;
 use crate::model::{Model, class};
 use crate::program::structure::Structure;
@@ -102,20 +100,10 @@ fn put_together(
     let found = structure::analyse(full, model, graph, parts);
     let mut others = Vec::new();
     if found.functions.is_some() && model.n() <= MOST_LITERAL {
-        // Apart from what ξ̇ is computed from; and with the momenta of all bodies at hand.
-        let mut moving = model.clone();
-        let (zero, mut calculus) = (model.graph.zero(), Calculus::new(model));
-        let angular = Quantity::AngularMomentum {
-            of: None,
-            about: [zero; 3],
-            along: None,
-        };
-        quantity::value(&mut moving, &mut calculus, (zero, zero), &angular);
-        for graph in [&model.graph, &moving.graph] {
-            let mut apart = graph.clone();
-            let parts = builder.parts.shared(&builder.graph, &mut apart);
-            others.extend(structure::analyse(full, model, &apart, &parts).functions);
-        }
+        // Apart from what ξ̇ is computed from.
+        let mut apart = model.graph.clone();
+        let parts = builder.parts.shared(&builder.graph, &mut apart);
+        others.extend(structure::analyse(full, model, &apart, &parts).functions);
     }
     let structure = builder.splitting(found, &others)?;
     let mass = builder.parts.mass.clone();

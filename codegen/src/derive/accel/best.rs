@@ -56,6 +56,9 @@ impl Acceleration {
     }
 }
 
+/// Families are polished whose best takes at most this part of what the cheapest takes.
+const NEAR: (usize, usize) = (4, 3);
+
 /// Candidates that are alike: of each family the best is polished before they are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
@@ -108,10 +111,21 @@ impl<'a> Best<'a> {
     /// The best after resubstitution.
     pub(super) fn polished(self, model: &Model) -> Option<Acceleration> {
         let care = self.care;
-        let families = self.families.iter().enumerate();
-        let (plain, _) = families.min_by_key(|(_, (_, best))| best.cost())?;
-        let all = self.families.into_iter();
-        let mut all: Vec<Acceleration> = all.map(|(_, best)| polished(best, model, care)).collect();
+        // What is far behind before is behind afterwards.
+        let most = self.least() * NEAR.0 / NEAR.1;
+        let all = self.families.into_iter().map(|(_, best)| best);
+        let mut near: Vec<Acceleration> = all.filter(|best| best.count.weight() <= most).collect();
+        // A body's own twist may be the velocities of the model.
+        let alike = |a: &mut Acceleration, b: &mut Acceleration| {
+            a.cost() == b.cost() && a.xi_dot == b.xi_dot && a.graph.len() == b.graph.len()
+        };
+        near.dedup_by(alike);
+        let (plain, _) = near
+            .iter()
+            .enumerate()
+            .min_by_key(|(_, best)| best.cost())?;
+        let all = near.into_iter().map(|best| polished(best, model, care));
+        let mut all: Vec<Acceleration> = all.collect();
         let (first, _) = all.iter().enumerate().min_by_key(|(_, best)| best.cost())?;
         let other = (first != plain).then(|| Box::new(all[plain].clone()));
         let mut best = all.swap_remove(first);

@@ -42,8 +42,10 @@ pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
 
 /// The part of ṗ that is quadratic in ξ; `None` where a freedom's twist varies in the axes of its link.
 pub fn swing(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec<Edge>> {
-    let none = zero3(graph);
-    if tree.links.iter().any(|link| link.drift != (none, none)) {
+    // Twists may vary without any drift: those of angular velocities in axes of the world do.
+    let mut freedoms = tree.links.iter().flat_map(|link| &link.freedoms);
+    let varies = |entry: &Edge| !graph.is_free(entry.node());
+    if freedoms.any(|freedom| freedom.angular.iter().chain(&freedom.linear).any(varies)) {
         return None;
     }
     let (momenta, twists) = momenta(graph, tree, xi);
