@@ -140,10 +140,11 @@ fn forwards(
 #[cfg(test)]
 mod tests {
     use crate::fp::{Fp, Random};
-    use crate::graph::{Function, Graph};
+    use crate::graph::Graph;
     use crate::jets::Seeds;
     use crate::lane::Lane;
     use crate::tape::Tape;
+    use crate::tests::FUNCTIONS;
 
     #[test]
     fn rows_are_the_mixed_derivatives_of_jets() {
@@ -159,13 +160,7 @@ mod tests {
         };
         let product = graph.mul(a, b);
         let mut sum = graph.sub(c, product);
-        for function in [
-            Function::Sin,
-            Function::Cos,
-            Function::Exp,
-            Function::Log,
-            Function::Sqrt,
-        ] {
+        for function in FUNCTIONS {
             let value = graph.apply(function, sum);
             let quotient = graph.div(value, product).expect("not 0");
             sum = graph.add(sum, quotient);

@@ -8,6 +8,7 @@
 //! Children stand before parents.
 
 mod merge;
+pub(crate) use merge::canonical;
 
 use super::fp::Fp;
 use super::lane::{Lane, Roots};

@@ -243,10 +243,11 @@ mod tests {
     use super::Seeds;
     use crate::derivation::Derivation;
     use crate::fp::{Fp, Random};
-    use crate::graph::{Edge, Function, Graph};
+    use crate::graph::{Edge, Graph};
     use crate::lane::Lane;
     use crate::numeric::evaluate_at;
     use crate::tape::Tape;
+    use crate::tests::quotients;
 
     /// Symbols s, t, a(s, t) = s t + s, b(s, t) = s² − t of the chain rule, and functions of a and b.
     #[test]
@@ -256,16 +257,7 @@ mod tests {
         let [s, t, a, b] = ["s", "t", "a", "b"].map(|name| graph.symbol(name, 2, random.element()));
         let product = graph.mul(a, b);
         let mut roots = vec![graph.sub(product, b)];
-        for function in [
-            Function::Sin,
-            Function::Cos,
-            Function::Exp,
-            Function::Log,
-            Function::Sqrt,
-        ] {
-            let value = graph.apply(function, roots[0]);
-            roots.push(graph.div(value, a).expect("a is not 0"));
-        }
+        roots.extend(quotients(&mut graph, roots[0], a));
         roots.push(graph.atan2(roots[0], b));
         let seeded = |graph: &mut Graph, seeds: [(Edge, Edge); 3]| {
             let _ = &graph;

@@ -5,11 +5,11 @@
 //! value n − x, n + x or n / x is looked up. No node is ever added, so the count can only fall.
 
 use super::fp::Fp;
-use super::graph::Graph;
+use super::graph::{Graph, canonical};
 use super::node::{Edge, Node, NodeId};
 use super::shadow::Shadow;
 use super::transplant::rebuild;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 /// Larger expressions are left as they are.
 const LARGEST: usize = 400;
@@ -35,30 +35,32 @@ pub fn resubstitute(graph: &Graph, roots: &[Edge], base: &Graph) -> Option<(Grap
 struct Network<'a> {
     graph: &'a Graph,
     roots: &'a [Edge],
-    definitions: FxHashMap<NodeId, Node>,
-    /// 1 / value of every node whose value is nowhere zero.
+    definitions: Vec<Option<Node>>,
     /// Real values, where square roots take part.
     shadow: Option<Shadow>,
+    /// 1 / value of every node whose value is nowhere zero.
     inverses: FxHashMap<NodeId, Fp>,
 }
 
 impl<'a> Network<'a> {
     fn new(graph: &'a Graph, roots: &'a [Edge]) -> Self {
         let nodes = graph.reachable(roots);
+        let mut definitions = vec![None; graph.len()];
+        for &id in &nodes {
+            definitions[id as usize] = Some(graph.node(id));
+        }
         let inverse = |id: NodeId| Some((id, graph.value(Edge::of(id)).inv()?));
         Network {
             graph,
             roots,
             shadow: graph.sampled(&nodes),
             inverses: nodes.iter().copied().filter_map(inverse).collect(),
-            definitions: nodes.iter().map(|&id| (id, graph.node(id))).collect(),
+            definitions,
         }
     }
 
     fn children(&self, id: NodeId) -> impl Iterator<Item = NodeId> + use<> {
-        self.definitions
-            .get(&id)
-            .copied()
+        self.definitions[id as usize]
             .into_iter()
             .flat_map(Node::children)
             .map(Edge::node)
@@ -67,7 +69,7 @@ impl<'a> Network<'a> {
     /// Nodes that the roots need, children first; `leaf` and run-time constants count as given.
     fn alive(&self, leaf: Option<NodeId>) -> Vec<NodeId> {
         let mut order = Vec::new();
-        let mut seen = FxHashSet::default();
+        let mut seen = vec![false; self.definitions.len()];
         let mut stack: Vec<(NodeId, bool)> = self
             .roots
             .iter()
@@ -77,7 +79,7 @@ impl<'a> Network<'a> {
         while let Some((id, done)) = stack.pop() {
             if done {
                 order.push(id);
-            } else if seen.insert(id) {
+            } else if !std::mem::replace(&mut seen[id as usize], true) {
                 stack.push((id, true));
                 if Some(id) != leaf && !self.graph.is_free(id) {
                     stack.extend(self.children(id).map(|child| (child, false)));
@@ -92,7 +94,7 @@ impl<'a> Network<'a> {
         let costs = |id: &&NodeId| {
             !self.graph.is_free(**id)
                 && matches!(
-                    self.definitions.get(id),
+                    self.definitions[**id as usize],
                     Some(Node::Add(..) | Node::Mul(..) | Node::Div(..))
                 )
         };
@@ -115,7 +117,7 @@ impl<'a> Network<'a> {
             }
             let found = order.iter().find_map(|&id| {
                 let operation = matches!(
-                    self.definitions.get(&id),
+                    self.definitions[id as usize],
                     Some(Node::Add(..) | Node::Mul(..))
                 );
                 if self.graph.is_free(id)
@@ -134,7 +136,7 @@ impl<'a> Network<'a> {
             let Some((id, node)) = found else {
                 return improved;
             };
-            self.definitions.insert(id, node);
+            self.definitions[id as usize] = Some(node);
             improved = true;
         }
     }
@@ -142,24 +144,26 @@ impl<'a> Network<'a> {
     /// A sum or product of two nodes among `rest` with the value of `id`.
     fn other_definition(&self, id: NodeId, rest: &[NodeId]) -> Option<Node> {
         // What depends on the node cannot define it; children stand first in the order.
-        let mut above: FxHashSet<NodeId> = [id].into_iter().collect();
+        let mut above = vec![false; self.definitions.len()];
+        above[id as usize] = true;
         for &node in rest {
-            if self.children(node).any(|child| above.contains(&child)) {
-                above.insert(node);
-            }
+            above[node as usize] |= self.children(node).any(|child| above[child as usize]);
         }
         let usable: Vec<NodeId> = rest
             .iter()
             .copied()
-            .filter(|node| !above.contains(node))
+            .filter(|&node| !above[node as usize])
             .collect();
-        let by_value: FxHashMap<Fp, NodeId> = usable
+        let by_value: FxHashMap<Fp, Edge> = usable
             .iter()
-            .map(|&node| (self.value(node), node))
+            .map(|&node| {
+                let (value, negative) = canonical(self.value(node));
+                (value, Edge::of(node).signed(negative))
+            })
             .collect();
         let signed = |value: Fp| -> Option<Edge> {
-            let found = |value: &Fp| by_value.get(value).map(|&node| Edge::of(node));
-            found(&value).or_else(|| found(&-value).map(|edge| -edge))
+            let (value, negative) = canonical(value);
+            by_value.get(&value).map(|edge| edge.signed(negative))
         };
         let target = self.value(id);
         let agrees = |node: &Node| {
@@ -205,11 +209,8 @@ impl<'a> Network<'a> {
         let moved = rebuild(self.graph, into, &constants);
         image.extend(constants.iter().map(|edge| edge.node()).zip(moved));
         for id in alive {
-            let Some(&node) = self
-                .definitions
-                .get(&id)
-                .filter(|_| !self.graph.is_free(id))
-            else {
+            let definition = self.definitions[id as usize];
+            let Some(node) = definition.filter(|_| !self.graph.is_free(id)) else {
                 continue;
             };
             let made = match node {

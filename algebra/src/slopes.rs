@@ -122,8 +122,9 @@ mod tests {
     use super::slopes;
     use crate::derivation::Derivation;
     use crate::fp::Random;
-    use crate::graph::{Function, Graph};
+    use crate::graph::Graph;
     use crate::numeric::evaluate;
+    use crate::tests::quotients;
 
     #[test]
     fn slopes_are_the_numbers_of_symbolic_derivatives() {
@@ -137,16 +138,7 @@ mod tests {
         let product = graph.mul(a, b);
         let sum = graph.sub(product, b);
         let mut roots = vec![-product];
-        for function in [
-            Function::Sin,
-            Function::Cos,
-            Function::Exp,
-            Function::Log,
-            Function::Sqrt,
-        ] {
-            let value = graph.apply(function, sum);
-            roots.push(graph.div(value, a).expect("a is not 0"));
-        }
+        roots.extend(quotients(&mut graph, sum, a));
         roots.push(graph.atan2(sum, b));
         // Along (1, 2) and (0, 1).
         let (one, two) = (graph.one(), graph.ratio(2, 1));

@@ -77,9 +77,10 @@ mod tests {
     use super::tangent_at;
     use crate::derivation::Derivation;
     use crate::fp::Random;
-    use crate::graph::{Function, Graph};
+    use crate::graph::Graph;
     use crate::lane::Lane;
     use crate::numeric::evaluate_at;
+    use crate::tests::quotients;
 
     #[test]
     fn slopes_are_those_of_the_symbolic_derivative() {
@@ -92,17 +93,7 @@ mod tests {
         let (a, b) = (symbol(&mut graph, "a"), symbol(&mut graph, "b"));
         let product = graph.mul(a, b);
         let sum = graph.add(product, b);
-        let mut roots = Vec::new();
-        for function in [
-            Function::Sin,
-            Function::Cos,
-            Function::Exp,
-            Function::Log,
-            Function::Sqrt,
-        ] {
-            let value = graph.apply(function, sum);
-            roots.push(graph.div(value, a).expect("a is not 0"));
-        }
+        let mut roots = quotients(&mut graph, sum, a);
         roots.push(graph.atan2(sum, b));
         // Along (1, 2).
         let two = graph.ratio(2, 1);

@@ -13,6 +13,24 @@ use super::transplant::{copy, rebuild};
 const PARAM: u8 = 1;
 const COORD: u8 = 2;
 
+/// Every function of one argument.
+pub(crate) const FUNCTIONS: [Function; 5] = [
+    Function::Sin,
+    Function::Cos,
+    Function::Exp,
+    Function::Log,
+    Function::Sqrt,
+];
+
+/// All of them of an argument, over what is not 0.
+pub(crate) fn quotients(graph: &mut Graph, argument: Edge, over: Edge) -> Vec<Edge> {
+    let quotient = |function| {
+        let value = graph.apply(function, argument);
+        graph.div(value, over).expect("not 0")
+    };
+    FUNCTIONS.map(quotient).to_vec()
+}
+
 /// A graph with two parameters, two free coordinates and a point of the circle.
 fn graph() -> (Graph, [Edge; 6]) {
     let mut graph = Graph::new(7, PARAM);

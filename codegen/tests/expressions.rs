@@ -204,7 +204,7 @@ fn expression(random: &mut Random, depth: usize, pool: &[Expr]) -> Expr {
 
 /// What is wrong with the outputs of a random system.
 fn faults(seed: u64) -> Vec<String> {
-    let random = &mut Random(seed);
+    let random = &mut Random::new(seed);
     let mut pool: Vec<Expr> = Vec::new();
     for _ in 0..OUTPUTS {
         let depth = 2 + random.below(3);

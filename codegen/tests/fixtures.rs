@@ -35,7 +35,7 @@ fn furuta_pendulum_has_the_published_equations() {
     let (m1, l1) = (0.3, 0.15);
     let [j1, jx, jy, jz] = [0.0248, 0.0001, 0.00386, 0.0038];
     let (b1, b2, g) = (0.0001, 0.00028, 9.81);
-    let mut random = Random(0xf0);
+    let mut random = Random::new(0xf0);
     for _ in 0..STATES {
         let (x, xi, u) = (random.numbers(2), random.numbers(2), random.numbers(1));
         let dot = value(&system, "accel", [&x, &xi, &u, &[]]);
@@ -82,7 +82,7 @@ fn link(i: usize) -> (f64, f64) {
 /// with μᵢ the mass from rod i on; joint angles add up to θᵢ.
 #[test]
 fn chains_on_a_cart_have_the_mass_matrix_derived_by_hand() {
-    let mut random = Random(0xca);
+    let mut random = Random::new(0xca);
     for n in 1..=10 {
         let system = generated(&cart_chain(n));
         for _ in 0..STATES {
@@ -159,7 +159,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 fn double_spherical_pendulum_is_two_bodies() {
     let joints = model("multibody/double_spherical_pendulum", "accel, energy");
     let hand = model("two_bodies", "accel, energy");
-    let mut random = Random(0xd5);
+    let mut random = Random::new(0xd5);
     for _ in 0..STATES {
         let x = random.configuration(&joints.program.blocks);
         let xi = random.numbers(6);
@@ -205,7 +205,7 @@ fn quadrotor_with_load_obeys_newton_and_euler() {
             [0.002; 3],
         ),
     ];
-    let mut random = Random(0x0dad);
+    let mut random = Random::new(0x0dad);
     for _ in 0..STATES {
         let x = random.configuration(&system.program.blocks);
         let (xi, dot, u) = (random.numbers(9), random.numbers(9), random.numbers(4));
@@ -245,7 +245,7 @@ fn obeys_newton_and_euler(
 ) {
     let system = model(path, "accel, inverse_dynamics");
     let program = &system.program;
-    let mut random = Random(0x5a7);
+    let mut random = Random::new(0x5a7);
     for _ in 0..STATES {
         let x = random.configuration(&program.blocks);
         let (xi, dot) = (random.numbers(program.n), random.numbers(program.n));

@@ -109,7 +109,7 @@ fn system(text: &str) -> Generated {
 
 #[test]
 fn every_kind_is_what_is_written_by_hand() {
-    let mut random = Random(0x6a6f_696e);
+    let mut random = Random::new(0x6a6f_696e);
     for (joint, hand) in PAIRS {
         let (short, long) = (system(joint), system(hand));
         let program = &short.program;

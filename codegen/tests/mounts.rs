@@ -128,7 +128,7 @@ struct Arm {
 
 impl Arm {
     fn random(seed: u64) -> Self {
-        let random = &mut Random(seed);
+        let random = &mut Random::new(seed);
         let count = 2 + random.below(3);
         let mut lines = Vec::new();
         let mut links = Vec::new();
@@ -292,7 +292,7 @@ fn verdict(arm: &Arm, seed: u64) -> Result<(), String> {
         Err(errors) => return Err(render(&errors, "arm", &arm.text, false)),
     };
     let n = arm.links.len();
-    let mut random = Random(seed ^ 0xf00d);
+    let mut random = Random::new(seed ^ 0xf00d);
     for _ in 0..2 {
         let x: Vec<f64> = random.numbers(n).iter().map(|q| 3.0 * q).collect();
         let xi = random.numbers(n);

@@ -91,7 +91,7 @@ fn outputs(cases: &[Case], reversed: bool) {
             {lines}
         }}"
     ));
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for _ in 0..8 {
         let x: Vec<f64> = random.numbers(2).iter().map(|x| 4.0 * x).collect();
         for (index, (text, expected)) in order.iter().enumerate() {

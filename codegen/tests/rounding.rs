@@ -51,7 +51,7 @@ fn apart(found: &[f64], wanted: &[Double]) -> f64 {
 /// The errors of M, bias, slope of the potential and ξ̇ at random states, each relative to its scale.
 fn errors(arm: &Arm, system: &Generated, seed: u64) -> [f64; 4] {
     let n = arm.0.len();
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut worst = [0.0; 4];
     for _ in 0..STATES {
         let (x, xi, u) = (random.numbers(n), random.numbers(n), random.numbers(n));
@@ -90,7 +90,7 @@ fn error_of_tables(arm: &Arm, system: &Generated, seed: u64) -> f64 {
     let n = arm.0.len();
     let geometry = Geometry::new(&system.model).expect("velocities that determine the rates");
     let model = &geometry.model;
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let (x, still) = (random.numbers(n), vec![0.0; n]);
     let numbers = model.numbers(&[], &x, &still, &still, &still);
     let mass = arm.dynamics(&x, &still).mass.concat();
@@ -102,7 +102,7 @@ fn error_of_tables(arm: &Arm, system: &Generated, seed: u64) -> f64 {
 
 #[test]
 fn awkward_axes_keep_their_digits() {
-    let mut random = Random(0xa2);
+    let mut random = Random::new(0xa2);
     let mut failures = Vec::new();
     for case in 0..size(ARMS) {
         let arm = Arm::awkward(&mut random);

@@ -76,7 +76,7 @@ fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
 
 /// A random tree of so many links on at least one root.
 fn links(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut links: Vec<Link> = Vec::new();
     while links.len() < count {
         links.push(Link::random(&mut random, &links, kinds));
@@ -88,7 +88,12 @@ fn links(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
 fn moving(seed: u64, count: usize, kinds: &[Kind]) -> Vec<Link> {
     let mut links = links(seed, count, kinds);
     if links.iter().all(|link| link.kind == Kind::Fixed) {
-        links.push(Link::on(&mut Random(seed), &links, Kind::Revolute, Some(0)));
+        links.push(Link::on(
+            &mut Random::new(seed),
+            &links,
+            Kind::Revolute,
+            Some(0),
+        ));
     }
     links
 }
@@ -98,7 +103,7 @@ fn obeys_newton(links: &[Link], seed: u64, close: f64) -> Generated {
     let text = text(links, FUNCTIONS);
     let system = generated(&text);
     let n = system.program.n;
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     for _ in 0..STATES {
         let state = State::random(&mut random, &system);
         let tree = Tree::new(links, &state.x, &state.xi);
@@ -152,7 +157,7 @@ fn obeys_the_tables(system: &Generated, seed: u64) {
     let bias = contracted(model, &connection);
     let potential = geometry.potential;
     let whole = levi_civita(model, calculus, &mass, &bias, potential, &dot);
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     for _ in 0..STATES {
         let state = State::random(&mut random, system);
         let State { x, xi, u, dot } = &state;
@@ -199,7 +204,7 @@ fn trees_obey_the_tables_of_the_paper() {
 #[test]
 fn trees_with_particles() {
     for seed in 0xd0..0xd4 {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let links = moving(seed, 3, &ALL);
         let links: Vec<Link> = links
             .into_iter()
@@ -212,7 +217,7 @@ fn trees_with_particles() {
 /// 32 links in a row.
 #[test]
 fn a_long_chain() {
-    let mut random = Random(0x32);
+    let mut random = Random::new(0x32);
     let mut links: Vec<Link> = Vec::new();
     while links.len() < 32 {
         let (kind, parent) = (SIMPLE[random.below(4)], links.len().checked_sub(1));

@@ -140,7 +140,7 @@ fn is_plain(n: i64, d: i64) -> bool {
 }
 
 /// The representative of {v, −v}, and whether v is its negative.
-fn canonical(value: Fp) -> (Fp, bool) {
+pub(crate) fn canonical(value: Fp) -> (Fp, bool) {
     let negative = value.is_negative();
     (if negative { -value } else { value }, negative)
 }

@@ -3,7 +3,7 @@
 use super::function::zeros;
 use super::parameters::{errors, group_type, kept_value, needs_update, shaped};
 use super::{Emitter, docs, number};
-use crate::program::Shape;
+use crate::program::{FunctionId, Shape};
 use crate::syntax::ast::ShapeKind;
 
 /// Lints that generated functions cannot obey in general.
@@ -38,8 +38,10 @@ pub fn structure(emitter: &Emitter) -> String {
     if lines.is_empty() {
         lines.push(format!("Equations of motion of `{}`.", program.name));
     }
-    lines.push(String::new());
-    lines.extend(program.structure.documentation());
+    if program.function(FunctionId::Accel).is_some() {
+        lines.push(String::new());
+        lines.extend(program.structure.documentation());
+    }
     let mut fields = String::new();
     for (group, field) in program.params.iter().zip(&emitter.names.fields) {
         fields.push_str(&format!(

@@ -1,23 +1,25 @@
 //! Generated systems evaluated at random states, for tests of descriptions.
 #![allow(dead_code, unused_imports)] // each test file uses a part
 
+use hamel_codegen::algebra::fp;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::layout::Block;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 
-/// SplitMix64: the same numbers on every machine.
+/// The same numbers on every machine.
 #[derive(Clone)]
-pub struct Random(pub u64);
+pub struct Random(fp::Random);
 
 impl Random {
+    /// The stream of a seed.
+    pub fn new(seed: u64) -> Self {
+        Random(fp::Random::new(seed))
+    }
+
     /// The next 64 bits.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     /// A number in ±1.

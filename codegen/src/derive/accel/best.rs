@@ -56,7 +56,8 @@ impl Acceleration {
     }
 }
 
-/// Families are polished whose best takes at most this part of what the cheapest takes.
+/// Families are polished whose best keeps as many digits as the cheapest and takes at most this part of its
+/// operations.
 const NEAR: (usize, usize) = (4, 3);
 
 /// Candidates that are alike: of each family the best is polished before they are compared.
@@ -111,19 +112,14 @@ impl<'a> Best<'a> {
     /// The best after resubstitution.
     pub(super) fn polished(self, model: &Model) -> Option<Acceleration> {
         let care = self.care;
-        // What is far behind before is behind afterwards.
-        let most = self.least() * NEAR.0 / NEAR.1;
+        let costs = self.families.iter().map(|(_, best)| best.cost());
+        let (loss, weight, depth) = costs.min()?;
+        // What is far behind before is behind afterwards; digits come before operations.
+        let most = (loss, weight * NEAR.0 / NEAR.1, usize::MAX);
         let all = self.families.into_iter().map(|(_, best)| best);
-        let mut near: Vec<Acceleration> = all.filter(|best| best.count.weight() <= most).collect();
-        // A body's own twist may be the velocities of the model.
-        let alike = |a: &mut Acceleration, b: &mut Acceleration| {
-            a.cost() == b.cost() && a.xi_dot == b.xi_dot && a.graph.len() == b.graph.len()
-        };
-        near.dedup_by(alike);
-        let (plain, _) = near
-            .iter()
-            .enumerate()
-            .min_by_key(|(_, best)| best.cost())?;
+        let near: Vec<Acceleration> = all.filter(|best| best.cost() <= most).collect();
+        let mut places = near.iter().map(Acceleration::cost);
+        let plain = places.position(|cost| cost == (loss, weight, depth))?;
         let all = near.into_iter().map(|best| polished(best, model, care));
         let mut all: Vec<Acceleration> = all.collect();
         let (first, _) = all.iter().enumerate().min_by_key(|(_, best)| best.cost())?;

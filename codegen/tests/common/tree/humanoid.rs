@@ -14,7 +14,7 @@ const LIMBS: [(usize, &[Kind]); 5] = [
 
 /// A floating trunk with a waist, two legs, two arms and a head: 38 freedoms.
 pub fn humanoid() -> Vec<Link> {
-    let mut random = Random(0x38);
+    let mut random = Random::new(0x38);
     let mut links: Vec<Link> = Vec::new();
     let mut add = |kind: Kind, parent: Option<usize>| {
         // Nothing follows here: 38 freedoms.
