@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let (mut made, mut seed) = (0, 0);
     while made < count {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let text = describe::description(&mut random, None);
         // Long functions are cut: here short ones, too.
         let chunk = [500, 500, 60, 8][random.below(4)];

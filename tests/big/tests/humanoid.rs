@@ -37,7 +37,7 @@ fn array<const N: usize>(list: &[f64]) -> [f64; N] {
 fn forces_and_motion_are_those_of_newton_and_euler() {
     let (system, links) = (Humanoid::<f64>::default(), humanoid());
     let blocks = generated(&text(&links, "rate")).program.blocks;
-    let mut random = Random(0x38b);
+    let mut random = Random::new(0x38b);
     for _ in 0..STATES {
         let x = array::<54>(&random.configuration(&blocks));
         let [xi, wanted] = [(); 2].map(|()| array::<38>(&random.numbers(38)));

@@ -141,7 +141,7 @@ fn compiled_code_gives_what_the_interpreter_gives() {
     let mut functions = 0;
     for (number, case) in CASES.iter().enumerate() {
         let generated = from_text(case.text).expect("it was generated");
-        let states = states(&generated, &mut Random(number as u64));
+        let states = states(&generated, &mut Random::new(number as u64));
         let of = &generated.program.functions;
         let expected: Vec<(&str, Vec<Expected>)> = of
             .iter()
@@ -176,7 +176,7 @@ fn every_text_is_rust() {
     let count = if full { 2_000 } else { PARSED };
     let mut written = 0;
     for seed in 10_000..10_000 + count {
-        let text = describe::description(&mut Random(seed), None);
+        let text = describe::description(&mut Random::new(seed), None);
         match source(&text, "random.eom") {
             Ok(code) => {
                 written += 1;
