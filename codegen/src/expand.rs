@@ -11,9 +11,10 @@ pub const MACRO_STATEMENTS: usize = 10_000;
 
 /// The expansion of `rigid_eom! { … }`.
 pub fn expand(input: TokenStream) -> TokenStream {
-    let generated = match from_tokens(input) {
+    let (places, generated) = from_tokens(input);
+    let generated = match generated {
         Ok(generated) => generated,
-        Err(errors) => return to_compile_errors(&errors),
+        Err(errors) => return to_compile_errors(&errors, &places),
     };
     let statements = emit::statements(&generated.program);
     if statements > MACRO_STATEMENTS {
@@ -22,10 +23,10 @@ pub fn expand(input: TokenStream) -> TokenStream {
             format!("`{}` has {statements} statements, more than the {MACRO_STATEMENTS} that a macro should expand to", generated.model.name),
         )
         .help("put the description in an `.eom` file and call `hamel_codegen::Builder` in build.rs");
-        return to_compile_errors(&[error]);
+        return to_compile_errors(&[error], &places);
     }
     match emit::tokens(&generated.program, &emit::Options::default()) {
         Ok(tokens) => tokens,
-        Err(error) => to_compile_errors(&[generated.fault(&error)]),
+        Err(error) => to_compile_errors(&[generated.fault(&error)], &places),
     }
 }

@@ -8,7 +8,7 @@ use crate::emit::NotRust;
 use crate::functions::{Asked, FunctionId};
 use crate::model::{self, Model};
 use crate::program::Program;
-use crate::syntax::{self, ast};
+use crate::syntax::{self, Places, ast};
 use proc_macro2::TokenStream;
 
 /// A description, read and derived.
@@ -24,20 +24,27 @@ pub struct Generated {
     pub hash: u64,
 }
 
-/// Derives the description in a stream of tokens.
-pub fn from_tokens(tokens: TokenStream) -> Result<Generated, Vec<Diagnostic>> {
+/// Derives the description in a stream of tokens; errors are at places of these.
+pub fn from_tokens(tokens: TokenStream) -> (Places, Result<Generated, Vec<Diagnostic>>) {
     let hash = fingerprint(&syntax::canonical(&tokens));
-    derive(&syntax::parse_tokens(tokens)?, hash)
+    let (places, system) = syntax::parse_tokens(tokens);
+    (places, system.and_then(|system| derive(&system, hash)))
 }
 
 /// Derives the description in a text.
+#[cfg(feature = "files")]
 pub fn from_text(text: &str) -> Result<Generated, Vec<Diagnostic>> {
-    let system = syntax::parse_text(text)?;
+    of_system(&syntax::parse_text(text)?, text)
+}
+
+/// Derives a description that was parsed from a text.
+#[cfg(feature = "files")]
+pub(crate) fn of_system(system: &ast::System, text: &str) -> Result<Generated, Vec<Diagnostic>> {
     let canonical = text
         .parse::<TokenStream>()
         .map(|tokens| syntax::canonical(&tokens))
         .unwrap_or_default();
-    derive(&system, fingerprint(&canonical))
+    derive(system, fingerprint(&canonical))
 }
 
 fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>> {

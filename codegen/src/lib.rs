@@ -14,6 +14,7 @@
 //! | [`program`] | binding times, operation counts, interpretation |
 //! | [`emit`] | Rust text; no algebra |
 //! | [`tables`] | what people read |
+//! | `scene` | descriptions as data, built in Rust or read from text |
 //! | [`generate`], [`expand()`], [`Builder`] | the front ends; `urdf` with the feature of that name |
 
 pub use hamel_algebra as algebra;
@@ -28,6 +29,8 @@ pub mod generate;
 pub mod model;
 pub mod program;
 pub mod render;
+#[cfg(feature = "files")]
+pub mod scene;
 pub mod syntax;
 pub mod tables;
 #[cfg(feature = "urdf")]

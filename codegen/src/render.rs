@@ -3,28 +3,33 @@
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, TokenStream, TokenTree};
 
 use crate::diagnostics::Diagnostic;
+use crate::syntax::Places;
 
 /// The errors as calls of `compile_error!`, each placed on its region of the macro's input.
-pub fn to_compile_errors(errors: &[Diagnostic]) -> TokenStream {
-    errors.iter().flat_map(compile_error).collect()
+pub fn to_compile_errors(errors: &[Diagnostic], places: &Places) -> TokenStream {
+    let errors = errors.iter();
+    errors
+        .flat_map(|error| compile_error(error, places))
+        .collect()
 }
 
 /// `::core::compile_error! { "message" }`; the compiler underlines from the span of its first token to that of its last.
-fn compile_error(error: &Diagnostic) -> [TokenTree; 8] {
+fn compile_error(error: &Diagnostic, places: &Places) -> [TokenTree; 8] {
+    let (first, last) = places.ends(error.span);
     let text = match &error.help {
         Some(help) => format!("{}\nhelp: {help}", error.message),
         None => error.message.clone(),
     };
     let punct = |c: char, spacing: Spacing| {
         let mut punct = Punct::new(c, spacing);
-        punct.set_span(error.span.lo);
+        punct.set_span(first);
         TokenTree::Punct(punct)
     };
-    let word = |name: &str| TokenTree::Ident(Ident::new(name, error.span.lo));
+    let word = |name: &str| TokenTree::Ident(Ident::new(name, first));
     let mut literal = Literal::string(&text);
-    literal.set_span(error.span.hi);
+    literal.set_span(last);
     let mut group = Group::new(Delimiter::Brace, TokenTree::Literal(literal).into());
-    group.set_span(error.span.hi);
+    group.set_span(last);
     [
         punct(':', Spacing::Joint),
         punct(':', Spacing::Alone),
@@ -246,17 +251,15 @@ mod text {
 
     /// The bytes of a region, `None` where its tokens have no place in a text.
     fn place(span: Span, source: &str) -> Option<Range<usize>> {
-        let (lo, hi) = (span.lo.byte_range(), span.hi.byte_range());
-        if lo == (0..0) || lo.start > source.len() {
+        let range = span.range()?;
+        if range.start > source.len() {
             return None;
         }
-        let mut start = lo.start;
+        let mut start = range.start;
         while !source.is_char_boundary(start) {
             start -= 1;
         }
-        let mut end = if hi.end < lo.end { lo.end } else { hi.end }
-            .min(source.len())
-            .max(start);
+        let mut end = range.end.min(source.len()).max(start);
         while !source.is_char_boundary(end) {
             end += 1;
         }

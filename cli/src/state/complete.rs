@@ -56,13 +56,8 @@ impl State {
 /// A constraint as it was written.
 fn text(model: &Model, open: Open) -> String {
     let number = open.constraint + 1;
-    let span = model.constraints.get(open.constraint).map(|row| row.span);
-    let written = span.and_then(|span| span.lo.join(span.hi)?.source_text());
-    match written {
-        Some(text) => {
-            let words: Vec<&str> = text.split_whitespace().collect();
-            format!("`{}`", words.join(" "))
-        }
+    match model.constraints.get(open.constraint) {
+        Some(row) => format!("`{}`", row.written),
         None => format!("constraint {number} on the velocities"),
     }
 }

@@ -11,6 +11,7 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::syntax::ast::{Expr, ItemKind, Span, System};
+use crate::syntax::written::{equation, written};
 
 /// What a row of B says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +35,8 @@ pub struct Pfaffian {
     pub residual: Edge,
     /// λ (1/s) in d/dt (B ξ) = −2 λ B ξ − λ² φ; nothing is added where absent.
     pub stabilized: Option<Edge>,
+    /// As it was written.
+    pub written: String,
     /// Where it was written.
     pub span: Span,
 }
@@ -125,6 +128,7 @@ impl Reader<'_> {
                 row,
                 residual: graph.zero(),
                 stabilized: None,
+                written: written(expr),
                 span: expr.span,
             });
         }
@@ -177,6 +181,7 @@ impl Reader<'_> {
                 row,
                 residual: graph.zero(),
                 stabilized,
+                written: equation(left, right),
                 span,
             });
         }
@@ -226,6 +231,7 @@ impl Reader<'_> {
                 row,
                 residual: edge,
                 stabilized,
+                written: equation(left, right),
                 span,
             });
         }

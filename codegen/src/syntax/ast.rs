@@ -5,34 +5,66 @@ mod joint;
 pub use joint::{Joint, JointField, JointKind};
 
 use num_rational::BigRational;
-use proc_macro2::Span as TokenSpan;
+use std::ops::Range;
 
-/// A region of the source, from the first token to the last.
-#[derive(Clone, Copy, Debug)]
+/// A region of the source: bytes of a text, or the numbers of tokens in the input of a macro.
+///
+/// It is data alone, so that descriptions and diagnostics can be sent between threads. Places take no part in
+/// equality: two descriptions are equal where they say the same.
+#[derive(Clone, Copy)]
 pub struct Span {
-    /// Span of the first token.
-    pub lo: TokenSpan,
-    /// Span of the last token.
-    pub hi: TokenSpan,
+    start: u32,
+    end: u32,
 }
 
 impl Span {
-    /// The region of one token.
-    pub fn token(span: TokenSpan) -> Self {
-        Span { lo: span, hi: span }
+    /// No region: what was written by a program has none.
+    pub const NOWHERE: Span = Span {
+        start: u32::MAX,
+        end: u32::MAX,
+    };
+
+    /// The region of a range; none where its end is beyond 2³² − 2.
+    pub fn new(range: Range<usize>) -> Self {
+        match (u32::try_from(range.start), u32::try_from(range.end)) {
+            (Ok(start), Ok(end)) if end < u32::MAX => Span { start, end },
+            _ => Span::NOWHERE,
+        }
     }
 
-    /// The smallest region that holds both.
+    /// The range, where there is one.
+    pub fn range(self) -> Option<Range<usize>> {
+        let somewhere = self.start != u32::MAX;
+        somewhere.then(|| self.start as usize..self.end.max(self.start) as usize)
+    }
+
+    /// The region from the start of this one to the end of another.
     pub fn to(self, other: Span) -> Self {
-        Span {
-            lo: self.lo,
-            hi: other.hi,
+        match (self.range(), other.range()) {
+            (Some(first), Some(last)) => Span::new(first.start..last.end.max(first.end)),
+            (None, _) => other,
+            (_, None) => self,
+        }
+    }
+}
+
+impl PartialEq for Span {
+    fn eq(&self, _: &Span) -> bool {
+        true
+    }
+}
+
+impl std::fmt::Debug for Span {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.range() {
+            Some(range) => write!(f, "{range:?}"),
+            None => f.write_str("nowhere"),
         }
     }
 }
 
 /// A name with its place.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ident {
     /// The name as written.
     pub name: String,
@@ -41,7 +73,7 @@ pub struct Ident {
 }
 
 /// A whole description: `pub system Name { … }`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct System {
     /// Doc comments above the system, one string a line, without the blank after `///`.
     pub docs: Vec<String>,
@@ -54,7 +86,7 @@ pub struct System {
 }
 
 /// An expression with its region.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     /// What it is.
     pub kind: ExprKind,
@@ -63,7 +95,7 @@ pub struct Expr {
 }
 
 /// The forms of an expression.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
     /// A decimal literal, exact.
     Number(BigRational),
@@ -112,7 +144,7 @@ pub enum ShapeKind {
 }
 
 /// A shape annotation with its place (the place of the name where none was written).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     /// The shape.
     pub kind: ShapeKind,
@@ -138,7 +170,7 @@ pub enum CoordKind {
 }
 
 /// `param name: shape = default` or `input name: shape`, `velocity name: shape`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Declaration {
     /// The declared name.
     pub name: Ident,
@@ -149,7 +181,7 @@ pub struct Declaration {
 }
 
 /// A name or one of its parts on the left of `rate` and `start`: `R`, `X.p`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     /// The coordinate or velocity.
     pub name: Ident,
@@ -177,7 +209,7 @@ pub enum About {
 }
 
 /// The axes in which the components of a load are written, after `in`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Components {
     /// `in body`: those of the frame that the load acts on.
     Body,
@@ -197,7 +229,7 @@ pub enum Axes {
 }
 
 /// The fields of `body on f { … }`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// The frame it is fixed to.
     pub frame: Ident,
@@ -210,7 +242,7 @@ pub struct Body {
 }
 
 /// What a load statement applies.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Load {
     /// `force F at p on f in …;` p in the frame's axes, the origin where absent.
     Force {
@@ -236,7 +268,7 @@ pub enum Load {
 }
 
 /// A point of a frame: `p on f`, or `f` for its origin.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct End {
     /// The point in the frame's axes, the origin where absent.
     pub at: Option<Expr>,
@@ -245,7 +277,7 @@ pub struct End {
 }
 
 /// What a spring or damper acts on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Acting {
     /// `from p on f to q on g`: along the line between two points.
     Between(End, End),
@@ -254,7 +286,7 @@ pub enum Acting {
 }
 
 /// What an `invariant` statement claims to be constant along the motion.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Conserved {
     /// `energy`: T + V.
     Energy,
@@ -279,7 +311,7 @@ pub enum Conserved {
 }
 
 /// `F = 0` of `invariant … when F = 0;`: an input or a parameter, or an entry of one, with its value.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     /// What is set.
     pub target: Expr,
@@ -288,7 +320,7 @@ pub struct Condition {
 }
 
 /// One statement.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Item {
     /// What it says.
     pub kind: ItemKind,
@@ -297,7 +329,7 @@ pub struct Item {
 }
 
 /// The statements of the language.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ItemKind {
     /// `param m = 1.3, s: vec3 = [0, 0, 1];` run-time parameters.
     Param(Vec<Declaration>),

@@ -47,12 +47,12 @@ impl<'a> Cursor<'a> {
 
     /// The region of the next token.
     pub fn here(&self) -> Span {
-        Span::token(self.peek().span)
+        self.peek().span
     }
 
     /// The region of the token before.
     pub fn before(&self) -> Span {
-        Span::token(self.previous().span)
+        self.previous().span
     }
 
     fn previous(&self) -> &'a Token {

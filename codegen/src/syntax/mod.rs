@@ -32,6 +32,7 @@ mod joint;
 mod load;
 mod number;
 mod parse;
+#[cfg(feature = "files")]
 mod scan;
 mod statement;
 pub mod suggest;
@@ -42,25 +43,32 @@ pub mod written;
 #[cfg(all(test, feature = "files"))]
 mod tests;
 
+pub use tokens::Places;
+
 pub(crate) use joint::{field_name as joint_field, kind_name as joint_kind};
 
 /// Errors reported for one description; what follows is rarely read.
 const MAX_ERRORS: usize = 100;
 
-/// Parses a description given as tokens.
-pub fn parse_tokens(tokens: TokenStream) -> Result<ast::System, Vec<Diagnostic>> {
-    let tokens = tokens::flatten(tokens);
-    tokens::check_depth(&tokens).map_err(|error| vec![error])?;
-    parse::system(&tokens)
+/// Parses a description given as tokens; places in it are places of these tokens.
+pub fn parse_tokens(tokens: TokenStream) -> (Places, Result<ast::System, Vec<Diagnostic>>) {
+    let (tokens, places) = tokens::of_stream(tokens);
+    (places, parse(&tokens))
 }
 
-/// Parses a description given as text, such as a `.eom` file.
+fn parse(tokens: &[tokens::Token]) -> Result<ast::System, Vec<Diagnostic>> {
+    tokens::check_depth(tokens).map_err(|error| vec![error])?;
+    parse::system(tokens)
+}
+
+/// Parses a description given as text, such as a `.eom` file; places in it are bytes of the text.
+#[cfg(feature = "files")]
 pub fn parse_text(text: &str) -> Result<ast::System, Vec<Diagnostic>> {
     let scanned = scan::scan(text);
     let mut errors = scanned.errors;
     if let Some(readable) = scanned.readable {
         let parsed = match readable.parse::<TokenStream>() {
-            Ok(tokens) => parse_tokens(tokens),
+            Ok(tokens) => parse(&tokens::of_text(tokens)),
             Err(error) => Err(vec![scan::unreadable(&error)]),
         };
         match parsed {

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use proc_macro2::{LexError, Span as TokenSpan, TokenStream};
+use proc_macro2::{LexError, TokenStream};
 
 use super::MAX_ERRORS;
 use super::ast::Span;
@@ -55,15 +55,7 @@ pub(super) fn scan(text: &str) -> Scan {
         ..Scanner::default()
     };
     let balanced = scanner.run();
-    let places = places(text, &scanner.findings);
-    let place = |at: usize| {
-        Span::token(
-            places
-                .get(&at)
-                .copied()
-                .unwrap_or_else(TokenSpan::call_site),
-        )
-    };
+    let place = |at: usize| Span::new(at..at + 1);
     let errors = scanner.findings.iter().map(|finding| {
         let error = match finding.message.as_str() {
             "" => too_deep(place(finding.at)),
@@ -82,7 +74,7 @@ pub(super) fn scan(text: &str) -> Scan {
 /// The error for a text that passed the scan, and yet cannot be cut into tokens.
 pub(super) fn unreadable(error: &LexError) -> Diagnostic {
     Diagnostic::new(
-        Span::token(error.span()),
+        Span::new(error.span().byte_range()),
         "the text cannot be read from here",
     )
     .help("check the spelling of what stands here")
@@ -402,36 +394,6 @@ fn substitute(text: &str, replaced: &BTreeMap<usize, &'static str>) -> String {
         }
     }
     readable
-}
-
-/// Spans for byte offsets.
-///
-/// Only the tokeniser makes spans, so it is given a text of the same layout that has one token for each place.
-fn places(text: &str, findings: &[Finding]) -> BTreeMap<usize, TokenSpan> {
-    let offsets = findings
-        .iter()
-        .flat_map(|finding| [Some(finding.at), finding.note.map(|(at, _)| at)]);
-    let offsets: BTreeSet<usize> = offsets.flatten().collect();
-    if offsets.is_empty() {
-        return BTreeMap::new();
-    }
-    let mut marked = String::with_capacity(text.len());
-    for (at, c) in text.char_indices() {
-        if offsets.contains(&at) {
-            marked.push('+');
-            marked.push_str(blank(c.len_utf8() - 1));
-        } else if c == '\n' {
-            marked.push(c);
-        } else {
-            marked.push_str(blank(c.len_utf8()));
-        }
-    }
-    let spans = marked
-        .parse::<TokenStream>()
-        .unwrap_or_default()
-        .into_iter()
-        .map(|token| token.span());
-    offsets.into_iter().zip(spans).collect()
 }
 
 /// Blanks of so many bytes, one character where there is one of that length.

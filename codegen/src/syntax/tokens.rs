@@ -35,14 +35,48 @@ pub(super) struct Token {
     /// As written; without the quotes for a doc comment, empty for invisible brackets and the end.
     pub text: String,
     /// Where it stands.
-    pub span: TokenSpan,
+    pub span: Span,
+}
+
+/// The tokens of a macro's input, whose numbers are the places in its description.
+#[derive(Clone, Debug, Default)]
+pub struct Places(Vec<TokenSpan>);
+
+impl Places {
+    fn add(&mut self, span: TokenSpan) -> Span {
+        self.0.push(span);
+        Span::new(self.0.len() - 1..self.0.len())
+    }
+
+    /// The first and the last token of a region; the macro's call where there is none.
+    pub fn ends(&self, span: Span) -> (TokenSpan, TokenSpan) {
+        let at = |index: Option<usize>| index.and_then(|index| self.0.get(index).copied());
+        let range = span.range();
+        let first = at(range.as_ref().map(|range| range.start));
+        let last = at(range.and_then(|range| range.end.checked_sub(1)));
+        let call = TokenSpan::call_site;
+        (first.unwrap_or_else(call), last.unwrap_or_else(call))
+    }
+}
+
+/// The tokens of a text, placed by its bytes.
+#[cfg(feature = "files")]
+pub(super) fn of_text(stream: TokenStream) -> Vec<Token> {
+    flatten(stream, &mut |span| Span::new(span.byte_range()))
+}
+
+/// The tokens of a macro's input, placed by their numbers.
+pub(super) fn of_stream(stream: TokenStream) -> (Vec<Token>, Places) {
+    let mut places = Places::default();
+    let tokens = flatten(stream, &mut |span| places.add(span));
+    (tokens, places)
 }
 
 /// The tokens in source order, with a last one that marks the end.
 ///
 /// Invisible brackets, which the compiler puts around what a `macro_rules!` matched, stay where they hold more than one
 /// token: they group like parentheses.
-pub(super) fn flatten(stream: TokenStream) -> Vec<Token> {
+fn flatten(stream: TokenStream, place: &mut dyn FnMut(TokenSpan) -> Span) -> Vec<Token> {
     let mut tokens: Vec<Token> = Vec::new();
     let mut outer: Vec<Frame> = Vec::new();
     let mut inner = stream.into_iter();
@@ -97,11 +131,10 @@ pub(super) fn flatten(stream: TokenStream) -> Vec<Token> {
                 None => break,
             },
         };
+        let span = place(span);
         tokens.push(Token { kind, text, span });
     }
-    let span = tokens
-        .last()
-        .map_or_else(TokenSpan::call_site, |token| token.span);
+    let span = tokens.last().map_or(Span::NOWHERE, |token| token.span);
     tokens.push(Token {
         kind: Kind::End,
         text: String::new(),
@@ -145,7 +178,7 @@ pub(super) fn check_depth(tokens: &[Token]) -> Result<(), Diagnostic> {
             _ => {}
         }
         if depth > MAX_NESTING {
-            return Err(too_deep(Span::token(token.span)));
+            return Err(too_deep(token.span));
         }
     }
     Ok(())
@@ -163,7 +196,7 @@ pub(super) fn too_deep(span: Span) -> Diagnostic {
 /// All tokens joined by one space.
 pub(super) fn canonical(stream: &TokenStream) -> String {
     let mut spelling = String::new();
-    for token in flatten(stream.clone()) {
+    for token in of_stream(stream.clone()).0 {
         let text = if token.kind == Kind::Doc {
             format!("{:?}", token.text)
         } else {

@@ -2,7 +2,13 @@
 
 use super::ast::{BinaryOp, Condition, Expr, ExprKind};
 use num_rational::BigRational;
-use num_traits::{One, Signed};
+use num_traits::Signed;
+
+/// The most decimal places of a number that is printed as one: literals have no more.
+const MOST_PLACES: usize = 400;
+
+/// With more zeros behind its point than this, a number is printed with an exponent.
+const LEADING_ZEROS: usize = 4;
 
 /// An expression in the language, with no more parentheses than it needs.
 pub fn written(expr: &Expr) -> String {
@@ -30,13 +36,19 @@ pub fn written(expr: &Expr) -> String {
     }
 }
 
+/// An equation as it is written: `a = b`.
+pub fn equation(left: &Expr, right: &Expr) -> String {
+    format!("{} = {}", written(left), written(right))
+}
+
 /// What a claim sets: `F = 0, tau = 0`.
 pub fn conditions(when: &[Condition]) -> String {
     let one = |c: &Condition| format!("{} = {}", written(&c.target), written(&c.value));
     when.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-fn list(items: &[Expr]) -> String {
+/// Expressions with commas between them.
+pub fn list(items: &[Expr]) -> String {
     items.iter().map(written).collect::<Vec<_>>().join(", ")
 }
 
@@ -56,24 +68,29 @@ fn tight(expr: &Expr, wanted: u8) -> String {
     }
 }
 
-/// A number as a decimal where that is exact and short, else as a quotient.
+/// A number as a decimal where it is one, with an exponent where it would be long, else as a quotient.
 fn decimal(number: &BigRational) -> String {
     if number.is_integer() {
         return number.to_string();
     }
+    let sign = if number.is_negative() { "-" } else { "" };
     let ten = BigRational::from_integer(10.into());
     let mut scaled = number.abs();
-    for places in 1..=12usize {
+    for places in 1..=MOST_PLACES {
         scaled *= &ten;
         if scaled.is_integer() {
             let digits = scaled.to_integer().to_string();
+            if places > digits.len() + LEADING_ZEROS {
+                let exponent = places + 1 - digits.len();
+                let (first, rest) = digits.split_at(1);
+                let point = if rest.is_empty() { "" } else { "." };
+                return format!("{sign}{first}{point}{rest}e-{exponent}");
+            }
             let digits = format!("{digits:0>width$}", width = places + 1);
             let (whole, part) = digits.split_at(digits.len() - places);
-            let sign = if number.is_negative() { "-" } else { "" };
             return format!("{sign}{whole}.{part}");
         }
     }
-    debug_assert!(!number.denom().is_one());
     format!("({} / {})", number.numer(), number.denom())
 }
 

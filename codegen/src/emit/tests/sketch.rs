@@ -61,7 +61,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
     let (_, mut x) = groups(&mut graph, &entries, class::COORD);
     let mut coordinates = Vec::new();
     for &(name, kind) in declared.coordinates {
-        let span = Place::token(proc_macro2::Span::call_site());
+        let span = Place::NOWHERE;
         coordinates.push(Coordinate {
             name: name.into(),
             kind,

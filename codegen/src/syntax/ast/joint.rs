@@ -49,7 +49,7 @@ pub enum JointField {
 }
 
 /// `joint j: revolute [0, 0, 1] on f at P moves g follows e { … };`
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Its name.
     pub name: Ident,

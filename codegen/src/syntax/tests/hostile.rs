@@ -6,6 +6,7 @@ use proptest::test_runner::RngSeed;
 use super::accepted::FREE_BODY;
 use super::parsed;
 use crate::render::{render, to_compile_errors};
+use crate::syntax::Places;
 use crate::syntax::{canonical, parse_text};
 
 /// The first message about an expression.
@@ -56,7 +57,7 @@ fn deep_nesting_is_refused() {
     );
     let tokens = text.parse().unwrap();
     assert_eq!(canonical(&tokens).len(), text.len() + 2 * depth + 1);
-    assert_eq!(crate::syntax::parse_tokens(tokens).unwrap_err().len(), 1);
+    assert_eq!(crate::syntax::parse_tokens(tokens).1.unwrap_err().len(), 1);
 }
 
 #[test]
@@ -172,7 +173,7 @@ fn garbage_is_refused() {
         assert!((1..=100).contains(&errors.len()), "{}", errors.len());
         let shown = render(&errors[..errors.len().min(3)], "a.eom", &text, false);
         assert!(shown.contains("error"));
-        to_compile_errors(&errors);
+        to_compile_errors(&errors, &Places::default());
     }
 }
 

@@ -8,20 +8,16 @@ fn errors(text: &str) -> String {
         return "accepted".to_owned();
     };
     let lines = errors.iter().map(|error| {
-        let start = error.span.lo.start();
-        let region = text
-            .get(error.span.lo.byte_range().start..error.span.hi.byte_range().end)
-            .unwrap_or("?");
+        let range = error.span.range().unwrap_or(0..0);
+        let before = &text[..range.start];
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        let region = text.get(range).unwrap_or("?");
         let help = error.help.as_deref().unwrap_or("none");
         let help = help
             .split_once("`param`, `const`, `let`, `coord`")
             .map_or(help, |(start, _)| start);
-        format!(
-            "{}:{} {} <{region}>\n  {help}",
-            start.line,
-            start.column + 1,
-            error.message
-        )
+        format!("{}:{} {} <{region}>\n  {help}", line, column, error.message)
     });
     lines.collect::<Vec<_>>().join("\n")
 }

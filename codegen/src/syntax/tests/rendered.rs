@@ -2,6 +2,7 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::render::{render, to_compile_errors};
+use crate::syntax::Places;
 use crate::syntax::ast::Span;
 use crate::syntax::parse_text;
 
@@ -62,7 +63,7 @@ fn rendered_with_byte_order_mark_and_carriage_returns() {
 fn rendered_over_lines_and_without_a_place() {
     let text = "system S {\n    let a = v[\n        1, 2,\n        3,\n    ];\n}\n";
     let mut errors = parse_text(text).expect_err("faults");
-    let nowhere = Span::token(proc_macro2::Span::call_site());
+    let nowhere = Span::NOWHERE;
     let error =
         Diagnostic::new(errors[0].span, "several lines").note(nowhere, "a note without a place");
     errors.push(error);
@@ -104,7 +105,7 @@ fn rendered_over_lines_and_without_a_place() {
 fn as_errors_of_the_compiler() {
     let text = "system S { rate r; let x = \"\"; }";
     let errors = parse_text(text).expect_err("faults");
-    insta::assert_snapshot!(to_compile_errors(&errors).to_string(), @r#"
+    insta::assert_snapshot!(to_compile_errors(&errors, &Places::default()).to_string(), @r#"
     :: core :: compile_error ! { "expected `=`, found `;`\nhelp: a rate is written `rate r = R * v;`" } :: core :: compile_error ! { "a string is not a value: `\"\"`\nhelp: values are made of numbers, names and arrays" }
     "#);
 }

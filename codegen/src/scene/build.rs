@@ -1,0 +1,337 @@
+//! The builder of scenes: a method for each statement of the language.
+
+use super::expression::ident;
+use super::parts::{Body, Element, Frame, Joint, Load};
+use super::{Scene, SceneError, print};
+use crate::diagnostics::Diagnostic;
+use crate::syntax::ast::{
+    Condition, Conserved, CoordKind, Declaration, Expr, Item, ItemKind, Shape, ShapeKind, Span,
+    System, Target,
+};
+use crate::syntax::parse_text;
+
+/// Builds a [`Scene`] statement by statement, in the order in which a text would have them.
+///
+/// Names are checked when the scene is [built](Self::build), everything else when it is
+/// [generated](Scene::generate), by the checks that texts go through; errors show the statement that they are about.
+#[derive(Clone, Debug)]
+pub struct SceneBuilder {
+    system: System,
+}
+
+impl SceneBuilder {
+    pub(super) fn new(name: &str) -> SceneBuilder {
+        SceneBuilder {
+            system: System {
+                docs: Vec::new(),
+                public: true,
+                name: ident(name),
+                items: Vec::new(),
+            },
+        }
+    }
+
+    fn add(&mut self, kind: ItemKind) {
+        let span = Span::NOWHERE;
+        self.system.items.push(Item { kind, span });
+    }
+
+    /// Adds a line to the documentation of the generated type.
+    pub fn doc(&mut self, line: &str) {
+        self.system.docs.extend(line.lines().map(str::to_string));
+    }
+
+    /// Whether the generated type is `pub`; it is by default.
+    pub fn public(&mut self, public: bool) {
+        self.system.public = public;
+    }
+
+    /// Adds statements as text: `arm.text("output reach = norm(tool.p);")`.
+    ///
+    /// # Errors
+    /// Everything in the text that is no statement.
+    pub fn text(&mut self, statements: &str) -> Result<(), SceneError> {
+        let text = format!("system S {{\n{statements}\n}}");
+        let parsed = parse_text(&text).map_err(|errors| SceneError::new(errors, &text))?;
+        self.system.items.extend(parsed.items);
+        Ok(())
+    }
+
+    /// A scalar parameter with its default value: constant along the motion, and set at run time.
+    pub fn param(&mut self, name: &str, value: impl Into<Expr>) -> Expr {
+        self.param_of(name, ShapeKind::Scalar, value)
+    }
+
+    /// A vector or matrix of parameters with its default value.
+    pub fn param_of(&mut self, name: &str, shape: ShapeKind, value: impl Into<Expr>) -> Expr {
+        self.add(ItemKind::Param(vec![declared(
+            name,
+            shape,
+            Some(value.into()),
+        )]));
+        Expr::name(name)
+    }
+
+    /// An exact constant of the build.
+    pub fn constant(&mut self, name: &str, value: impl Into<Expr>) -> Expr {
+        let value = Some(value.into());
+        self.add(ItemKind::Const(vec![declared(
+            name,
+            ShapeKind::Scalar,
+            value,
+        )]));
+        Expr::name(name)
+    }
+
+    /// A name for an expression.
+    pub fn define(&mut self, name: &str, value: impl Into<Expr>) -> Expr {
+        let value = Some(value.into());
+        self.add(ItemKind::Let(vec![declared(
+            name,
+            ShapeKind::Scalar,
+            value,
+        )]));
+        Expr::name(name)
+    }
+
+    /// A configuration coordinate.
+    pub fn coordinate(&mut self, name: &str, kind: CoordKind) -> Expr {
+        self.add(ItemKind::Coord(vec![(ident(name), kind)]));
+        Expr::name(name)
+    }
+
+    /// A velocity coordinate: an entry of ξ, or several.
+    pub fn velocity(&mut self, name: &str, shape: ShapeKind) -> Expr {
+        self.add(ItemKind::Velocity(vec![declared(name, shape, None)]));
+        Expr::name(name)
+    }
+
+    /// A velocity coordinate by rates of coordinates: ξ = Y(x) ẋ, with `rate(…)` in the value.
+    pub fn velocity_by(&mut self, name: &str, shape: ShapeKind, value: impl Into<Expr>) -> Expr {
+        let value = Some(value.into());
+        self.add(ItemKind::Velocity(vec![declared(name, shape, value)]));
+        Expr::name(name)
+    }
+
+    /// A scalar input u, given at run time.
+    pub fn input(&mut self, name: &str) -> Expr {
+        self.input_of(name, ShapeKind::Scalar)
+    }
+
+    /// A vector or matrix of inputs.
+    pub fn input_of(&mut self, name: &str, shape: ShapeKind) -> Expr {
+        self.add(ItemKind::Input(vec![declared(name, shape, None)]));
+        Expr::name(name)
+    }
+
+    /// ẋ of a coordinate, or of a part such as `X.p`: a row of ẋ = A ξ.
+    pub fn rate(&mut self, coordinate: &str, value: impl Into<Expr>) {
+        self.add(ItemKind::Rate {
+            target: target(coordinate),
+            value: value.into(),
+        });
+    }
+
+    /// A constraint φ(x) = 0 among coordinates: left = right.
+    pub fn constraint(&mut self, left: impl Into<Expr>, right: impl Into<Expr>) {
+        self.add(ItemKind::Constraint {
+            left: left.into(),
+            right: right.into(),
+        });
+    }
+
+    /// Velocities that stay zero.
+    pub fn inactive(&mut self, velocities: impl IntoIterator<Item = Expr>) {
+        self.add(ItemKind::Inactive(velocities.into_iter().collect()));
+    }
+
+    /// A constraint B(x) ξ = 0: both sides linear in the velocities.
+    pub fn nonholonomic(&mut self, left: impl Into<Expr>, right: impl Into<Expr>) {
+        self.add(ItemKind::Nonholonomic {
+            left: left.into(),
+            right: right.into(),
+            stabilized: None,
+        });
+    }
+
+    /// A closed loop, kept by multipliers: left = right.
+    pub fn closed_loop(&mut self, left: impl Into<Expr>, right: impl Into<Expr>) {
+        self.add(ItemKind::Loop {
+            left: left.into(),
+            right: right.into(),
+            stabilized: None,
+        });
+    }
+
+    /// A frame with its pose in another one.
+    pub fn frame(&mut self, name: &str, on: impl Into<Frame>, pose: impl Into<Expr>) -> Frame {
+        let on = on.into();
+        let on = (on != super::WORLD.into()).then(|| on.ident());
+        self.add(ItemKind::Frame {
+            name: ident(name),
+            on,
+            pose: pose.into(),
+        });
+        name.into()
+    }
+
+    /// A joint; returns the frame that it carries.
+    pub fn joint(&mut self, joint: Joint) -> Frame {
+        let moves = joint.0.moves.name.as_str().into();
+        self.add(ItemKind::Joint(Box::new(joint.0)));
+        moves
+    }
+
+    /// A rigid body.
+    pub fn body(&mut self, body: Body) {
+        self.add(ItemKind::Body(body.0));
+    }
+
+    /// A point mass (kg) at a position in world axes (m).
+    pub fn particle(&mut self, mass: impl Into<Expr>, at: impl Into<Expr>) {
+        self.add(ItemKind::Particle {
+            mass: mass.into(),
+            at: at.into(),
+            on: None,
+        });
+    }
+
+    /// A point mass (kg) fixed to a frame, in its axes (m).
+    pub fn particle_on(
+        &mut self,
+        frame: impl Into<Frame>,
+        mass: impl Into<Expr>,
+        at: impl Into<Expr>,
+    ) {
+        self.add(ItemKind::Particle {
+            mass: mass.into(),
+            at: at.into(),
+            on: Some(frame.into().ident()),
+        });
+    }
+
+    /// A kinetic energy beyond that of bodies and particles (J).
+    pub fn kinetic(&mut self, energy: impl Into<Expr>) {
+        self.add(ItemKind::Kinetic(energy.into()));
+    }
+
+    /// A potential beyond that of gravity (J).
+    pub fn potential(&mut self, energy: impl Into<Expr>) {
+        self.add(ItemKind::Potential(energy.into()));
+    }
+
+    /// The acceleration of gravity, world axes (m/s²).
+    pub fn gravity(&mut self, acceleration: impl Into<Expr>) {
+        self.add(ItemKind::Gravity(acceleration.into()));
+    }
+
+    /// A force, torque or wrench.
+    pub fn load(&mut self, load: Load) {
+        self.add(load.item());
+    }
+
+    /// A spring, a damper, or a force along a line.
+    pub fn element(&mut self, element: Element) {
+        self.add(element.0);
+    }
+
+    /// Rayleigh's function D(x, ξ); its force is −∂D/∂ξ (W).
+    pub fn dissipation(&mut self, power: impl Into<Expr>) {
+        self.add(ItemKind::Dissipation(power.into()));
+    }
+
+    /// A generalised force, dual to a velocity.
+    pub fn generalized_force(&mut self, velocity: &str, value: impl Into<Expr>) {
+        self.add(ItemKind::Generalized {
+            target: target(velocity),
+            value: value.into(),
+        });
+    }
+
+    /// The value of a coordinate or velocity at the start.
+    pub fn start(&mut self, of: &str, value: impl Into<Expr>) {
+        self.add(ItemKind::Start {
+            target: target(of),
+            value: value.into(),
+        });
+    }
+
+    /// A function that the generated type has besides those of the formalism.
+    pub fn output(&mut self, name: &str, value: impl Into<Expr>) {
+        self.add(ItemKind::Output {
+            name: ident(name),
+            value: value.into(),
+        });
+    }
+
+    /// What is constant along the motion, where some inputs or parameters have the given values; refused by
+    /// [`generate`](Scene::generate) where it is not.
+    pub fn invariant(
+        &mut self,
+        name: &str,
+        value: impl Into<Expr>,
+        when: impl IntoIterator<Item = (Expr, Expr)>,
+    ) {
+        let when = when.into_iter();
+        self.add(ItemKind::Invariant {
+            name: ident(name),
+            conserved: Conserved::Value(value.into()),
+            when: when
+                .map(|(target, value)| Condition { target, value })
+                .collect(),
+        });
+    }
+
+    /// The functions to generate, such as `accel`; all by default.
+    pub fn generate(&mut self, functions: &[&str]) {
+        let functions = functions.iter().map(|name| ident(name));
+        self.add(ItemKind::Generate(functions.collect()));
+    }
+
+    /// The scene.
+    ///
+    /// # Errors
+    /// Names that the language does not have, each with the statement in which it stands.
+    pub fn build(&self) -> Result<Scene, SceneError> {
+        let text = print::text(&self.system);
+        let errors = match parse_text(&text) {
+            Ok(system) if system == self.system => return Ok(Scene { system, text }),
+            Ok(system) => {
+                let differs = |(ours, read): &(&Item, &Item)| ours != read;
+                let statements = self.system.items.iter().zip(&system.items);
+                let place = statements.clone().find(differs);
+                let span = place.map_or(system.name.span, |(_, read)| read.span);
+                let error =
+                    Diagnostic::new(span, "this statement has a name that is more than one word");
+                vec![error.help("names are made of letters, digits and `_`")]
+            }
+            Err(errors) => errors,
+        };
+        Err(SceneError::new(errors, &text))
+    }
+}
+
+fn declared(name: &str, shape: ShapeKind, value: Option<Expr>) -> Declaration {
+    Declaration {
+        name: ident(name),
+        shape: Shape {
+            kind: shape,
+            span: Span::NOWHERE,
+        },
+        value,
+    }
+}
+
+/// `R`, `X.p`
+fn target(text: &str) -> Target {
+    match text.split_once('.') {
+        Some((name, field)) => Target {
+            name: ident(name),
+            field: Some(ident(field)),
+        },
+        None => Target {
+            name: ident(text),
+            field: None,
+        },
+    }
+}

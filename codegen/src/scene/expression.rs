@@ -1,0 +1,204 @@
+//! Expressions written in Rust: numbers, arrays, operators and the functions of the language.
+
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Ident, Span};
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::Signed;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+pub(super) fn ident(name: &str) -> Ident {
+    Ident {
+        name: name.to_string(),
+        span: Span::NOWHERE,
+    }
+}
+
+fn expr(kind: ExprKind) -> Expr {
+    Expr {
+        kind,
+        span: Span::NOWHERE,
+    }
+}
+
+fn number(number: BigRational) -> Expr {
+    let size = expr(ExprKind::Number(number.abs()));
+    if number.is_negative() { -size } else { size }
+}
+
+/// A function of the language, such as `sin`, `norm`, `axis_angle`; which there are stands in the
+/// reference of the language.
+///
+/// ```
+/// use hamel_codegen::scene::{Expr, call};
+/// let r = Expr::name("r");
+/// assert_eq!(call("dot", [r.clone(), r]).to_string(), "dot(r, r)");
+/// ```
+pub fn call<const N: usize>(function: &str, arguments: [Expr; N]) -> Expr {
+    expr(ExprKind::Call(ident(function), arguments.into()))
+}
+
+/// sin a, a in rad.
+pub fn sin(angle: impl Into<Expr>) -> Expr {
+    call("sin", [angle.into()])
+}
+
+/// cos a, a in rad.
+pub fn cos(angle: impl Into<Expr>) -> Expr {
+    call("cos", [angle.into()])
+}
+
+/// √a.
+pub fn sqrt(value: impl Into<Expr>) -> Expr {
+    call("sqrt", [value.into()])
+}
+
+/// A pose: axes by columns and origin (m).
+pub fn pose(axes: impl Into<Expr>, origin: impl Into<Expr>) -> Expr {
+    call("pose", [axes.into(), origin.into()])
+}
+
+/// A place without rotation (m).
+pub fn shifted(origin: impl Into<Expr>) -> Expr {
+    pose(call("identity", [3.into()]), origin)
+}
+
+/// The matrix with these three numbers on its diagonal, and zeros beside it.
+pub fn diagonal(entries: [impl Into<Expr>; 3]) -> Expr {
+    call("diag", entries.map(Into::into))
+}
+
+impl Expr {
+    /// What a name stands for: a parameter, a coordinate, a velocity, an input, a frame.
+    pub fn name(name: &str) -> Expr {
+        expr(ExprKind::Name(name.to_string()))
+    }
+
+    /// A part: `c` and `s` of a circle, `R` and `p` of a pose, `T` of a matrix.
+    pub fn part(&self, name: &str) -> Expr {
+        expr(ExprKind::Field(Box::new(self.clone()), ident(name)))
+    }
+
+    /// An entry of a vector; the first one has the index 1, as in the paper.
+    pub fn entry(&self, index: i32) -> Expr {
+        let index = vec![index.into()];
+        expr(ExprKind::Index(Box::new(self.clone()), index))
+    }
+
+    /// An integer power.
+    pub fn pow(&self, exponent: i32) -> Expr {
+        binary(BinaryOp::Pow, self.clone(), exponent.into())
+    }
+}
+
+/// The expression in the language.
+impl std::fmt::Display for Expr {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&crate::syntax::written::written(self))
+    }
+}
+
+impl From<&Expr> for Expr {
+    fn from(expr: &Expr) -> Expr {
+        expr.clone()
+    }
+}
+
+/// The decimal number that `{}` prints, exactly: 0.1 is 1/10. What is not finite becomes a name that nothing has,
+/// so that the scene is refused where it stands.
+impl From<f64> for Expr {
+    fn from(value: f64) -> Expr {
+        if !value.is_finite() {
+            return Expr::name(&format!("{value}").replace('-', "minus_"));
+        }
+        number(decimal(value).unwrap_or_else(|| BigRational::from_integer(0.into())))
+    }
+}
+
+/// The shortest decimal that rounds to a finite number.
+fn decimal(value: f64) -> Option<BigRational> {
+    let text = format!("{value:e}");
+    let (mantissa, exponent) = text.split_once('e')?;
+    let exponent: i32 = exponent.parse().ok()?;
+    let (whole, places) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits: BigInt = format!("{whole}{places}").parse().ok()?;
+    let power = exponent - places.len() as i32;
+    let scale = BigInt::from(10).pow(power.unsigned_abs());
+    Some(if power < 0 {
+        BigRational::new(digits, scale)
+    } else {
+        BigRational::from_integer(digits * scale)
+    })
+}
+
+impl From<i32> for Expr {
+    fn from(value: i32) -> Expr {
+        number(BigRational::from_integer(value.into()))
+    }
+}
+
+/// A vector, or a matrix by rows.
+impl<T: Into<Expr>, const N: usize> From<[T; N]> for Expr {
+    fn from(entries: [T; N]) -> Expr {
+        expr(ExprKind::Array(entries.map(Into::into).into()))
+    }
+}
+
+/// A vector, or a matrix by rows.
+impl<T: Into<Expr>> From<Vec<T>> for Expr {
+    fn from(entries: Vec<T>) -> Expr {
+        let entries = entries.into_iter().map(Into::into);
+        expr(ExprKind::Array(entries.collect()))
+    }
+}
+
+fn binary(op: BinaryOp, left: Expr, right: Expr) -> Expr {
+    expr(ExprKind::Binary(op, Box::new(left), Box::new(right)))
+}
+
+macro_rules! operators {
+    ($($operator:ident $method:ident $op:ident),*) => {$(
+        impl<R: Into<Expr>> $operator<R> for Expr {
+            type Output = Expr;
+            fn $method(self, right: R) -> Expr {
+                binary(BinaryOp::$op, self, right.into())
+            }
+        }
+
+        impl<R: Into<Expr>> $operator<R> for &Expr {
+            type Output = Expr;
+            fn $method(self, right: R) -> Expr {
+                binary(BinaryOp::$op, self.clone(), right.into())
+            }
+        }
+
+        impl $operator<Expr> for f64 {
+            type Output = Expr;
+            fn $method(self, right: Expr) -> Expr {
+                binary(BinaryOp::$op, self.into(), right)
+            }
+        }
+
+        impl $operator<&Expr> for f64 {
+            type Output = Expr;
+            fn $method(self, right: &Expr) -> Expr {
+                binary(BinaryOp::$op, self.into(), right.clone())
+            }
+        }
+    )*};
+}
+
+operators!(Add add Add, Sub sub Sub, Mul mul Mul, Div div Div);
+
+impl Neg for Expr {
+    type Output = Expr;
+    fn neg(self) -> Expr {
+        expr(ExprKind::Neg(Box::new(self)))
+    }
+}
+
+impl Neg for &Expr {
+    type Output = Expr;
+    fn neg(self) -> Expr {
+        -self.clone()
+    }
+}

@@ -1,0 +1,373 @@
+//! What statements of a scene are made of: frames, points, joints, bodies, loads, springs and dampers.
+
+use super::expression::ident;
+use crate::syntax::ast::{
+    self, About, Acting, Components, End, Expr, Ident, ItemKind, JointField, JointKind, Span,
+};
+
+/// A frame of a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame(String);
+
+/// The name of the frame that does not move.
+pub const WORLD: &str = "world";
+
+impl Frame {
+    /// Its name, as an expression: its pose in the world, with the parts `R` and `p`.
+    pub fn pose(&self) -> Expr {
+        Expr::name(&self.0)
+    }
+
+    pub(super) fn ident(&self) -> Ident {
+        ident(&self.0)
+    }
+
+    /// The frame, where it is not the world.
+    fn moving(&self) -> Option<Ident> {
+        (self.0 != WORLD).then(|| self.ident())
+    }
+}
+
+impl From<&str> for Frame {
+    fn from(name: &str) -> Frame {
+        Frame(name.to_string())
+    }
+}
+
+impl From<&Frame> for Frame {
+    fn from(frame: &Frame) -> Frame {
+        frame.clone()
+    }
+}
+
+/// A point fixed to a frame.
+#[derive(Clone, Debug)]
+pub struct Point(pub(super) End);
+
+impl Point {
+    /// The point with these components in the frame's axes (m).
+    pub fn of(frame: impl Into<Frame>, at: impl Into<Expr>) -> Point {
+        Point(End {
+            at: Some(at.into()),
+            frame: frame.into().ident(),
+        })
+    }
+
+    /// The origin of a frame.
+    pub fn origin(frame: impl Into<Frame>) -> Point {
+        Point(End {
+            at: None,
+            frame: frame.into().ident(),
+        })
+    }
+}
+
+/// A joint: it carries a new frame, which has the name of the joint with `_frame` behind it unless
+/// [`moves`](Self::moves) names it.
+#[derive(Clone, Debug)]
+pub struct Joint(pub(super) ast::Joint);
+
+impl Joint {
+    fn new(name: &str, kind: JointKind, axes: Vec<Expr>) -> Joint {
+        Joint(ast::Joint {
+            name: ident(name),
+            kind: (kind, Span::NOWHERE),
+            axes,
+            on: None,
+            at: None,
+            moves: ident(&format!("{name}_frame")),
+            follows: None,
+            fields: Vec::new(),
+        })
+    }
+
+    /// Turns about an axis; its coordinate is the angle (rad).
+    pub fn revolute(name: &str, axis: impl Into<Expr>) -> Joint {
+        Joint::new(name, JointKind::Revolute, vec![axis.into()])
+    }
+
+    /// Turns about an axis; its coordinate is the pair (cos, sin), without a limit.
+    pub fn continuous(name: &str, axis: impl Into<Expr>) -> Joint {
+        Joint::new(name, JointKind::Continuous, vec![axis.into()])
+    }
+
+    /// Slides along an axis (m).
+    pub fn prismatic(name: &str, axis: impl Into<Expr>) -> Joint {
+        Joint::new(name, JointKind::Prismatic, vec![axis.into()])
+    }
+
+    /// Turns about a point; its coordinate is a rotation matrix.
+    pub fn spherical(name: &str) -> Joint {
+        Joint::new(name, JointKind::Spherical, Vec::new())
+    }
+
+    /// Turns about a point; its coordinate is a unit quaternion.
+    pub fn spherical_quaternion(name: &str) -> Joint {
+        Joint::new(name, JointKind::SphericalS3, Vec::new())
+    }
+
+    /// Moves freely.
+    pub fn free(name: &str) -> Joint {
+        Joint::new(name, JointKind::Free, Vec::new())
+    }
+
+    /// Slides in the plane with this normal, and turns about it.
+    pub fn planar(name: &str, normal: impl Into<Expr>) -> Joint {
+        Joint::new(name, JointKind::Planar, vec![normal.into()])
+    }
+
+    /// Turns about two axes, one after the other.
+    pub fn universal(name: &str, first: impl Into<Expr>, second: impl Into<Expr>) -> Joint {
+        let axes = vec![first.into(), second.into()];
+        Joint::new(name, JointKind::Universal, axes)
+    }
+
+    /// Turns about an axis and slides along it.
+    pub fn cylindrical(name: &str, axis: impl Into<Expr>) -> Joint {
+        Joint::new(name, JointKind::Cylindrical, vec![axis.into()])
+    }
+
+    /// Does not move.
+    pub fn fixed(name: &str) -> Joint {
+        Joint::new(name, JointKind::Fixed, Vec::new())
+    }
+
+    /// The frame that it is fixed to; the world by default.
+    pub fn on(mut self, frame: impl Into<Frame>) -> Joint {
+        self.0.on = frame.into().moving();
+        self
+    }
+
+    /// Where it stands in that frame, a pose; its origin by default.
+    pub fn at(mut self, pose: impl Into<Expr>) -> Joint {
+        self.0.at = Some(pose.into());
+        self
+    }
+
+    /// The name of the frame that it carries.
+    pub fn moves(mut self, frame: &str) -> Joint {
+        self.0.moves = ident(frame);
+        self
+    }
+
+    /// What its coordinate is, where it has none of its own: a coupled joint.
+    pub fn follows(mut self, value: impl Into<Expr>) -> Joint {
+        self.0.follows = Some(value.into());
+        self
+    }
+
+    fn field<const N: usize>(mut self, field: JointField, values: [Expr; N]) -> Joint {
+        let values = values.into();
+        self.0.fields.push((field, Span::NOWHERE, values));
+        self
+    }
+
+    /// Viscous friction: the force −d q̇ (N s/m, N m s).
+    pub fn damping(self, coefficient: impl Into<Expr>) -> Joint {
+        self.field(JointField::Damping, [coefficient.into()])
+    }
+
+    /// The inertia of its drive, J in ½ J q̇² (kg, kg m²).
+    pub fn armature(self, inertia: impl Into<Expr>) -> Joint {
+        self.field(JointField::Armature, [inertia.into()])
+    }
+
+    /// A spring: the force −k (q − q₀), q₀ given by [`rest`](Self::rest) (N/m, N m).
+    pub fn stiffness(self, stiffness: impl Into<Expr>) -> Joint {
+        self.field(JointField::Stiffness, [stiffness.into()])
+    }
+
+    /// Where its spring is without force.
+    pub fn rest(self, coordinate: impl Into<Expr>) -> Joint {
+        self.field(JointField::Rest, [coordinate.into()])
+    }
+
+    /// A force or torque of the joint (N, N m).
+    pub fn force(self, force: impl Into<Expr>) -> Joint {
+        self.field(JointField::Force, [force.into()])
+    }
+
+    /// Its limits, as information for those who use the generated code.
+    pub fn limit(self, lower: impl Into<Expr>, upper: impl Into<Expr>) -> Joint {
+        self.field(JointField::Limit, [lower.into(), upper.into()])
+    }
+}
+
+/// A rigid body fixed to a frame.
+#[derive(Clone, Debug)]
+pub struct Body(pub(super) ast::Body);
+
+impl Body {
+    /// A body on a frame, without mass so far.
+    pub fn on(frame: impl Into<Frame>) -> Body {
+        Body(ast::Body {
+            frame: frame.into().ident(),
+            mass: None,
+            com: None,
+            inertia: None,
+        })
+    }
+
+    /// Its mass m (kg).
+    pub fn mass(mut self, mass: impl Into<Expr>) -> Body {
+        self.0.mass = Some(mass.into());
+        self
+    }
+
+    /// Its centre of mass, frame axes (m); the origin by default.
+    pub fn com(mut self, com: impl Into<Expr>) -> Body {
+        self.0.com = Some(com.into());
+        self
+    }
+
+    /// Its inertia about its centre of mass, frame axes, 3×3 (kg m²).
+    pub fn inertia_about_com(mut self, inertia: impl Into<Expr>) -> Body {
+        self.0.inertia = Some((inertia.into(), Some(About::Com)));
+        self
+    }
+
+    /// Its inertia about the origin of the frame, frame axes, 3×3 (kg m²).
+    pub fn inertia_about_origin(mut self, inertia: impl Into<Expr>) -> Body {
+        self.0.inertia = Some((inertia.into(), Some(About::Origin)));
+        self
+    }
+}
+
+/// A force, torque or wrench on a frame; its components are in the axes of that frame unless
+/// [`in_axes_of`](Self::in_axes_of) says otherwise.
+#[derive(Clone, Debug)]
+pub struct Load {
+    load: ast::Load,
+    frame: Frame,
+    from: Option<Frame>,
+    axes: Components,
+}
+
+impl Load {
+    fn new(load: ast::Load, frame: impl Into<Frame>) -> Load {
+        Load {
+            load,
+            frame: frame.into(),
+            from: None,
+            axes: Components::Body,
+        }
+    }
+
+    /// A force (N) at the origin of a frame.
+    pub fn force(force: impl Into<Expr>, on: impl Into<Frame>) -> Load {
+        let force = force.into();
+        Load::new(ast::Load::Force { force, at: None }, on)
+    }
+
+    /// A torque (N m) on a frame.
+    pub fn torque(torque: impl Into<Expr>, on: impl Into<Frame>) -> Load {
+        let torque = torque.into();
+        Load::new(ast::Load::Torque { torque }, on)
+    }
+
+    /// A force (N) and a torque (N m) at the origin of a frame.
+    pub fn wrench(force: impl Into<Expr>, torque: impl Into<Expr>, on: impl Into<Frame>) -> Load {
+        let (force, torque) = (force.into(), torque.into());
+        let load = ast::Load::Wrench {
+            force,
+            torque,
+            at: None,
+        };
+        Load::new(load, on)
+    }
+
+    /// The point of attack in the frame's axes (m). A torque is the same at every point.
+    pub fn at(mut self, point: impl Into<Expr>) -> Load {
+        match &mut self.load {
+            ast::Load::Force { at, .. } | ast::Load::Wrench { at, .. } => *at = Some(point.into()),
+            ast::Load::Torque { .. } => {}
+        }
+        self
+    }
+
+    /// The frame that exerts it, and takes the reaction.
+    pub fn from(mut self, frame: impl Into<Frame>) -> Load {
+        self.from = Some(frame.into());
+        self
+    }
+
+    /// The frame in whose axes its components are written, the world among them.
+    pub fn in_axes_of(mut self, frame: impl Into<Frame>) -> Load {
+        self.axes = match frame.into().moving() {
+            Some(frame) => Components::Frame(frame),
+            None => Components::World,
+        };
+        self
+    }
+
+    pub(super) fn item(self) -> ItemKind {
+        ItemKind::Load {
+            load: self.load,
+            frame: self.frame.ident(),
+            from: self.from.map(|frame| frame.ident()),
+            axes: self.axes,
+        }
+    }
+}
+
+/// What a spring or a damper acts on: two points, as a pair, along the line between them; or a scalar, of the
+/// configuration for a spring, linear in the velocities for a damper.
+#[derive(Clone, Debug)]
+pub struct Between(Acting);
+
+impl From<(Point, Point)> for Between {
+    fn from((from, to): (Point, Point)) -> Between {
+        Between(Acting::Between(from.0, to.0))
+    }
+}
+
+impl From<Expr> for Between {
+    fn from(value: Expr) -> Between {
+        Between(Acting::On(value))
+    }
+}
+
+/// A spring, a damper, or a force along a line.
+#[derive(Clone, Debug)]
+pub struct Element(pub(super) ItemKind);
+
+impl Element {
+    /// A spring (N/m), without force where its points meet or its scalar is zero.
+    pub fn spring(stiffness: impl Into<Expr>, between: impl Into<Between>) -> Element {
+        Element(ItemKind::Spring {
+            stiffness: stiffness.into(),
+            length: None,
+            acting: between.into().0,
+        })
+    }
+
+    /// A spring (N/m) with the length or scalar at which it is without force.
+    pub fn spring_of_length(
+        stiffness: impl Into<Expr>,
+        length: impl Into<Expr>,
+        between: impl Into<Between>,
+    ) -> Element {
+        Element(ItemKind::Spring {
+            stiffness: stiffness.into(),
+            length: Some(length.into()),
+            acting: between.into().0,
+        })
+    }
+
+    /// A damper (N s/m).
+    pub fn damper(coefficient: impl Into<Expr>, between: impl Into<Between>) -> Element {
+        Element(ItemKind::Damper {
+            coefficient: coefficient.into(),
+            acting: between.into().0,
+        })
+    }
+
+    /// A force along the line between two points, positive where it pushes them apart (N).
+    pub fn push(force: impl Into<Expr>, from: Point, to: Point) -> Element {
+        Element(ItemKind::Push {
+            force: force.into(),
+            from: from.0,
+            to: to.0,
+        })
+    }
+}

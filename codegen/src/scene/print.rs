@@ -1,0 +1,292 @@
+//! A scene as text: one statement a line, in the order of the description, with exact numbers.
+//!
+//! Comments and layout of the text that a scene was read from are not part of it. What is printed reads back as
+//! an equal scene.
+
+use crate::syntax::ast::{
+    About, Acting, Body, Components, Conserved, CoordKind, Declaration, End, Ident, Item, ItemKind,
+    Joint, JointKind, Load, ShapeKind, System, Target,
+};
+use crate::syntax::written::{conditions, equation, list, written};
+use crate::syntax::{joint_field, joint_kind};
+
+/// The text of a description.
+pub fn text(system: &System) -> String {
+    let mut text = String::new();
+    for line in &system.docs {
+        text.push_str(format!("/// {line}").trim_end());
+        text.push('\n');
+    }
+    let public = if system.public { "pub " } else { "" };
+    text.push_str(&format!("{public}system {} {{\n", system.name.name));
+    for item in &system.items {
+        text.push_str(&format!("    {}\n", statement(item)));
+    }
+    text.push_str("}\n");
+    text
+}
+
+/// A statement with its end.
+pub fn statement(item: &Item) -> String {
+    let line = match &item.kind {
+        ItemKind::Param(list) => format!("param {}", declarations(list)),
+        ItemKind::Const(list) => format!("const {}", declarations(list)),
+        ItemKind::Let(list) => format!("let {}", declarations(list)),
+        ItemKind::Coord(list) => format!("coord {}", each(list, coordinate)),
+        ItemKind::Velocity(list) => format!("velocity {}", declarations(list)),
+        ItemKind::Constraint { left, right } => format!("constraint {}", equation(left, right)),
+        ItemKind::Rate { target, value } => {
+            format!("rate {} = {}", part(target), written(value))
+        }
+        ItemKind::Inactive(velocities) => format!("inactive {}", list(velocities)),
+        ItemKind::Nonholonomic {
+            left,
+            right,
+            stabilized,
+        } => {
+            let rate = after("stabilized", stabilized.as_ref().map(written));
+            format!("nonholonomic {}{rate}", equation(left, right))
+        }
+        ItemKind::Loop {
+            left,
+            right,
+            stabilized,
+        } => {
+            let rate = after("stabilized", stabilized.as_ref().map(written));
+            format!("loop {}{rate}", equation(left, right))
+        }
+        ItemKind::Frame { name, on, pose } => {
+            let on = after("on", on.as_ref().map(word));
+            format!("frame {}{on} = {}", name.name, written(pose))
+        }
+        ItemKind::Joint(description) => return joint(description),
+        ItemKind::Body(description) => return body(description),
+        ItemKind::Particle { mass, at, on } => {
+            let on = after("on", on.as_ref().map(word));
+            format!("particle mass {} at {}{on}", written(mass), written(at))
+        }
+        ItemKind::Kinetic(energy) => format!("kinetic {}", written(energy)),
+        ItemKind::Potential(energy) => format!("potential {}", written(energy)),
+        ItemKind::Gravity(acceleration) => format!("gravity {}", written(acceleration)),
+        ItemKind::Input(list) => format!("input {}", declarations(list)),
+        ItemKind::Load {
+            load,
+            frame,
+            from,
+            axes,
+        } => {
+            let from = after("from", from.as_ref().map(word));
+            let axes = match axes {
+                Components::Body => "body",
+                Components::World => "world",
+                Components::Frame(frame) => &frame.name,
+            };
+            format!("{} on {}{from} in {axes}", applied(load), frame.name)
+        }
+        ItemKind::Push { force, from, to } => {
+            format!("force {} {}", written(force), between(from, to))
+        }
+        ItemKind::Spring {
+            stiffness,
+            length,
+            acting,
+        } => {
+            let length = after("length", length.as_ref().map(written));
+            let stiffness = written(stiffness);
+            format!("spring stiffness {stiffness}{length} {}", on_what(acting))
+        }
+        ItemKind::Damper {
+            coefficient,
+            acting,
+        } => {
+            let coefficient = written(coefficient);
+            format!("damper coefficient {coefficient} {}", on_what(acting))
+        }
+        ItemKind::Dissipation(power) => format!("dissipation {}", written(power)),
+        ItemKind::Generalized { target, value } => {
+            format!("generalized force {} = {}", part(target), written(value))
+        }
+        ItemKind::Start { target, value } => {
+            format!("start {} = {}", part(target), written(value))
+        }
+        ItemKind::Output { name, value } => format!("output {} = {}", name.name, written(value)),
+        ItemKind::Invariant {
+            name,
+            conserved,
+            when,
+        } => {
+            let when = (!when.is_empty()).then(|| conditions(when));
+            format!(
+                "invariant {}{}",
+                claim(name, conserved),
+                after("when", when)
+            )
+        }
+        ItemKind::Generate(names) => {
+            format!("generate {}", each(names, |name| name.name.clone()))
+        }
+    };
+    line + ";"
+}
+
+/// A shape after a name: `: vec3`, nothing for a scalar.
+pub fn shape(kind: ShapeKind) -> String {
+    match kind {
+        ShapeKind::Scalar => String::new(),
+        ShapeKind::Vector(n) => format!(": vec{n}"),
+        ShapeKind::Matrix(n) => format!(": mat{n}"),
+        ShapeKind::Symmetric(n) => format!(": sym{n}"),
+    }
+}
+
+/// A kind of coordinate after a name: `: S1`, nothing for a real.
+pub fn kind(kind: CoordKind) -> String {
+    match kind {
+        CoordKind::Real => String::new(),
+        CoordKind::Euclidean(n) => format!(": R{n}"),
+        CoordKind::S1 => ": S1".into(),
+        CoordKind::S3 => ": S3".into(),
+        CoordKind::SO3 => ": SO3".into(),
+        CoordKind::SE3 => ": SE3".into(),
+    }
+}
+
+fn each<T>(list: &[T], one: impl Fn(&T) -> String) -> String {
+    list.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+fn declarations(list: &[Declaration]) -> String {
+    each(list, |one| {
+        let value = one
+            .value
+            .as_ref()
+            .map(|value| format!(" = {}", written(value)));
+        let value = value.unwrap_or_default();
+        format!("{}{}{value}", one.name.name, shape(one.shape.kind))
+    })
+}
+
+fn coordinate((name, of): &(Ident, CoordKind)) -> String {
+    format!("{}{}", name.name, kind(*of))
+}
+
+fn part(target: &Target) -> String {
+    match &target.field {
+        Some(field) => format!("{}.{}", target.name.name, field.name),
+        None => target.name.name.clone(),
+    }
+}
+
+fn word(name: &Ident) -> String {
+    name.name.clone()
+}
+
+/// What follows a word of the language, where there is any.
+fn after(word: &str, text: Option<String>) -> String {
+    text.map_or(String::new(), |text| format!(" {word} {text}"))
+}
+
+fn joint(joint: &Joint) -> String {
+    let kind = match joint.kind.0 {
+        JointKind::SphericalS3 => "spherical S3",
+        kind => joint_kind(kind),
+    };
+    let axes = match joint.axes.is_empty() {
+        true => String::new(),
+        false => format!(" {}", list(&joint.axes)),
+    };
+    let on = after("on", joint.on.as_ref().map(word));
+    let at = after("at", joint.at.as_ref().map(written));
+    let follows = after("follows", joint.follows.as_ref().map(written));
+    let (name, moves) = (&joint.name.name, &joint.moves.name);
+    let head = format!("joint {name}: {kind}{axes}{on}{at} moves {moves}{follows}");
+    if joint.fields.is_empty() {
+        return head + ";";
+    }
+    let fields = joint.fields.iter().map(|(field, _, values)| {
+        let values: Vec<String> = values.iter().map(written).collect();
+        format!("{} {};", joint_field(*field), values.join(" to "))
+    });
+    format!("{head} {{ {} }}", fields.collect::<Vec<_>>().join(" "))
+}
+
+fn body(body: &Body) -> String {
+    let mut fields = Vec::new();
+    fields.extend(
+        body.mass
+            .iter()
+            .map(|mass| format!("mass {};", written(mass))),
+    );
+    fields.extend(body.com.iter().map(|com| format!("com {};", written(com))));
+    fields.extend(body.inertia.iter().map(|(inertia, about)| {
+        let about = match about {
+            Some(About::Com) => " about com",
+            Some(About::Origin) => " about origin",
+            None => "",
+        };
+        format!("inertia {}{about};", written(inertia))
+    }));
+    let fields = fields.iter().map(|field| format!("{field} "));
+    format!(
+        "body on {} {{ {}}}",
+        body.frame.name,
+        fields.collect::<String>()
+    )
+}
+
+fn applied(load: &Load) -> String {
+    match load {
+        Load::Force { force, at } => {
+            let at = after("at", at.as_ref().map(written));
+            format!("force {}{at}", written(force))
+        }
+        Load::Torque { torque } => format!("torque {}", written(torque)),
+        Load::Wrench { force, torque, at } => {
+            let at = after("at", at.as_ref().map(written));
+            format!("wrench ({}, {}){at}", written(force), written(torque))
+        }
+    }
+}
+
+fn end(end: &End) -> String {
+    match &end.at {
+        Some(point) => format!("{} on {}", written(point), end.frame.name),
+        None => end.frame.name.clone(),
+    }
+}
+
+fn between(from: &End, to: &End) -> String {
+    format!("from {} to {}", end(from), end(to))
+}
+
+fn on_what(acting: &Acting) -> String {
+    match acting {
+        Acting::Between(from, to) => between(from, to),
+        Acting::On(value) => format!("on {}", written(value)),
+    }
+}
+
+/// A claim, with its name where that is not the one of the quantity.
+fn claim(name: &Ident, conserved: &Conserved) -> String {
+    let (quantity, text) = match conserved {
+        Conserved::Energy => ("energy", "energy".to_string()),
+        Conserved::LinearMomentum { of, along } => {
+            let of = after("of", of.as_ref().map(word));
+            let along = after("along", along.as_ref().map(written));
+            ("linear_momentum", format!("linear_momentum{of}{along}"))
+        }
+        Conserved::AngularMomentum { of, about, along } => {
+            let of = after("of", of.as_ref().map(word));
+            let about = after("about", about.as_ref().map(written));
+            let along = after("along", along.as_ref().map(written));
+            let text = format!("angular_momentum{of}{about}{along}");
+            ("angular_momentum", text)
+        }
+        Conserved::Value(value) => ("", written(value)),
+    };
+    if quantity == name.name {
+        text
+    } else {
+        format!("{} = {text}", name.name)
+    }
+}

@@ -1,0 +1,289 @@
+//! Scenes: what is printed reads back as an equal scene, and what is built is what the same text says.
+
+use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::scene::{
+    Body, CoordKind, Element, Expr, Joint, Load, Point, Scene, SceneError, ShapeKind, WORLD, call,
+    cos, diagonal, pose, shifted, sin,
+};
+use std::path::Path;
+
+/// All descriptions of the repository that are right.
+fn descriptions() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folders = ["tests/models", "examples/models", "examples"];
+    let files = folders
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(root.join(folder)));
+    let paths = files.flatten().map(|entry| entry.expect("an entry").path());
+    let mut all: Vec<(String, String)> = paths
+        .filter(|path| path.extension().is_some_and(|extension| extension == "eom"))
+        .map(|path| {
+            let text = std::fs::read_to_string(&path).expect("readable");
+            (path.display().to_string(), text)
+        })
+        .collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn what_is_printed_reads_back() {
+    let all = descriptions();
+    assert!(all.len() > 50, "{} descriptions", all.len());
+    for (name, text) in all {
+        let scene = Scene::parse(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let printed = scene.to_string();
+        let again = Scene::parse(&printed).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(again, scene, "{name}");
+        assert_eq!(again.to_string(), printed, "{name}");
+    }
+}
+
+/// Statements of all kinds, with all that each can have.
+const EVERYTHING: &str = "
+/// All statements.
+///
+///   Indented.
+system Everything {
+    param m = 1.3e-7, k: vec2 = [1, -2], J: sym2 = [[1, 0], [0, 2]], N: mat2 = [[1, 0], [0, 2]];
+    const c = 3 / 2;
+    let e: vec3 = [0, 0, 0.000000000000000001];
+    coord q, r: R3, a: S1, b: S3, R: SO3, X: SE3;
+    velocity u, v: vec3, w = a.c * rate(a.s) - a.s * rate(a.c);
+    input F: vec3, t;
+    constraint q^2 = 4 * (m - 1);
+    rate q = u;
+    rate X.p = X.R * v;
+    inactive u, v[2];
+    nonholonomic u = m * v[1] stabilized 20;
+    nonholonomic u = v[1];
+    loop q = r[1] stabilized 2 * m;
+    frame f on g = pose(R, r);
+    frame g = world;
+    joint j: universal [1, 0, 0], [0, 1, 0] on f at pose(R, r) moves h { damping 1; limit -pi to pi; max_force 3; }
+    joint i: spherical S3 moves n;
+    joint o: revolute [0, 0, 1] moves s follows 2 * q - 1;
+    body on f { mass m; com e; inertia diag(1, 2, 3) about origin; }
+    body on f { }
+    particle mass m at r;
+    particle mass m at e on f;
+    kinetic m * u^2 / 2;
+    potential -m * (q - 1)^2;
+    gravity [0, 0, -9.81];
+    force F at e on f from g in world;
+    torque F on f in body;
+    wrench (F, [0, t, 0]) at e on f in g;
+    force t from e on f to world;
+    spring stiffness m length 2 from f to e on g;
+    spring stiffness m on q - 1;
+    damper coefficient m on u;
+    dissipation m * u^2;
+    generalized force v = -m * v;
+    start X.p = [0, 0, 1];
+    output speed = norm(v) - (1 - (2 - 3)) / (4 / 5) * (6 * 7);
+    invariant energy when F = 0, k[1] = 2;
+    invariant e_0 = energy;
+    invariant linear_momentum of f along [0, 0, 1];
+    invariant angular_momentum of f about r along e;
+    invariant l = angular_momentum;
+    invariant i_0 = (-m)^2 + -m^2 - (-2);
+    generate accel, energy;
+}";
+
+#[test]
+fn every_statement_reads_back() {
+    let scene = Scene::parse(EVERYTHING).expect("a description");
+    let printed = scene.to_string();
+    assert_eq!(Scene::parse(&printed).expect("a description"), scene);
+    insta::assert_snapshot!(printed);
+}
+
+#[test]
+fn scenes_that_say_something_else_are_not_equal() {
+    let scene = Scene::parse(EVERYTHING).expect("a description");
+    for (from, to) in [
+        ("1.3e-7", "1.3e-8"),
+        ("m - 1", "m + 1"),
+        ("about origin", "about com"),
+        ("in world", "in body"),
+        ("stabilized 20", ""),
+        ("    body on f { }\n", ""),
+        ("/// All statements.", "///"),
+    ] {
+        let changed = EVERYTHING.replacen(from, to, 1);
+        assert_ne!(changed, EVERYTHING);
+        assert_ne!(
+            Scene::parse(&changed).expect("a description"),
+            scene,
+            "{from}"
+        );
+    }
+}
+
+/// A cart with a pole on a spring, built; and the same as text.
+fn cart() -> Result<Scene, SceneError> {
+    let mut cart = Scene::builder("Cart");
+    cart.doc("A cart with a pole.");
+    let (m, l) = (cart.param("m", 0.2), cart.param("l", 0.5));
+    let big = cart.param("big", 1.5);
+    let u = cart.input("u");
+    let base = cart.joint(
+        Joint::prismatic("rail", [1, 0, 0])
+            .moves("base")
+            .force(&u)
+            .damping(0.1),
+    );
+    let pole = cart.joint(
+        Joint::revolute("hinge", [0, 1, 0])
+            .on(&base)
+            .at(shifted([0.0, 0.0, 0.1]))
+            .moves("pole"),
+    );
+    cart.body(Body::on(&base).mass(&big));
+    cart.particle_on(&pole, &m, [0.into(), 0.into(), l.clone()]);
+    cart.gravity([0.0, 0.0, -9.81]);
+    let anchor = Point::of(WORLD, [-1, 0, 0]);
+    cart.element(Element::spring_of_length(
+        20,
+        0.9,
+        (anchor, Point::origin(&base)),
+    ));
+    cart.load(
+        Load::force([0.0, 0.0, 0.3], &pole)
+            .at([0.into(), 0.into(), &l / 2])
+            .in_axes_of(WORLD),
+    );
+    cart.start("hinge", 0.3);
+    cart.output(
+        "height",
+        pole.pose().part("p").entry(3) + &l * cos(Expr::name("hinge")),
+    );
+    cart.build()
+}
+
+const CART: &str = "
+/// A cart with a pole.
+pub system Cart {
+    param m = 0.2;
+    param l = 0.5;
+    param big = 1.5;
+    input u;
+    joint rail: prismatic [1, 0, 0] moves base { force u; damping 0.1; }
+    joint hinge: revolute [0, 1, 0] on base at pose(identity(3), [0, 0, 0.1]) moves pole;
+    body on base { mass big; }
+    particle mass m at [0, 0, l] on pole;
+    gravity [0, 0, -9.81];
+    spring stiffness 20 length 0.9 from [-1, 0, 0] on world to base;
+    force [0, 0, 0.3] at [0, 0, l / 2] on pole in world;
+    start hinge = 0.3;
+    output height = pole.p[3] + l * cos(hinge);
+}";
+
+#[test]
+fn what_is_built_is_what_the_text_says() {
+    let built = cart().expect("a scene");
+    assert_eq!(built, Scene::parse(CART).expect("a description"));
+    assert_eq!(built.name(), "Cart");
+    let ours = built.generate().expect("correct");
+    let text = hamel_codegen::generate::from_text(CART).expect("correct");
+    assert_eq!(ours.hash, text.hash);
+    assert_eq!(
+        built.rust(&ours).expect("Rust"),
+        Scene::parse(CART)
+            .and_then(|scene| scene.rust(&text))
+            .expect("Rust")
+    );
+}
+
+/// A disk that rolls, in coordinates of one's own: rates, a nonholonomic constraint, a circle.
+#[test]
+fn coordinates_rates_and_constraints_are_built() {
+    let mut sleigh = Scene::builder("Sleigh");
+    let (m, j) = (sleigh.param("m", 1), sleigh.param("J", 0.3));
+    sleigh.coordinate("r", CoordKind::Euclidean(2));
+    let heading = sleigh.coordinate("a", CoordKind::S1);
+    let v = sleigh.velocity("v", ShapeKind::Vector(2));
+    let w = sleigh.velocity("w", ShapeKind::Scalar);
+    sleigh.rate("r", &v);
+    sleigh.rate("a", &w);
+    let across = heading.part("c") * v.entry(2) - heading.part("s") * v.entry(1);
+    sleigh.nonholonomic(across, 0);
+    sleigh.kinetic(&m / 2 * call("dot", [v.clone(), v]) + &j / 2 * w.pow(2));
+    let scene = sleigh.build().expect("a scene");
+    let generated = scene.generate().expect("correct");
+    assert_eq!(generated.model.constraints.len(), 1);
+    assert_eq!(
+        generated.model.constraints[0].written,
+        "a.c * v[2] - a.s * v[1] = 0"
+    );
+}
+
+fn messages(error: &SceneError) -> Vec<String> {
+    let one = |error: &Diagnostic| error.message.clone();
+    error.errors.iter().map(one).collect()
+}
+
+#[test]
+fn errors_show_the_statement_that_they_are_about() {
+    let mut arm = Scene::builder("Arm");
+    let rod = arm.joint(Joint::revolute("hinge", [0, 0, 0]).moves("rod"));
+    arm.body(
+        Body::on(&rod)
+            .mass("m".len() as f64)
+            .com([0.0, f64::NAN, 1.0]),
+    );
+    arm.body(Body::on("upper").inertia_about_com(diagonal([1, 1, 1])));
+    let error = arm
+        .build()
+        .expect("names are words")
+        .generate()
+        .expect_err("wrong");
+    insta::assert_snapshot!(error.to_string());
+
+    let mut arm = Scene::builder("Arm");
+    arm.param("two words", 1);
+    let error = arm.build().expect_err("no name");
+    assert!(
+        error.to_string().contains("param two words = 1;"),
+        "{error}"
+    );
+    let mut arm = Scene::builder("Arm");
+    arm.param("a = 1, b", 1);
+    let error = arm.build().expect_err("no name");
+    assert!(
+        messages(&error)[0].contains("more than one word"),
+        "{error}"
+    );
+    let mut arm = Scene::builder("Arm");
+    assert!(arm.text("param k = 2; param l = 3;").is_ok());
+    assert!(arm.text("parm k = 2;").is_err());
+}
+
+/// Numbers are the decimals that are written, with their signs and to the last digit.
+#[test]
+fn numbers_are_exact() {
+    for (value, text) in [
+        (0.1, "0.1"),
+        (-2.5, "-2.5"),
+        (1e-9, "1e-9"),
+        (12345.678, "12345.678"),
+        (1.25e22, "12500000000000000000000"),
+        (f64::MIN_POSITIVE, "2.2250738585072014e-308"),
+        (-0.0, "0"),
+    ] {
+        assert_eq!(Expr::from(value).to_string(), text);
+    }
+    let turned = pose(call("rotx", [0.5.into()]), [1, 0, 0]) * -sin(2.0 * Expr::name("q"));
+    assert_eq!(
+        turned.to_string(),
+        "pose(rotx(0.5), [1, 0, 0]) * -sin(2 * q)"
+    );
+}
+
+#[test]
+fn scenes_and_errors_can_be_sent_to_other_threads() {
+    fn sent<T: Send + Sync + 'static>() {}
+    sent::<Scene>();
+    sent::<SceneError>();
+    sent::<Diagnostic>();
+}
