@@ -5,7 +5,6 @@ use super::complement::{Complement, complement};
 use super::normal::without_coordinates;
 use super::{commutation, connection, energy, inertia, kinematics};
 use crate::algebra::graph::Edge;
-use crate::algebra::linear::Vec3;
 use crate::algebra::transplant::rebuild;
 use crate::model::Model;
 
@@ -66,42 +65,7 @@ impl Geometry {
     /// The same symbols in a graph whose points do not satisfy φ, so that nothing is simplified
     /// modulo φ: what a proof by normal forms starts from.
     pub fn unreduced(model: &Model) -> Option<Self> {
-        let mut free = model.clone();
-        free.graph = model.points.free.clone();
-        let mut carry = |edges: &[Edge]| rebuild(&model.graph, &mut free.graph, edges);
-        free.x = carry(&model.x);
-        free.xi = carry(&model.xi);
-        free.xi_dot = carry(&model.xi_dot);
-        free.u = carry(&model.u);
-        free.rate = carry(&model.rate);
-        free.a = model.a.iter().map(|row| carry(row)).collect();
-        free.kinetic = carry(&[model.kinetic])[0];
-        free.potential = carry(&[model.potential])[0];
-        for frame in &mut free.frames {
-            frame.rotation = frame.rotation.map(|row| vec3(carry(&row)));
-            frame.position = vec3(carry(&frame.position));
-            let (turn, shift) = frame.relative;
-            frame.relative = (turn.map(|row| vec3(carry(&row))), vec3(carry(&shift)));
-        }
-        for body in &mut free.bodies {
-            body.mass = carry(&[body.mass])[0];
-            body.com = vec3(carry(&body.com));
-            body.inertia_origin = body.inertia_origin.map(|row| vec3(carry(&row)));
-            body.inertia_com = body.inertia_com.map(|row| vec3(carry(&row)));
-        }
-        for particle in &mut free.particles {
-            particle.mass = carry(&[particle.mass])[0];
-            particle.position = vec3(carry(&particle.position));
-        }
-        free.gravity = vec3(carry(&model.gravity));
-        for wrench in &mut free.wrenches {
-            for part in [&mut wrench.at, &mut wrench.force, &mut wrench.torque] {
-                *part = vec3(carry(&*part));
-            }
-        }
-        free.generalized = carry(&model.generalized);
-        free.dissipation = carry(&[model.dissipation])[0];
-        free.elements = model.elements.map(&mut |edge| carry(&[edge])[0]);
+        let mut free = model.carried(model.points.free.clone(), rebuild);
         let mut calculus = Calculus::new(&free);
         let mut merged = model.clone();
         let y = kinematics::left_inverse(&mut merged)?;
@@ -130,8 +94,4 @@ impl Geometry {
             potential,
         })
     }
-}
-
-fn vec3(edges: Vec<Edge>) -> Vec3 {
-    std::array::from_fn(|i| edges[i])
 }

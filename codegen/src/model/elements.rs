@@ -102,52 +102,6 @@ impl Elements {
             scalar_dissipation: zero,
         }
     }
-
-    /// The same with every expression mapped.
-    pub fn map(&self, f: &mut impl FnMut(Edge) -> Edge) -> Self {
-        let spring = |spring: &Spring, f: &mut dyn FnMut(Edge) -> Edge| Spring {
-            stiffness: f(spring.stiffness),
-            length: f(spring.length),
-            along: spring.along.map(f),
-            wrenches: spring
-                .wrenches
-                .iter()
-                .map(|w| w.map(&mut |e| f(e)))
-                .collect(),
-        };
-        let damper = |damper: &Damper, f: &mut dyn FnMut(Edge) -> Edge| Damper {
-            coefficient: f(damper.coefficient),
-            along: damper.along.map(f),
-        };
-        let push = |push: &Push, f: &mut dyn FnMut(Edge) -> Edge| Push {
-            force: f(push.force),
-            along: push.along.map(f),
-        };
-        Elements {
-            springs: self.springs.iter().map(|s| spring(s, f)).collect(),
-            dampers: self.dampers.iter().map(|d| damper(d, f)).collect(),
-            pushes: self.pushes.iter().map(|p| push(p, f)).collect(),
-            potential: f(self.potential),
-            dissipation: f(self.dissipation),
-            generalized: self.generalized.iter().map(|&edge| f(edge)).collect(),
-            wrenches: self.wrenches.iter().map(|w| w.map(&mut *f)).collect(),
-            scalar_potential: f(self.scalar_potential),
-            scalar_dissipation: f(self.scalar_dissipation),
-        }
-    }
-}
-
-impl Along {
-    fn map(&self, f: &mut dyn FnMut(Edge) -> Edge) -> Self {
-        match self {
-            Along::Line { from, to, length } => Along::Line {
-                from: from.map(&mut *f),
-                to: to.map(&mut *f),
-                length: length.map(&mut *f),
-            },
-            Along::Scalar(edge) => Along::Scalar(f(*edge)),
-        }
-    }
 }
 
 impl Reader<'_, '_> {

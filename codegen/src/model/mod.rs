@@ -15,6 +15,7 @@ mod declare;
 mod defaults;
 mod definitions;
 mod dynamics;
+mod edges;
 pub mod elements;
 pub mod expression;
 mod frames;
@@ -156,18 +157,6 @@ pub struct Wrench {
     pub torque: Vec3,
     /// Axes of force and torque.
     pub axes: Axes,
-}
-
-impl Wrench {
-    /// The same with every expression mapped.
-    pub fn map(&self, f: &mut impl FnMut(Edge) -> Edge) -> Self {
-        Wrench {
-            at: self.at.map(&mut *f),
-            force: self.force.map(&mut *f),
-            torque: self.torque.map(&mut *f),
-            ..self.clone()
-        }
-    }
 }
 
 /// What a kinetic energy that the user wrote contributes where ξ does not span the tangent space.

@@ -5,7 +5,6 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::map_symbols;
 use crate::model::completion::Completion;
-use crate::model::invariants::{Invariant, Quantity};
 use crate::model::pfaffian::Pfaffian;
 use crate::model::value::Value;
 use crate::model::{Group, KineticTerms, Model, class};
@@ -57,10 +56,6 @@ impl Carrier {
         }
     }
 
-    fn carry(&mut self, edges: &[Edge]) -> Vec<Edge> {
-        map_symbols(&self.full.graph, &mut self.graph, edges, &self.images)
-    }
-
     fn carry_free(&mut self, edges: &[Edge]) -> Vec<Edge> {
         map_symbols(
             &self.full.points.free,
@@ -70,37 +65,46 @@ impl Carrier {
         )
     }
 
-    fn one(&mut self, edge: Edge) -> Edge {
-        self.carry(&[edge])[0]
-    }
-
-    fn three(&mut self, v: [Edge; 3]) -> [Edge; 3] {
-        v.map(|edge| self.one(edge))
-    }
-
-    fn value(&mut self, value: &Value) -> Value {
-        value.map(|edge| self.one(edge))
-    }
-
-    fn rows(&mut self, rows: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
-        rows.iter().map(|row| self.carry(row)).collect()
-    }
-
     /// The model in ξₐ, with some rows of constraints kept.
     pub fn model(mut self, kept_rows: &[Vec<Edge>], kept: &[usize], pivots: &[Edge]) -> Model {
-        let mut model = self.full.clone();
         let full = self.full.clone();
-        model.x = self.carry(&full.x);
-        let xi: Vec<Edge> = self.active.iter().map(|&i| full.xi[i]).collect();
-        model.xi = self.carry(&xi);
-        let xi_dot: Vec<Edge> = self.active.iter().map(|&i| full.xi_dot[i]).collect();
-        model.xi_dot = self.carry(&xi_dot);
-        model.u = self.carry(&full.u);
-        let momenta: Vec<Edge> = self.active.iter().map(|&i| full.momenta[i]).collect();
-        model.momenta = self.carry(&momenta);
-        model.rate = self.carry(&full.rate);
+        let mut model = full.clone();
+        let active = |all: &[Edge]| self.active.iter().map(|&i| all[i]).collect::<Vec<_>>();
+        model.xi = active(&full.xi);
+        model.xi_dot = active(&full.xi_dot);
+        model.momenta = active(&full.momenta);
+        model.velocity_spans = self
+            .active
+            .iter()
+            .map(|&i| full.velocity_spans[i])
+            .collect();
+        model.start_xi = self.active.iter().map(|&i| full.start_xi[i]).collect();
+        model.velocities = self.groups();
+        // What is derived anew, or of no use in ξₐ.
+        model.a = Vec::new();
+        model.observed = Vec::new();
+        model.armature = vec![full.graph.zero(); model.xi.len()];
+        model.kinetic_terms = self.kinetic.take();
+        model.constraints = kept
+            .iter()
+            .zip(kept_rows)
+            .map(|(&i, row)| Pfaffian {
+                row: row.clone(),
+                ..full.constraints[i].clone()
+            })
+            .collect();
+        model.completion = Completion {
+            y: Vec::new(),
+            constants: [&full.completion.constants, pivots].concat(),
+            ..full.completion.clone()
+        };
+        model.graph = full.graph.clone();
+        let images = &self.images;
+        let mut model = model.carried(self.graph.clone(), |from, into, edges| {
+            map_symbols(from, into, edges, images)
+        });
         // A C = ∂ẋ/∂ξₐ.
-        let graph = &mut self.graph;
+        let graph = &mut model.graph;
         model.a = vec![Vec::new(); model.rate.len()];
         for &xi in &model.xi {
             let mut by = Derivation::new([(xi.node(), graph.one())]);
@@ -108,70 +112,11 @@ impl Carrier {
                 row.push(by.of(graph, rate));
             }
         }
-        for frame in &mut model.frames {
-            frame.rotation = frame.rotation.map(|row| self.three(row));
-            frame.position = self.three(frame.position);
-            let (turn, shift) = frame.relative;
-            frame.relative = (turn.map(|row| self.three(row)), self.three(shift));
+        let xi = map_symbols(&full.graph, &mut model.graph, &full.xi, images);
+        model.generalized = self.generalized(&mut model, &xi);
+        for claim in &mut model.invariants {
+            self.renumber(&mut claim.set, &model.graph);
         }
-        for body in &mut model.bodies {
-            body.mass = self.one(body.mass);
-            body.com = self.three(body.com);
-            body.inertia_com = body.inertia_com.map(|row| self.three(row));
-            body.inertia_origin = body.inertia_origin.map(|row| self.three(row));
-        }
-        for particle in &mut model.particles {
-            particle.mass = self.one(particle.mass);
-            particle.position = self.three(particle.position);
-        }
-        model.wrenches = full
-            .wrenches
-            .iter()
-            .map(|w| w.map(&mut |e| self.one(e)))
-            .collect();
-        model.elements = full.elements.map(&mut |edge| self.one(edge));
-        model.dissipation = self.one(full.dissipation);
-        model.observed.clear();
-        model.kinetic = self.one(full.kinetic);
-        model.armature = vec![self.graph.zero(); model.xi.len()];
-        model.kinetic_terms = self.kinetic.take().map(|terms| KineticTerms {
-            mass: self.rows(&terms.mass),
-            bias: self.carry(&terms.bias),
-        });
-        model.potential = self.one(full.potential);
-        model.gravity = self.three(full.gravity);
-        model.generalized = self.generalized();
-        model.outputs = self.named(&full.outputs);
-        model.invariants = full
-            .invariants
-            .iter()
-            .map(|claim| self.claim(claim))
-            .collect();
-        model.lets = self.named(&full.lets);
-        model.constraints = kept
-            .iter()
-            .zip(kept_rows)
-            .map(|(&i, row)| Pfaffian {
-                row: self.carry(row),
-                residual: self.one(full.constraints[i].residual),
-                stabilized: full.constraints[i].stabilized.map(|edge| self.one(edge)),
-                ..full.constraints[i].clone()
-            })
-            .collect();
-        let completion = &full.completion;
-        model.completion = Completion {
-            y: Vec::new(),
-            independent: completion.independent.clone(),
-            pivots: self.carry(&completion.pivots),
-            constants: self.carry(&[completion.constants.as_slice(), pivots].concat()),
-        };
-        self.groups(&mut model, &full);
-        model.start_xi = self.active.iter().map(|&i| full.start_xi[i]).collect();
-        model.velocity_spans = self
-            .active
-            .iter()
-            .map(|&i| full.velocity_spans[i])
-            .collect();
         let rows: Vec<Edge> = full.phi.iter().map(|(edge, _)| *edge).collect();
         for (row, edge) in model.phi.iter_mut().zip(self.carry_free(&rows)) {
             row.0 = edge;
@@ -179,101 +124,55 @@ impl Carrier {
         model.points.constraints = self.carry_free(&full.points.constraints);
         model.points.symbols = self.free.symbols().len();
         model.points.free = self.free;
-        model.points.require_roots(&self.graph);
+        model.points.require_roots(&model.graph);
         model.spans = false;
-        model.graph = self.graph;
         model
     }
 
-    fn claim(&mut self, claim: &Invariant) -> Invariant {
-        let quantity = match &claim.quantity {
-            Quantity::Energy => Quantity::Energy,
-            Quantity::LinearMomentum { of, along } => Quantity::LinearMomentum {
-                of: *of,
-                along: along.map(|along| self.three(along)),
-            },
-            Quantity::AngularMomentum { of, about, along } => Quantity::AngularMomentum {
-                of: *of,
-                about: self.three(*about),
-                along: along.map(|along| self.three(along)),
-            },
-            Quantity::Value(value) => Quantity::Value(self.value(value)),
-        };
-        let place = |graph: &Graph, edge: Edge| {
-            let symbols = graph.symbols();
-            symbols.iter().position(|symbol| symbol.node == edge.node())
-        };
-        let set = claim
-            .set
-            .iter()
-            .filter_map(|&(symbol, value)| {
-                let value = self.one(value);
-                Some((place(&self.graph, self.images[symbol])?, value))
-            })
-            .collect();
-        Invariant {
-            quantity,
-            set,
-            ..claim.clone()
-        }
+    /// What a claim sets, by the places of symbols in the new graph; symbols that are gone are not set.
+    fn renumber(&self, set: &mut Vec<(usize, Edge)>, graph: &Graph) {
+        set.retain_mut(|(symbol, _)| {
+            let node = self.images[*symbol].node();
+            let place = graph.symbols().iter().position(|known| known.node == node);
+            place.inspect(|place| *symbol = *place).is_some()
+        });
     }
 
     /// Cᵀ f of the generalised forces that the user wrote.
-    fn generalized(&mut self) -> Vec<Edge> {
-        let full = self.full.clone();
-        let forces = self.carry(&full.generalized);
-        let xi = self.carry(&full.xi);
-        let active: Vec<Edge> = self.active.iter().map(|&i| xi[i]).collect();
-        let graph = &mut self.graph;
-        active
-            .iter()
-            .map(|a| {
-                let mut by = Derivation::new([(a.node(), graph.one())]);
-                let column: Vec<Edge> = xi.iter().map(|&xi| by.of(graph, xi)).collect();
-                graph.dot(&column, &forces)
-            })
-            .collect()
+    fn generalized(&self, model: &mut Model, xi: &[Edge]) -> Vec<Edge> {
+        let graph = &mut model.graph;
+        let rows = model.xi.iter().map(|active| {
+            let mut by = Derivation::new([(active.node(), graph.one())]);
+            let column: Vec<Edge> = xi.iter().map(|&xi| by.of(graph, xi)).collect();
+            graph.dot(&column, &model.generalized)
+        });
+        rows.collect()
     }
 
-    fn named(&mut self, list: &[(String, Value)]) -> Vec<(String, Value)> {
-        list.iter()
-            .map(|(name, value)| (name.clone(), self.value(value)))
-            .collect()
-    }
-
-    /// Parameters and inputs in the new graph; of a velocity of which a part is left, that part.
-    fn groups(&mut self, model: &mut Model, full: &Model) {
-        for groups in [&mut model.params, &mut model.inputs] {
-            for group in groups {
-                group.value = self.value(&group.value);
-            }
-        }
-        model.velocities.clear();
-        for group in &full.velocities {
+    /// The velocities that are left; of a velocity of which a part is left, that part.
+    fn groups(&self) -> Vec<Group> {
+        let mut groups = Vec::new();
+        let offset = |i: usize| self.active.iter().position(|&a| a == i).unwrap_or(0);
+        for group in &self.full.velocities {
             let entries = group.offset..group.offset + group.len;
             let left: Vec<usize> = entries.filter(|i| self.active.contains(i)).collect();
-            let active = self.active.clone();
-            let offset = |i: usize| active.iter().position(|&a| a == i).unwrap_or(0);
             if left.len() == group.len {
                 let offset = offset(group.offset);
-                model.velocities.push(Group {
-                    value: self.value(&group.value),
+                groups.push(Group {
                     offset,
                     ..group.clone()
                 });
                 continue;
             }
-            for i in left {
-                let offset = offset(i);
-                model.velocities.push(Group {
-                    name: format!("{}_{}", group.name, i - group.offset + 1),
-                    shape: ShapeKind::Scalar,
-                    value: Value::Scalar(self.one(full.xi[i])),
-                    offset,
-                    len: 1,
-                });
-            }
+            groups.extend(left.into_iter().map(|i| Group {
+                name: format!("{}_{}", group.name, i - group.offset + 1),
+                shape: ShapeKind::Scalar,
+                value: Value::Scalar(self.full.xi[i]),
+                offset: offset(i),
+                len: 1,
+            }));
         }
+        groups
     }
 }
 

@@ -1,0 +1,172 @@
+//! Every expression that a model holds, for what has to visit all of them: to carry a model to another graph.
+//!
+//! Each structure is taken apart without `..`, so that a new field has to be named here before the project compiles.
+
+use super::completion::Completion;
+use super::elements::{Along, Damper, Elements, Push, Spring};
+use super::invariants::{Invariant, Quantity};
+use super::motion::Observed;
+use super::pfaffian::Pfaffian;
+use super::value::Value;
+use super::{Body, Frame, Group, KineticTerms, Model, Particle, Wrench};
+use crate::algebra::graph::{Edge, Graph};
+
+/// What holds expressions of a graph.
+pub trait Edges {
+    /// Visits each of them, always in the same order.
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge));
+}
+
+impl Model {
+    /// The model with its expressions in another graph; `carry` builds them there. φ and the points of X stay
+    /// where they are, in a graph of their own.
+    pub fn carried(
+        &self,
+        mut graph: Graph,
+        carry: impl FnOnce(&Graph, &mut Graph, &[Edge]) -> Vec<Edge>,
+    ) -> Model {
+        let mut model = Model {
+            graph: Graph::new(0, 0),
+            ..self.clone()
+        };
+        let mut edges = Vec::new();
+        model.for_each_edge(&mut |edge| edges.push(*edge));
+        let mut images = carry(&self.graph, &mut graph, &edges).into_iter();
+        model.for_each_edge(&mut |edge| *edge = images.next().unwrap_or(*edge));
+        model.graph = graph;
+        model
+    }
+}
+
+impl Edges for Edge {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        f(self);
+    }
+}
+
+impl<T: Edges> Edges for Vec<T> {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        self.iter_mut().for_each(|one| one.for_each_edge(f));
+    }
+}
+
+impl<T: Edges, const N: usize> Edges for [T; N] {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        self.iter_mut().for_each(|one| one.for_each_edge(f));
+    }
+}
+
+impl<T: Edges> Edges for Option<T> {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        self.iter_mut().for_each(|one| one.for_each_edge(f));
+    }
+}
+
+impl<A: Edges, B: Edges> Edges for (A, B) {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        self.0.for_each_edge(f);
+        self.1.for_each_edge(f);
+    }
+}
+
+impl Edges for Value {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        match self {
+            Value::Scalar(edge) => edge.for_each_edge(f),
+            Value::Vector(entries) => entries.for_each_edge(f),
+            Value::Matrix(rows) => rows.for_each_edge(f),
+            Value::Pose(rotation, position) => {
+                rotation.for_each_edge(f);
+                position.for_each_edge(f);
+            }
+        }
+    }
+}
+
+/// Expressions with names.
+impl Edges for (String, Value) {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        self.1.for_each_edge(f);
+    }
+}
+
+/// Visits the fields that hold expressions, in the order given; those that hold none follow after `;`.
+macro_rules! fields {
+    ($of:ty { $($field:ident),*; $($plain:ident),* }) => {
+        impl Edges for $of {
+            fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+                let Self { $($field,)* $($plain: _,)* } = self;
+                $($field.for_each_edge(f);)*
+            }
+        }
+    };
+}
+
+fields!(Group { value; name, shape, offset, len });
+fields!(Frame { rotation, position, relative; name, parent });
+fields!(Body { mass, com, inertia_com, inertia_origin; frame });
+fields!(Particle { mass, position; });
+fields!(Wrench { at, force, torque; frame, axes });
+fields!(KineticTerms { mass, bias; });
+fields!(Pfaffian { row, residual, stabilized; kind, written, span });
+fields!(Completion { y, pivots, constants; independent });
+fields!(Observed { rotation, position, point, value; quantity });
+fields!(Spring { stiffness, length, along, wrenches; });
+fields!(Damper { coefficient, along; });
+fields!(Push { force, along; });
+fields!(Elements {
+    springs, dampers, pushes, potential, dissipation, generalized, wrenches, scalar_potential,
+    scalar_dissipation;
+});
+fields!(Model {
+    x, xi, xi_dot, u, momenta, rate, a, frames, bodies, particles, wrenches, elements, dissipation, observed,
+    kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
+    completion, params, velocities, inputs;
+    name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained,
+    joints, start_x, start_xi, asked, span, warnings
+});
+
+impl Edges for Along {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        match self {
+            Along::Line { from, to, length } => {
+                from.for_each_edge(f);
+                to.for_each_edge(f);
+                length.for_each_edge(f);
+            }
+            Along::Scalar(edge) => edge.for_each_edge(f),
+        }
+    }
+}
+
+impl Edges for Quantity {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        match self {
+            Quantity::Energy => {}
+            Quantity::LinearMomentum { of: _, along } => along.for_each_edge(f),
+            Quantity::AngularMomentum {
+                of: _,
+                about,
+                along,
+            } => {
+                about.for_each_edge(f);
+                along.for_each_edge(f);
+            }
+            Quantity::Value(value) => value.for_each_edge(f),
+        }
+    }
+}
+
+impl Edges for Invariant {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        let Invariant {
+            quantity,
+            set,
+            name: _,
+            span: _,
+            when: _,
+        } = self;
+        quantity.for_each_edge(f);
+        set.iter_mut().for_each(|(_, value)| value.for_each_edge(f));
+    }
+}
