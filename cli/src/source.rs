@@ -108,7 +108,7 @@ impl Source {
 
     /// What the description says, not derived yet.
     pub fn model(&self) -> Result<Model, Failure> {
-        let model = syntax::parse_text(&self.text).and_then(|system| model::build(&system));
+        let model = syntax::parse_text(&self.text).and_then(|system| lower::build(&system));
         let model = model.map_err(|errors| self.refused(&errors))?;
         self.warn(&model);
         Ok(model)

@@ -117,7 +117,7 @@ fn errors(text: &str, seed: u64) -> Result<Option<[f64; 4]>, String> {
     let Some(robot) = Robot::of(&system) else {
         return Ok(None);
     };
-    let mut model = model::build(&system).map_err(shown)?;
+    let mut model = lower::build(&system).map_err(shown)?;
     model.asked = Asked::only(&FUNCTIONS);
     // Where bodies have no moments, or freedoms no inertia, there is no ξ̇.
     let (generated, singular) = Generated::available(model, 0).map_err(shown)?;

@@ -6,7 +6,8 @@ use crate::derive::reduction::reduce;
 use crate::diagnostics::Diagnostic;
 use crate::emit::NotRust;
 use crate::functions::{Asked, FunctionId};
-use crate::model::{self, Model};
+use crate::lower;
+use crate::model::Model;
 use crate::program::Program;
 use crate::syntax::{self, Places, ast};
 use proc_macro2::TokenStream;
@@ -48,7 +49,7 @@ pub(crate) fn of_system(system: &ast::System, text: &str) -> Result<Generated, V
 }
 
 fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>> {
-    let model = model::build(system)?;
+    let model = lower::build(system)?;
     Generated::of(model, hash)
 }
 

@@ -26,6 +26,7 @@ pub mod emit;
 mod expand;
 pub mod functions;
 pub mod generate;
+pub mod lower;
 pub mod model;
 pub mod program;
 pub mod render;

@@ -4,15 +4,11 @@
 //! start of a description the identity and rest. Where everything is given it only has to hold, but for
 //! rounding.
 
-use super::Model;
-use super::declare::Declared;
-use super::kinematics::Kinematics;
 use super::layout::{Block, blocks};
 use super::pfaffian::{Kind, Pfaffian};
-use super::start::Start;
+use super::{Coordinate, Model};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::{evaluate, least_norm};
-use crate::diagnostics::Diagnostic;
 
 /// Steps of Newton's method.
 const STEPS: usize = 60;
@@ -44,22 +40,20 @@ impl<'a> Closure<'a> {
     /// The equations of a description that is being read.
     pub fn new(
         graph: &'a Graph,
-        declared: &Declared,
-        kinematics: &Kinematics,
+        coordinates: &[Coordinate],
+        a: &[Vec<Edge>],
+        n: usize,
         constraints: &'a [Pfaffian],
-        defaults: &'a [f64],
+        params: &'a [f64],
     ) -> Self {
+        let kinds = coordinates.iter().map(|coordinate| coordinate.kind);
         Closure {
             graph,
-            blocks: declared
-                .coordinates
-                .iter()
-                .flat_map(|coordinate| blocks(coordinate.kind))
-                .collect(),
-            a: kinematics.a.concat(),
-            n: declared.xi.len(),
+            blocks: kinds.flat_map(blocks).collect(),
+            a: a.concat(),
+            n,
             constraints,
-            params: defaults,
+            params,
         }
     }
 
@@ -73,39 +67,6 @@ impl<'a> Closure<'a> {
             constraints: &model.constraints,
             params,
         }
-    }
-
-    /// Solves for what the description does not give.
-    pub fn close(&self, start: &mut Start) -> Result<(), Diagnostic> {
-        if self.params.iter().any(|number| number.is_nan()) {
-            return Ok(());
-        }
-        let given: Vec<bool> = start.given_x.iter().map(Option::is_some).collect();
-        self.close_loops(&mut start.x, &given).map_err(|open| {
-            let error = Diagnostic::new(
-                self.constraints[open.constraint].span,
-                format!(
-                    "no configuration near the start closes this loop: it is open by {:.3e}",
-                    open.residual
-                ),
-            );
-            error.help(
-                "give a `start` closer to a closed loop; coordinates without a `start` are solved for, those with one are kept",
-            )
-        })?;
-        let given: Vec<bool> = start.given_xi.iter().map(Option::is_some).collect();
-        self.settle(&start.x, &mut start.xi, &given).map_err(|open| {
-            let error = Diagnostic::new(
-                self.constraints[open.constraint].span,
-                format!(
-                    "the start velocities violate this constraint by {:.3e}",
-                    open.residual
-                ),
-            );
-            error.help(
-                "leave out the `start` of velocities that follow from the others: they are solved for",
-            )
-        })
     }
 
     /// The loops, by their places among the constraints.

@@ -1,48 +1,22 @@
-//! From the description as written to the mechanical system that it means.
-//!
-//! Names are resolved, shapes checked, and every semantic error is found here: stages after this
-//! one cannot fail on user input.
+//! A mechanical system in terms of a graph: configuration, kinematics, inertia, loads, as expressions with their
+//! points on X. What a description means, once it is read.
 
-mod agreement;
-mod arithmetic;
-mod axes;
-mod bodies;
-mod build;
 pub mod charts;
 pub mod closure;
 pub mod completion;
-mod declare;
-mod defaults;
-mod definitions;
-mod dynamics;
 mod edges;
 pub mod elements;
-pub mod expression;
-mod frames;
-mod functions;
-mod independent;
 pub mod invariants;
 pub mod joints;
-mod kinematics;
 pub mod layout;
-mod line;
-mod loads;
 pub mod motion;
-mod names;
-mod nearest;
+pub mod nearest;
 pub mod pfaffian;
 pub mod points;
-mod rates;
-mod relations;
 pub mod rotations;
-mod samples;
-pub mod scope;
-mod start;
+pub mod samples;
 pub mod states;
-mod tangency;
-mod unused;
 pub mod value;
-mod variety;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
@@ -56,8 +30,6 @@ use motion::Observed;
 use pfaffian::Pfaffian;
 use points::Points;
 use value::Value;
-
-pub use build::build;
 
 /// Classes of symbols, one bit each.
 pub mod class {

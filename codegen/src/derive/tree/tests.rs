@@ -54,7 +54,7 @@ const FLAT: &str = "system Flat {
 
 fn built(text: &str) -> Model {
     let system = crate::syntax::parse_text(text).expect("parses");
-    model::build(&system).expect("is a model")
+    crate::lower::build(&system).expect("is a model")
 }
 
 /// Inverse dynamics, M, forward dynamics and slopes by recursion against the derivation that traces every

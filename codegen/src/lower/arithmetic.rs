@@ -1,0 +1,234 @@
+//! Sums, products, quotients and powers of shaped values.
+
+use super::expression::Evaluator;
+use crate::algebra::graph::{Edge, Function};
+use crate::algebra::linear::{add3, apply3, multiply, multiply3};
+use crate::diagnostics::Diagnostic;
+use crate::model::value::Value;
+use crate::syntax::ast::{BinaryOp, Expr, Span};
+use num_rational::BigRational;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+/// Largest size in bits of an exact number.
+const LARGEST_NUMBER: u64 = 20_000;
+/// Largest power of two that a number may have, for floating point to hold it.
+const LARGEST_POWER: u64 = 1023;
+/// Largest whole exponent.
+const LARGEST_EXPONENT: u64 = 1000;
+/// Largest number of multiplications of one matrix product.
+const LARGEST_PRODUCT: usize = 40 * 40 * 40;
+
+impl Evaluator<'_> {
+    pub(super) fn binary(
+        &mut self,
+        op: BinaryOp,
+        a: Value,
+        b: Value,
+        left: &Expr,
+        right: &Expr,
+        span: Span,
+    ) -> Option<Value> {
+        let result = match op {
+            BinaryOp::Add | BinaryOp::Sub => self.sum(op, &a, &b, span)?,
+            BinaryOp::Mul => self.product(&a, &b, span)?,
+            BinaryOp::Div => {
+                let Value::Scalar(divisor) = b else {
+                    let message = format!("cannot divide by {}", b.shape());
+                    let error = Diagnostic::new(right.span, message);
+                    return self.error(error.help("divide by a scalar"));
+                };
+                if matches!(a, Value::Pose(..)) {
+                    let error = Diagnostic::new(left.span, "cannot divide a pose");
+                    return self.error(error.help("its parts are `.R` and `.p`"));
+                }
+                let graph = &mut *self.graph;
+                let mut whole = divisor != graph.zero();
+                let quotient = a.map(|edge| {
+                    graph.div(edge, divisor).unwrap_or_else(|| {
+                        whole = false;
+                        edge
+                    })
+                });
+                if !whole {
+                    return self.zero_divisor(right.span);
+                }
+                quotient
+            }
+            BinaryOp::Pow => self.power(a, b, left, right)?,
+        };
+        self.bounded(result, span)
+    }
+
+    fn zero_divisor<T>(&mut self, span: Span) -> Option<T> {
+        self.error(
+            Diagnostic::new(span, "division by something that is identically zero")
+                .help("this is 0 for every configuration that satisfies the constraints"),
+        )
+    }
+
+    fn sum(&mut self, op: BinaryOp, a: &Value, b: &Value, span: Span) -> Option<Value> {
+        if matches!((a, b), (Value::Pose(..), Value::Pose(..))) {
+            return self.error(
+                Diagnostic::new(span, "poses cannot be added or subtracted")
+                    .help("poses are composed by `P * Q`; positions are `.p`"),
+            );
+        }
+        if !a.same_shape(b) {
+            let (first, second) = (a.shape(), b.shape());
+            let message = if op == BinaryOp::Add {
+                format!("cannot add {first} and {second}")
+            } else {
+                format!("cannot subtract {second} from {first}")
+            };
+            return self
+                .error(Diagnostic::new(span, message).help("both sides need the same shape"));
+        }
+        let graph = &mut *self.graph;
+        Some(if op == BinaryOp::Add {
+            a.zip(b, |x, y| graph.add(x, y))
+        } else {
+            a.zip(b, |x, y| graph.sub(x, y))
+        })
+    }
+
+    /// The value, unless one of its numbers has grown beyond all use.
+    pub(super) fn bounded(&mut self, value: Value, span: Span) -> Option<Value> {
+        for edge in value.entries() {
+            let Some(number) = self.graph.as_rational(edge) else {
+                continue;
+            };
+            let (n, d) = (number.numer().bits(), number.denom().bits());
+            if n > d + LARGEST_POWER {
+                return self.error(
+                    Diagnostic::new(span, "this number is too large for floating point")
+                        .help("choose other units"),
+                );
+            }
+            if n.max(d) > LARGEST_NUMBER {
+                return self.error(
+                    Diagnostic::new(span, "this number has too many digits")
+                        .help("round the numbers that it is made of"),
+                );
+            }
+        }
+        Some(value)
+    }
+
+    fn product(&mut self, a: &Value, b: &Value, span: Span) -> Option<Value> {
+        let graph = &mut *self.graph;
+        let columns = |m: &[Vec<Edge>]| m.first().map_or(0, Vec::len);
+        Some(match (a, b) {
+            (Value::Scalar(k), Value::Scalar(_) | Value::Vector(_) | Value::Matrix(_)) => {
+                b.map(|edge| graph.mul(*k, edge))
+            }
+            (Value::Vector(_) | Value::Matrix(_), Value::Scalar(k)) => {
+                a.map(|edge| graph.mul(edge, *k))
+            }
+            (Value::Matrix(m), Value::Vector(v)) if columns(m) == v.len() => {
+                Value::Vector(m.iter().map(|row| graph.dot(row, v)).collect())
+            }
+            (Value::Matrix(m), Value::Matrix(n)) if columns(m) == n.len() => {
+                if m.len() * n.len() * columns(n) > LARGEST_PRODUCT {
+                    return self.error(
+                        Diagnostic::new(span, "this product of matrices is too large to unroll")
+                            .help("use smaller matrices, or write out the entries that matter"),
+                    );
+                }
+                Value::Matrix(multiply(graph, m, n))
+            }
+            (Value::Pose(r, p), Value::Pose(r2, p2)) => {
+                let moved = apply3(graph, r, *p2);
+                Value::Pose(multiply3(graph, r, r2), add3(graph, *p, moved))
+            }
+            (Value::Pose(r, p), Value::Vector(_)) if b.as_vec3().is_some() => {
+                let moved = apply3(graph, r, b.as_vec3()?);
+                Value::Vector(add3(graph, *p, moved).to_vec())
+            }
+            _ => {
+                let help = match (a, b) {
+                    (Value::Vector(_), Value::Vector(_)) => {
+                        "write `dot(a, b)`, `cross(a, b)` or `outer(a, b)`"
+                    }
+                    (Value::Vector(_), Value::Matrix(_)) => {
+                        "write the matrix first, transposed: `M.T * v`"
+                    }
+                    (Value::Pose(..), _) | (_, Value::Pose(..)) => {
+                        "a pose is multiplied by a pose or, on its right, by a vector of 3"
+                    }
+                    _ => "the left needs as many columns as the right has rows",
+                };
+                let message = format!("cannot multiply {} by {}", a.shape(), b.shape());
+                return self.error(Diagnostic::new(span, message).help(help));
+            }
+        })
+    }
+
+    fn power(&mut self, a: Value, b: Value, left: &Expr, right: &Expr) -> Option<Value> {
+        let Value::Scalar(base) = a else {
+            let message = format!("cannot raise {} to a power", a.shape());
+            let error = Diagnostic::new(left.span, message);
+            return self.error(error.help("powers are of scalars; write `dot(v, v)` or `M * M`"));
+        };
+        let exponent = match &b {
+            Value::Scalar(edge) => self.graph.as_rational(*edge),
+            _ => None,
+        };
+        let Some(exponent) = exponent else {
+            return self.error(
+                Diagnostic::new(
+                    right.span,
+                    "an exponent has to be a rational number known at build time",
+                )
+                .help("for other powers write `exp(b * log(a))`"),
+            );
+        };
+        let limit = BigRational::from_integer(LARGEST_EXPONENT.into());
+        if exponent.abs() > limit {
+            return self.error(
+                Diagnostic::new(right.span, "this exponent is too large")
+                    .help(format!("exponents reach to {LARGEST_EXPONENT}")),
+            );
+        }
+        if base == self.graph.zero() {
+            if exponent.is_negative() {
+                return self.error(
+                    Diagnostic::new(left.span, "division by something that is identically zero")
+                        .help("a negative power of 0 has no value"),
+                );
+            }
+            let zero = !exponent.is_zero();
+            return Some(Value::Scalar(if zero { base } else { self.graph.one() }));
+        }
+        let whole = |n: &BigRational| n.is_integer().then(|| n.to_integer().to_i64()).flatten();
+        let twice = &exponent + &exponent;
+        let number = self.graph.as_rational(base);
+        if number.as_ref().is_some_and(Signed::is_negative) && !exponent.is_integer() {
+            return self.error(
+                Diagnostic::new(left.span, "a fractional power of a negative number")
+                    .help("check the sign of the base, and put parentheses: `-(a^b)`"),
+            );
+        }
+        let result = if let Some(n) = whole(&exponent) {
+            let bits = number.map_or(0, |n| n.numer().bits().max(n.denom().bits()));
+            if bits.saturating_mul(n.unsigned_abs()) > 2 * LARGEST_NUMBER {
+                let error = Diagnostic::new(left.span, "this power has too many digits");
+                return self.error(error.help("round the numbers that it is made of"));
+            }
+            self.graph.powi(base, n)
+        } else if let Some(n) = whole(&twice) {
+            let root = self.graph.apply(Function::Sqrt, base);
+            self.graph.powi(root, n)
+        } else if number.is_some_and(|n| n.is_one()) {
+            Some(base)
+        } else {
+            let factor = self.graph.rational(&exponent);
+            let log = self.graph.apply(Function::Log, base);
+            let product = self.graph.mul(factor, log);
+            Some(self.graph.apply(Function::Exp, product))
+        };
+        match result {
+            Some(result) => Some(Value::Scalar(result)),
+            None => self.zero_divisor(left.span),
+        }
+    }
+}

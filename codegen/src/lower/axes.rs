@@ -1,0 +1,211 @@
+//! Axes and places of joints: exact unit vectors.
+
+use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::linear::{Mat3, Vec3};
+use crate::diagnostics::Diagnostic;
+use crate::model::class;
+use crate::model::value::Value;
+use crate::syntax::ast::Span;
+use num_rational::BigRational;
+use num_traits::Signed;
+
+/// What a joint calls for its axis; no name of the language has blanks.
+pub const AXIS: &str = "the axis of a joint";
+/// What a joint calls for its place.
+pub const PLACE: &str = "the place of a joint";
+/// What a planar joint calls for the two directions of its plane, as the columns of a 3×2 matrix.
+pub const PLANE: &str = "the plane of a joint";
+
+/// All of them.
+pub const CALLS: [&str; 3] = [AXIS, PLACE, PLANE];
+
+/// Why a joint cannot have an axis or place: a reason, and what to do.
+#[derive(Debug)]
+pub struct Refused(&'static str, &'static str);
+
+impl Refused {
+    /// The error at a place of the description.
+    pub fn at(self, span: Span) -> Diagnostic {
+        Diagnostic::new(span, self.0).help(self.1)
+    }
+}
+
+/// The value of one of the [`CALLS`].
+pub fn call(graph: &mut Graph, name: &str, value: &Value) -> Result<Value, Refused> {
+    match name {
+        AXIS => unit(graph, value).map(|axis| Value::Vector(axis.to_vec())),
+        PLANE => unit(graph, value).map(|normal| plane(graph, normal)),
+        _ => place(graph, value),
+    }
+}
+
+/// A pose that does not depend on the motion.
+fn place(graph: &Graph, value: &Value) -> Result<Value, Refused> {
+    let Value::Pose(..) = value else {
+        return Err(Refused(
+            "the place of a joint has to be a pose",
+            "write `at pose(R, p)`, or `at pose(identity(3), p)` for a place without a turn",
+        ));
+    };
+    if class_of(graph, value) & !class::PARAM != 0 {
+        return Err(Refused(
+            "the place of a joint has to be constant",
+            "it may depend on parameters and constants alone; what moves is a joint or a `frame`",
+        ));
+    }
+    Ok(value.clone())
+}
+
+fn class_of(graph: &Graph, value: &Value) -> u8 {
+    let entries = value.entries();
+    entries.iter().fold(0, |all, e| all | graph.class(e.node()))
+}
+
+/// The unit vector of a constant direction.
+fn unit(graph: &mut Graph, value: &Value) -> Result<Vec3, Refused> {
+    let Some(axis) = value.as_vec3() else {
+        return Err(Refused(
+            "the axis of a joint has to be a vector of 3",
+            "write a direction, such as `[0, 0, 1]`",
+        ));
+    };
+    if class_of(graph, value) != 0 {
+        return Err(Refused(
+            "the axis of a joint has to be made of numbers and constants",
+            "turn the joint by its place, `at pose(R, p)`, where its direction is a parameter",
+        ));
+    }
+    if axis.iter().all(|&entry| entry == graph.zero()) {
+        return Err(Refused(
+            "the axis of a joint has no direction: it is zero",
+            "write a direction, such as `[0, 0, 1]`",
+        ));
+    }
+    let square = graph.dot(&axis, &axis);
+    if square == graph.one() {
+        return Ok(axis);
+    }
+    let rational = graph.as_rational(square);
+    let length = match rational.as_ref().and_then(exact_root) {
+        Some(length) => graph.rational(&length),
+        None => graph.apply(Function::Sqrt, square),
+    };
+    let quotients = axis.map(|entry| graph.div(entry, length));
+    let [Some(a), Some(b), Some(c)] = quotients else {
+        return Err(Refused(
+            "the axis of a joint has no length",
+            "write a direction, such as `[0, 0, 1]`",
+        ));
+    };
+    Ok([a, b, c])
+}
+
+/// √ of a rational number that is a square.
+fn exact_root(number: &BigRational) -> Option<BigRational> {
+    let root = BigRational::new(number.numer().sqrt(), number.denom().sqrt());
+    (&root * &root == *number).then_some(root)
+}
+
+/// Two unit vectors that with the normal are a right-handed frame: the images of the coordinate
+/// axes after the one nearest to the normal, in the shortest turn that takes that one to it.
+fn plane(graph: &mut Graph, normal: Vec3) -> Value {
+    let sizes = normal.map(|entry| graph.as_rational(entry).map(|number| number.abs()));
+    // A symbolic root has no size here; its order follows from its square.
+    let size = |k: usize, graph: &mut Graph| {
+        sizes[k].clone().map(|s| &s * &s).or_else(|| {
+            let square = graph.mul(normal[k], normal[k]);
+            graph.as_rational(square)
+        })
+    };
+    let squares = [size(0, graph), size(1, graph), size(2, graph)];
+    let nearest = (0..3).fold(
+        0,
+        |best, k| if squares[k] > squares[best] { k } else { best },
+    );
+    let negative = match graph.as_rational(normal[nearest]) {
+        Some(number) => number.is_negative(),
+        None => normal[nearest].is_negative(),
+    };
+    let (i, j) = ((nearest + 1) % 3, (nearest + 2) % 3);
+    let turn = shortest(graph, nearest, negative, normal);
+    let (first, second) = if negative { (j, i) } else { (i, j) };
+    Value::Matrix(
+        (0..3)
+            .map(|row| vec![turn[row][first], turn[row][second]])
+            .collect(),
+    )
+}
+
+/// The shortest turn from ±eₖ to n: I + ŵ + ŵ²/(1 + c) with w = ±eₖ × n and c = ±nₖ.
+fn shortest(graph: &mut Graph, k: usize, negative: bool, n: Vec3) -> Mat3 {
+    use crate::algebra::linear::{cross, identity3, multiply3};
+    use crate::model::rotations::hat;
+    let mut from = [graph.zero(); 3];
+    from[k] = graph.one().signed(negative);
+    let w = cross(graph, from, n);
+    let c = n[k].signed(negative);
+    let below = graph.add(graph.one(), c);
+    let skew = hat(graph, w);
+    let square = multiply3(graph, &skew, &skew);
+    let identity = identity3(graph);
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            // 1 + c is at least 1.
+            let bent: Edge = graph.div(square[i][j], below).unwrap_or(graph.zero());
+            let sum = graph.add(identity[i][j], skew[i][j]);
+            graph.add(sum, bent)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::fp::Fp;
+    use crate::algebra::numeric::evaluate;
+
+    fn number(graph: &mut Graph, text: &str) -> Edge {
+        let (n, d) = text.split_once('/').unwrap_or((text, "1"));
+        let parse = |t: &str| t.parse::<i64>().expect("a number");
+        graph.ratio(parse(n), parse(d))
+    }
+
+    /// Every direction becomes a vector whose square is exactly one, and which points the same way.
+    #[test]
+    fn axes_are_units_exactly() {
+        for axis in [
+            ["0", "0", "1"],
+            ["0", "-2", "0"],
+            ["3", "0", "4"],
+            ["1", "1", "0"],
+            ["1", "1", "1"],
+            ["-57735/100000", "57735/100000", "-57735/100000"],
+            ["1/1000000000", "1", "0"],
+        ] {
+            let mut graph = Graph::new(7, class::PARAM);
+            graph.symbol("pi", 0, Fp::from_i64(11));
+            let given = axis.map(|entry| number(&mut graph, entry));
+            let Ok(unit) = unit(&mut graph, &Value::Vector(given.to_vec())) else {
+                panic!("{axis:?} has a direction");
+            };
+            assert_eq!(graph.dot(&unit, &unit), graph.one(), "{axis:?}");
+            let symbols = [std::f64::consts::PI];
+            let (a, n) = (
+                evaluate(&graph, &given, &symbols),
+                evaluate(&graph, &unit, &symbols),
+            );
+            let length = a.iter().map(|a| a * a).sum::<f64>().sqrt();
+            // Roundings of f64.
+            assert!(
+                (0..3).all(|k| (n[k] - a[k] / length).abs() < 2e-16),
+                "{axis:?}: {n:?}"
+            );
+            let Value::Matrix(m) = plane(&mut graph, unit) else {
+                panic!("a matrix");
+            };
+            let column = |k: usize| [m[0][k], m[1][k], m[2][k]];
+            let third = crate::algebra::linear::cross(&mut graph, column(0), column(1));
+            assert_eq!(third, unit, "{axis:?}");
+        }
+    }
+}

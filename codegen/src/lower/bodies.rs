@@ -1,0 +1,176 @@
+//! Bodies, particles and kinetic energies.
+
+use super::reader::Reader;
+use crate::algebra::derivation::Derivation;
+use crate::algebra::fp::Random;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::{Mat3, Vec3, add3, apply3, zero3};
+use crate::diagnostics::Diagnostic;
+use crate::model::value::Value;
+use crate::model::{Body, Particle, class};
+use crate::syntax::ast::{self, About, Expr, Ident, Span};
+use num_bigint::BigInt;
+use num_rational::BigRational;
+
+impl Reader<'_, '_> {
+    pub fn body(&mut self, body: &ast::Body, span: Span) -> Option<Body> {
+        let frame = self.frame(&body.frame);
+        let mass = match &body.mass {
+            Some(expr) => self.constant_scalar(expr, "a mass"),
+            None => self.evaluator.error(
+                Diagnostic::new(span.to(body.frame.span), "this body has no mass")
+                    .help("write `mass m;` between its braces"),
+            ),
+        };
+        let com = match &body.com {
+            Some(expr) => self.constant_vec3(expr, "a centre of mass"),
+            None => Some(zero3(self.evaluator.graph)),
+        };
+        let inertia = match &body.inertia {
+            Some((expr, about)) => self.inertia(expr).map(|m| (m, *about, expr.span)),
+            None => Some(([zero3(self.evaluator.graph); 3], Some(About::Com), span)),
+        };
+        let (frame, mass, com, (inertia, about, place)) = (frame?, mass?, com?, inertia?);
+        let centred = com.iter().all(|&edge| edge == self.evaluator.graph.zero());
+        let about = match about {
+            Some(about) => about,
+            None if centred => About::Com,
+            None => {
+                return self.evaluator.error(
+                    Diagnostic::new(
+                        place,
+                        "about which point is this inertia? the centre of mass is not the frame's origin",
+                    )
+                    .help("write `about com` or `about origin` after it"),
+                );
+            }
+        };
+        let graph = &mut *self.evaluator.graph;
+        let (inertia_com, inertia_origin) = match about {
+            About::Com => (inertia, shifted(graph, &inertia, mass, com, false)),
+            About::Origin => (shifted(graph, &inertia, mass, com, true), inertia),
+        };
+        Some(Body {
+            frame,
+            mass,
+            com,
+            inertia_com,
+            inertia_origin,
+        })
+    }
+
+    fn inertia(&mut self, expr: &Expr) -> Option<Mat3> {
+        let value = self.evaluator.value(expr)?;
+        let Some(matrix) = value.as_mat3() else {
+            let message = format!(
+                "an inertia has to be a 3×3 matrix, this is {}",
+                value.shape()
+            );
+            return self.evaluator.error(
+                Diagnostic::new(expr.span, message)
+                    .help("write `diag(Ix, Iy, Iz)`, or name a parameter of shape sym3"),
+            );
+        };
+        self.constant(&value, expr.span, "an inertia")?;
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            if matrix[i][j] != matrix[j][i] {
+                let (i, j) = (i + 1, j + 1);
+                let message = format!(
+                    "this inertia is not symmetric: entries [{i},{j}] and [{j},{i}] differ"
+                );
+                return self
+                    .evaluator
+                    .error(Diagnostic::new(expr.span, message).help(
+                        "declare it `sym3`, or write the same value on both sides of the diagonal",
+                    ));
+            }
+        }
+        Some(matrix)
+    }
+
+    pub fn particle(&mut self, mass: &Expr, at: &Expr, on: Option<&Ident>) -> Option<Particle> {
+        const WHAT: &str = "the position of a particle";
+        let mass = self.constant_scalar(mass, "a mass");
+        let position = self.evaluator.vec3(at, WHAT).and_then(|position| {
+            let help = "a particle moves by the coordinates in its position";
+            self.configuration(&Value::Vector(position.to_vec()), at.span, WHAT, help)?;
+            Some(position)
+        });
+        let frame = match on {
+            Some(name) => Some(self.frame(name)?),
+            None => None,
+        };
+        let (mass, mut position) = (mass?, position?);
+        if let Some(index) = frame {
+            let frame = &self.frames[index];
+            let moved = apply3(self.evaluator.graph, &frame.rotation, position);
+            position = add3(self.evaluator.graph, frame.position, moved);
+        }
+        Some(Particle { mass, position })
+    }
+
+    /// T = ½ ξᵀ M(x) ξ.
+    pub fn kinetic(&mut self, expr: &Expr) -> Option<Edge> {
+        let energy = self.evaluator.scalar(expr, "a kinetic energy")?;
+        let class = self.evaluator.graph.class(energy.node());
+        if class & !(class::PARAM | class::COORD | class::VELOCITY) != 0 {
+            return self.evaluator.error(
+                Diagnostic::new(expr.span, "a kinetic energy cannot depend on inputs")
+                    .help("it is a function of coordinates, velocities and parameters"),
+            );
+        }
+        if !is_quadratic(self.evaluator.graph.clone(), energy, &self.declared.xi) {
+            return self.evaluator.error(
+                Diagnostic::new(
+                    expr.span,
+                    "this kinetic energy is not quadratic in the velocities",
+                )
+                .help("T = ½ ξᵀ M(x) ξ: every term has exactly two velocities as factors"),
+            );
+        }
+        Some(energy)
+    }
+
+    pub fn potential(&mut self, expr: &Expr) -> Option<Edge> {
+        let edge = self.evaluator.scalar(expr, "a potential")?;
+        let help = "what depends on velocities or inputs is a load: `generalized force`, `force`, `torque` or `wrench`";
+        self.configuration(&Value::Scalar(edge), expr.span, "a potential", help)?;
+        Some(edge)
+    }
+}
+
+/// Θ_origin = Θ_com + m (s·s I − s sᵀ), or back.
+fn shifted(graph: &mut Graph, inertia: &Mat3, mass: Edge, com: Vec3, back: bool) -> Mat3 {
+    let square = graph.dot(&com, &com);
+    let steiner: Mat3 = std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let product = graph.mul(com[i], com[j]);
+            let entry = if i == j {
+                graph.sub(square, product)
+            } else {
+                -product
+            };
+            graph.mul(mass, entry)
+        })
+    });
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| graph.add(inertia[i][j], steiner[i][j].signed(back)))
+    })
+}
+
+/// Whether a function of ξ is homogeneous of degree two, ξ · ∂T/∂ξ = 2 T, and has no third
+/// derivative: none along a random direction. In a graph of its own, to leave no trace.
+pub fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
+    let graph = &mut graph;
+    let twice = Derivation::new(xi.iter().map(|xi| (xi.node(), *xi))).of(graph, energy);
+    let double = graph.add(energy, energy);
+    let mut random = Random::new(0x71);
+    let mut direction = Vec::new();
+    for xi in xi {
+        let component = BigRational::from_integer(BigInt::from(random.bits() >> 3));
+        direction.push((xi.node(), graph.rational(&component)));
+    }
+    let mut along = Derivation::new(direction);
+    let third = (0..3).fold(energy, |function, _| along.of(graph, function));
+    twice == double && third == graph.zero()
+}

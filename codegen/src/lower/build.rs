@@ -1,0 +1,262 @@
+//! The order in which a description is read, with its checkpoints.
+
+use super::declare::{Declared, NextValue, declare};
+use super::motion::Motion;
+use super::names::Names;
+use super::rate::At;
+use super::scope::Scope;
+use super::variety::Variety;
+use super::{defaults, dynamics, invariants, joints, kinematics, pfaffian, start, unused};
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::Graph;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::closure::Closure;
+use crate::model::{Model, class, samples};
+use crate::syntax::ast::{ItemKind, System};
+
+/// Points are chosen anew this often when a square root has no value there.
+const ATTEMPTS: u64 = 8;
+
+/// Seed of the points: fixed, so that builds repeat.
+const SEED: u64 = 0x4a6d_656c;
+
+/// Reads a description; all its independent errors are reported together.
+pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
+    let mut first = Report::new();
+    let warnings = unused::warnings(system);
+    let system = &joints::expand(system, &mut first);
+    let mut variety = Variety::read(system, SEED, &mut first);
+    let mut errors = first.finish().err().unwrap_or_default();
+    let mut branches = false;
+    for seed in SEED..SEED + ATTEMPTS {
+        let mut choice = Report::new();
+        let point = variety.choose(system, seed, &mut choice);
+        errors.extend(choice.finish().err().unwrap_or_default());
+        let mut report = Report::new();
+        errors.iter().cloned().for_each(|error| report.push(error));
+        let result = Reading::new(system, &variety, &point, seed, report).read();
+        match result {
+            Ok(model) if model.graph.is_unfaithful() => {
+                errors.push(
+                    Diagnostic::new(
+                        system.name.span,
+                        "a number is a multiple of a prime that proofs count with",
+                    )
+                    .help("change the last digit of the longest number, or let it be a parameter"),
+                );
+                return Err(errors);
+            }
+            // Another point may be on the branch of the start.
+            Ok(model) if model.graph.is_contradicted() => branches = true,
+            Err((_, Some(graph))) if graph.is_contradicted() => branches = true,
+            Ok(model) if model.graph.is_stuck() => variety.points.require_roots(&model.graph),
+            Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
+            Ok(mut model) => {
+                model.points.require_roots(&model.graph);
+                model.warnings = warnings;
+                return Ok(model);
+            }
+            Err((errors, _)) => return Err(errors),
+        }
+    }
+    if branches {
+        let statement = system.items.iter();
+        let mut statement =
+            statement.filter(|item| matches!(item.kind, ItemKind::Constraint { .. }));
+        let span = statement.next().map_or(system.name.span, |item| item.span);
+        errors.push(
+            Diagnostic::new(
+                span,
+                "the constraints have several branches, and that of the start was not found apart",
+            )
+            .help("write the branch that is meant: one factor of a product, not the product"),
+        );
+        return Err(errors);
+    }
+    errors.push(
+        Diagnostic::new(
+            system.name.span,
+            "no point was found at which all square roots have values",
+        )
+        .help("let a parameter stand for the root of a product, such as 3 * a^2"),
+    );
+    Err(errors)
+}
+
+/// One reading of a description, at points of its variety.
+struct Reading<'a> {
+    system: &'a System,
+    variety: &'a Variety,
+    graph: Graph,
+    scope: Scope,
+    declared: Declared,
+    report: Report,
+}
+
+/// What failed, and the graph where there is one.
+type Failure = (Vec<Diagnostic>, Option<Box<Graph>>);
+
+impl<'a> Reading<'a> {
+    fn new(
+        system: &'a System,
+        variety: &'a Variety,
+        point: &[Fp],
+        seed: u64,
+        mut report: Report,
+    ) -> Self {
+        let mut graph = Graph::new(seed, class::PARAM);
+        let mut scope = Scope::new(system, false);
+        let mut count = 0;
+        let mut next = |_: &mut Graph| {
+            count += 1;
+            point[count - 1]
+        };
+        let next = &mut next as &mut NextValue;
+        graph.set_roots(variety.points.roots);
+        let declared = declare(system, &mut graph, next, &mut scope, &mut report);
+        let near = variety.near.as_deref();
+        graph.set_reals(samples::sample(&variety.points, &variety.phi, seed, near));
+        graph.watch(near.is_some() && variety.complete);
+        Reading {
+            system,
+            variety,
+            graph,
+            scope,
+            declared,
+            report,
+        }
+    }
+
+    fn read(mut self) -> Result<Model, Failure> {
+        self.check_present();
+        let (system, variety) = (self.system, self.variety);
+        let (graph, report) = (&mut self.graph, &mut self.report);
+        let defaults = defaults::read(system, graph, &self.scope, &self.declared, report);
+        let mut names = Names::read(system, graph, &mut self.scope, report);
+        let (scope, declared) = (&self.scope, &self.declared);
+        variety.check(system, graph, scope, report);
+        // The start is needed to choose pivots; what is wrong with it is said last.
+        let mut last = Report::new();
+        let mut starts = start::read(system, graph, scope, declared, &defaults, &mut last);
+        if let Some(start) = &starts {
+            start::check::check(system, variety, declared, &defaults, &start.x, &mut last);
+        }
+        let known = last.is_empty() && !defaults.iter().any(|number| number.is_nan());
+        let at = starts.as_ref().filter(|_| known).map(|start| At {
+            defaults: &defaults,
+            x: &start.x,
+        });
+        let kinematics = kinematics::read(system, graph, scope, variety, declared, at, report);
+        if let Some(kinematics) = &kinematics {
+            let motion = Motion::new(
+                &declared.x,
+                &kinematics.rate,
+                &declared.xi,
+                &declared.xi_dot,
+            );
+            self.scope.motion = Some(motion);
+        }
+        self.scope.unmoved = kinematics.is_none();
+        names.go_on(graph, &mut self.scope, report);
+        let scope = &self.scope;
+        let numbers = declared.numbers(&defaults, starts.as_ref());
+        let frames = names.frames;
+        let mut dynamics =
+            dynamics::read(system, graph, scope, &frames, declared, &numbers, report);
+        let joints = joints::read(system, graph, scope, report);
+        let armature = joints::armature(system, graph, scope, declared, &mut dynamics, report);
+        let invariants = invariants::read(system, graph, scope, &frames, declared, report);
+        let constraints =
+            pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
+        if let (Some(start), Some(kinematics), true) = (
+            &mut starts,
+            &kinematics,
+            report.is_empty() && last.is_empty(),
+        ) {
+            let (all, n) = (&declared.coordinates, declared.xi.len());
+            let closure = Closure::new(graph, all, &kinematics.a, n, &constraints, &defaults);
+            report.keep(start.close(&closure, &constraints, &defaults));
+        }
+        last.finish()
+            .err()
+            .unwrap_or_default()
+            .into_iter()
+            .for_each(|error| report.push(error));
+        if let Err(errors) = self.report.finish() {
+            return Err((errors, Some(Box::new(self.graph))));
+        }
+        let (Some(kinematics), Some(start)) = (kinematics, starts) else {
+            let error = Diagnostic::new(system.name.span, "the description could not be read");
+            return Err((vec![error], None));
+        };
+        let declared = self.declared;
+        let motion = self.scope.motion;
+        Ok(Model {
+            name: system.name.name.clone(),
+            public: system.public,
+            docs: system.docs.clone(),
+            graph: self.graph,
+            points: variety.points.clone(),
+            params: declared.params,
+            defaults,
+            coordinates: declared.coordinates,
+            blocks: variety.points.blocks.clone(),
+            x: declared.x,
+            phi: variety.phi.clone(),
+            velocities: declared.velocities,
+            xi: declared.xi,
+            velocity_spans: declared.velocity_spans,
+            xi_dot: declared.xi_dot,
+            momenta: declared.momenta,
+            inputs: declared.inputs,
+            u: declared.u,
+            rate: kinematics.rate,
+            a: kinematics.a,
+            constraints,
+            spans: true,
+            overconstrained: false,
+            kinetic_terms: None,
+            completion: kinematics.completion,
+            frames,
+            joints,
+            bodies: dynamics.bodies,
+            particles: dynamics.particles,
+            kinetic: dynamics.kinetic,
+            armature,
+            potential: dynamics.potential,
+            gravity: dynamics.gravity,
+            wrenches: dynamics.wrenches,
+            generalized: dynamics.generalized,
+            dissipation: dynamics.dissipation,
+            elements: dynamics.elements,
+            observed: motion.map_or(Vec::new(), |motion| motion.seen.into_inner()),
+            outputs: dynamics.outputs,
+            invariants,
+            lets: names.lets,
+            start_x: start.x,
+            start_xi: start.xi,
+            asked: dynamics.asked,
+            span: system.name.span,
+            warnings: Vec::new(),
+        })
+    }
+
+    fn check_present(&mut self) {
+        let (span, declared) = (self.system.name.span, &self.declared);
+        if declared.faulty {
+            return;
+        }
+        if declared.coordinates.is_empty() {
+            self.report.push(
+                Diagnostic::new(span, "the system has no coordinates")
+                    .help("write `coord q;` or `coord R: SO3;`"),
+            );
+        }
+        if declared.velocities.is_empty() {
+            self.report.push(
+                Diagnostic::new(span, "the system has no velocities")
+                    .help("write `velocity u;` or `velocity w: vec3;`"),
+            );
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Default values of the parameters.
+
+use super::declare::{Declared, shape_fits};
+use super::expression::Evaluator;
+use super::scope::Scope;
+use crate::algebra::graph::Graph;
+use crate::algebra::numeric::evaluate;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::value::Value;
+use crate::syntax::ast::{Declaration, ItemKind, ShapeKind, System};
+
+/// The numbers of all parameters' symbols; not a number where there is an error.
+pub fn read(
+    system: &System,
+    graph: &mut Graph,
+    scope: &Scope,
+    declared: &Declared,
+    report: &mut Report,
+) -> Vec<f64> {
+    let lists = system.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Param(list) => Some(list),
+        _ => None,
+    });
+    let declarations: Vec<&Declaration> = lists.flatten().collect();
+    let mut numbers = Vec::new();
+    for group in &declared.params {
+        let before = numbers.len();
+        // The first of a name is the one that was declared.
+        if let Some(declaration) = declarations.iter().find(|d| d.name.name == group.name) {
+            numbers.extend(default_of(declaration, graph, scope, report).unwrap_or_default());
+        }
+        numbers.resize(before + group.len, f64::NAN);
+    }
+    numbers
+}
+
+fn default_of(
+    declaration: &Declaration,
+    graph: &mut Graph,
+    scope: &Scope,
+    report: &mut Report,
+) -> Option<Vec<f64>> {
+    let name = &declaration.name.name;
+    let Some(expr) = &declaration.value else {
+        report.push(
+            Diagnostic::new(declaration.name.span, format!("parameter `{name}` has no default"))
+                .help("every parameter has a default, with which the description is checked: `param m = 1.3;`"),
+        );
+        return None;
+    };
+    let value = Evaluator {
+        graph,
+        scope,
+        report,
+    }
+    .value(expr)?;
+    if value
+        .entries()
+        .iter()
+        .any(|edge| graph.class(edge.node()) != 0)
+    {
+        report.push(
+            Diagnostic::new(expr.span, format!("the default of `{name}` is no number")).help(
+                "defaults are made of numbers and constants; name an expression of parameters with `let`",
+            ),
+        );
+        return None;
+    }
+    if declaration.shape.kind == ShapeKind::Scalar && !matches!(value, Value::Scalar(_)) {
+        let message = format!(
+            "`{name}` was declared as a scalar, its value is {}",
+            value.shape()
+        );
+        let help = match &value {
+            Value::Vector(v) => format!("write `{name}: vec{}`", v.len()),
+            Value::Matrix(m) if m.len() == m.first().map_or(0, Vec::len) => {
+                format!("write `{name}: mat{0}` or `{name}: sym{0}`", m.len())
+            }
+            _ => "parameters are scalars, vectors and square matrices".into(),
+        };
+        report.push(Diagnostic::new(expr.span, message).help(help));
+        return None;
+    }
+    if !shape_fits(declaration, &value, report) {
+        return None;
+    }
+    let entries = match (&value, declaration.shape.kind) {
+        (Value::Matrix(m), ShapeKind::Symmetric(n)) => {
+            (0..n).flat_map(|i| m[i][i..].iter().copied()).collect()
+        }
+        _ => value.entries(),
+    };
+    let numbers = evaluate(graph, &entries, &symbol_numbers(graph));
+    if numbers.iter().any(|number| !number.is_finite()) {
+        report.push(
+            Diagnostic::new(expr.span, format!("the default of `{name}` is not finite"))
+                .help("write a number that floating point can hold"),
+        );
+        return None;
+    }
+    Some(numbers)
+}
+
+/// Numbers for symbols where only π can occur.
+fn symbol_numbers(graph: &Graph) -> Vec<f64> {
+    let mut numbers = vec![f64::NAN; graph.symbols().len()];
+    if let Some(first) = numbers.first_mut() {
+        *first = std::f64::consts::PI;
+    }
+    numbers
+}

@@ -1,0 +1,177 @@
+//! Velocities defined by rates: rows of Y with ξ = Y(x) ẋ, KR18 (5).
+
+use super::declare::{Declared, shape_fits};
+use super::expression::Evaluator;
+use super::scope::{Rates, Scope};
+use crate::algebra::derivation::Derivation;
+use crate::algebra::fp::Random;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::transplant::rebuild;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::class;
+use crate::model::value::Value;
+use crate::syntax::ast::{Declaration, Expr, ItemKind, ShapeKind, Span, System};
+
+/// Seed of the values that stand for ẋ.
+const SEED: u64 = 0x7261_7465;
+
+/// A row of Y, and the expression that gives it.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// ν entries.
+    pub entries: Vec<Edge>,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// The definitions of a description.
+pub struct Definitions {
+    /// For every ξⁱ its row of Y, where it has one.
+    pub rows: Vec<Option<Row>>,
+    /// Whether a velocity is defined by rates, be it in error.
+    pub any: bool,
+    /// Whether all definitions could be read.
+    pub complete: bool,
+}
+
+/// Reads all definitions, in a copy of the graph that has symbols for ẋ.
+pub fn read(
+    system: &System,
+    graph: &mut Graph,
+    scope: &Scope,
+    declared: &Declared,
+    report: &mut Report,
+) -> Definitions {
+    let list: Vec<&Declaration> = system
+        .items
+        .iter()
+        .filter_map(|item| match &item.kind {
+            ItemKind::Velocity(list) => Some(list.iter().filter(|d| d.value.is_some())),
+            _ => None,
+        })
+        .flatten()
+        .collect();
+    let mut definitions = Definitions {
+        rows: vec![None; declared.xi.len()],
+        any: !list.is_empty(),
+        complete: true,
+    };
+    if list.is_empty() {
+        return definitions;
+    }
+    let mut with_rates = graph.clone();
+    let (scope, x_dot) = rates(&mut with_rates, scope, &declared.x);
+    for declaration in list {
+        let evaluator = Evaluator {
+            graph: &mut with_rates,
+            scope: &scope,
+            report,
+        };
+        let read = define(declaration, evaluator, &x_dot);
+        let group = declared
+            .velocities
+            .iter()
+            .find(|group| group.name == declaration.name.name);
+        let (Some(rows), Some(group), Some(value)) = (read, group, &declaration.value) else {
+            definitions.complete = false;
+            continue;
+        };
+        for (row, place) in rows.iter().zip(group.offset..group.offset + group.len) {
+            definitions.rows[place] = Some(Row {
+                entries: rebuild(&with_rates, graph, row),
+                span: value.span,
+            });
+        }
+    }
+    definitions
+}
+
+/// Symbols for ẋ, and a scope in which `rate(…)` means them.
+fn rates(graph: &mut Graph, scope: &Scope, x: &[Edge]) -> (Scope, Vec<Edge>) {
+    let mut random = Random::new(SEED);
+    let mut rates = Rates::default();
+    let mut x_dot = Vec::new();
+    for &x in x {
+        let value = random.element();
+        let rate = graph.symbol("rate", class::RATE, value);
+        rates.of.insert(x.node(), rate);
+        x_dot.push(rate);
+    }
+    let mut scope = scope.clone();
+    scope.rates = Some(rates);
+    (scope, x_dot)
+}
+
+/// The rows of Y of one definition.
+fn define(
+    declaration: &Declaration,
+    mut evaluator: Evaluator,
+    x_dot: &[Edge],
+) -> Option<Vec<Vec<Edge>>> {
+    let expr = declaration.value.as_ref()?;
+    let value = evaluator.value(expr)?;
+    let name = &declaration.name.name;
+    let entries = match (declaration.shape.kind, &value) {
+        (ShapeKind::Scalar, Value::Scalar(edge)) => vec![*edge],
+        (ShapeKind::Scalar, _) => {
+            let message = format!(
+                "velocity `{name}` is a scalar, its definition is {}",
+                value.shape()
+            );
+            let help = match &value {
+                Value::Vector(v) => {
+                    format!("declare its shape: `velocity {name}: vec{} = …;`", v.len())
+                }
+                _ => "take an entry of it, or its `vee(…)` where it is a skew matrix".into(),
+            };
+            return evaluator.error(Diagnostic::new(expr.span, message).help(help));
+        }
+        (ShapeKind::Symmetric(_), _) => {
+            let message =
+                format!("a symmetric velocity such as `{name}` has no definition by rates");
+            let help = "declare it `vecN` and define its entries one by one";
+            return evaluator.error(Diagnostic::new(expr.span, message).help(help));
+        }
+        _ if shape_fits(declaration, &value, evaluator.report) => value.entries(),
+        _ => return None,
+    };
+    let graph = &mut *evaluator.graph;
+    let mut columns: Vec<Derivation> = x_dot
+        .iter()
+        .map(|rate| Derivation::new([(rate.node(), graph.one())]))
+        .collect();
+    let mut rows = Vec::new();
+    for &entry in &entries {
+        let row: Vec<Edge> = columns.iter_mut().map(|c| c.of(graph, entry)).collect();
+        let whole = graph.dot(&row, x_dot);
+        let rest = graph.sub(entry, whole);
+        let found = row
+            .iter()
+            .chain([&rest])
+            .fold(0, |found, edge| found | graph.class(edge.node()));
+        if rest.abs() != graph.zero() || found & !(class::PARAM | class::COORD) != 0 {
+            return evaluator.error(not_linear(name, expr, found));
+        }
+        rows.push(row);
+    }
+    Some(rows)
+}
+
+/// Why a definition is no row of Y.
+fn not_linear(name: &str, expr: &Expr, found: u8) -> Diagnostic {
+    const HELP: &str = "a definition is a row of Y(x) ẋ: every term has exactly one `rate(…)` as a factor, times coordinates and parameters";
+    let message = if found & class::INPUT != 0 {
+        format!("the definition of velocity `{name}` depends on an input")
+    } else if found & (class::VELOCITY | class::ACCEL) != 0 {
+        format!("the definition of velocity `{name}` depends on a velocity")
+    } else if found & class::RATE == 0 {
+        format!("the definition of velocity `{name}` has a term without a rate")
+    } else {
+        format!("the definition of velocity `{name}` is not linear in the rates")
+    };
+    let help = match found & !(class::PARAM | class::COORD) {
+        0 => format!("{HELP}; an initial value is written `start {name} = …;`"),
+        _ => HELP.into(),
+    };
+    Diagnostic::new(expr.span, message).help(help)
+}

@@ -1,0 +1,216 @@
+//! Inertia, energies, loads, outputs: everything but the kinematics.
+
+use super::declare::Declared;
+use super::expression::Evaluator;
+use super::reader::{ALL, Dynamics, Reader, is_taken};
+use super::scope::Scope;
+use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::Graph;
+use crate::algebra::linear::zero3;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::functions::{Asked, FunctionId};
+use crate::model::Frame;
+use crate::model::elements::Elements;
+use crate::syntax::ast::{Ident, ItemKind, Span, System};
+use crate::syntax::suggest::closest;
+
+/// Reads the statements about inertia and loads.
+pub fn read(
+    system: &System,
+    graph: &mut Graph,
+    scope: &Scope,
+    frames: &[Frame],
+    declared: &Declared,
+    start: &[f64],
+    report: &mut Report,
+) -> Dynamics {
+    let zero = graph.zero();
+    let mut dynamics = Dynamics {
+        bodies: Vec::new(),
+        particles: Vec::new(),
+        kinetic: zero,
+        potential: zero,
+        gravity: zero3(graph),
+        wrenches: Vec::new(),
+        generalized: vec![zero; declared.xi.len()],
+        dissipation: zero,
+        elements: Elements::none(graph, declared.xi.len()),
+        outputs: Vec::new(),
+        asked: Asked::everything(),
+    };
+    let mut gravity: Option<Span> = None;
+    let mut has_inertia = false;
+    for item in &system.items {
+        let evaluator = Evaluator {
+            graph,
+            scope,
+            report,
+        };
+        let mut reader = Reader {
+            evaluator,
+            frames,
+            declared,
+        };
+        match &item.kind {
+            ItemKind::Body(body) => {
+                has_inertia = true;
+                dynamics.bodies.extend(reader.body(body, item.span));
+            }
+            ItemKind::Particle { mass, at, on } => {
+                has_inertia = true;
+                dynamics
+                    .particles
+                    .extend(reader.particle(mass, at, on.as_ref()));
+            }
+            ItemKind::Kinetic(expr) => {
+                has_inertia = true;
+                if let Some(term) = reader.kinetic(expr) {
+                    dynamics.kinetic = graph.add(dynamics.kinetic, term);
+                }
+            }
+            ItemKind::Potential(expr) => {
+                if let Some(term) = reader.potential(expr) {
+                    dynamics.potential = graph.add(dynamics.potential, term);
+                    let elements = &mut dynamics.elements;
+                    elements.potential = graph.add(elements.potential, term);
+                    elements.scalar_potential = graph.add(elements.scalar_potential, term);
+                }
+            }
+            ItemKind::Gravity(expr) => {
+                if let Some(value) = reader.constant_vec3(expr, "gravity") {
+                    dynamics.gravity = value;
+                }
+                if let Some(first) = gravity {
+                    report.push(
+                        Diagnostic::new(item.span, "gravity is given twice")
+                            .help("remove one of the two, or write their sum")
+                            .note(first, "first given here"),
+                    );
+                }
+                gravity = gravity.or(Some(item.span));
+            }
+            ItemKind::Load {
+                load,
+                frame,
+                from,
+                axes,
+            } => {
+                if let Some(wrenches) = reader.load(load, frame, from.as_ref(), axes) {
+                    dynamics.elements.wrenches.extend(wrenches.iter().cloned());
+                    dynamics.wrenches.extend(wrenches);
+                }
+            }
+            ItemKind::Spring { .. }
+            | ItemKind::Damper { .. }
+            | ItemKind::Push { .. }
+            | ItemKind::Dissipation(_) => {
+                reader.element(&item.kind, item.span, start, &mut dynamics);
+            }
+            ItemKind::Generalized { target, value } => {
+                if let Some((offset, entries)) = reader.generalized(target, value) {
+                    for (place, edge) in entries.into_iter().enumerate() {
+                        let sum = &mut dynamics.generalized[offset + place];
+                        *sum = graph.add(*sum, edge);
+                        let given = &mut dynamics.elements.generalized[offset + place];
+                        *given = graph.add(*given, edge);
+                    }
+                }
+            }
+            ItemKind::Output { value, .. } => {
+                let value = reader.evaluator.value(value);
+                dynamics.outputs.extend(name_of(item).zip(value));
+            }
+            _ => {}
+        }
+    }
+    // Rayleigh: fᵢ = −∂D/∂ξⁱ.
+    for (sum, xi) in dynamics.generalized.iter_mut().zip(&declared.xi) {
+        let mut along = Derivation::new([(xi.node(), graph.one())]);
+        let resistance = along.of(graph, dynamics.elements.scalar_dissipation);
+        *sum = graph.sub(*sum, resistance);
+    }
+    if !has_inertia {
+        report.push(
+            Diagnostic::new(system.name.span, "the system has no inertia")
+                .help("write `body on f { mass m; … }`, `particle mass m at p;` or `kinetic …;`"),
+        );
+    }
+    let mut outputs = output_names(system, report);
+    outputs.extend(super::invariants::names(system));
+    dynamics.asked = asked(system, &outputs, report);
+    dynamics
+}
+
+fn name_of(item: &crate::syntax::ast::Item) -> Option<String> {
+    match &item.kind {
+        ItemKind::Output { name, .. } => Some(name.name.clone()),
+        _ => None,
+    }
+}
+
+/// The names of the outputs; those that are taken are reported.
+fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
+    let mut outputs: Vec<&Ident> = Vec::new();
+    for item in &system.items {
+        let ItemKind::Output { name, .. } = &item.kind else {
+            continue;
+        };
+        let first = outputs.iter().find(|known| known.name == name.name);
+        if first.is_none() && !is_taken(&name.name) {
+            outputs.push(name);
+            continue;
+        }
+        let error = Diagnostic::new(
+            name.span,
+            format!("there is already a function `{}`", name.name),
+        )
+        .help("choose another name for this output");
+        report.push(match first {
+            Some(first) => error.note(first.span, "first given here"),
+            None => error,
+        });
+    }
+    outputs
+}
+
+/// What the statements `generate` ask for, everything where there are none; unknown names are reported.
+fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
+    let statements = system.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Generate(names) => Some(names),
+        _ => None,
+    });
+    let names: Vec<&Ident> = statements.flatten().collect();
+    if names.is_empty() {
+        return Asked::everything();
+    }
+    let mut asked = Asked::only(&[]);
+    let functions = FunctionId::ALL.iter().filter(|id| id.row().named);
+    let functions: Vec<&str> = functions.map(|id| id.name()).collect();
+    for name in names {
+        let text = name.name.as_str();
+        let function = FunctionId::named(text).filter(|id| id.row().named);
+        if text == ALL {
+            asked.everything = true;
+        } else if let Some(function) = function {
+            asked.functions.push(function);
+        } else if outputs.iter().any(|output| output.name == text) {
+            asked.outputs.push(text.to_string());
+        } else {
+            let outputs = outputs.iter().map(|output| output.name.as_str());
+            let known = [ALL]
+                .into_iter()
+                .chain(functions.iter().copied())
+                .chain(outputs);
+            let message = format!("no function to generate is called `{text}`");
+            let error = Diagnostic::new(name.span, message);
+            report.push(match closest(text, known) {
+                Some(near) => error.help(format!("did you mean `{near}`?")),
+                None => error.help(format!(
+                    "the functions are {}, and the outputs and invariants by their names; `all` stands for what a description without `generate` gets",
+                    functions.join(", ")
+                )),
+            });
+        }
+    }
+    asked
+}

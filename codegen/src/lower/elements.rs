@@ -1,0 +1,295 @@
+//! Springs, dampers, forces along a line, and dissipation.
+//!
+//! Between two points with difference d and distance ℓ = |d|: a spring has V = ½ k (ℓ − l)², which
+//! is ½ k d·d for l = 0; a damper has D = ½ c ℓ̇²; a force F drives the points apart. All of these act
+//! as wrenches on the frames of the two points. On a scalar e: V = ½ k (e − l)², D = ½ c e². What is
+//! left of D acts by Rayleigh's fᵢ = −∂D/∂ξⁱ (W; N, N m).
+
+use super::bodies::is_quadratic;
+use super::line::{Line, is_root};
+use super::reader::{Dynamics, Reader};
+use crate::algebra::graph::Edge;
+use crate::algebra::linear::{scale3, sub3};
+use crate::diagnostics::Diagnostic;
+use crate::model::class;
+use crate::model::elements::{Along, Damper, Push, Spring};
+use crate::model::value::Value;
+use crate::syntax::ast::{Acting, Expr, ItemKind, Span};
+
+impl Reader<'_, '_> {
+    /// Reads a statement of this kind into energies and forces; `start` are the numbers of all
+    /// symbols at the start.
+    pub fn element(
+        &mut self,
+        kind: &ItemKind,
+        span: Span,
+        start: &[f64],
+        dynamics: &mut Dynamics,
+    ) -> Option<()> {
+        match kind {
+            ItemKind::Spring {
+                stiffness,
+                length,
+                acting,
+            } => {
+                let spring = self.spring(stiffness, length.as_ref(), acting, span, start)?;
+                let energy = self.stored(&spring);
+                let graph = &mut *self.evaluator.graph;
+                dynamics.potential = graph.add(dynamics.potential, energy);
+                if let Along::Scalar(_) = spring.along {
+                    let sum = &mut dynamics.elements.scalar_potential;
+                    *sum = graph.add(*sum, energy);
+                }
+                dynamics.elements.springs.push(spring);
+            }
+            ItemKind::Damper {
+                coefficient,
+                acting,
+            } => {
+                let factor = self.constant_scalar(coefficient, "the coefficient of a damper");
+                let along = match acting {
+                    Acting::On(expr) => Along::Scalar(self.damper_rate(expr, factor, dynamics)?),
+                    Acting::Between(from, to) => {
+                        let line = self.line("damper", span, from, to);
+                        let line = line?;
+                        self.damp(&line, factor?, start, dynamics)?;
+                        line.along(None)
+                    }
+                };
+                let coefficient = factor?;
+                dynamics
+                    .elements
+                    .dampers
+                    .push(Damper { coefficient, along });
+            }
+            ItemKind::Push { force, from, to } => {
+                let value = self.evaluator.scalar(force, "a force along a line");
+                let line = self.line("force", span, from, to);
+                let (value, line) = (value?, line?);
+                self.no_acceleration(&Value::Scalar(value), force.span, "a force")?;
+                let length = self.length(&line, start)?;
+                let wrenches = self.along_line(&line, length, value)?;
+                dynamics.wrenches.extend(wrenches);
+                dynamics.elements.pushes.push(Push {
+                    force: value,
+                    along: line.along(Some(length)),
+                });
+            }
+            ItemKind::Dissipation(expr) => {
+                let term = self.dissipation(expr)?;
+                self.resist(term, dynamics);
+                let given = &mut dynamics.elements.dissipation;
+                *given = self.evaluator.graph.add(*given, term);
+            }
+            _ => {}
+        }
+        Some(())
+    }
+
+    fn spring(
+        &mut self,
+        stiffness: &Expr,
+        length: Option<&Expr>,
+        acting: &Acting,
+        span: Span,
+        start: &[f64],
+    ) -> Option<Spring> {
+        let stiffness = self.constant_scalar(stiffness, "a stiffness");
+        let rest = match length {
+            Some(expr) => self.constant_scalar(expr, "the length of a spring without force"),
+            None => Some(self.evaluator.graph.zero()),
+        };
+        let (from, to) = match acting {
+            Acting::On(expr) => {
+                let scalar = self.spring_scalar(expr);
+                return Some(Spring {
+                    stiffness: stiffness?,
+                    length: rest?,
+                    along: Along::Scalar(scalar?),
+                    wrenches: Vec::new(),
+                });
+            }
+            Acting::Between(from, to) => (from, to),
+        };
+        let line = self.line("spring", span, from, to);
+        let (stiffness, rest, line) = (stiffness?, rest?, line?);
+        if rest == self.evaluator.graph.zero() {
+            let force = scale3(self.evaluator.graph, -stiffness, line.difference);
+            return Some(Spring {
+                stiffness,
+                length: rest,
+                along: line.along(None),
+                wrenches: self.pair(&line, force),
+            });
+        }
+        let length = self.length(&line, start)?;
+        let graph = &mut *self.evaluator.graph;
+        let wrenches = if is_root(graph, length) {
+            // −k (1 − l/ℓ) d
+            let slack = graph.div(rest, length)?;
+            let stretch = graph.sub(graph.one(), slack);
+            let factor = graph.mul(stiffness, stretch);
+            let force = scale3(graph, -factor, line.difference);
+            self.pair(&line, force)
+        } else {
+            let stretch = graph.sub(length, rest);
+            let tension = graph.mul(stiffness, stretch);
+            self.along_line(&line, length, -tension)?
+        };
+        Some(Spring {
+            stiffness,
+            length: rest,
+            along: line.along(Some(length)),
+            wrenches,
+        })
+    }
+
+    fn spring_scalar(&mut self, expr: &Expr) -> Option<Edge> {
+        const WHAT: &str = "what a spring acts on";
+        let scalar = self.evaluator.scalar(expr, WHAT)?;
+        let help = "it is a length or an angle; on a rate acts a `damper`";
+        self.configuration(&Value::Scalar(scalar), expr.span, WHAT, help)?;
+        if self.rate(scalar)? == self.evaluator.graph.zero() {
+            let message = "this spring does nothing: what it acts on never changes";
+            return self.evaluator.error(
+                Diagnostic::new(expr.span, message)
+                    .help("let it act on coordinates, as in `spring stiffness k on q2 - q1;`"),
+            );
+        }
+        Some(scalar)
+    }
+
+    /// V = ½ k (ℓ − l)².
+    fn stored(&mut self, spring: &Spring) -> Edge {
+        let graph = &mut *self.evaluator.graph;
+        let square = match spring.along {
+            Along::Line {
+                from,
+                to,
+                length: None,
+            } => {
+                let d = sub3(graph, to, from);
+                graph.dot(&d, &d)
+            }
+            Along::Line {
+                length: Some(length),
+                ..
+            }
+            | Along::Scalar(length) => {
+                let stretch = graph.sub(length, spring.length);
+                graph.mul(stretch, stretch)
+            }
+        };
+        let half = graph.ratio(1, 2);
+        let half = graph.mul(half, spring.stiffness);
+        graph.mul(half, square)
+    }
+
+    /// A damper along a line, D = ½ c (d·ḋ)²/(d·d), with the force −c (d·ḋ)/(d·d) d.
+    fn damp(
+        &mut self,
+        line: &Line,
+        coefficient: Edge,
+        start: &[f64],
+        dynamics: &mut Dynamics,
+    ) -> Option<()> {
+        let (twice, wrenches) = if let Some(length) = self.smooth_length(line) {
+            let rate = self.rate(length)?;
+            let graph = &mut *self.evaluator.graph;
+            let force = graph.mul(coefficient, rate);
+            let twice = graph.mul(force, rate);
+            (twice, self.along_line(line, length, -force)?)
+        } else {
+            self.apart_at_start(line, line.square, start)?;
+            let rate = self.rate(line.square)?;
+            let graph = &mut *self.evaluator.graph;
+            let half = graph.ratio(1, 2);
+            let product = graph.mul(half, rate);
+            let speed = graph.div(product, line.square)?;
+            let factor = graph.mul(coefficient, speed);
+            let twice = graph.mul(factor, product);
+            let force = scale3(graph, -factor, line.difference);
+            (twice, self.pair(line, force))
+        };
+        let graph = &mut *self.evaluator.graph;
+        let half = graph.ratio(1, 2);
+        let energy = graph.mul(half, twice);
+        dynamics.dissipation = graph.add(dynamics.dissipation, energy);
+        dynamics.wrenches.extend(wrenches);
+        Some(())
+    }
+
+    /// A damper on a rate e, D = ½ c e².
+    fn damper_rate(
+        &mut self,
+        expr: &Expr,
+        coefficient: Option<Edge>,
+        dynamics: &mut Dynamics,
+    ) -> Option<Edge> {
+        let rate = self.evaluator.scalar(expr, "what a damper acts on")?;
+        let graph = &mut *self.evaluator.graph;
+        let known = class::PARAM | class::COORD | class::VELOCITY;
+        let square = graph.mul(rate, rate);
+        let linear = graph.class(rate.node()) & !known == 0
+            && is_quadratic(graph.clone(), square, &self.declared.xi);
+        let message = if rate == graph.zero() {
+            "this damper does nothing: the rate that it acts on is 0"
+        } else if linear {
+            let half = graph.ratio(1, 2);
+            let half = graph.mul(half, coefficient?);
+            let energy = graph.mul(half, square);
+            self.resist(energy, dynamics);
+            return Some(rate);
+        } else {
+            "what a damper acts on has to be a rate, linear in the velocities"
+        };
+        self.evaluator.error(
+            Diagnostic::new(expr.span, message)
+                .help("write a rate, as in `damper coefficient c on w2 - w1;`"),
+        )
+    }
+
+    /// Adds to D what acts by −∂D/∂ξⁱ.
+    fn resist(&mut self, energy: Edge, dynamics: &mut Dynamics) {
+        let graph = &mut *self.evaluator.graph;
+        dynamics.dissipation = graph.add(dynamics.dissipation, energy);
+        let sum = &mut dynamics.elements.scalar_dissipation;
+        *sum = graph.add(*sum, energy);
+    }
+
+    fn dissipation(&mut self, expr: &Expr) -> Option<Edge> {
+        let energy = self.evaluator.scalar(expr, "a dissipation")?;
+        let graph = &mut *self.evaluator.graph;
+        if graph.class(energy.node()) & (class::INPUT | class::ACCEL) != 0 {
+            return self.evaluator.error(
+                Diagnostic::new(
+                    expr.span,
+                    "a dissipation may depend on coordinates, velocities and parameters alone",
+                )
+                .help("what depends on inputs is a load: `generalized force w = -u * w;`"),
+            );
+        }
+        if !is_quadratic(graph.clone(), energy, &self.declared.xi) {
+            return self.evaluator.error(
+                Diagnostic::new(
+                    expr.span,
+                    "this dissipation is not quadratic in the velocities",
+                )
+                .help(
+                    "D = ½ ξᵀ C(x) ξ: every term has exactly two velocities as factors; other friction is a `generalized force`",
+                ),
+            );
+        }
+        Some(energy)
+    }
+}
+
+impl Line<'_> {
+    fn along(&self, length: Option<Edge>) -> Along {
+        Along::Line {
+            from: self.from.world,
+            to: self.to.world,
+            length,
+        }
+    }
+}

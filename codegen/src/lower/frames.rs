@@ -1,0 +1,144 @@
+//! One named expression; the pose that one `frame` statement gives.
+
+use super::declare::declared_value;
+use super::expression::Evaluator;
+use super::scope::{NameKind, Scope};
+use crate::algebra::graph::Graph;
+use crate::algebra::linear::{add3, apply3, identity3, multiply3, transpose3};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::class;
+use crate::model::value::Value;
+use crate::syntax::ast::{Declaration, Expr, Ident, Span};
+
+/// Defines a `let`; its value, where it has one.
+pub fn define_let(
+    declaration: &Declaration,
+    graph: &mut Graph,
+    scope: &mut Scope,
+    report: &mut Report,
+) -> Option<Value> {
+    let name = &declaration.name;
+    let missing = format!("write `let {} = …;`", name.name);
+    let value = declared_value(declaration, &missing, graph, scope, report);
+    let free = scope.define(name, NameKind::Let, value.clone(), report);
+    value.filter(|_| free)
+}
+
+/// `frame f on g = P`: the pose of f in g is P.
+#[derive(Clone, Copy)]
+pub struct Relation<'a> {
+    /// f.
+    pub name: &'a Ident,
+    /// g, the world where absent.
+    pub on: Option<&'a Ident>,
+    /// P.
+    pub pose: &'a Expr,
+    /// The statement.
+    pub span: Span,
+}
+
+impl<'a> Relation<'a> {
+    /// The name of g.
+    pub fn parent(&self) -> &'a str {
+        self.on.map_or("world", |on| on.name.as_str())
+    }
+}
+
+/// The world pose of f from that of g: f = g P.
+pub fn ahead(graph: &mut Graph, parent: &Value, pose: &Value) -> Value {
+    match (parent, pose) {
+        (Value::Pose(r, p), Value::Pose(rotation, position)) => {
+            let moved = apply3(graph, r, *position);
+            let position = add3(graph, *p, moved);
+            Value::Pose(multiply3(graph, r, rotation), position)
+        }
+        _ => pose.clone(),
+    }
+}
+
+/// P⁻¹, the pose of g in f.
+pub fn inverse(graph: &mut Graph, pose: &Value) -> Value {
+    match pose {
+        Value::Pose(rotation, position) => {
+            let rotation = transpose3(rotation);
+            let moved = apply3(graph, &rotation, *position);
+            Value::Pose(rotation, moved.map(|entry| -entry)).unsigned_zeros(graph)
+        }
+        _ => pose.clone(),
+    }
+}
+
+/// P, checked: a rotation and a position that depend on the configuration alone.
+pub fn relative_pose(
+    relation: &Relation,
+    graph: &mut Graph,
+    scope: &Scope,
+    report: &mut Report,
+) -> Option<Value> {
+    let Relation { name, pose, .. } = relation;
+    let mut evaluator = Evaluator {
+        graph,
+        scope,
+        report,
+    };
+    let value = evaluator.value(pose)?;
+    let Value::Pose(rotation, position) = value else {
+        let message = format!("a frame has to be a pose, this is {}", value.shape());
+        let help = match value.shape().as_str() {
+            "a 3×3 matrix" => format!("write `frame {} = pose(R, [0, 0, 0]);`", name.name),
+            _ => format!("write `frame {} = pose(R, p);`", name.name),
+        };
+        return evaluator.error(Diagnostic::new(pose.span, message).help(help));
+    };
+    let all = Value::Pose(rotation, position).entries();
+    let class = all
+        .iter()
+        .fold(0, |class, edge| class | evaluator.graph.class(edge.node()));
+    if class & !(class::PARAM | class::COORD) != 0 {
+        let message = format!("frame `{}` depends on velocities or inputs", name.name);
+        let error = Diagnostic::new(pose.span, message);
+        return evaluator.error(error.help("a frame is a function of coordinates and parameters"));
+    }
+    let graph = &mut *evaluator.graph;
+    let gram = multiply3(graph, &transpose3(&rotation), &rotation);
+    let identity = identity3(graph);
+    let mut places = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+    if let Some((i, j)) = places.find(|&(i, j)| !scope.free && gram[i][j] != identity[i][j]) {
+        let message = format!(
+            "the matrix of frame `{}` is no rotation: entry [{},{}] of R.T * R is not {}",
+            name.name,
+            i + 1,
+            j + 1,
+            u8::from(i == j)
+        );
+        return evaluator.error(
+            Diagnostic::new(pose.span, message)
+                .help("use an SO3 coordinate, `rot(q)`, `rotx(angle)` and their products"),
+        );
+    }
+    Some(Value::Pose(rotation, position))
+}
+
+/// The pose of the frame after `on`.
+pub fn parent_pose(
+    parent: &Ident,
+    graph: &mut Graph,
+    scope: &Scope,
+    report: &mut Report,
+) -> Option<Value> {
+    let mut evaluator = Evaluator {
+        graph,
+        scope,
+        report,
+    };
+    match evaluator.scope.get(&parent.name) {
+        Some(entry) if entry.kind == NameKind::Frame => entry.value.clone(),
+        None if parent.name == "world" => Some(evaluator.world()),
+        _ => {
+            let is_frame = |kind| kind == NameKind::Frame;
+            let scope = evaluator.scope;
+            let error = scope.unknown(parent.span, &parent.name, Some("frame"), is_frame);
+            evaluator.error(error)
+        }
+    }
+}

@@ -1,0 +1,338 @@
+//! The functions of the language.
+
+use super::axes;
+use super::expression::Evaluator;
+use super::motion::FUNCTIONS;
+use super::scope::{NameKind, RESERVED};
+use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::linear::{apply3, cross, multiply3, transpose, transpose3};
+use crate::diagnostics::Diagnostic;
+use crate::model::rotations::{axis_angle, hat, quaternion_matrix, turn};
+use crate::model::value::Value;
+use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
+use crate::syntax::suggest::closest;
+use num_traits::Signed;
+
+/// Largest number of rows that a function makes.
+const MOST_ROWS: usize = 64;
+
+impl Evaluator<'_> {
+    /// A call; wrong names, counts and shapes are reported.
+    pub fn call(&mut self, function: &Ident, arguments: &[Expr], span: Span) -> Option<Value> {
+        if function.name == "rate" {
+            return self.rate(arguments, span);
+        }
+        if let (true, [argument]) = (axes::CALLS.contains(&function.name.as_str()), arguments) {
+            let value = self.value(argument)?;
+            return match axes::call(self.graph, &function.name, &value) {
+                Ok(value) => Some(value),
+                Err(refused) => self.error(refused.at(argument.span)),
+            };
+        }
+        let values: Vec<Option<Value>> = arguments
+            .iter()
+            .map(|argument| self.value(argument))
+            .collect();
+        let Some(usage) = usage(&function.name) else {
+            return self.no_function(function);
+        };
+        let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
+        if let Some(value) = self.motion(function, arguments, &values, span) {
+            return value;
+        }
+        match evaluate(self.graph, &function.name, &values, self.scope.free) {
+            Ok(value) => Some(value),
+            Err(Fault::Usage) => {
+                let found: Vec<String> = values.iter().map(Value::shape).collect();
+                let found = match found.as_slice() {
+                    [] => "no argument".into(),
+                    [one] => one.clone(),
+                    [first @ .., last] => format!("{} and {last}", first.join(", ")),
+                };
+                let message = format!("`{}` cannot take {found}", function.name);
+                let help = match self.circle_part(&function.name, arguments) {
+                    Some(part) => format!("write `{part}`"),
+                    None => format!("write {usage}"),
+                };
+                self.error(Diagnostic::new(span, message).help(help))
+            }
+            Err(Fault::Why(message, help)) => self.error(Diagnostic::new(span, message).help(help)),
+        }
+    }
+
+    fn no_function(&mut self, function: &Ident) -> Option<Value> {
+        let name = &function.name;
+        let error = Diagnostic::new(function.span, format!("no function is called `{name}`"));
+        let known = || {
+            RESERVED
+                .iter()
+                .chain(&FUNCTIONS)
+                .copied()
+                .filter(|name| usage(name).is_some())
+        };
+        if self.scope.get(name).is_some() {
+            return self.error(error.help("a product is written with `*`"));
+        }
+        match closest(name, known()) {
+            Some(known) => self.error(error.help(format!("did you mean `{known}`?"))),
+            None => {
+                let all: Vec<&str> = known().collect();
+                self.error(error.help(format!("the functions are {}", all.join(", "))))
+            }
+        }
+    }
+
+    /// The part of an S1 coordinate that stands for its sine or cosine.
+    fn circle_part(&self, function: &str, arguments: &[Expr]) -> Option<String> {
+        let [
+            Expr {
+                kind: ExprKind::Name(name),
+                ..
+            },
+        ] = arguments
+        else {
+            return None;
+        };
+        if self.scope.get(name)?.kind != NameKind::Coord(CoordKind::S1) {
+            return None;
+        }
+        match function {
+            "sin" => Some(format!("{name}.s")),
+            "cos" => Some(format!("{name}.c")),
+            "tan" => Some(format!("{name}.s / {name}.c")),
+            _ => None,
+        }
+    }
+}
+
+/// Why a call has no value.
+enum Fault {
+    /// Number or shapes of the arguments.
+    Usage,
+    /// A mathematical reason, and what to do.
+    Why(&'static str, &'static str),
+}
+
+const ZERO_DIVISOR: Fault = Fault::Why(
+    "division by something that is identically zero",
+    "this is 0 for every configuration that satisfies the constraints",
+);
+
+/// How a function is called.
+fn usage(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "sin" => "`sin(angle)` of a scalar",
+        "cos" => "`cos(angle)` of a scalar",
+        "tan" => "`tan(angle)` of a scalar",
+        "sqrt" => "`sqrt(a)` of a scalar",
+        "exp" => "`exp(a)` of a scalar",
+        "log" => "`log(a)` of a scalar",
+        "atan2" => "`atan2(y, x)` of scalars",
+        "dot" => "`dot(a, b)` of vectors of equal length",
+        "cross" => "`cross(a, b)` of vectors of 3",
+        "outer" => "`outer(a, b)` of vectors",
+        "norm" => "`norm(v)` of a vector",
+        "hat" => "`hat(w)` of a vector of 3",
+        "vee" => "`vee(W)` of a 3×3 matrix",
+        "transpose" => "`transpose(M)` of a matrix",
+        "trace" => "`trace(M)` of a square matrix",
+        "diag" => "`diag(a, b, c)` of scalars or `diag(v)` of a vector",
+        "identity" => "`identity(n)` with a number n from 1 to 64, known at build time",
+        "rotx" => "`rotx(angle)`, `rotx(c, s)` or `rotx(q)` with an S1 coordinate q",
+        "roty" => "`roty(angle)`, `roty(c, s)` or `roty(q)` with an S1 coordinate q",
+        "rotz" => "`rotz(angle)`, `rotz(c, s)` or `rotz(q)` with an S1 coordinate q",
+        "rpy" => "`rpy(roll, pitch, yaw)` of scalars",
+        "axis_angle" => {
+            "`axis_angle(axis, angle)` of a unit vector of 3 and a scalar, `axis_angle(axis, c, s)` or `axis_angle(axis, q)` with an S1 coordinate q"
+        }
+        "rot" => "`rot(q)` of a unit quaternion, scalar first",
+        "qmul" => "`qmul(p, q)` of vectors of 4, scalar first",
+        "pose" => "`pose(R, p)` of a rotation matrix and a vector of 3",
+        "inverse" => "`inverse(P)` of a pose",
+        "position" => "`position(f, p)` of a frame and a point of it",
+        "velocity" => "`velocity(f, p)` of a frame and a point of it",
+        "acceleration" => "`acceleration(f, p)` of a frame and a point of it",
+        "angular_velocity" => "`angular_velocity(f)` of a frame",
+        "angular_acceleration" => "`angular_acceleration(f)` of a frame",
+        _ => return None,
+    })
+}
+
+/// The value of a call; `free` where points are off the variety.
+fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Result<Value, Fault> {
+    use Value::{Matrix, Pose, Scalar, Vector};
+    let value = match (name, values) {
+        ("sin", [Scalar(a)]) => Scalar(graph.apply(Function::Sin, *a)),
+        ("cos", [Scalar(a)]) => Scalar(graph.apply(Function::Cos, *a)),
+        ("tan", [Scalar(a)]) => {
+            let (s, c) = (
+                graph.apply(Function::Sin, *a),
+                graph.apply(Function::Cos, *a),
+            );
+            Scalar(graph.div(s, c).ok_or(ZERO_DIVISOR)?)
+        }
+        ("exp", [Scalar(a)]) => Scalar(graph.apply(Function::Exp, *a)),
+        ("log", [Scalar(a)]) => {
+            let number = graph.as_rational(*a);
+            if number.is_some_and(|n| !n.is_positive()) {
+                return Err(Fault::Why(
+                    "the logarithm of a number that is not positive",
+                    "check the argument: it is this number for every configuration",
+                ));
+            }
+            Scalar(graph.apply(Function::Log, *a))
+        }
+        ("sqrt", [Scalar(a)]) => Scalar(real_root(graph, *a)?),
+        ("atan2", [Scalar(y), Scalar(x)]) if *y == graph.zero() && *x == graph.zero() => {
+            return Err(Fault::Why(
+                "the angle of a zero vector",
+                "one of the arguments has to differ from 0",
+            ));
+        }
+        ("atan2", [Scalar(y), Scalar(x)]) => Scalar(graph.atan2(*y, *x)),
+        ("dot", [Vector(a), Vector(b)]) if a.len() == b.len() => Scalar(graph.dot(a, b)),
+        ("outer", [Vector(a), Vector(b)]) => Matrix(
+            a.iter()
+                .map(|&x| b.iter().map(|&y| graph.mul(x, y)).collect())
+                .collect(),
+        ),
+        ("norm", [Vector(a)]) => {
+            let square = graph.dot(a, a);
+            Scalar(real_root(graph, square)?)
+        }
+        ("transpose", [Matrix(m)]) => Matrix(transpose(m)),
+        ("trace", [Matrix(m)]) if m.len() == m.first().map_or(0, Vec::len) => {
+            let diagonal: Vec<Edge> = (0..m.len()).map(|i| m[i][i]).collect();
+            Scalar(graph.sum(&diagonal))
+        }
+        ("diag", [Vector(v)]) => diagonal(graph, v),
+        ("diag", scalars)
+            if (1..=MOST_ROWS).contains(&scalars.len())
+                && scalars.iter().all(|v| matches!(v, Scalar(_))) =>
+        {
+            let entries: Vec<Edge> = scalars.iter().flat_map(Value::entries).collect();
+            diagonal(graph, &entries)
+        }
+        ("identity", [Scalar(n)]) => {
+            let size = graph
+                .as_rational(*n)
+                .filter(|n| n.is_integer())
+                .map(|n| n.to_integer());
+            let size = size
+                .and_then(|n| usize::try_from(n).ok())
+                .filter(|n| (1..=MOST_ROWS).contains(n))
+                .ok_or(Fault::Usage)?;
+            diagonal(graph, &vec![graph.one(); size])
+        }
+        ("rotx" | "roty" | "rotz", _) => {
+            let (c, s) = cosine_sine(graph, values).ok_or(Fault::Usage)?;
+            let axis = match name {
+                "rotx" => 0,
+                "roty" => 1,
+                _ => 2,
+            };
+            Value::from_mat3(&turn(graph, axis, c, s))
+        }
+        ("rpy", [Scalar(r), Scalar(p), Scalar(y)]) => {
+            let turns = [(0, *r), (1, *p), (2, *y)].map(|(axis, angle)| {
+                let (c, s) = (
+                    graph.apply(Function::Cos, angle),
+                    graph.apply(Function::Sin, angle),
+                );
+                turn(graph, axis, c, s)
+            });
+            let last = multiply3(graph, &turns[2], &turns[1]);
+            Value::from_mat3(&multiply3(graph, &last, &turns[0]))
+        }
+        ("axis_angle", [axis, turn @ ..]) => {
+            let axis = axis.as_vec3().ok_or(Fault::Usage)?;
+            let (c, s) = cosine_sine(graph, turn).ok_or(Fault::Usage)?;
+            if !free && graph.dot(&axis, &axis) != graph.one() {
+                return Err(Fault::Why(
+                    "the axis of `axis_angle` is no unit vector",
+                    "divide it by its length: `axis_angle(a / norm(a), angle)`",
+                ));
+            }
+            axis_angle(graph, axis, c, s)
+        }
+        ("rot", [Vector(q)]) if q.len() == 4 => {
+            Value::from_mat3(&quaternion_matrix(graph, [q[0], q[1], q[2], q[3]]))
+        }
+        ("qmul", [Vector(p), Vector(q)]) if p.len() == 4 && q.len() == 4 => {
+            let (u, v) = ([p[1], p[2], p[3]], [q[1], q[2], q[3]]);
+            let (scalars, dot) = (graph.mul(p[0], q[0]), graph.dot(&u, &v));
+            let mut product = vec![graph.sub(scalars, dot)];
+            let turned = cross(graph, u, v);
+            for i in 0..3 {
+                let (left, right) = (graph.mul(p[0], v[i]), graph.mul(q[0], u[i]));
+                let sum = graph.add(left, right);
+                product.push(graph.add(sum, turned[i]));
+            }
+            Vector(product)
+        }
+        ("pose", [r, p]) => match (r.as_mat3(), p.as_vec3()) {
+            (Some(r), Some(p)) => Pose(r, p),
+            _ => return Err(Fault::Usage),
+        },
+        ("inverse", [Pose(r, p)]) => {
+            let back = transpose3(r);
+            Pose(back, apply3(graph, &back, *p).map(|edge| -edge))
+        }
+        ("cross", [a, b]) => match (a.as_vec3(), b.as_vec3()) {
+            (Some(a), Some(b)) => Vector(cross(graph, a, b).to_vec()),
+            _ => return Err(Fault::Usage),
+        },
+        ("hat", [w]) => Value::from_mat3(&hat(graph, w.as_vec3().ok_or(Fault::Usage)?)),
+        ("vee", [w]) => {
+            let w = w.as_mat3().ok_or(Fault::Usage)?;
+            let half = graph.ratio(1, 2);
+            Vector(
+                [(2, 1), (0, 2), (1, 0)]
+                    .iter()
+                    .map(|&(i, j)| {
+                        let difference = graph.sub(w[i][j], w[j][i]);
+                        graph.mul(half, difference)
+                    })
+                    .collect(),
+            )
+        }
+        _ => return Err(Fault::Usage),
+    };
+    Ok(value)
+}
+
+/// Cosine and sine of an angle, of themselves, or of an S1 coordinate.
+fn cosine_sine(graph: &mut Graph, values: &[Value]) -> Option<(Edge, Edge)> {
+    match values {
+        [Value::Scalar(a)] => Some((
+            graph.apply(Function::Cos, *a),
+            graph.apply(Function::Sin, *a),
+        )),
+        [Value::Scalar(c), Value::Scalar(s)] => Some((*c, *s)),
+        [Value::Vector(v)] if v.len() == 2 => Some((v[0], v[1])),
+        _ => None,
+    }
+}
+
+fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {
+    if graph.as_rational(square).is_some_and(|n| n.is_negative()) {
+        return Err(Fault::Why(
+            "the square root of a negative number",
+            "check the argument: it is this number for every configuration",
+        ));
+    }
+    Ok(graph.apply(Function::Sqrt, square))
+}
+
+fn diagonal(graph: &Graph, entries: &[Edge]) -> Value {
+    let n = entries.len();
+    Value::Matrix(
+        (0..n)
+            .map(|i| {
+                (0..n)
+                    .map(|j| if i == j { entries[i] } else { graph.zero() })
+                    .collect()
+            })
+            .collect(),
+    )
+}

@@ -1,0 +1,118 @@
+//! Joints, written out as coordinates, velocities, rates and frames.
+//!
+//! | kind | coordinates | velocities | pose of the frame that it carries, at its place |
+//! |---|---|---|---|
+//! | `revolute n` | `j` | `j_dot` | turn by j about n |
+//! | `continuous n` | `j: S1` | `j_dot` | turn by (c, s) about n |
+//! | `prismatic n` | `j` | `j_dot` | shift by j n |
+//! | `spherical` | `j: SO3` (`S3`) | `j_dot: vec3`, angular velocity in the axes of the frame | rotation j |
+//! | `free` | `j_r: R3`, `j_R: SO3` | `j_v: vec3`, `j_w: vec3`, its twist in its axes | rotation `j_R`, shift `j_r` |
+//! | `planar n` | `j_r: R2`, `j` | `j_r_dot: vec2`, `j_dot` | shift by `j_r` in the plane, turn by j about n |
+//! | `universal a, b` | `j_1`, `j_2` | `j_1_dot`, `j_2_dot` | turn about a, then about b that turned along |
+//! | `cylindrical n` | `j`, `j_d` | `j_dot`, `j_d_dot` | turn by j about n, shift by `j_d` n |
+//! | `fixed` | | | none |
+//!
+//! What stands here is text for text what a user would write without joints; spans are those of the
+//! joint, so that every later error points at it.
+
+mod fields;
+mod written;
+
+use crate::algebra::graph::Graph;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::lower::scope::Scope;
+use crate::model::joints::Joint;
+use crate::syntax::ast::{self, Ident, ItemKind, JointField, JointKind, System};
+use written::Writer;
+
+pub(super) use fields::armature;
+
+/// The joints, and what is wrong with their fields.
+pub fn read(system: &System, graph: &mut Graph, scope: &Scope, report: &mut Report) -> Vec<Joint> {
+    let mut joints = Vec::new();
+    for item in &system.items {
+        if let ItemKind::Joint(joint) = &item.kind {
+            fields::check(joint, report);
+            let mut numbers = |field| fields::numbers(joint, field, graph, scope, report);
+            let limit = numbers(JointField::Limit);
+            let speed = numbers(JointField::MaxSpeed);
+            let force = numbers(JointField::MaxForce);
+            let (coordinates, velocities) = names(joint);
+            joints.push(Joint {
+                name: joint.name.name.clone(),
+                kind: joint.kind.0,
+                frame: joint.moves.name.clone(),
+                coordinates,
+                velocities,
+                limit: limit.and_then(|list| <[f64; 2]>::try_from(list).ok()),
+                max_speed: speed.and_then(|list| list.first().copied()),
+                max_force: force.and_then(|list| list.first().copied()),
+            });
+        }
+    }
+    joints
+}
+
+/// The names of the coordinates and of the velocities of a joint.
+fn names(joint: &ast::Joint) -> (Vec<String>, Vec<String>) {
+    let (coordinates, velocities): (&[&str], &[&str]) = match joint.kind.0 {
+        JointKind::Fixed => (&[], &[]),
+        _ if joint.follows.is_some() => (&[], &[]),
+        JointKind::Free => (&["_r", "_R"], &["_v", "_w"]),
+        JointKind::Planar => (&["_r", ""], &["_r_dot", "_dot"]),
+        JointKind::Universal => (&["_1", "_2"], &["_1_dot", "_2_dot"]),
+        JointKind::Cylindrical => (&["", "_d"], &["_dot", "_d_dot"]),
+        _ => (&[""], &["_dot"]),
+    };
+    let named = |endings: &[&str]| {
+        let of = |ending: &&str| format!("{}{ending}", joint.name.name);
+        endings.iter().map(of).collect()
+    };
+    (named(coordinates), named(velocities))
+}
+
+/// The system with every joint written out.
+pub fn expand(system: &System, report: &mut Report) -> System {
+    let mut items = Vec::new();
+    let mut moved: Vec<&Ident> = Vec::new();
+    let frames = system.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Frame { name, .. } => Some(name),
+        _ => None,
+    });
+    moved.extend(frames);
+    for item in &system.items {
+        let ItemKind::Joint(joint) = &item.kind else {
+            items.push(item.clone());
+            continue;
+        };
+        let mut writer = Writer {
+            joint,
+            span: item.span,
+            items: Vec::new(),
+        };
+        let poses = writer.motion();
+        match moved.iter().find(|other| other.name == joint.moves.name) {
+            Some(first) => report.push(twice(joint, first)),
+            None => writer.frames(poses),
+        }
+        writer.loads();
+        moved.push(&joint.moves);
+        items.extend(writer.items);
+        // Kept for its name and its constants.
+        items.push(item.clone());
+    }
+    System {
+        items,
+        ..system.clone()
+    }
+}
+
+/// The error for a frame that is placed already.
+fn twice(joint: &ast::Joint, first: &Ident) -> Diagnostic {
+    let message = format!("the frame `{}` is placed twice", first.name);
+    Diagnostic::new(joint.moves.span, message)
+        .help(
+            "a joint carries a frame of its own; what closes a mechanism is a `loop` between coordinates",
+        )
+        .note(first.span, "placed here already")
+}

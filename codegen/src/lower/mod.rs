@@ -1,0 +1,40 @@
+//! From the description as written to the mechanical system that it means.
+//!
+//! Names are resolved, shapes checked, and every semantic error is found here: stages after this
+//! one cannot fail on user input.
+
+mod agreement;
+mod arithmetic;
+mod axes;
+mod bodies;
+mod build;
+mod completion;
+mod declare;
+mod defaults;
+mod definitions;
+mod dynamics;
+mod elements;
+mod expression;
+mod frames;
+mod functions;
+mod independent;
+mod invariants;
+mod joints;
+mod kinematics;
+mod line;
+mod loads;
+mod motion;
+mod names;
+mod observe;
+mod pfaffian;
+mod rate;
+mod rates;
+mod reader;
+mod relations;
+mod scope;
+mod start;
+mod tangency;
+mod unused;
+mod variety;
+
+pub use build::build;

@@ -1,0 +1,122 @@
+//! Calls of `position`, `velocity`, `acceleration`, `angular_velocity` and `angular_acceleration` in expressions.
+
+use super::expression::Evaluator;
+use crate::algebra::graph::Edge;
+use crate::algebra::linear::{add3, apply3, multiply3, sub3, transpose3, zero3};
+use crate::diagnostics::Diagnostic;
+use crate::model::class;
+use crate::model::motion::{Observed, Quantity};
+use crate::model::value::Value;
+use crate::syntax::ast::{Expr, Ident, Span};
+
+impl Evaluator<'_> {
+    /// A call of one of these functions; `None` where the function is another.
+    pub fn motion(
+        &mut self,
+        function: &Ident,
+        arguments: &[Expr],
+        values: &[Value],
+        span: Span,
+    ) -> Option<Option<Value>> {
+        let quantity = Quantity::named(&function.name)?;
+        Some(self.observe(quantity, function, arguments, values, span))
+    }
+
+    fn observe(
+        &mut self,
+        quantity: Quantity,
+        function: &Ident,
+        arguments: &[Expr],
+        values: &[Value],
+        span: Span,
+    ) -> Option<Value> {
+        let name = &function.name;
+        let (frame, point, other) = match values {
+            [frame] => (frame, None, None),
+            [frame, other @ Value::Pose(..)] => (frame, None, Some(other)),
+            [frame, point] => (frame, Some(point), None),
+            [frame, point, other] => (frame, Some(point), Some(other)),
+            _ => return self.misused(name, span),
+        };
+        let point = match point {
+            _ if quantity.is_angular() && point.is_some() => None,
+            Some(point) => point.as_vec3(),
+            None => Some(zero3(self.graph)),
+        };
+        let (Value::Pose(rotation, position), Some(point)) = (frame, point) else {
+            return self.misused(name, span);
+        };
+        for (value, expr) in values.iter().zip(arguments) {
+            let class = |class, edge: &Edge| class | self.graph.class(edge.node());
+            let class = value.entries().iter().fold(0, class);
+            if class & !(class::PARAM | class::COORD) != 0 {
+                let message = format!("an argument of `{name}` depends on velocities or inputs");
+                return self.error(
+                    Diagnostic::new(expr.span, message).help(
+                        "frames and their points are functions of coordinates and parameters",
+                    ),
+                );
+            }
+        }
+        let (rotation, position) = match other {
+            None => (*rotation, *position),
+            Some(Value::Pose(r, p)) => {
+                let back = transpose3(r);
+                let arm = sub3(self.graph, *position, *p);
+                let arm = apply3(self.graph, &back, arm);
+                (multiply3(self.graph, &back, rotation), arm)
+            }
+            Some(_) => return self.misused(name, span),
+        };
+        let graph = &mut *self.graph;
+        if let Some(motion) = &self.scope.motion {
+            motion.note_in_frame(graph, &rotation, position, point, quantity);
+        }
+        let value = match (&self.scope.motion, quantity) {
+            (_, Quantity::Position) => {
+                let arm = apply3(graph, &rotation, point);
+                add3(graph, position, arm)
+            }
+            (None, _) if self.scope.unmoved => return None,
+            (None, _) => {
+                let message = format!("`{name}` is not known here: it follows from the rates");
+                return self.error(Diagnostic::new(span, message).help(
+                    "use it in outputs, loads, energies and named expressions, not in what defines the coordinates and their rates",
+                ));
+            }
+            (Some(motion), Quantity::Velocity) => {
+                motion.velocity(graph, &rotation, position, point)
+            }
+            (Some(motion), Quantity::Acceleration) => {
+                motion.acceleration(graph, &rotation, position, point)
+            }
+            (Some(motion), Quantity::AngularVelocity) => motion.spin(graph, &rotation),
+            (Some(motion), Quantity::AngularAcceleration) => {
+                let spin = motion.spin(graph, &rotation);
+                motion.rates(graph, spin)
+            }
+        };
+        if let Some(motion) = &self.scope.motion {
+            motion.seen.borrow_mut().push(Observed {
+                quantity,
+                rotation,
+                position,
+                point,
+                value,
+            });
+        }
+        Some(Value::Vector(value.to_vec()))
+    }
+
+    fn misused(&mut self, name: &str, span: Span) -> Option<Value> {
+        let help = if Quantity::named(name).is_some_and(Quantity::is_angular) {
+            format!("write `{name}(f)` of a frame, or `{name}(f, g)` as the frame g sees it")
+        } else {
+            format!(
+                "write `{name}(f)` or `{name}(f, p)` of a frame and a point in its axes, or `{name}(f, p, g)` as the frame g sees it"
+            )
+        };
+        let message = format!("`{name}` takes a frame, a point of it, and a frame to look from");
+        self.error(Diagnostic::new(span, message).help(help))
+    }
+}

@@ -1,0 +1,264 @@
+//! Constraints B(x) ξ = 0 on the velocities of a frame: inactive velocities, nonholonomic
+//! constraints, and the rates of closed loops.
+
+use super::declare::Declared;
+use super::expression::Evaluator;
+use super::rate::Kinematics;
+use super::scope::Scope;
+use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::{Edge, Graph};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::class;
+use crate::model::pfaffian::{Kind, Pfaffian};
+use crate::model::value::Value;
+use crate::syntax::ast::{Expr, ItemKind, Span, System};
+use crate::syntax::written::{equation, written};
+
+/// Reads all rows, in the order of the text.
+pub fn read(
+    system: &System,
+    graph: &mut Graph,
+    scope: &Scope,
+    declared: &Declared,
+    kinematics: Option<&Kinematics>,
+    report: &mut Report,
+) -> Vec<Pfaffian> {
+    let mut all = Vec::new();
+    let mut reader = Reader {
+        evaluator: Evaluator {
+            graph,
+            scope,
+            report,
+        },
+        declared,
+        kinematics,
+    };
+    for item in &system.items {
+        match &item.kind {
+            ItemKind::Inactive(list) => {
+                for expr in list {
+                    let rows = reader.inactive(expr, &all);
+                    all.extend(rows.unwrap_or_default());
+                }
+            }
+            ItemKind::Nonholonomic {
+                left,
+                right,
+                stabilized,
+            } => all.extend(
+                reader
+                    .nonholonomic(left, right, stabilized.as_ref())
+                    .unwrap_or_default(),
+            ),
+            ItemKind::Loop {
+                left,
+                right,
+                stabilized,
+            } => all.extend(
+                reader
+                    .closed_loop(left, right, stabilized.as_ref())
+                    .unwrap_or_default(),
+            ),
+            _ => {}
+        }
+    }
+    all
+}
+
+struct Reader<'a> {
+    evaluator: Evaluator<'a>,
+    declared: &'a Declared,
+    kinematics: Option<&'a Kinematics>,
+}
+
+impl Reader<'_> {
+    /// Velocities that stay zero.
+    fn inactive(&mut self, expr: &Expr, before: &[Pfaffian]) -> Option<Vec<Pfaffian>> {
+        let value = self.evaluator.value(expr)?;
+        let mut rows = Vec::new();
+        for entry in value.entries() {
+            let Some(which) = self.declared.xi.iter().position(|&xi| xi == entry) else {
+                return self.evaluator.error(
+                    Diagnostic::new(expr.span, "only a velocity can be inactive").help(
+                        "write `inactive v;`, or `inactive v[2];` for an entry; what is no velocity by itself is written `nonholonomic … = 0;`",
+                    ),
+                );
+            };
+            let graph = &mut *self.evaluator.graph;
+            let mut row = vec![graph.zero(); self.declared.xi.len()];
+            row[which] = graph.one();
+            let first = before.iter().chain(&rows).find(|other| other.row == row);
+            if let Some(first) = first.map(|first: &Pfaffian| first.span) {
+                let error = Diagnostic::new(expr.span, "this velocity is inactive already");
+                return self.evaluator.error(
+                    error
+                        .help("remove one of the two")
+                        .note(first, "first here"),
+                );
+            }
+            rows.push(Pfaffian {
+                kind: Kind::Inactive,
+                row,
+                residual: graph.zero(),
+                stabilized: None,
+                written: written(expr),
+                span: expr.span,
+            });
+        }
+        Some(rows)
+    }
+
+    fn nonholonomic(
+        &mut self,
+        left: &Expr,
+        right: &Expr,
+        stabilized: Option<&Expr>,
+    ) -> Option<Vec<Pfaffian>> {
+        let (span, entries, stabilized) = self.equation(left, right, stabilized)?;
+        let graph = &mut *self.evaluator.graph;
+        let mut rows = Vec::new();
+        for edge in entries {
+            let row: Vec<Edge> = self
+                .declared
+                .xi
+                .iter()
+                .map(|xi| Derivation::new([(xi.node(), graph.one())]).of(graph, edge))
+                .collect();
+            let whole = graph.dot(&row, &self.declared.xi);
+            let class = row
+                .iter()
+                .fold(0, |class, entry| class | graph.class(entry.node()));
+            if whole != edge || class & !(class::PARAM | class::COORD) != 0 {
+                let rest = graph.sub(edge, whole);
+                let without =
+                    class & class::VELOCITY == 0 && graph.class(rest.node()) & class::VELOCITY == 0;
+                let message = if (class | graph.class(rest.node())) & class::INPUT != 0 {
+                    "a nonholonomic constraint cannot depend on inputs"
+                } else if without {
+                    "this nonholonomic constraint has a term without a velocity"
+                } else {
+                    "this nonholonomic constraint is not linear in the velocities"
+                };
+                return self.evaluator.error(Diagnostic::new(span, message).help(
+                    "it is B(x) ξ = 0: every term has exactly one velocity as a factor, times coordinates and parameters",
+                ));
+            }
+            if row.iter().all(|&entry| entry == graph.zero()) {
+                return self.evaluator.error(
+                    Diagnostic::new(span, "this nonholonomic constraint always holds")
+                        .help("remove it: no velocity is left in the difference of its sides"),
+                );
+            }
+            rows.push(Pfaffian {
+                kind: Kind::Nonholonomic,
+                row,
+                residual: graph.zero(),
+                stabilized,
+                written: equation(left, right),
+                span,
+            });
+        }
+        Some(rows)
+    }
+
+    fn closed_loop(
+        &mut self,
+        left: &Expr,
+        right: &Expr,
+        stabilized: Option<&Expr>,
+    ) -> Option<Vec<Pfaffian>> {
+        let (span, entries, stabilized) = self.equation(left, right, stabilized)?;
+        let graph = &mut *self.evaluator.graph;
+        let class = entries
+            .iter()
+            .fold(0, |class, edge| class | graph.class(edge.node()));
+        if class & !(class::PARAM | class::COORD) != 0 {
+            return self.evaluator.error(
+                Diagnostic::new(
+                    span,
+                    "a loop is about coordinates, not velocities or inputs",
+                )
+                .help("a constraint on velocities is written `nonholonomic … = …;`"),
+            );
+        }
+        let kinematics = self.kinematics?;
+        let mut rows = Vec::new();
+        for edge in entries {
+            if edge.abs() == graph.zero() {
+                continue;
+            }
+            let row: Vec<Edge> = (0..self.declared.xi.len())
+                .map(|i| {
+                    let seeds = self.declared.x.iter().zip(&kinematics.a);
+                    Derivation::new(seeds.map(|(x, row)| (x.node(), row[i]))).of(graph, edge)
+                })
+                .collect();
+            if row.iter().all(|&entry| entry == graph.zero()) {
+                return self.evaluator.error(
+                    Diagnostic::new(span, "nothing that moves takes part in this loop")
+                        .help("a loop is an equation of coordinates that tree velocities change"),
+                );
+            }
+            rows.push(Pfaffian {
+                kind: Kind::Loop,
+                row,
+                residual: edge,
+                stabilized,
+                written: equation(left, right),
+                span,
+            });
+        }
+        if rows.is_empty() {
+            return self.evaluator.error(
+                Diagnostic::new(span, "this loop is always closed")
+                    .help("remove it: both sides are the same expression"),
+            );
+        }
+        Some(rows)
+    }
+
+    /// The place, left − right entry by entry, and λ of a constraint.
+    fn equation(
+        &mut self,
+        left: &Expr,
+        right: &Expr,
+        stabilized: Option<&Expr>,
+    ) -> Option<(Span, Vec<Edge>, Option<Edge>)> {
+        let entries = self.difference(left, right);
+        let stabilized = self.rate_of_decay(stabilized)?;
+        Some((left.span.to(right.span), entries?, stabilized))
+    }
+
+    /// left − right, entry by entry.
+    fn difference(&mut self, left: &Expr, right: &Expr) -> Option<Vec<Edge>> {
+        let (a, b) = (self.evaluator.value(left), self.evaluator.value(right));
+        let (a, b) = (a?, b?);
+        let graph = &mut *self.evaluator.graph;
+        // `… = 0` is meant entry by entry.
+        let is_zero = matches!(b, Value::Scalar(edge) if edge.abs() == graph.zero());
+        if is_zero {
+            return Some(a.entries());
+        }
+        if !a.same_shape(&b) {
+            let message = format!("one side is {}, the other {}", a.shape(), b.shape());
+            return self.evaluator.error(
+                Diagnostic::new(left.span.to(right.span), message)
+                    .help("both sides need the same shape, or 0 on the right"),
+            );
+        }
+        Some(a.zip(&b, |x, y| graph.sub(x, y)).entries())
+    }
+
+    /// λ, constant at run time. The outer `None` is an error.
+    fn rate_of_decay(&mut self, expr: Option<&Expr>) -> Option<Option<Edge>> {
+        let Some(expr) = expr else { return Some(None) };
+        let edge = self.evaluator.scalar(expr, "a rate of stabilisation")?;
+        if self.evaluator.graph.class(edge.node()) & !class::PARAM != 0 {
+            return self.evaluator.error(
+                Diagnostic::new(expr.span, "a rate of stabilisation has to be constant")
+                    .help("write a number or a parameter (1/s), of the order of 10"),
+            );
+        }
+        Some((edge.abs() != self.evaluator.graph.zero()).then_some(edge))
+    }
+}

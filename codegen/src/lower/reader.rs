@@ -1,0 +1,122 @@
+//! What the statements about inertia and loads are read with, and into.
+
+use super::declare::Declared;
+use super::expression::Evaluator;
+use super::scope::NameKind;
+use crate::algebra::graph::Edge;
+use crate::algebra::linear::Vec3;
+use crate::diagnostics::Diagnostic;
+use crate::functions::{Asked, FunctionId};
+use crate::model::elements::Elements;
+use crate::model::value::Value;
+use crate::model::{Body, Frame, Particle, Wrench, class};
+use crate::syntax::ast::{Expr, Ident, Span};
+
+/// What stands in `generate` for everything that a description without it gets.
+pub const ALL: &str = "all";
+
+/// What the statements about inertia and loads say.
+pub struct Dynamics {
+    pub bodies: Vec<Body>,
+    pub particles: Vec<Particle>,
+    pub kinetic: Edge,
+    pub potential: Edge,
+    pub gravity: Vec3,
+    pub wrenches: Vec<Wrench>,
+    pub generalized: Vec<Edge>,
+    pub dissipation: Edge,
+    pub elements: Elements,
+    pub outputs: Vec<(String, Value)>,
+    pub asked: Asked,
+}
+
+/// Whether a name is that of a function, which no output or invariant can have.
+pub fn is_taken(name: &str) -> bool {
+    name == ALL || FunctionId::named(name).is_some()
+}
+
+/// Reads single statements.
+pub struct Reader<'a, 'b> {
+    pub evaluator: Evaluator<'a>,
+    pub frames: &'b [Frame],
+    pub declared: &'b Declared,
+}
+
+impl Reader<'_, '_> {
+    pub fn class_of(&self, value: &Value) -> u8 {
+        let entries = value.entries();
+        entries.iter().fold(0, |class, edge| {
+            class | self.evaluator.graph.class(edge.node())
+        })
+    }
+
+    /// Whether a value is made of parameters and constants alone; reports it where not.
+    pub fn constant(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
+        if self.class_of(value) & !class::PARAM == 0 {
+            return Some(());
+        }
+        self.evaluator.error(
+            Diagnostic::new(span, format!("{what} has to be constant"))
+                .help("it may depend on parameters and constants alone"),
+        )
+    }
+
+    pub fn constant_scalar(&mut self, expr: &Expr, what: &str) -> Option<Edge> {
+        let edge = self.evaluator.scalar(expr, what)?;
+        self.constant(&Value::Scalar(edge), expr.span, what)?;
+        Some(edge)
+    }
+
+    pub fn constant_vec3(&mut self, expr: &Expr, what: &str) -> Option<Vec3> {
+        let value = self.evaluator.vec3(expr, what)?;
+        self.constant(&Value::Vector(value.to_vec()), expr.span, what)?;
+        Some(value)
+    }
+
+    /// Whether a load is free of accelerations; reports it where not.
+    pub fn no_acceleration(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
+        if self.class_of(value) & class::ACCEL == 0 {
+            return Some(());
+        }
+        self.evaluator.error(
+            Diagnostic::new(span, format!("{what} cannot depend on accelerations"))
+                .help("what resists acceleration is inertia: a `body`, a `particle` or a `kinetic` energy"),
+        )
+    }
+
+    /// Whether a value is a function of the configuration; reports it where not.
+    pub fn configuration(
+        &mut self,
+        value: &Value,
+        span: Span,
+        what: &str,
+        help: &str,
+    ) -> Option<()> {
+        if self.class_of(value) & !(class::PARAM | class::COORD) == 0 {
+            return Some(());
+        }
+        let message = format!("{what} may depend on coordinates and parameters alone");
+        self.evaluator
+            .error(Diagnostic::new(span, message).help(help))
+    }
+
+    pub fn frame(&mut self, name: &Ident) -> Option<usize> {
+        if let Some(index) = self.frames.iter().position(|frame| frame.name == name.name) {
+            return Some(index);
+        }
+        let scope = self.evaluator.scope;
+        match scope.get(&name.name) {
+            // Its own definition was in error.
+            Some(entry) if entry.kind == NameKind::Frame => None,
+            _ => {
+                let is_frame = |kind| kind == NameKind::Frame;
+                let error = scope.unknown(name.span, &name.name, Some("frame"), is_frame);
+                self.evaluator.error(if name.name == "world" {
+                    error.help("write `frame ground = world;` and use `ground`")
+                } else {
+                    error
+                })
+            }
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Whether the start is on X, and what to write where it is not.
+
+use crate::algebra::graph::Node;
+use crate::algebra::numeric::evaluate;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::lower::declare::Declared;
+use crate::lower::variety::{Origin, Variety};
+use crate::model::nearest::Nearest;
+use crate::syntax::ast::{CoordKind, ItemKind, System};
+
+/// Largest violation of φ at the start that counts as rounding of the numbers given.
+const ROUNDING: f64 = 1e-9;
+
+/// φ(x) = 0 at the start.
+pub fn check(
+    system: &System,
+    variety: &Variety,
+    declared: &Declared,
+    defaults: &[f64],
+    x: &[f64],
+    report: &mut Report,
+) {
+    if defaults.iter().any(|number| number.is_nan()) {
+        return;
+    }
+    let mut numbers = vec![std::f64::consts::PI];
+    numbers.extend(defaults.iter().chain(x));
+    numbers.resize(variety.points.symbols, 0.0);
+    let rows: Vec<_> = variety.phi.iter().map(|(edge, _)| *edge).collect();
+    let residuals = evaluate(&variety.points.free, &rows, &numbers);
+    let mut reported: Vec<Origin> = Vec::new();
+    let mut nearest = None;
+    for (row, &residual) in residuals.iter().enumerate() {
+        let origin = variety.origins[row];
+        if residual.abs() <= ROUNDING || reported.contains(&origin) {
+            continue;
+        }
+        reported.push(origin);
+        let mut error = violation(system, variety, declared, row, residual);
+        if let Origin::Statement(_) = origin {
+            let found = nearest.get_or_insert_with(|| {
+                crate::model::nearest::nearest(&variety.points, &variety.phi, &numbers, x)
+            });
+            advise(&mut error, found, variety, declared, row);
+        }
+        report.push(error);
+    }
+}
+
+fn violation(
+    system: &System,
+    variety: &Variety,
+    declared: &Declared,
+    row: usize,
+    residual: f64,
+) -> Diagnostic {
+    let text = &variety.phi[row].1;
+    let names = coordinates_of(variety, declared, row);
+    let given = system.items.iter().rev().find_map(|item| match &item.kind {
+        ItemKind::Start { target, value } => names
+            .contains(&target.name.name.as_str())
+            .then_some(value.span),
+        _ => None,
+    });
+    let difference = format!("the difference is {residual:.3e}");
+    match variety.origins[row] {
+        Origin::Coordinate(index) => {
+            let coordinate = &declared.coordinates[index];
+            let text = text.split(", entry").next().unwrap_or(text);
+            let message = format!("the start violates {text}: {difference}");
+            let error = Diagnostic::new(given.unwrap_or(coordinate.span), message);
+            error.help(match coordinate.kind {
+                CoordKind::S1 => format!("give the angle: `start {} = 0.3;`", coordinate.name),
+                CoordKind::S3 => "divide the quaternion by its length".into(),
+                _ => "build the rotation by `rotx(angle)`, `rpy(…)`, `axis_angle(…)`".into(),
+            })
+        }
+        Origin::Statement(item) => {
+            let place = match &system.items[item].kind {
+                ItemKind::Constraint { left, right } => left.span.to(right.span),
+                _ => system.items[item].span,
+            };
+            let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+            let message = format!("the start violates this constraint: {difference}");
+            let Some(given) = given else {
+                return Diagnostic::new(place, message).help(format!(
+                    "give a `start` of {}; what has none starts at 0",
+                    list.join(", ")
+                ));
+            };
+            Diagnostic::new(given, message.replace("this constraint", "a constraint"))
+                .help(format!(
+                    "give {} a start that satisfies it",
+                    list.join(", ")
+                ))
+                .note(place, "this constraint")
+        }
+    }
+}
+
+/// Says where the nearest configuration is, or that there seems to be none.
+fn advise(
+    error: &mut Diagnostic,
+    found: &Nearest,
+    variety: &Variety,
+    declared: &Declared,
+    row: usize,
+) {
+    let x = match found {
+        Nearest::Found(x) => x,
+        Nearest::Nowhere(least) => {
+            error
+                .message
+                .push_str(", and no real configuration was found near it");
+            error.help = Some(format!(
+                "check the lengths: the constraints are violated by {least:.3e} at least; or start nearer to a configuration"
+            ));
+            return;
+        }
+    };
+    let names = coordinates_of(variety, declared, row);
+    let starts: Option<Vec<String>> = declared
+        .coordinates
+        .iter()
+        .filter(|coordinate| names.contains(&coordinate.name.as_str()))
+        .map(|coordinate| {
+            let x = &x[coordinate.offset..];
+            let value = match coordinate.kind {
+                CoordKind::Real => short(x[0]),
+                CoordKind::S1 => short(x[1].atan2(x[0])),
+                CoordKind::Euclidean(n) => {
+                    let entries: Vec<String> = x[..n].iter().map(|&x| short(x)).collect();
+                    format!("[{}]", entries.join(", "))
+                }
+                CoordKind::S3 | CoordKind::SO3 | CoordKind::SE3 => return None,
+            };
+            Some(format!("`start {} = {value};`", coordinate.name))
+        })
+        .collect();
+    if let (Some(starts), Some(help)) = (starts, &mut error.help) {
+        help.push_str(&format!("; the nearest is {}", starts.join(" ")));
+    }
+}
+
+/// A number with as many digits as a start needs.
+fn short(number: f64) -> String {
+    let text = format!("{number:.12}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        "0".into()
+    } else {
+        text.into()
+    }
+}
+
+/// The coordinates that a row of φ is about.
+fn coordinates_of<'a>(variety: &Variety, declared: &'a Declared, row: usize) -> Vec<&'a str> {
+    let free = &variety.points.free;
+    let first = variety.points.first;
+    let mut names = Vec::new();
+    for id in free.reachable(&[variety.phi[row].0]) {
+        if let Node::Symbol(index) = free.node(id)
+            && let Some(alpha) = (index as usize).checked_sub(first)
+            && alpha < declared.x.len()
+            && let Some(coordinate) = declared.coordinates.iter().rfind(|c| c.offset <= alpha)
+            && !names.contains(&coordinate.name.as_str())
+        {
+            names.push(coordinate.name.as_str());
+        }
+    }
+    names
+}

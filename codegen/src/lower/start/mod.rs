@@ -1,0 +1,252 @@
+//! The start: numbers for x and ξ, on the constraint.
+
+pub mod check;
+
+use crate::algebra::graph::{Function, Graph};
+use crate::algebra::numeric::evaluate;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::lower::declare::Declared;
+use crate::lower::expression::Evaluator;
+use crate::lower::rate::{part, written};
+use crate::lower::scope::{NameKind, Scope};
+use crate::model::class;
+use crate::model::closure::Closure;
+use crate::model::layout::{blocks, identity};
+use crate::model::pfaffian::Pfaffian;
+use crate::model::value::Value;
+use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
+
+/// Largest violation of φ at the start that counts as rounding of the numbers given.
+const ROUNDING: f64 = 1e-9;
+
+/// x and ξ so far, and where each entry was given.
+pub struct Start {
+    pub x: Vec<f64>,
+    pub xi: Vec<f64>,
+    pub given_x: Vec<Option<Span>>,
+    pub given_xi: Vec<Option<Span>>,
+}
+
+/// x and ξ from the `start` statements; what is not given is at the identity and at rest.
+pub fn read(
+    system: &System,
+    graph: &mut Graph,
+    scope: &Scope,
+    declared: &Declared,
+    defaults: &[f64],
+    report: &mut Report,
+) -> Option<Start> {
+    let kinds = declared
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.kind);
+    let x: Vec<f64> = kinds.flat_map(blocks).flat_map(identity).collect();
+    let xi = vec![0.0; declared.xi.len()];
+    let (given_x, given_xi) = (vec![None; x.len()], vec![None; xi.len()]);
+    let mut start = Start {
+        x,
+        xi,
+        given_x,
+        given_xi,
+    };
+    let mut symbols = vec![std::f64::consts::PI];
+    symbols.extend_from_slice(defaults);
+    symbols.resize(graph.symbols().len(), f64::NAN);
+    let mut complete = true;
+    for item in &system.items {
+        let ItemKind::Start { target, value } = &item.kind else {
+            continue;
+        };
+        let evaluator = Evaluator {
+            graph,
+            scope,
+            report,
+        };
+        complete &= start
+            .read(target, value, evaluator, declared, &symbols)
+            .is_some();
+    }
+    complete.then_some(start)
+}
+
+impl Start {
+    /// Solves for what the description does not give, so that its loops are closed and its constraints kept.
+    pub fn close(
+        &mut self,
+        closure: &Closure,
+        constraints: &[Pfaffian],
+        defaults: &[f64],
+    ) -> Result<(), Diagnostic> {
+        if defaults.iter().any(|number| number.is_nan()) {
+            return Ok(());
+        }
+        let given: Vec<bool> = self.given_x.iter().map(Option::is_some).collect();
+        closure.close_loops(&mut self.x, &given).map_err(|open| {
+            let error = Diagnostic::new(
+                constraints[open.constraint].span,
+                format!(
+                    "no configuration near the start closes this loop: it is open by {:.3e}",
+                    open.residual
+                ),
+            );
+            error.help(
+                "give a `start` closer to a closed loop; coordinates without a `start` are solved for, those with one are kept",
+            )
+        })?;
+        let given: Vec<bool> = self.given_xi.iter().map(Option::is_some).collect();
+        closure.settle(&self.x, &mut self.xi, &given).map_err(|open| {
+            let error = Diagnostic::new(
+                constraints[open.constraint].span,
+                format!(
+                    "the start velocities violate this constraint by {:.3e}",
+                    open.residual
+                ),
+            );
+            error.help(
+                "leave out the `start` of velocities that follow from the others: they are solved for",
+            )
+        })
+    }
+
+    fn read(
+        &mut self,
+        target: &Target,
+        expr: &Expr,
+        mut evaluator: Evaluator,
+        declared: &Declared,
+        symbols: &[f64],
+    ) -> Option<()> {
+        let name = &target.name.name;
+        let value = evaluator.value(expr);
+        let (range, wanted, of_x) = place(target, &mut evaluator, declared)?;
+        let mut value = value?;
+        let is_circle =
+            |c: &&crate::model::Coordinate| c.kind == CoordKind::S1 && c.offset == range.start;
+        if let Value::Scalar(angle) = value
+            && of_x
+            && range.len() == 2
+            && declared.coordinates.iter().any(|c| is_circle(&c))
+        {
+            let graph = &mut *evaluator.graph;
+            let (c, s) = (
+                graph.apply(Function::Cos, angle),
+                graph.apply(Function::Sin, angle),
+            );
+            value = Value::Vector(vec![c, s]);
+        }
+        if !value.same_shape(&wanted) {
+            let what = format!("the start of `{}`", written(target));
+            let kind = declared.coordinates.iter().find(|c| c.name == *name);
+            let help = match kind.map(|coordinate| coordinate.kind) {
+                Some(CoordKind::S1) if range.len() == 2 => "give the angle, as in `start q = 0.3;`",
+                Some(CoordKind::S3) => "give a unit quaternion, scalar first",
+                Some(CoordKind::SO3 | CoordKind::SE3) if range.len() >= 9 => {
+                    "build the rotation by `rotx(angle)`, `rpy(…)`, `axis_angle(…)`, and a pose by `pose(R, p)`"
+                }
+                _ => return evaluator.wrong_shape(expr.span, &what, &wanted.shape(), &value),
+            };
+            let (wanted, found) = (wanted.shape(), value.shape());
+            let message = format!("{what} has to be {wanted}, this is {found}");
+            return evaluator.error(Diagnostic::new(expr.span, message).help(help));
+        }
+        let entries = value.entries();
+        let class = entries
+            .iter()
+            .fold(0, |class, e| class | evaluator.graph.class(e.node()));
+        if class & !class::PARAM != 0 {
+            return evaluator.error(
+                Diagnostic::new(expr.span, format!("the start of `{name}` is no number"))
+                    .help("a start is made of numbers, constants and parameters"),
+            );
+        }
+        let params = symbols.iter().zip(evaluator.graph.symbols());
+        let unknown =
+            |(n, s): (&f64, &crate::algebra::graph::Symbol)| s.class == class::PARAM && n.is_nan();
+        if class != 0 && params.into_iter().any(unknown) {
+            // A default is in error; the start cannot be known.
+            return None;
+        }
+        let numbers = evaluate(evaluator.graph, &entries, symbols);
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return evaluator.error(
+                Diagnostic::new(expr.span, format!("the start of `{name}` is not finite"))
+                    .help("write numbers that floating point can hold"),
+            );
+        }
+        let (into, given) = if of_x {
+            (&mut self.x, &mut self.given_x)
+        } else {
+            (&mut self.xi, &mut self.given_xi)
+        };
+        if let Some(first) = given[range.clone()].iter().flatten().next() {
+            return evaluator.error(
+                Diagnostic::new(
+                    target.span(),
+                    format!("the start of `{}` is given twice", written(target)),
+                )
+                .help("remove one of the two")
+                .note(*first, "first given here"),
+            );
+        }
+        given[range.clone()].fill(Some(target.span()));
+        into[range].copy_from_slice(&numbers);
+        Some(())
+    }
+}
+
+/// The entries of x or ξ that a start is about, and their value; whether they are of x.
+fn place(
+    target: &Target,
+    evaluator: &mut Evaluator,
+    declared: &Declared,
+) -> Option<(std::ops::Range<usize>, Value, bool)> {
+    let name = &target.name.name;
+    if let Some(group) = declared.velocities.iter().find(|group| group.name == *name) {
+        if let Some(field) = &target.field {
+            return evaluator.error(
+                Diagnostic::new(
+                    field.span,
+                    format!("`{name}` has no part `.{}`", field.name),
+                )
+                .help(format!("give the whole of it: `start {name} = …;`")),
+            );
+        }
+        return Some((
+            group.offset..group.offset + group.len,
+            group.value.clone(),
+            false,
+        ));
+    }
+    if declared.coordinates.iter().any(|c| c.name == *name) {
+        let (range, wanted) = part(target, evaluator, declared)?;
+        return Some((range, wanted, true));
+    }
+    let accept = |kind: NameKind| matches!(kind, NameKind::Coord(_) | NameKind::Velocity);
+    if evaluator
+        .scope
+        .get(name)
+        .is_some_and(|entry| accept(entry.kind))
+    {
+        // Its own definition was in error.
+        return None;
+    }
+    let wanted = Some("coordinate or velocity");
+    let error = evaluator
+        .scope
+        .unknown(target.name.span, name, wanted, accept);
+    evaluator.error(error)
+}
+
+impl Declared {
+    /// The numbers of all symbols at the start, inputs and accelerations 0; NaN where not known.
+    pub fn numbers(&self, defaults: &[f64], start: Option<&Start>) -> Vec<f64> {
+        let mut numbers = vec![std::f64::consts::PI];
+        numbers.extend_from_slice(defaults);
+        match start {
+            Some(start) => numbers.extend(start.x.iter().chain(&start.xi)),
+            None => numbers.resize(numbers.len() + self.x.len() + self.xi.len(), f64::NAN),
+        }
+        numbers.resize(numbers.len() + self.u.len() + self.xi_dot.len(), 0.0);
+        numbers
+    }
+}

@@ -1,0 +1,323 @@
+//! Geometric constraints: φ in a graph with unconstrained points, and points that satisfy it.
+
+use super::declare::{Declared, declare, size};
+use super::expression::Evaluator;
+use super::names::Names;
+use super::scope::Scope;
+use super::{defaults, start};
+use crate::algebra::fp::{Fp, Random};
+use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::topoly::is_polynomial;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::layout::{Block, blocks, constraint};
+use crate::model::points::{HIGHEST_DEGREE, Points};
+use crate::model::value::Value;
+use crate::model::{class, samples};
+use crate::syntax::ast::{ItemKind, Span, System};
+
+/// What a row of φ says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// That a coordinate is of its kind, by the coordinate's index.
+    Coordinate(usize),
+    /// What the user wrote, by the statement's index.
+    Statement(usize),
+}
+
+/// X, as far as the constraints could be read.
+pub struct Variety {
+    pub points: Points,
+    /// φ in the graph with unconstrained points, and how each row reads.
+    pub phi: Vec<(Edge, String)>,
+    /// Where each row of φ comes from.
+    pub origins: Vec<Origin>,
+    /// Whether all constraints take part: only then is dim X known.
+    pub complete: bool,
+    /// Seed of the graph whose points were chosen last.
+    pub seed: u64,
+    /// The numbers of all symbols at the start, for variety whose branch matters: those with constraints
+    /// of the user's.
+    pub near: Option<Vec<f64>>,
+    /// Statements that could be evaluated off X.
+    read: Vec<usize>,
+}
+
+impl Variety {
+    /// Reads all constraints; names and shapes in them are checked later, on X.
+    pub fn read(system: &System, seed: u64, report: &mut Report) -> Self {
+        let mut random = Random::new(seed ^ 0xf4ee);
+        let mut graph = Graph::new(seed ^ 0xf4ee, class::PARAM);
+        let mut next = |_: &mut Graph| -> Fp { random.element() };
+        let mut scope = Scope::new(system, true);
+        let mut silent = Report::new();
+        let declared = declare(system, &mut graph, &mut next, &mut scope, &mut silent);
+        graph.set_reals(samples::anywhere(graph.symbols().len(), seed));
+        Names::read(system, &mut graph, &mut scope, &mut silent);
+        let (mut rows, mut read, mut complete) = (Vec::new(), Vec::new(), !declared.faulty);
+        for (index, item) in system.items.iter().enumerate() {
+            let ItemKind::Constraint { left, right } = &item.kind else {
+                continue;
+            };
+            let mut evaluator = Evaluator {
+                graph: &mut graph,
+                scope: &scope,
+                report: &mut silent,
+            };
+            let sides = (evaluator.value(left), evaluator.value(right));
+            let difference = match sides {
+                (Some(a), Some(b)) if a.same_shape(&b) => a.zip(&b, |x, y| graph.sub(x, y)),
+                _ => {
+                    complete = false;
+                    continue;
+                }
+            };
+            read.push(index);
+            match check(&graph, &difference, left.span.to(right.span)) {
+                Ok(edges) => rows.extend(edges.into_iter().map(|edge| (edge, index))),
+                Err(error) => {
+                    complete = false;
+                    report.push(error);
+                }
+            }
+        }
+        let blocks: Vec<Block> = declared
+            .coordinates
+            .iter()
+            .flat_map(|c| blocks(c.kind))
+            .collect();
+        let first = 1 + declared.params.iter().map(|group| group.len).sum::<usize>();
+        let constraints: Vec<Edge> = rows.iter().map(|(edge, _)| *edge).collect();
+        let near = (!constraints.is_empty()).then(|| {
+            let defaults = defaults::read(system, &mut graph, &scope, &declared, &mut silent);
+            let start = start::read(
+                system,
+                &mut graph,
+                &scope,
+                &declared,
+                &defaults,
+                &mut silent,
+            );
+            declared.numbers(&defaults, start.as_ref())
+        });
+        let near = near.filter(|near| near.iter().all(|number| number.is_finite()));
+        let mut variety = Variety {
+            points: Points::new(graph, constraints, blocks, first),
+            phi: Vec::new(),
+            origins: Vec::new(),
+            complete,
+            seed,
+            near,
+            read,
+        };
+        variety.collect(&declared, &rows);
+        variety
+    }
+
+    /// φ of every block and of the user, in the free graph, with the text of each row.
+    fn collect(&mut self, declared: &Declared, rows: &[(Edge, usize)]) {
+        for (index, coordinate) in declared.coordinates.iter().enumerate() {
+            let mut place = coordinate.offset;
+            for block in blocks(coordinate.kind) {
+                let name = if size(coordinate.kind) == 12 && block == Block::Rotation {
+                    format!("{}.R", coordinate.name)
+                } else {
+                    coordinate.name.clone()
+                };
+                let x = &declared.x[place..place + block.len()];
+                self.phi
+                    .extend(constraint(&mut self.points.free, block, x, &name));
+                place += block.len();
+            }
+            self.origins
+                .resize(self.phi.len(), Origin::Coordinate(index));
+        }
+        for (number, &(edge, item)) in rows.iter().enumerate() {
+            self.phi.push((edge, format!("constraint {}", number + 1)));
+            self.origins.push(Origin::Statement(item));
+        }
+    }
+
+    /// The rows of φ that the user wrote; those of the coordinate kinds stand before them.
+    pub fn user_rows(&self) -> std::ops::Range<usize> {
+        let kinds = self
+            .origins
+            .iter()
+            .filter(|o| matches!(o, Origin::Coordinate(_)));
+        kinds.count()..self.origins.len()
+    }
+
+    /// A point of X. Where there is none, the statement that is to blame is reported and
+    /// the user's constraints are left out, so that the rest can still be read.
+    pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<Fp> {
+        self.seed = seed;
+        let mut random = Random::new(seed ^ 0x5eed);
+        let mut point = |points: &Points| points.choose(&mut random, seed);
+        if let Some(point) = point(&self.points) {
+            return point;
+        }
+        let statements: Vec<usize> = self
+            .origins
+            .iter()
+            .filter_map(|origin| match origin {
+                Origin::Statement(item) => Some(*item),
+                Origin::Coordinate(_) => None,
+            })
+            .collect();
+        let all = std::mem::take(&mut self.points.constraints);
+        let blamed = (0..all.len()).find(|&last| {
+            self.points.constraints = all[..=last].to_vec();
+            point(&self.points).is_none()
+        });
+        if let Some(&item) = blamed.and_then(|last| statements.get(last)) {
+            report.push(contradiction(system, item, &statements));
+        }
+        self.complete = false;
+        let user = self.phi.len() - statements.len();
+        self.phi.truncate(user);
+        self.origins.truncate(user);
+        self.points.constraints.clear();
+        point(&self.points).unwrap_or_else(|| vec![Fp::ONE; self.points.symbols])
+    }
+
+    /// Reports what is wrong with names and shapes in the constraints, in the graph with points on X.
+    pub fn check(&self, system: &System, graph: &mut Graph, scope: &Scope, report: &mut Report) {
+        for (index, item) in system.items.iter().enumerate() {
+            let ItemKind::Constraint { left, right } = &item.kind else {
+                continue;
+            };
+            let mut evaluator = Evaluator {
+                graph,
+                scope,
+                report,
+            };
+            let (a, b) = (evaluator.value(left), evaluator.value(right));
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            let span = left.span.to(right.span);
+            if !a.same_shape(&b) {
+                let message = format!(
+                    "one side of the constraint is {}, the other {}",
+                    a.shape(),
+                    b.shape()
+                );
+                report.push(Diagnostic::new(span, message).help("both sides need the same shape"));
+            } else if !self.read.contains(&index) {
+                report.push(
+                    Diagnostic::new(
+                        span,
+                        "this constraint has no value away from where it holds",
+                    )
+                    .help("write it without what other constraints make zero or unit"),
+                );
+            } else if self.origins.contains(&Origin::Statement(index))
+                && !a.zip(&b, |x, y| graph.sub(x, y)).is_zero(graph)
+            {
+                report.push(
+                    Diagnostic::new(span, "this constraint does not hold where it was solved")
+                        .help("write it as a polynomial equation of coordinates"),
+                );
+            }
+        }
+    }
+}
+
+/// The rows of a constraint, where it is one.
+fn check(graph: &Graph, difference: &Value, span: Span) -> Result<Vec<Edge>, Diagnostic> {
+    let rows: Vec<Edge> = difference
+        .entries()
+        .into_iter()
+        .filter(|e| e.abs() != graph.zero())
+        .collect();
+    if rows.is_empty() {
+        return Err(Diagnostic::new(span, "this constraint always holds")
+            .help("remove it: both sides are the same expression"));
+    }
+    for &edge in &rows {
+        let class = graph.class(edge.node());
+        let error = |message: &str, help: &str| Err(Diagnostic::new(span, message).help(help));
+        if class & !(class::PARAM | class::COORD) != 0 {
+            return error(
+                "a constraint is about coordinates, not velocities or inputs",
+                "velocities are constrained by the choice of `velocity` and `rate`",
+            );
+        }
+        if class & class::COORD == 0 {
+            return error(
+                "this constraint has no coordinate in it",
+                "a constraint is an equation of coordinates, such as `x^2 + y^2 = l^2`",
+            );
+        }
+        if !is_polynomial(graph, edge, class::COORD) {
+            return error(
+                "a constraint has to be polynomial in the coordinates",
+                polynomial_help(graph, edge),
+            );
+        }
+        if degree(graph, edge) > HIGHEST_DEGREE {
+            let message = format!("a constraint of a degree beyond {HIGHEST_DEGREE}");
+            return Err(Diagnostic::new(span, message).help("write it with further coordinates"));
+        }
+    }
+    Ok(rows)
+}
+
+/// What to write instead of the function that a constraint cannot have.
+fn polynomial_help(graph: &Graph, edge: Edge) -> &'static str {
+    let of_coordinates = |id: &u32| graph.class(*id) & class::COORD != 0;
+    let nodes = graph.reachable(&[edge]);
+    let found = nodes
+        .iter()
+        .filter(|id| of_coordinates(id))
+        .find_map(|&id| match graph.node(id) {
+            Node::Apply(function, _) => Some(function),
+            Node::Atan2(..) => Some(Function::Atan2),
+            _ => None,
+        });
+    match found {
+        Some(Function::Sqrt) => "square both sides: `dot(r, r) = l^2` for `norm(r) = l`",
+        Some(Function::Sin | Function::Cos | Function::Atan2) => {
+            "use an S1 coordinate for an angle, its parts `.c` and `.s` for cos and sin"
+        }
+        Some(_) => "take the expression itself as a coordinate",
+        None => "multiply both sides by the denominator",
+    }
+}
+
+/// A bound of the degree in the coordinates.
+fn degree(graph: &Graph, edge: Edge) -> u32 {
+    let mut degrees = vec![0u32; graph.len()];
+    for id in graph.reachable(&[edge]) {
+        let of = |edge: Edge| degrees[edge.node() as usize];
+        degrees[id as usize] = match graph.node(id) {
+            Node::Symbol(_) => u32::from(graph.class(id) & class::COORD != 0),
+            Node::Add(a, b) => of(a).max(of(b)),
+            Node::Mul(a, b) => of(a).saturating_add(of(b)),
+            Node::Div(a, _) => of(a),
+            Node::Constant(_) | Node::Apply(..) | Node::Atan2(..) => 0,
+        };
+    }
+    degrees[edge.node() as usize]
+}
+
+/// No point was found once this statement joined those before it.
+fn contradiction(system: &System, item: usize, statements: &[usize]) -> Diagnostic {
+    let place = |item: usize| match &system.items[item].kind {
+        ItemKind::Constraint { left, right } => left.span.to(right.span),
+        _ => system.items[item].span,
+    };
+    let mut earlier: Vec<usize> = statements
+        .iter()
+        .copied()
+        .filter(|&other| other < item)
+        .collect();
+    earlier.dedup();
+    let message = if earlier.is_empty() {
+        "no configuration satisfies this constraint"
+    } else {
+        "no configuration satisfies this constraint together with those before it"
+    };
+    let error = Diagnostic::new(place(item), message)
+        .help("remove what contradicts, or let a value in it be a coordinate or a parameter");
+    earlier.into_iter().fold(error, |error, other| {
+        error.note(place(other), "one of those before")
+    })
+}
