@@ -5,12 +5,12 @@ use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::Args;
 use hamel_codegen::derive::care::{HELP, MANY, losses};
-use hamel_codegen::derive::check::{Identity, Verdict, check};
-use hamel_codegen::derive::confidence::Confidence;
 use hamel_codegen::derive::geometry::Inspection;
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::Generated;
+use hamel_codegen::proof::check::{Identity, Verdict, check};
+use hamel_codegen::proof::confidence::Confidence;
 use hamel_codegen::tables::geometry::lines;
 use std::path::PathBuf;
 

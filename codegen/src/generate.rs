@@ -1,7 +1,6 @@
 //! From a description to its program: what all front ends call.
 
 use crate::derive::assemble::assemble;
-use crate::derive::invariants;
 use crate::derive::reduction::reduce;
 use crate::diagnostics::Diagnostic;
 use crate::emit::NotRust;
@@ -9,6 +8,7 @@ use crate::functions::{Asked, FunctionId};
 use crate::lower;
 use crate::model::Model;
 use crate::program::Program;
+use crate::proof;
 use crate::syntax::{self, Places, ast};
 use proc_macro2::TokenStream;
 
@@ -102,10 +102,7 @@ impl Generated {
         let reduction = reduce(&model).map_err(|error| vec![error])?;
         let program = assemble(&model, reduction.as_ref(), linearized);
         let program = program.map_err(|error| vec![error])?;
-        match &reduction {
-            Some(reduction) => invariants::constrained::refute(&reduction.model, &program)?,
-            None => invariants::refute(&model)?,
-        }
+        proof::prove(&model, reduction.as_ref(), &program)?;
         Ok(Generated {
             active: reduction.map_or_else(|| model.clone(), |reduction| reduction.model),
             model,

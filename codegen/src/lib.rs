@@ -29,6 +29,7 @@ pub mod generate;
 pub mod lower;
 pub mod model;
 pub mod program;
+pub mod proof;
 pub mod render;
 #[cfg(feature = "files")]
 pub mod scene;

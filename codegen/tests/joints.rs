@@ -4,9 +4,9 @@
 mod common;
 
 use common::{Random, difference, generated, value};
-use hamel_codegen::derive::check::{Verdict, check};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::count;
+use hamel_codegen::proof::check::{Verdict, check};
 
 /// Two descriptions of one system in the same coordinates: roundings of a few hundred operations.
 const SAME: f64 = 1e-12;

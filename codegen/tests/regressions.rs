@@ -3,8 +3,8 @@
 mod common;
 
 use common::{generated, value};
-use hamel_codegen::derive::check::{Verdict, check};
 use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::proof::check::{Verdict, check};
 
 /// All of what dampers and springs are made of is there when the identities are proved.
 #[test]

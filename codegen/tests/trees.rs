@@ -7,9 +7,9 @@ mod tree;
 
 use common::{Random, difference, generated, value};
 use hamel_codegen::algebra::numeric::evaluate;
-use hamel_codegen::derive::levi_civita::{contracted, levi_civita};
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::Generated;
+use hamel_codegen::proof::levi_civita::{contracted, levi_civita};
 use tree::{Kind, Link, Tree, humanoid, text};
 
 /// Roundings of a few thousand operations, forces of the order of 100.

@@ -1,9 +1,9 @@
 //! A wrong sign in any one entry of a symbol breaks an identity, which is named.
 
 use hamel_codegen::algebra::graph::Edge;
-use hamel_codegen::derive::check::failures;
-use hamel_codegen::derive::forms::Symbols;
 use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::proof::check::failures;
+use hamel_codegen::proof::forms::Symbols;
 use std::path::Path;
 
 /// Constant and varying γ, constant and varying M, bodies, particles, a given T, every kind of load.

@@ -1,10 +1,10 @@
 //! Every identity of the formalism holds for every model, and a broken symbol is noticed.
 
 use hamel_codegen::algebra::graph::Node;
-use hamel_codegen::derive::check::{Identity, Verdict, check};
-use hamel_codegen::derive::correction::validate;
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::from_text;
+use hamel_codegen::proof::check::{Identity, Verdict, check};
+use hamel_codegen::proof::correction::validate;
 use std::path::Path;
 
 fn text(name: &str) -> String {

@@ -4,8 +4,8 @@
 use hamel::methods::General;
 use hamel::{State, System, integrate};
 use hamel_codegen::builder::source;
-use hamel_codegen::derive::check::{Identity, Verdict, check};
 use hamel_codegen::generate::from_text;
+use hamel_codegen::proof::check::{Identity, Verdict, check};
 use hamel_tests::cart_rods::CartRods;
 use hamel_tests::double_spherical_pendulum::DoubleSphericalPendulum;
 use hamel_tests::euler_top_quaternion::EulerTop;

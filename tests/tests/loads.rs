@@ -1,11 +1,11 @@
 //! Loads are proved: a wrong sign in any of them is noticed. Frames may be given in any order.
 
 use hamel_codegen::algebra::graph::Edge;
-use hamel_codegen::derive::check::{Verdict, check};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::Model;
 use hamel_codegen::program::Program;
 use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::proof::check::{Verdict, check};
 use std::path::Path;
 
 fn text(name: &str) -> String {

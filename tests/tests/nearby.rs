@@ -3,11 +3,11 @@
 
 use hamel::{Block, manifold};
 use hamel_codegen::algebra::fp::Random;
-use hamel_codegen::derive::validate::validate;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::layout;
 use hamel_codegen::program::count::count;
 use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::proof::validate::validate;
 use std::path::{Path, PathBuf};
 
 /// Step of central differences, extrapolated once: truncation like h⁴/480 times fifth derivatives

@@ -9,10 +9,10 @@ mod case;
 
 use case::{Case, cases};
 use hamel_codegen::derive::structure::choice::choose;
-use hamel_codegen::derive::validate::validate;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::model::layout::Block;
 use hamel_codegen::program::structure::{Inertia, Reason, Splitting, Symmetry};
+use hamel_codegen::proof::validate::validate;
 use nalgebra::{DMatrix, DVector};
 use std::fmt::Write;
 use std::ops::Range;

@@ -1,8 +1,8 @@
 //! Broken twins: a model with one deliberate mistake is refused, and the message names the identity
 //! that fails.
 
-use hamel_codegen::derive::check::{Verdict, check};
 use hamel_codegen::generate::from_text;
+use hamel_codegen::proof::check::{Verdict, check};
 use std::path::Path;
 
 /// A model, what stands there, what the twin has instead, and what its message says.

@@ -1,6 +1,7 @@
 //! Correct descriptions give no warnings: those of the models, the examples, and what imports write.
 
-use hamel_codegen::model::{Model, build};
+use hamel_codegen::lower::build;
+use hamel_codegen::model::Model;
 use hamel_codegen::render::warnings;
 use hamel_codegen::syntax::parse_text;
 use hamel_codegen::urdf::{Options, import};

@@ -1,25 +1,20 @@
 //! The program of a model: every function that is emitted, validated before it leaves.
 
 use super::accel::cheapest::Computation;
-use super::accel::parts::Parts;
 use super::accel::{Acceleration, accel, forces};
 use super::calculus::Calculus;
 use super::care::{self, Care};
+use super::program::{Builder, MOST_LITERAL, shape_of};
 use super::reduction::Reduction;
 use super::structure::{self, Found, Functions};
-use super::{constrained, correction, energy, inertia, kinematics, loads};
+use super::{correction, energy, inertia, kinematics};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
-use crate::model::value::Value;
 use crate::model::{Model, class};
 use crate::program::structure::Structure;
 use crate::program::{Argument, Function, FunctionId, Program, Shape};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
-
-/// Models with more velocities are looked at for lack of inertia by M as it is traced: the literal one, n²
-/// entries of all bodies, would take longer than all else.
-pub(super) const MOST_LITERAL: usize = 8;
 
 /// Derives the functions of a model that are wanted; `reduction` solves its constraints. The program is
 /// the cheapest one, or, where rounding takes too much of that, the one that keeps more digits.
@@ -43,11 +38,6 @@ pub fn assemble(
         }
         care::note(&mut program, &losses);
     }
-    match reduction {
-        Some(reduction) => constrained::validate(full, reduction, &program)?,
-        None => super::validate::validate(model, &program)?,
-    }
-    correction::validate(full, &program)?;
     Ok(program)
 }
 
@@ -110,70 +100,7 @@ fn put_together(
     Ok((builder.finish(structure), mass))
 }
 
-/// The functions so far, and what they are made from.
-pub(super) struct Builder<'a> {
-    /// The model.
-    pub(super) model: &'a Model,
-    /// The graph of all functions.
-    pub(super) graph: Graph,
-    /// ξ̇.
-    pub(super) chosen: Acceleration,
-    /// M and forces.
-    pub(super) parts: Parts,
-    /// The same in a graph where nothing but ξ̇ is computed, sharing what they can with it.
-    pub(super) shared: Computation,
-    /// The functions.
-    pub(super) functions: Vec<Function>,
-    /// How candidates are compared.
-    pub(super) care: Care,
-    /// Pivots of [Y; Φ].
-    pub(super) kinematic_guards: Vec<Edge>,
-    /// Pivots of the inertias of a system that splits, where M has none that are constant.
-    pub(super) split_guards: Vec<Edge>,
-}
-
-impl<'a> Builder<'a> {
-    fn new(model: &'a Model, chosen: Acceleration, computed: Computation, care: &Care) -> Self {
-        let Computation { mut graph, parts } = computed;
-        let mut around = chosen.graph.clone();
-        let shared = Computation {
-            parts: parts.shared(&graph, &mut around),
-            graph: around,
-        };
-        let kinematic_guards = rebuild(&model.graph, &mut graph, &model.completion.pivots);
-        Builder {
-            model,
-            graph,
-            chosen,
-            parts,
-            shared,
-            functions: Vec::new(),
-            care: care.clone(),
-            kinematic_guards,
-            split_guards: Vec::new(),
-        }
-    }
-
-    /// Adds a function that always has a value.
-    pub(super) fn push(&mut self, id: FunctionId, shape: Shape, outputs: Vec<Edge>) {
-        self.functions.push(Function::known(id, shape, outputs));
-    }
-
-    /// Adds a function that has a value where the guards are positive.
-    pub(super) fn push_guarded(
-        &mut self,
-        id: FunctionId,
-        shape: Shape,
-        outputs: Vec<Edge>,
-        guards: Vec<Edge>,
-    ) {
-        self.functions.push(Function {
-            guards,
-            fallible: true,
-            ..Function::known(id, shape, outputs)
-        });
-    }
-
+impl Builder<'_> {
     fn kinematics(&mut self) {
         let model = self.model;
         let rate = rebuild(&model.graph, &mut self.graph, &model.rate);
@@ -215,15 +142,6 @@ impl<'a> Builder<'a> {
         self.push(FunctionId::KineticEnergy, Shape::Scalar, vec![kinetic]);
         self.push(FunctionId::PotentialEnergy, Shape::Scalar, vec![potential]);
         self.push(FunctionId::Energy, Shape::Scalar, vec![energy]);
-    }
-
-    /// Pivots that vary at run time.
-    pub(super) fn guards(&self) -> Vec<Edge> {
-        let pivots = self.chosen.pivots.iter().copied();
-        pivots
-            .filter(|p| !self.graph.is_free(p.node()))
-            .chain(self.kinematic_guards.iter().copied())
-            .collect()
     }
 
     /// D, where there is one.
@@ -355,16 +273,6 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The shape of a function with this value.
-pub(super) fn shape_of(value: &Value) -> Shape {
-    match value {
-        Value::Scalar(_) => Shape::Scalar,
-        Value::Vector(v) => Shape::Vector(v.len()),
-        Value::Matrix(m) => Shape::Matrix(m.len(), m.first().map_or(0, Vec::len)),
-        Value::Pose(..) => Shape::Vector(value.entries().len()),
-    }
-}
-
 /// Names of temporaries from the user's `let`s: `p`, and `p_1` … for the entries of a vector.
 fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
     let mut names = Vec::new();
@@ -382,15 +290,4 @@ fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
         }
     }
     names
-}
-
-/// Applied forces summed, for the reference of validation.
-pub fn applied_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
-    let all = loads::applied(model, calculus);
-    (0..model.n())
-        .map(|i| {
-            let column: Vec<Edge> = all.iter().map(|load| load[i]).collect();
-            model.graph.sum(&column)
-        })
-        .collect()
 }

@@ -93,3 +93,14 @@ pub fn point(model: &mut Model, frame: usize, a: Vec3) -> Vec3 {
     let arm = apply3(&mut model.graph, &frame.rotation, a);
     add3(&mut model.graph, frame.position, arm)
 }
+
+/// Applied forces summed, for the reference of validation.
+pub fn applied_force(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
+    let all = applied(model, calculus);
+    (0..model.n())
+        .map(|i| {
+            let column: Vec<Edge> = all.iter().map(|load| load[i]).collect();
+            model.graph.sum(&column)
+        })
+        .collect()
+}

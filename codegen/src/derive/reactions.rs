@@ -1,8 +1,8 @@
 //! Functions of systems with constraints: the multipliers, and what leads back to where they hold.
 
-use super::assemble::Builder;
 use super::candidates::Candidates;
 use super::multipliers::multipliers;
+use super::program::Builder;
 use super::reduction::Reduction;
 use crate::algebra::graph::Edge;
 use crate::algebra::transplant::rebuild;

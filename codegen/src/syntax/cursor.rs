@@ -7,6 +7,9 @@ use super::tokens::{Kind, Token, closing};
 use super::words::{CONNECTIVES, RUST_WORDS, is_statement};
 use crate::diagnostics::Diagnostic;
 
+/// Errors reported for one description; what follows is rarely read.
+pub(super) const MAX_ERRORS: usize = 100;
+
 /// A part of the description, or the error that ends its statement.
 pub(super) type Parsed<T> = Result<T, Diagnostic>;
 

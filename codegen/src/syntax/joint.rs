@@ -3,9 +3,9 @@
 use proc_macro2::Delimiter;
 
 use super::ast::{Expr, Ident, Joint, JointField, JointKind, Span};
+use super::blocks::fields;
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
-use super::parse::fields;
 use super::suggest::closest;
 use crate::diagnostics::Diagnostic;
 

@@ -11,6 +11,7 @@
 //! | `scan` | the raw text of a file: brackets, and characters that no token has |
 //! | `tokens` | the flat list of tokens, and its canonical spelling |
 //! | `cursor` | the place in that list, and how an unexpected token is reported |
+//! | `blocks` | what stands between braces, doc comments |
 //! | `parse` | the system, statement after statement, and recovery |
 //! | `statement`, `declaration`, `body`, `joint`, `load` | the statements |
 //! | `expression`, `number` | values |
@@ -22,6 +23,7 @@ use proc_macro2::TokenStream;
 use crate::diagnostics::Diagnostic;
 
 pub mod ast;
+mod blocks;
 mod body;
 mod cursor;
 mod declaration;
@@ -46,9 +48,6 @@ mod tests;
 pub use tokens::Places;
 
 pub(crate) use joint::{field_name as joint_field, kind_name as joint_kind};
-
-/// Errors reported for one description; what follows is rarely read.
-const MAX_ERRORS: usize = 100;
 
 /// Parses a description given as tokens; places in it are places of these tokens.
 pub fn parse_tokens(tokens: TokenStream) -> (Places, Result<ast::System, Vec<Diagnostic>>) {
@@ -77,7 +76,7 @@ pub fn parse_text(text: &str) -> Result<ast::System, Vec<Diagnostic>> {
             Err(more) => errors.extend(more),
         }
     }
-    errors.truncate(MAX_ERRORS);
+    errors.truncate(cursor::MAX_ERRORS);
     Err(errors)
 }
 

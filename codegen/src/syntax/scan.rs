@@ -7,8 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{LexError, TokenStream};
 
-use super::MAX_ERRORS;
 use super::ast::Span;
+use super::cursor::MAX_ERRORS;
 use super::tokens::{MAX_NESTING, too_deep};
 use crate::diagnostics::Diagnostic;
 

@@ -1,9 +1,9 @@
 //! The statements, by their first word.
 
 use super::ast::{Expr, Ident, Item, ItemKind, Target};
+use super::blocks::since;
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
-use super::parse::since;
 use super::suggest::closest;
 use super::tokens::Kind;
 use super::words::statements;

@@ -1,10 +1,11 @@
 //! The entries of every table, as edges of the graph that they live in.
 
+use super::entries::Cell;
 use super::kind::Table;
-use super::listing::{Cell, Listing, listing};
+use super::listing::{Listing, listing};
 use super::simplify::Simplifier;
 use crate::algebra::graph::{Edge, Graph};
-use crate::derive::assemble::applied_force;
+use crate::derive::loads::applied_force;
 use crate::derive::tables::Geometry;
 use crate::functions::FunctionId;
 use crate::generate::Generated;

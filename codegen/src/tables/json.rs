@@ -6,7 +6,8 @@
 //! `reads`, entries with a name of their own have `name`. `geometry`, where it was asked for, is
 //! described in `geometry`.
 
-use super::listing::{Definition, Entry, Group, Listing};
+use super::entries::{Definition, Entry, Group};
+use super::listing::Listing;
 use super::print::Notation;
 use super::{Tables, geometry};
 use serde_json::{Value, json as object};

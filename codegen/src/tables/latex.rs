@@ -1,7 +1,8 @@
 //! Tables as LaTeX, one displayed array each; needs amsmath. The report on the geometry is comments.
 
+use super::entries::{Definition, Entry, Group};
 use super::kind::Table;
-use super::listing::{Definition, Entry, Group, Listing};
+use super::listing::Listing;
 use super::notation::latex_name;
 use super::print::{Notation, index};
 use super::text::leads;

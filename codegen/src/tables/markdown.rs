@@ -1,6 +1,7 @@
 //! Tables as Markdown, expressions in code spans.
 
-use super::listing::{Definition, Listing};
+use super::entries::Definition;
+use super::listing::Listing;
 use super::print::Notation;
 use super::text::{indices, label, leads, summary};
 use super::{Table, Tables, geometry};

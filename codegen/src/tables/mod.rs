@@ -16,6 +16,7 @@
 
 mod circles;
 mod collect;
+mod entries;
 pub mod expression;
 pub mod geometry;
 mod json;
@@ -35,10 +36,11 @@ mod tests;
 mod text;
 mod write;
 
+pub use entries::{Definition, Entry, Group};
 pub use json::json;
 pub use kind::Table;
 pub use latex::latex;
-pub use listing::{Definition, Entry, Group, Listing};
+pub use listing::Listing;
 pub use markdown::markdown;
 pub use text::text;
 

@@ -1,8 +1,8 @@
 //! Names of temporaries: t1, t2 … for values, k1, k2 … for those of parameters alone, or as the user
 //! named them.
 
+use super::entries::Definition;
 use super::expression::Term;
-use super::listing::Definition;
 use crate::algebra::graph::{Edge, Graph, NodeId};
 use rustc_hash::{FxHashMap, FxHashSet};
 

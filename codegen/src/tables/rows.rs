@@ -1,7 +1,7 @@
 //! Rows of a table: entries with one value up to its sign.
 
+use super::entries::{Cell, Group};
 use super::expression::Term;
-use super::listing::{Cell, Group};
 use super::polish::sorted;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, NodeId};

@@ -1,6 +1,7 @@
 //! Tables as plain text for a terminal.
 
-use super::listing::{Definition, Entry, Group, Listing};
+use super::entries::{Definition, Entry, Group};
+use super::listing::Listing;
 use super::print::{Notation, index};
 use super::{Table, Tables, geometry};
 

@@ -3,8 +3,8 @@
 //! First it is planned how each node is shown and how often it is read, then expressions are built
 //! from the leaves up; nothing is recursive, since graphs are deep.
 
+use super::entries::Definition;
 use super::expression::{Atom, Term};
-use super::listing::Definition;
 use super::naming::Temporaries;
 use super::polish::{Letters, polish};
 use super::simplify::Simplifier;

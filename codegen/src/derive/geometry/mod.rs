@@ -17,8 +17,8 @@ pub mod recognise;
 pub mod side;
 pub mod symmetry;
 
-use super::assemble::applied_force;
 use super::calculus::Calculus;
+use super::loads::applied_force;
 use super::normal::without_coordinates;
 use super::tables::Geometry;
 use crate::algebra::graph::{Edge, Graph, Node};

@@ -4,14 +4,14 @@
 //! P = J ω for rotors. The generalised force in the rates η is T⁻ᵀ Nᵀ f: the torque of a rotor about
 //! its centre of mass or fixed point, and for all else a force that D⁻¹ makes an acceleration.
 
-use super::Setting;
 use super::constant::settle;
 use super::inertia::Separated;
+use super::setting::Setting;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, multiply, solve_symmetric, transpose};
 use crate::algebra::transplant::rebuild;
-use crate::derive::assemble::Builder;
 use crate::derive::candidates::Candidates;
+use crate::derive::program::Builder;
 use crate::model::class;
 use crate::program::count::count;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};

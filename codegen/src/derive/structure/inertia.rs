@@ -1,10 +1,10 @@
 //! What is left of inertia when plain coordinates are shifted to centres of mass: one constant matrix
 //! for each rotor, one for plain and circular coordinates together.
 
-use super::Setting;
 use super::centre::{Shift, shift};
 use super::constant::settle;
 use super::rates::{Part, Rates, dependence, measure_alike, rates};
+use super::setting::Setting;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, multiply, solve_symmetric, transpose};
 use crate::derive::accel::parts::Parts;

@@ -23,12 +23,11 @@ mod constant;
 mod forces;
 mod functions;
 mod inertia;
-mod proof;
-mod rates;
+pub mod rates;
+mod setting;
 mod variation;
 
 pub(super) use functions::Functions;
-pub(super) use proof::Proof;
 
 use super::accel::parts::Parts;
 use crate::algebra::graph::{Edge, Graph};
@@ -36,6 +35,7 @@ use crate::model::pfaffian::Kind;
 use crate::model::{Model, class};
 use crate::program::structure::{Reason, Splitting, Structure};
 use rates::{Part, parts};
+use setting::Setting;
 use variation::Variation;
 
 /// What was found, and the functions of a system that splits.
@@ -118,13 +118,6 @@ pub fn analyse(full: &Model, model: &Model, graph: &Graph, traced: &Parts) -> Fo
         structure,
         functions,
     }
-}
-
-/// A model with its blocks and a point from which symbols are moved.
-struct Setting<'a> {
-    model: &'a Model,
-    parts: &'a [Part],
-    variation: &'a Variation<'a>,
 }
 
 /// The coordinates that M depends on. Coordinates that a description ties to one another are not

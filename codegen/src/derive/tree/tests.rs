@@ -5,7 +5,7 @@ use super::{Placement, Tree, articulated, composite, nearby};
 use crate::algebra::derivation::Derivation;
 use crate::derive::accel::parts::{Axes, Reference, Variant, parts};
 use crate::derive::calculus::Calculus;
-use crate::model::{self, Model};
+use crate::model::Model;
 
 fn chain(n: usize, placement: &str) -> Model {
     let mut text = String::from("system Chain { gravity [0, 0, -9.81];\n");

@@ -154,7 +154,7 @@ fn number(graph: &Graph, edge: Edge) -> Option<f64> {
 }
 
 /// J of every velocity; ½ J ξⁱ² is added to the kinetic energy.
-pub(in crate::lower) fn armature(
+pub(crate) fn armature(
     system: &System,
     graph: &mut Graph,
     scope: &Scope,

@@ -16,9 +16,6 @@ use crate::model::pfaffian::Pfaffian;
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 
-/// Largest violation of φ at the start that counts as rounding of the numbers given.
-const ROUNDING: f64 = 1e-9;
-
 /// x and ξ so far, and where each entry was given.
 pub struct Start {
     pub x: Vec<f64>,

@@ -7,11 +7,11 @@
 //! A kinetic energy that the user wrote belongs to no particles. Its own S is
 //! ½ M_ij ξ̇ⁱ ξ̇ʲ + ξ̇ⁱ Γᵢⱼₖ ξʲ ξᵏ, so for that term this form is not independent of the others.
 
-use super::calculus::Calculus;
-use super::{connection, inertia};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{Vec3, add3, apply3, cross};
+use crate::derive::calculus::Calculus;
+use crate::derive::{connection, inertia};
 use crate::model::Model;
 
 /// How much of T belongs to bodies and particles, so that S is known from accelerations.

@@ -1,16 +1,16 @@
 //! The identities of the equations of motion: T against M (20), loads (28), the three forms (30)
 //! against one another, and the emitted ξ̇ in them.
 
-use super::calculus::Calculus;
-use super::check::Sides;
 use super::forms::Symbols;
 use super::gibbs::{Coverage, coverage};
 use super::hamel_form::by_velocity;
 use super::levi_civita::{contracted, levi_civita};
-use super::tables::Geometry;
+use super::verdict::Sides;
 use super::virtual_power;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
+use crate::derive::calculus::Calculus;
+use crate::derive::tables::Geometry;
 use crate::program::{FunctionId, Program};
 
 /// ∂²T/∂ξⁱ∂ξʲ = M_ij, fᵢ by virtual work, (30a) = (30b) and (30a) = (30c) for all ξ̇.

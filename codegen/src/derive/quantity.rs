@@ -1,9 +1,9 @@
 //! Energy and momenta in world axes: P = Σ m ċ and L_p = Σ (c − p) × m ċ + R Θ ω over the bodies
 //! with their centres of mass c and inertia Θ about them, and over particles.
 
+use super::calculus::Calculus;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, apply3, cross, scale3, sub3, zero3};
-use crate::derive::calculus::Calculus;
 use crate::model::Model;
 use crate::model::invariants::Quantity;
 use crate::model::value::Value;

@@ -14,18 +14,18 @@
 
 pub mod constrained;
 mod proof;
-pub mod quantity;
 mod remainder;
 
-use super::calculus::Calculus;
-use super::check::{Identity, Verdict};
 use super::confidence::Confidence;
 use super::reference::Reference;
+use super::verdict::{Identity, Verdict};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
+use crate::derive::calculus::Calculus;
+use crate::derive::quantity;
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::model::invariants::Invariant;

@@ -1,8 +1,8 @@
 //! The explicit equations of motion with the connection, KR18 (30c):
 //! M_ij ξ̇ʲ + Γᵢⱼₖ ξʲ ξᵏ + ∂ᵢV = fᵢ (N or N m, n entries).
 
-use super::calculus::Calculus;
 use crate::algebra::graph::Edge;
+use crate::derive::calculus::Calculus;
 use crate::model::Model;
 
 /// Γᵢⱼₖ ξʲ ξᵏ, contracted from the table of Γ.

@@ -10,14 +10,14 @@
 //! | `momenta` | θ̇ of circles, J ω of rotors |
 //! | `kick` | d/dt p of plain coordinates and circles, d/dt P − P × ω of rotors |
 
-use super::rates::{Part, parts};
+use super::numbers::{Numbers, Values};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
 use crate::derive::kinematics::chart_rates;
-use crate::derive::numbers::{Numbers, Values};
+use crate::derive::structure::rates::{Part, parts};
 use crate::model::Model;
 use crate::program::structure::Structure;
 use crate::program::{FunctionId, Program};

@@ -3,10 +3,10 @@
 //!
 //! T is not taken from M, but from the velocities of bodies and particles.
 
-use super::calculus::{Calculus, into_frame};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{add3, apply3, cross};
+use crate::derive::calculus::{Calculus, into_frame};
 use crate::model::Model;
 
 /// T(x, ξ) = Σ ½ m ‖v_c‖² + ½ ω·Θω + Σ ½ m ‖ṙ‖² and what the user wrote (J); v_c and ω in body

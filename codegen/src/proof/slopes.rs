@@ -5,15 +5,15 @@
 //! independent derivation by then, and equal functions on X have equal slopes along it; so the slopes are
 //! those of the emitted functions. Else M, h, ∂V and f are derived once more.
 
-use super::calculus::Calculus;
-use super::invariants::quantity;
+use super::hamel_form;
 use super::reference::Reference;
-use super::{energy, hamel_form};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
+use crate::derive::calculus::Calculus;
+use crate::derive::{energy, quantity};
 use crate::model::Model;
 use crate::program::{FunctionId, Program};
 

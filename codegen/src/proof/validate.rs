@@ -20,10 +20,11 @@ use super::check::failures;
 use super::forms::Symbols;
 use super::numbers::{Numbers, Values};
 use super::slopes::Slopes;
-use super::structure::Proof;
+use super::splitting::Proof;
+use super::verdict::failure;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
-use crate::algebra::lane::{Lane, Roots};
+use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tape::Tape;
 use crate::diagnostics::Diagnostic;
@@ -92,26 +93,6 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-/// A fault of the generator, which is never emitted.
-pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
-    if model.points.roots == Roots::Anything {
-        let message = format!(
-            "`{}` could not be proved: {what} was not confirmed",
-            model.name
-        );
-        let help = "roots within roots have no values in the fields of the proof: let a parameter or a coordinate stand for the inner one";
-        return Diagnostic::new(model.span, message).help(help);
-    }
-    Diagnostic::new(
-        model.span,
-        format!(
-            "internal check failed for `{}`: {what} does not hold",
-            model.name
-        ),
-    )
-    .help("this is a fault of the generator, nothing was emitted; please report the description")
 }
 
 /// The functions that are compared with the forms, to be evaluated together.

@@ -1,9 +1,10 @@
 //! One derivation beside the emitted one, by Hamel's form (30a): what slopes, claims and constrained
 //! systems are compared with in numbers.
 
-use super::calculus::Calculus;
-use super::{commutation, connection, energy, inertia, kinematics, virtual_power};
+use super::virtual_power;
 use crate::algebra::graph::Edge;
+use crate::derive::calculus::Calculus;
+use crate::derive::{commutation, connection, energy, inertia, kinematics};
 use crate::model::Model;
 
 /// M, h = Γ ξ ξ, ∂V, f, T, V.

@@ -2,12 +2,12 @@
 //! particles, and motion of points from ∂ᵢr and ∂ᵢ∂ⱼr. The route that `loads` and the functions of
 //! the language are compared with; it knows no angular velocities of loads and no derivatives of D.
 
-use super::calculus::Calculus;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{
     Mat3, Vec3, add3, apply3, cross, multiply3, scale3, sub3, transpose3, zero3,
 };
+use crate::derive::calculus::Calculus;
 use crate::model::elements::Along;
 use crate::model::motion::{Observed, Quantity};
 use crate::model::{Model, Wrench};

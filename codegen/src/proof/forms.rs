@@ -1,9 +1,10 @@
 //! All symbols of a model side by side, each derived on its own way: what identities compare.
 
-use super::calculus::Calculus;
-use super::tables::Geometry;
-use super::{assemble, commutation, gibbs, hamel_form, virtual_power};
+use super::{gibbs, hamel_form, virtual_power};
 use crate::algebra::graph::Edge;
+use crate::derive::calculus::Calculus;
+use crate::derive::tables::Geometry;
+use crate::derive::{commutation, loads};
 use crate::model::Model;
 
 /// The symbols that `check` compares. They are plain fields, so that a test can break one.
@@ -50,7 +51,7 @@ impl Symbols {
             geometry.potential,
         );
         let gibbs = gibbs::gibbs_appell(model, &mut motion, &gamma_of_rows);
-        let applied = assemble::applied_force(model, &mut geometry.calculus);
+        let applied = loads::applied_force(model, &mut geometry.calculus);
         let mut graph = model.graph.clone();
         let virtual_work = virtual_power::applied(model, &mut graph, &mut geometry.calculus);
         model.graph = graph;

@@ -2,19 +2,18 @@
 //! multipliers satisfy M ξ̇ + h + ∂V = f + Bᵀ λ in every row of the full frame, and d/dt (B ξ) is what
 //! the constraints ask for; M, h, V and f come from T and γ of the full frame.
 
-use super::calculus::Calculus;
-use super::check::{Identity, Verdict};
 use super::confidence::Confidence;
 use super::kernel::{in_kernel, places};
-use super::reduction::{Reduction, drift};
 use super::reference::Reference;
-use super::validate::failure;
+use super::verdict::{Identity, Verdict, failure};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tangent::tangent_at;
 use crate::derive::accel::saddle;
+use crate::derive::calculus::Calculus;
+use crate::derive::reduction::{Reduction, drift};
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
 use crate::program::{FunctionId, Program};

@@ -1,21 +1,20 @@
 //! Claims about systems with constraints on their velocities: d/dt I at exact points modulo p where
 //! B ξ = 0, with ξ̇ by the program, which has been validated.
 
-use super::quantity;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tangent::tangent_at;
 use crate::derive::calculus::Calculus;
-use crate::derive::check::{Identity, Verdict};
-use crate::derive::confidence::Confidence;
-use crate::derive::kernel::{in_kernel, places};
-use crate::derive::{energy, inertia};
+use crate::derive::{energy, inertia, quantity};
 use crate::diagnostics::Diagnostic;
 use crate::model::invariants::Invariant;
 use crate::model::{Model, class};
 use crate::program::{FunctionId, Program};
+use crate::proof::confidence::Confidence;
+use crate::proof::kernel::{in_kernel, places};
+use crate::proof::verdict::{Identity, Verdict};
 
 /// Fresh points for every claim.
 const POINTS: u64 = 4;

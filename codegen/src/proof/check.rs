@@ -6,40 +6,19 @@
 
 use super::confidence::Confidence;
 use super::forms::Symbols;
-use super::motion;
-use super::normal::NormalForms;
-use super::reduction::reduce;
-use super::tables::Geometry;
-use super::{constrained, invariants};
+use super::verdict::Sides;
+pub use super::verdict::{Identity, Verdict};
+use super::{constrained, invariants, motion};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::multiply;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::transplant::rebuild;
+use crate::derive::normal::NormalForms;
+use crate::derive::reduction::reduce;
+use crate::derive::tables::Geometry;
 use crate::model::{Model, class};
 use crate::program::Program;
-
-/// How an identity fared.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// Both sides have the same normal form modulo φ over the rationals.
-    Proved,
-    /// Both sides agree at random points of X.
-    Checked(Confidence),
-    /// They differ.
-    Failed(String),
-}
-
-/// One identity with its verdict.
-#[derive(Clone, Debug)]
-pub struct Identity {
-    /// KR18's number, or a name.
-    pub label: &'static str,
-    /// The equation.
-    pub equation: String,
-    /// How it fared.
-    pub verdict: Verdict,
-}
 
 /// Fresh points for every identity.
 const POINTS: u64 = 4;
@@ -51,14 +30,6 @@ const MOST_PROVED: usize = 8;
 const MOST_NODES: usize = 20_000;
 /// The same where ξ̇ occurs: twice differentiated rotations are long polynomials in free coordinates.
 const MOST_MOVING_NODES: usize = 640;
-
-/// Left and right sides of an identity.
-pub(super) struct Sides {
-    pub(super) label: &'static str,
-    pub(super) equation: &'static str,
-    pub(super) left: Vec<Edge>,
-    pub(super) right: Vec<Edge>,
-}
 
 /// Checks all identities of a model and its program.
 pub fn check(model: &Model, program: &Program) -> Vec<Identity> {

@@ -3,9 +3,9 @@
 use super::Numbers;
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate_at;
-use crate::derive::forms::Symbols;
-use crate::derive::validate::{COMPARED, compared};
 use crate::generate::{Generated, from_text};
+use crate::proof::forms::Symbols;
+use crate::proof::validate::{COMPARED, compared};
 
 /// Everything that has a route of its own: bodies with their centres beside the origin, a particle, a
 /// kinetic energy that was written, noncommuting velocities, loads and dampers of all kinds.

@@ -1,0 +1,50 @@
+//! The proof that stands before every emission, and what `hamel check` says.
+//!
+//! Everything here is derived once more, on routes that the emitted functions did not take, and compared at fresh
+//! points of X modulo two primes.
+
+pub mod check;
+pub mod confidence;
+pub mod constrained;
+pub mod correction;
+pub mod forms;
+pub mod gibbs;
+pub mod hamel_form;
+pub mod invariants;
+mod kernel;
+pub mod levi_civita;
+pub mod motion;
+mod numbers;
+mod reference;
+mod slopes;
+mod splitting;
+pub mod validate;
+mod verdict;
+pub mod virtual_power;
+
+use crate::derive::reduction::Reduction;
+use crate::diagnostics::Diagnostic;
+use crate::model::Model;
+use crate::program::Program;
+
+/// Proves the functions of a program, and that what the description claims to be constant along the motion is;
+/// `reduction` solves its constraints.
+///
+/// # Errors
+/// A fault of the generator, with the identities that are broken; or the claims that are false.
+pub fn prove(
+    model: &Model,
+    reduction: Option<&Reduction>,
+    program: &Program,
+) -> Result<(), Vec<Diagnostic>> {
+    let one = |error| vec![error];
+    match reduction {
+        Some(reduction) => constrained::validate(model, reduction, program).map_err(one)?,
+        None => validate::validate(model, program).map_err(one)?,
+    }
+    correction::validate(model, program).map_err(one)?;
+    match reduction {
+        Some(reduction) => invariants::constrained::refute(&reduction.model, program),
+        None => invariants::refute(model),
+    }
+}

@@ -1,0 +1,57 @@
+//! What a proof says.
+
+use super::confidence::Confidence;
+use crate::algebra::graph::Edge;
+use crate::algebra::lane::Roots;
+use crate::diagnostics::Diagnostic;
+use crate::model::Model;
+
+/// How an identity fared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Both sides have the same normal form modulo φ over the rationals.
+    Proved,
+    /// Both sides agree at random points of X.
+    Checked(Confidence),
+    /// They differ.
+    Failed(String),
+}
+
+/// One identity with its verdict.
+#[derive(Clone, Debug)]
+pub struct Identity {
+    /// KR18's number, or a name.
+    pub label: &'static str,
+    /// The equation.
+    pub equation: String,
+    /// How it fared.
+    pub verdict: Verdict,
+}
+
+/// Left and right sides of an identity.
+pub(super) struct Sides {
+    pub(super) label: &'static str,
+    pub(super) equation: &'static str,
+    pub(super) left: Vec<Edge>,
+    pub(super) right: Vec<Edge>,
+}
+
+/// A fault of the generator, which is never emitted.
+pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
+    if model.points.roots == Roots::Anything {
+        let message = format!(
+            "`{}` could not be proved: {what} was not confirmed",
+            model.name
+        );
+        let help = "roots within roots have no values in the fields of the proof: let a parameter or a coordinate stand for the inner one";
+        return Diagnostic::new(model.span, message).help(help);
+    }
+    Diagnostic::new(
+        model.span,
+        format!(
+            "internal check failed for `{}`: {what} does not hold",
+            model.name
+        ),
+    )
+    .help("this is a fault of the generator, nothing was emitted; please report the description")
+}

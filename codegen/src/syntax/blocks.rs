@@ -1,0 +1,76 @@
+//! What stands between braces, and the doc comments in front of it.
+
+use proc_macro2::Delimiter;
+
+use super::ast::Span;
+use super::cursor::{Cursor, MAX_ERRORS, Parsed};
+use super::tokens::Kind;
+use crate::diagnostics::Diagnostic;
+
+/// The fields up to the closing brace, each read by `field`; faulty ones are reported and left out.
+pub(super) fn fields(
+    cursor: &mut Cursor<'_>,
+    mut field: impl FnMut(&mut Cursor<'_>) -> Parsed<()>,
+) -> Parsed<()> {
+    while cursor.errors.len() < MAX_ERRORS {
+        let mut mark = cursor.mark();
+        let parsed = docs(cursor).and_then(|_| {
+            mark = cursor.mark();
+            if cursor.is_end() {
+                Ok(false)
+            } else {
+                field(cursor).map(|()| true)
+            }
+        });
+        match parsed {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(error) => {
+                cursor.errors.push(error);
+                cursor.recover(mark);
+            }
+        }
+    }
+    cursor.expect_close(Delimiter::Brace, false)
+}
+
+/// The lines of the doc comments that stand here.
+pub(super) fn docs(cursor: &mut Cursor<'_>) -> Parsed<Vec<String>> {
+    let mut lines = Vec::new();
+    while cursor.is_punct('#') {
+        let start = cursor.here();
+        cursor.bump();
+        if cursor.is_punct('!') {
+            return Err(
+                Diagnostic::new(start, "a doc comment for what surrounds it")
+                    .help("comments are written `// …`, and docs of what follows `/// …`"),
+            );
+        }
+        let opened = cursor.eat_open(Delimiter::Bracket);
+        let documents = opened && cursor.eat_word("doc") && cursor.eat_punct('=');
+        let text = cursor.peek();
+        if !documents || text.kind != Kind::Doc {
+            return Err(Diagnostic::new(
+                start.to(cursor.here()),
+                "attributes are not part of the language",
+            )
+            .help("remove it; docs are written `/// …`"));
+        }
+        cursor.bump();
+        cursor.expect_close(Delimiter::Bracket, false)?;
+        lines.extend(
+            text.text
+                .lines()
+                .map(|line| line.strip_prefix(' ').unwrap_or(line).to_owned()),
+        );
+        if text.text.is_empty() {
+            lines.push(String::new());
+        }
+    }
+    Ok(lines)
+}
+
+/// The region from a first token to the one before the cursor.
+pub(super) fn since(start: Span, cursor: &Cursor<'_>) -> Span {
+    start.to(cursor.before())
+}
