@@ -2,15 +2,17 @@
 //! M. Konz and J. Rudolph, *Redundant configuration coordinates and nonholonomic velocity
 //! coordinates in analytical mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414 (KR18).
 //!
-//! `text/tokens → ast → model → derivation → program → Rust | tables | interpreter`, one module a
+//! `text/tokens → ast → model → derivation → program → proof → Rust | tables | interpreter`, one module a
 //! stage. Dependencies point one way:
 //!
 //! | module | owns |
 //! |---|---|
 //! | [`syntax`] | grammar and spans |
 //! | [`algebra`] | expression graph, polynomials, normal forms; no mechanics |
-//! | [`model`] | names, shapes, every semantic error |
-//! | [`mod@derive`] | the symbols of the formalism, ξ̇ by the cheapest route, validation |
+//! | [`mod@lower`] | from a description to a model: names, shapes, every semantic error |
+//! | [`model`] | a mechanical system as expressions of a graph |
+//! | [`mod@derive`] | the symbols of the formalism, ξ̇ by the cheapest route |
+//! | [`proof`] | everything once more, on other routes, and compared |
 //! | [`program`] | binding times, operation counts, interpretation |
 //! | [`emit`] | Rust text; no algebra |
 //! | [`tables`] | what people read |

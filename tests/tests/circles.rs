@@ -56,7 +56,14 @@ fn imports(
     let mut all = Vec::new();
     for item in &file.items {
         if let syn::Item::Use(item) = item {
+            let before = all.len();
             leaves(&item.tree, Vec::new(), &mut all);
+            // What a folder shows of its own files to others is not what it needs of them.
+            if !matches!(item.vis, syn::Visibility::Inherited) {
+                let child = |path: &Vec<String>| modules.contains_key(&[own, &path[..1]].concat());
+                let shown = all.split_off(before);
+                all.extend(shown.into_iter().filter(|path| !child(path)));
+            }
         }
     }
     let mut found = BTreeSet::new();

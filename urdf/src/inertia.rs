@@ -2,7 +2,7 @@
 
 use crate::plan::{Motion, Plan};
 use crate::problem::Problems;
-use crate::read::{Inertial, Kind, Robot};
+use crate::robot::{Inertial, Kind, Robot};
 use crate::tree::Tree;
 
 /// A part of the largest moment that says nothing: the cosines below lose half of the digits where

@@ -34,6 +34,7 @@ mod options;
 mod plan;
 mod problem;
 mod read;
+mod robot;
 mod tree;
 mod write;
 

@@ -4,7 +4,7 @@
 //! before it; a word of the language, a name of Rust's, or one that is taken gets `_joint` or
 //! `_link` after it, and then `_2`, `_3` and so on. Joints choose first, in the order of the file.
 
-use crate::read::{Joint, Kind, Robot};
+use crate::robot::{Joint, Kind, Robot};
 use std::collections::BTreeSet;
 
 /// Words that name nothing, or something else: statements, connectives, functions, constants of

@@ -3,7 +3,7 @@
 use crate::decimal::Decimal;
 use crate::options::{Mimic, Options};
 use crate::problem::Problems;
-use crate::read::{Joint, Kind, Robot};
+use crate::robot::{Joint, Kind, Robot};
 use crate::tree::{near, unknown};
 use std::collections::BTreeMap;
 

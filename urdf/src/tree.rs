@@ -1,7 +1,7 @@
 //! Links and joints as a tree: one root, every other link moved by one joint.
 
 use crate::problem::Problems;
-use crate::read::{Named, Robot};
+use crate::robot::{Named, Robot};
 use std::collections::BTreeMap;
 
 /// The order in which links are reached from the root.

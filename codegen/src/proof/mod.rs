@@ -2,6 +2,24 @@
 //!
 //! Everything here is derived once more, on routes that the emitted functions did not take, and compared at fresh
 //! points of X modulo two primes.
+//!
+//! | file | object | KR18 |
+//! |---|---|---|
+//! | `validate` | every emitted function is the one that the equations imply | (30) |
+//! | `constrained` | the same where constraints act on ξ | |
+//! | `correction` | the stabilising term leads back to X | (8) |
+//! | `splitting` | the functions of a system that splits | |
+//! | `numbers` | the three forms at points modulo p: what every build is compared with | (30) |
+//! | `slopes` | the linearisation, by dual numbers modulo p | |
+//! | `virtual_power` | loads as forces on points, motion of points | (28) |
+//! | `hamel_form` | equations of Lagrange and Hamel, from T and γ | (30a) |
+//! | `gibbs` | equations of Gibbs and Appell, from accelerations | (30b) |
+//! | `levi_civita` | explicit equations, from M and Γ | (30c) |
+//! | `forms` | all symbols side by side, to be compared | (30) |
+//! | `check`, `motion` | the identities that any derivation has to satisfy | (6), (12), (13), (21), (28) |
+//! | `invariants` | claims of constancy along the motion, proved or refuted | |
+//! | `confidence` | what equality at random points says | |
+//! | `verdict` | what a proof says | |
 
 pub mod check;
 pub mod confidence;

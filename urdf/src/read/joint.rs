@@ -1,8 +1,8 @@
 //! `<joint>`.
 
 use super::xml::{Reader, tag};
-use super::{Follows, Joint, Kind};
 use crate::decimal::Decimal;
+use crate::robot::{Follows, Joint, Kind};
 use roxmltree::Node;
 
 /// The types of joints, as URDF names them.

@@ -1,7 +1,7 @@
 //! `<link>` and `<inertial>`.
 
 use super::xml::{Reader, tag};
-use super::{Inertial, Link};
+use crate::robot::{Inertial, Link};
 use roxmltree::Node;
 
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];

@@ -1,10 +1,10 @@
 //! Elements, attributes and numbers of XML, with the place of what is missing or unreadable.
 
 use super::strange::Strange;
-use super::{Cleaned, Named, Origin};
 use crate::angle::{Angle, Rotation};
 use crate::decimal::Decimal;
 use crate::problem::Problems;
+use crate::robot::{Cleaned, Named, Origin};
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 use std::ops::Range;
 

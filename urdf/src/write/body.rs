@@ -4,7 +4,7 @@ use super::Writer;
 use super::page::WIDTH;
 use crate::angle::Rotation;
 use crate::decimal::{Decimal, vector};
-use crate::read::{Inertial, Origin};
+use crate::robot::{Inertial, Origin};
 
 impl Writer<'_> {
     /// The body of a link; a comment where it has none.

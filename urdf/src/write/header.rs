@@ -4,7 +4,7 @@ use super::Writer;
 use crate::options::Mimic;
 use crate::plan::Motion;
 use crate::problem::place;
-use crate::read::Cleaned;
+use crate::robot::Cleaned;
 
 /// What was changed, numbers of one spelling in one sentence, in the order of the file.
 pub(super) fn cleaned(xml: &str, list: &[Cleaned]) -> Vec<String> {

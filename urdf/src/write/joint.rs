@@ -4,7 +4,7 @@ use super::Writer;
 use crate::angle::Angle;
 use crate::decimal::{Decimal, vector};
 use crate::plan::{Linear, Motion};
-use crate::read::{Joint, Kind};
+use crate::robot::{Joint, Kind};
 use crate::tree::Edge;
 
 impl Writer<'_> {

@@ -8,7 +8,7 @@ mod page;
 use crate::names::Names;
 use crate::options::{Imported, Options};
 use crate::plan::{Motion, Plan};
-use crate::read::{Kind, Read, Robot};
+use crate::robot::{Kind, Read, Robot};
 use crate::tree::{Edge, Tree};
 use page::Page;
 

@@ -1,0 +1,119 @@
+//! A robot as its file describes it.
+
+use crate::angle::Rotation;
+use crate::decimal::Decimal;
+use std::ops::Range;
+
+/// A robot, as written.
+#[derive(Debug)]
+pub(crate) struct Robot {
+    pub(crate) name: String,
+    /// Place of the robot's name.
+    pub(crate) range: Range<usize>,
+    pub(crate) links: Vec<Link>,
+    pub(crate) joints: Vec<Joint>,
+}
+
+/// A name with its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Named {
+    pub(crate) name: String,
+    pub(crate) range: Range<usize>,
+}
+
+/// A link.
+#[derive(Debug)]
+pub(crate) struct Link {
+    pub(crate) name: Named,
+    /// `None` without `<inertial>`.
+    pub(crate) inertial: Option<Inertial>,
+}
+
+/// Mass and inertia of a link.
+#[derive(Debug)]
+pub(crate) struct Inertial {
+    pub(crate) range: Range<usize>,
+    pub(crate) mass: Decimal,
+    /// Centre of mass and principal frame, in link axes.
+    pub(crate) origin: Origin,
+    /// xx, xy, xz, yy, yz, zz about the centre of mass, in the axes of the origin.
+    pub(crate) inertia: [Decimal; 6],
+    pub(crate) inertia_range: Range<usize>,
+}
+
+/// `<origin>`: a pose.
+#[derive(Clone, Debug)]
+pub(crate) struct Origin {
+    pub(crate) position: [Decimal; 3],
+    pub(crate) rotation: Rotation,
+}
+
+/// Types of joints in URDF.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Fixed,
+    Revolute,
+    Continuous,
+    Prismatic,
+    Planar,
+    Floating,
+}
+
+/// A joint.
+#[derive(Debug)]
+pub(crate) struct Joint {
+    pub(crate) name: Named,
+    pub(crate) kind: Kind,
+    pub(crate) parent: Named,
+    pub(crate) child: Named,
+    pub(crate) origin: Origin,
+    /// `None` where URDF's default (1, 0, 0) is meant.
+    pub(crate) axis: Option<[Decimal; 3]>,
+    pub(crate) damping: Option<Decimal>,
+    /// Coulomb friction, which descriptions do not model.
+    pub(crate) friction: Option<Decimal>,
+    pub(crate) lower: Option<Decimal>,
+    pub(crate) upper: Option<Decimal>,
+    pub(crate) velocity: Option<Decimal>,
+    pub(crate) effort: Option<Decimal>,
+    pub(crate) mimic: Option<Follows>,
+}
+
+/// `<mimic>`: q = multiplier · source + offset.
+#[derive(Debug)]
+pub(crate) struct Follows {
+    pub(crate) source: Named,
+    pub(crate) multiplier: Decimal,
+    pub(crate) offset: Decimal,
+}
+
+/// A number that was taken for a rounding.
+#[derive(Debug)]
+pub(crate) struct Cleaned {
+    pub(crate) range: Range<usize>,
+    pub(crate) written: String,
+    pub(crate) read: String,
+}
+
+/// A robot and what was changed while it was read.
+#[derive(Debug)]
+pub(crate) struct Read {
+    pub(crate) robot: Robot,
+    pub(crate) cleaned: Vec<Cleaned>,
+}
+
+impl Inertial {
+    /// Whether it says that there is no mass.
+    pub(crate) fn is_zero(&self) -> bool {
+        self.mass.is_zero() && self.inertia.iter().all(Decimal::is_zero)
+    }
+}
+
+impl Origin {
+    pub(crate) fn identity() -> Self {
+        Origin {
+            position: std::array::from_fn(|_| Decimal::zero()),
+            rotation: Rotation::identity(),
+        }
+    }
+}
