@@ -6,6 +6,7 @@
 
 use super::confidence::Confidence;
 use super::forms::Symbols;
+use super::points::{POINTS, Unequal, at_fresh_points};
 use super::verdict::Sides;
 pub use super::verdict::{Identity, Verdict};
 use super::{constrained, invariants, motion};
@@ -20,10 +21,6 @@ use crate::derive::tables::Geometry;
 use crate::model::{Model, class};
 use crate::program::Program;
 
-/// Fresh points for every identity.
-const POINTS: u64 = 4;
-/// Points tried where square roots have no value.
-const TRIES: u64 = 300;
 /// Models with more velocities are only checked at points.
 const MOST_PROVED: usize = 8;
 /// Expressions of more nodes are not expanded for a proof.
@@ -371,20 +368,23 @@ fn confidence(model: &Model, graph: &Graph, sides: &Sides) -> Confidence {
 /// Where both sides differ at a point of X, if they do.
 fn at_points(model: &Model, graph: &Graph, sides: &Sides) -> Option<String> {
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
-    let (mut found, mut seed) = (0, 0);
-    while found < POINTS && seed < TRIES {
-        seed += 1;
-        let Some(mut lane) = model.points.lane(0xc4ec + seed) else {
-            continue;
-        };
-        let Some(values) = evaluate_at(graph, &roots, &mut lane) else {
-            continue;
-        };
-        let (left, right) = values.split_at(sides.left.len());
-        if let Some(entry) = (0..left.len()).find(|&entry| left[entry] != right[entry]) {
-            return Some(format!("entry {} of {} differs", entry + 1, left.len()));
+    let compared = at_fresh_points(
+        |number| model.points.lane(0xc4ec + number),
+        |lane, _| {
+            let values = evaluate_at(graph, &roots, &mut lane.clone())?;
+            let (left, right) = values.split_at(sides.left.len());
+            let differs = (0..left.len()).find(|&entry| left[entry] != right[entry]);
+            Some(differs.map_or(Ok(()), Err))
+        },
+    );
+    match compared {
+        Ok(()) => None,
+        Err(Unequal::Differs(entry)) => {
+            let count = sides.left.len();
+            Some(format!("entry {} of {count} differs", entry + 1))
         }
-        found += 1;
+        Err(Unequal::Nowhere) => {
+            Some("too few points were found at which both sides have a value".into())
+        }
     }
-    (found == 0).then(|| "no point was found at which both sides have a value".into())
 }

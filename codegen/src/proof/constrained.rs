@@ -4,6 +4,7 @@
 
 use super::confidence::Confidence;
 use super::kernel::{in_kernel, places};
+use super::points::{POINTS, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict, failure};
 use crate::algebra::fp::Fp;
@@ -17,11 +18,6 @@ use crate::derive::reduction::{Reduction, drift};
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
 use crate::program::{FunctionId, Program};
-
-/// Points at which everything is compared.
-const POINTS: u64 = 4;
-/// Points tried where square roots have no value.
-const TRIES: u64 = 400;
 
 /// What is compared, with the label and equation that `check` prints.
 const IDENTITIES: [(&str, &str); 8] = [
@@ -117,23 +113,17 @@ fn compare(
     program: &Program,
 ) -> Option<[Option<String>; IDENTITIES.len()]> {
     let mut failed: [Option<String>; IDENTITIES.len()] = Default::default();
-    let mut found = 0;
-    for seed in 1..TRIES {
-        if found == POINTS {
-            break;
-        }
-        let Some(lane) = model.points.lane(0xb0d5 + seed) else {
-            continue;
-        };
-        let Some(results) = at_point(full, reduction, program, &lane, seed) else {
-            continue;
-        };
-        found += 1;
-        for (failed, result) in failed.iter_mut().zip(results) {
-            *failed = failed.take().or(result.err());
-        }
-    }
-    (found > 0).then_some(failed)
+    let compared = at_fresh_points(
+        |number| model.points.lane(0xb0d5 + number),
+        |lane, number| {
+            let results = at_point(full, reduction, program, lane, number)?;
+            for (failed, result) in failed.iter_mut().zip(results) {
+                *failed = failed.take().or(result.err());
+            }
+            Some(Ok::<(), ()>(()))
+        },
+    );
+    compared.is_ok().then_some(failed)
 }
 
 /// Nothing is said of what is not there.

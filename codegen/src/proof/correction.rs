@@ -1,5 +1,6 @@
 //! The proof of the stabilising term −Ψ φ, KR18 (8).
 
+use super::points::at_fresh_points;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate_at;
@@ -8,11 +9,6 @@ use crate::derive::kinematics::left_inverse;
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::program::{FunctionId, Program};
-
-/// Points at which the emitted function is compared.
-const POINTS: usize = 4;
-/// Points tried.
-const TRIES: u64 = 200;
 
 /// Proves the emitted correction at fresh points of X: its derivative there is −Ψ Φ = A Y − I, KR18
 /// (6), along any direction, be it tangent or not.
@@ -58,23 +54,13 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             graph.sub(tangent, step)
         })
         .collect();
-    let mut compared = 0;
-    for seed in 0..TRIES {
-        let Some(lane) = model.points.lane(0xc0_44ec + seed) else {
-            continue;
-        };
-        let left = evaluate_at(&free, &found, &mut lane.clone());
-        let right = evaluate_at(graph, &expected, &mut lane.clone());
-        let (Some(left), Some(right)) = (left, right) else {
-            continue;
-        };
-        if left != right {
-            return Err(failure());
-        }
-        compared += 1;
-        if compared == POINTS {
-            return Ok(());
-        }
-    }
-    Err(failure())
+    at_fresh_points(
+        |number| model.points.lane(0xc0_44ec + number),
+        |lane, _| {
+            let left = evaluate_at(&free, &found, &mut lane.clone())?;
+            let right = evaluate_at(graph, &expected, &mut lane.clone())?;
+            Some(if left == right { Ok(()) } else { Err(()) })
+        },
+    )
+    .map_err(|_| failure())
 }

@@ -18,6 +18,7 @@
 //! | `forms` | all symbols side by side, to be compared | (30) |
 //! | `check`, `motion` | the identities that any derivation has to satisfy | (6), (12), (13), (21), (28) |
 //! | `invariants` | claims of constancy along the motion, proved or refuted | |
+//! | `points` | the fresh points that all of it is compared at | |
 //! | `confidence` | what equality at random points says | |
 //! | `verdict` | what a proof says | |
 
@@ -33,6 +34,7 @@ mod kernel;
 pub mod levi_civita;
 pub mod motion;
 mod numbers;
+mod points;
 mod reference;
 mod slopes;
 mod splitting;

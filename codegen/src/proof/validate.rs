@@ -19,6 +19,7 @@
 use super::check::failures;
 use super::forms::Symbols;
 use super::numbers::{Numbers, Values};
+use super::points::{Unequal, at_fresh_points};
 use super::slopes::Slopes;
 use super::splitting::Proof;
 use super::verdict::failure;
@@ -31,11 +32,6 @@ use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::program::Program;
 use rustc_hash::FxHashMap;
-
-/// Fresh points for every program.
-pub const POINTS: u64 = 4;
-/// Points tried where square roots have no value.
-const TRIES: u64 = 400;
 
 /// Models with more velocities are refused without the identities of their symbols.
 const MOST_EXPLAINED: usize = 8;
@@ -75,24 +71,14 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), String> {
         ];
         Some(all.into_iter().collect())
     };
-    let mut seed = 0;
-    for _ in 0..POINTS {
-        loop {
-            seed += 1;
-            if seed > TRIES {
-                return Err("that the equations have values at some points".into());
-            }
-            let Some(lane) = model.points.lane(0x7a11 + seed) else {
-                continue;
-            };
-            match at_point(&lane) {
-                None => continue,
-                Some(Ok(())) => break,
-                Some(Err(what)) => return Err(what),
-            }
-        }
-    }
-    Ok(())
+    at_fresh_points(
+        |number| model.points.lane(0x7a11 + number),
+        |lane, _| at_point(lane),
+    )
+    .map_err(|unequal| match unequal {
+        Unequal::Differs(what) => what,
+        Unequal::Nowhere => "that the equations have values at some points".into(),
+    })
 }
 
 /// The functions that are compared with the forms, to be evaluated together.

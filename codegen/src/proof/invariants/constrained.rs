@@ -14,12 +14,8 @@ use crate::model::{Model, class};
 use crate::program::{FunctionId, Program};
 use crate::proof::confidence::Confidence;
 use crate::proof::kernel::{in_kernel, places};
+use crate::proof::points::{POINTS, Unequal, at_fresh_points};
 use crate::proof::verdict::{Identity, Verdict};
-
-/// Fresh points for every claim.
-const POINTS: u64 = 4;
-/// Points tried where something has no value.
-const TRIES: u64 = 400;
 
 /// Refuses false claims; `model` is that of the active velocities.
 pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
@@ -29,14 +25,18 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
         .any(|c| c.residual != model.graph.zero());
     let mut errors = Vec::new();
     for claim in &model.invariants {
-        let Some(entry) = refuted(model, program, claim) else {
-            continue;
+        let message = match refuted(model, program, claim) {
+            None => continue,
+            Some(Unequal::Nowhere) => format!(
+                "the claim `{}` cannot be checked: the motion has no value where it is claimed",
+                claim.name
+            ),
+            Some(Unequal::Differs(entry)) => format!(
+                "entry {} of `{}` is not constant along the motion: d/dt is not zero where the constraints hold",
+                entry + 1,
+                claim.name
+            ),
         };
-        let entry = entry.map_or(String::new(), |entry| format!("entry {} of ", entry + 1));
-        let message = format!(
-            "{entry}`{}` is not constant along the motion: d/dt is not zero where the constraints hold",
-            claim.name
-        );
         errors.push(Diagnostic::new(claim.span, message).help(if loops {
             "claim what is constant for every position of the tree: the loops are not closed where claims are checked"
         } else {
@@ -86,8 +86,8 @@ fn confidence(model: &Model, program: &Program) -> Confidence {
     Confidence::new(model, &expressions, terms, POINTS, 9)
 }
 
-/// The entry that changes, `Some(None)` where there is no point to check it at.
-fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Option<usize>> {
+/// How the claim fails, if it does: by the entry that changes.
+fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
     let mass = inertia::mass_matrix(&mut own, &mut calculus);
@@ -97,20 +97,18 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Option
     );
     let value = quantity::value(&mut own, &mut calculus, energies, &claim.quantity);
     let entries = value.entries();
-    let mut found = 0;
-    for seed in 1..TRIES {
-        if found == POINTS {
-            break;
-        }
-        let lane = own.points.lane_where(0x1a7f + seed, &own.graph, &claim.set);
-        let slopes = lane.and_then(|lane| slopes(&own, program, &entries, lane, seed));
-        let Some(slopes) = slopes else { continue };
-        if let Some(entry) = slopes.iter().position(|slope| !slope.is_zero()) {
-            return Some(Some(entry));
-        }
-        found += 1;
-    }
-    (found == 0).then_some(None)
+    let compared = at_fresh_points(
+        |number| {
+            let points = &own.points;
+            points.lane_where(0x1a7f + number, &own.graph, &claim.set)
+        },
+        |lane, number| {
+            let slopes = slopes(&own, program, &entries, lane.clone(), number)?;
+            let changes = slopes.iter().position(|slope| !slope.is_zero());
+            Some(changes.map_or(Ok(()), Err))
+        },
+    );
+    compared.err()
 }
 
 /// d/dt of the entries at a point, moved to where B ξ = 0.

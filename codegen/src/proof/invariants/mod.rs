@@ -17,6 +17,7 @@ mod proof;
 mod remainder;
 
 use super::confidence::Confidence;
+use super::points::{POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict};
 use crate::algebra::fp::Fp;
@@ -30,11 +31,6 @@ use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::model::invariants::Invariant;
 use proof::{Proof, Prover};
-
-/// Fresh points for every claim.
-const POINTS: u64 = 4;
-/// Points tried where something has no value.
-const TRIES: u64 = 400;
 
 /// Refuses false claims, each with what its derivative leaves.
 pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
@@ -53,7 +49,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
         let entries = motion.entries(claim);
         match motion.refuted(claim, &entries) {
             None => {}
-            Some(Refuted::Nowhere) => {
+            Some(Unequal::Nowhere) => {
                 let message = format!(
                     "the claim `{}` cannot be checked: the motion has no value where it is claimed",
                     claim.name
@@ -61,7 +57,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
                 let help = "check the values after `when`: they may make the mass matrix singular, or a divisor zero";
                 errors.push(Diagnostic::new(claim.span, message).help(help));
             }
-            Some(Refuted::Entry(entry)) => {
+            Some(Unequal::Differs(entry)) => {
                 let prover = prover.get_or_insert_with(|| Prover::new(model));
                 let leaves = prover
                     .as_mut()
@@ -110,8 +106,8 @@ pub fn identities(model: &Model) -> Vec<Identity> {
     for claim in &model.invariants {
         let entries = motion.entries(claim);
         let verdict = match motion.refuted(claim, &entries) {
-            Some(Refuted::Nowhere) => Verdict::Failed("no point was found to check it at".into()),
-            Some(Refuted::Entry(entry)) => Verdict::Failed(format!(
+            Some(Unequal::Nowhere) => Verdict::Failed("no point was found to check it at".into()),
+            Some(Unequal::Differs(entry)) => Verdict::Failed(format!(
                 "entry {} of {} is not constant",
                 entry + 1,
                 entries.len()
@@ -140,14 +136,6 @@ pub fn identities(model: &Model) -> Vec<Identity> {
         });
     }
     all
-}
-
-/// How a claim fails.
-enum Refuted {
-    /// There is no point to check it at.
-    Nowhere,
-    /// The number of the entry that changes.
-    Entry(usize),
 }
 
 /// The equations of motion that claims are held against.
@@ -201,24 +189,21 @@ impl Motion {
     }
 
     /// How the claim fails, if it does.
-    fn refuted(&mut self, claim: &Invariant, entries: &[Edge]) -> Option<Refuted> {
+    fn refuted(&mut self, claim: &Invariant, entries: &[Edge]) -> Option<Unequal<usize>> {
         let force = self.force();
-        let (mut found, mut seed) = (0, 0);
-        while found < POINTS && seed < TRIES {
-            seed += 1;
-            let model = &self.reference.model;
-            let lane = model
-                .points
-                .lane_where(0x1a7e + seed, &model.graph, &claim.set);
-            let Some(slopes) = lane.and_then(|lane| self.slopes(entries, &force, &lane)) else {
-                continue;
-            };
-            if let Some(entry) = slopes.iter().position(|slope| !slope.is_zero()) {
-                return Some(Refuted::Entry(entry));
-            }
-            found += 1;
-        }
-        (found == 0).then_some(Refuted::Nowhere)
+        let model = &self.reference.model;
+        let compared = at_fresh_points(
+            |number| {
+                let points = &model.points;
+                points.lane_where(0x1a7e + number, &model.graph, &claim.set)
+            },
+            |lane, _| {
+                let slopes = self.slopes(entries, &force, lane)?;
+                let changes = slopes.iter().position(|slope| !slope.is_zero());
+                Some(changes.map_or(Ok(()), Err))
+            },
+        );
+        compared.err()
     }
 
     /// d/dt of the entries at a point.

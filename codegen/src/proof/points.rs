@@ -1,0 +1,56 @@
+//! Fresh points of X: those at which both sides of an identity are evaluated, and no expression was built.
+
+use crate::algebra::lane::Lane;
+
+/// Points at which everything is compared.
+pub const POINTS: u64 = 4;
+/// Points tried: roots have values at some of them only.
+const TRIES: u64 = 400;
+
+/// Why a comparison said nothing or ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unequal<E> {
+    /// What differs at a point.
+    Differs(E),
+    /// There were fewer points at which both sides have values than are wanted.
+    Nowhere,
+}
+
+/// Compares at fresh points until both sides had values at as many as are wanted, or differ. `lane` makes the
+/// point of a number, `at` compares there; `None` of either is a point without values.
+pub fn at_fresh_points<E>(
+    lane: impl Fn(u64) -> Option<Lane>,
+    mut at: impl FnMut(&Lane, u64) -> Option<Result<(), E>>,
+) -> Result<(), Unequal<E>> {
+    let mut compared = 0;
+    for number in 1..=TRIES {
+        match lane(number).and_then(|lane| at(&lane, number)) {
+            None => continue,
+            Some(Ok(())) => compared += 1,
+            Some(Err(what)) => return Err(Unequal::Differs(what)),
+        }
+        if compared == POINTS {
+            return Ok(());
+        }
+    }
+    Err(Unequal::Nowhere)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{POINTS, Unequal, at_fresh_points};
+    use crate::algebra::lane::Lane;
+
+    #[test]
+    fn too_few_points_are_no_agreement() {
+        let lane = |number| Some(Lane::new(number));
+        let some = |most: u64| move |_: &Lane, number| (number <= most).then_some(Ok::<(), ()>(()));
+        assert_eq!(at_fresh_points(lane, some(POINTS)), Ok(()));
+        assert_eq!(
+            at_fresh_points(lane, some(POINTS - 1)),
+            Err(Unequal::Nowhere)
+        );
+        let last = |_: &Lane, number| Some(if number < POINTS { Ok(()) } else { Err(number) });
+        assert_eq!(at_fresh_points(lane, last), Err(Unequal::Differs(POINTS)));
+    }
+}
