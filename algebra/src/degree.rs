@@ -17,6 +17,7 @@
 //! A root is a number r with r² = a: a polynomial in r vanishes only where its product with that of −r
 //! does, and points at which a is a square are half of all.
 
+use super::function::Law;
 use super::graph::{Edge, Function, Graph, Node, NodeId};
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive};
@@ -120,19 +121,19 @@ impl Degrees<'_> {
             };
             parts.to_f64().unwrap_or(f64::INFINITY)
         };
-        match function {
-            Function::Sin | Function::Cos => {
+        match function.row().law {
+            Law::Angle => {
                 let angles = form()
                     .into_iter()
                     .map(|(atom, c)| (Divisor::Angle(atom), count(&c)));
                 let angles: Vec<(Divisor, f64)> = angles.collect();
                 self.over(angles)
             }
-            Function::Exp => Fraction {
+            Law::Power => Fraction {
                 degree: form().iter().map(|(_, c)| count(c)).sum(),
                 ..Fraction::default()
             },
-            Function::Sqrt => {
+            Law::Root => {
                 let below = self.read(argument);
                 self.roots += 1;
                 Fraction {
@@ -140,7 +141,7 @@ impl Degrees<'_> {
                     ..Fraction::default()
                 }
             }
-            Function::Log | Function::Atan2 => Fraction {
+            Law::None => Fraction {
                 degree: 1.0,
                 ..Fraction::default()
             },

@@ -13,7 +13,6 @@
 //! | log a | y + a exp(−y) − 1 |
 //! | atan2(y, x) | θ + (y cos θ − x sin θ) / √(x² + y²) |
 
-use super::graph::Function;
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -169,17 +168,14 @@ impl Double {
         first + (y * cos - x * sin) / radius
     }
 
-    /// A function of one argument.
-    pub fn apply(self, function: Function) -> Self {
-        match function {
-            Function::Sin => self.sin_cos().0,
-            Function::Cos => self.sin_cos().1,
-            Function::Exp => self.exp(),
-            Function::Log => self.log(),
-            Function::Sqrt => self.sqrt(),
-            // Two arguments: its own node.
-            Function::Atan2 => Double::new(f64::NAN),
-        }
+    /// sin a.
+    pub fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    /// cos a.
+    pub fn cos(self) -> Self {
+        self.sin_cos().1
     }
 }
 

@@ -11,6 +11,7 @@ mod merge;
 pub(crate) use merge::canonical;
 
 use super::fp::Fp;
+use super::function::{Law, Parity};
 use super::lane::{Lane, Roots};
 pub use super::node::{Edge, Function, Node, NodeId, Symbol};
 use super::prime::is_unfaithful;
@@ -333,27 +334,26 @@ impl Graph {
 
     /// A function of one argument.
     pub fn apply(&mut self, function: Function, argument: Edge) -> Edge {
-        let (argument, negative) = match function {
-            Function::Sin => (argument.abs(), argument.is_negative()),
-            Function::Cos => (argument.abs(), false),
-            _ => (argument, false),
+        let row = function.row();
+        let (argument, negative) = match row.parity {
+            Parity::Odd => (argument.abs(), argument.is_negative()),
+            Parity::Even => (argument.abs(), false),
+            Parity::None => (argument, false),
         };
-        let exact = match function {
-            Function::Sin if argument == self.zero() => Some(self.zero()),
-            Function::Cos | Function::Exp if argument == self.zero() => Some(self.one()),
-            Function::Log if argument == self.one() => Some(self.zero()),
-            Function::Sqrt => {
-                let exact = self.exact_root(argument);
-                exact.or_else(|| self.known_number_root(argument))
+        if let Some([a, value]) = row.whole
+            && argument == self.ratio(a, 1)
+        {
+            return self.ratio(value, 1);
+        }
+        if row.law == Law::Root {
+            let exact = self.exact_root(argument);
+            if let Some(exact) = exact.or_else(|| self.known_number_root(argument)) {
+                return exact;
             }
-            _ => None,
-        };
-        if let Some(exact) = exact {
-            return exact;
         }
         self.note_content(function, argument);
         let form = self.form(function, argument);
-        if matches!(function, Function::Sin | Function::Cos)
+        if row.law == Law::Angle
             && let Some(turned) = self.without_right_angles(function, argument, &form)
         {
             return turned.signed(negative);
@@ -363,8 +363,8 @@ impl Graph {
             .map(|(atom, c)| (self.value(Edge::of(*atom)), c.clone()))
             .collect();
         let value = self.lane.function(function, self.value(argument), &form);
-        let value = match function {
-            Function::Sqrt => self.apart_from_root(argument, value),
+        let value = match row.law {
+            Law::Root => self.apart_from_root(argument, value),
             _ => value,
         };
         let class = self.class(argument.node());

@@ -6,7 +6,8 @@
 //! exp is treated likewise. Square roots keep the laws of positive numbers (`roots`).
 
 use super::fp::{Fp, Random};
-use super::graph::Function;
+use super::function::Function;
+use super::numbers::{Form, Modular, Numbers, operators};
 use super::prime::Residue;
 use super::roots;
 use num_bigint::BigInt;
@@ -15,7 +16,7 @@ use num_traits::ToPrimitive;
 
 /// Σ coefficient · atom, the argument of a function with a group law; atoms by their values. Of a
 /// square root: the rational factor of its argument (`Graph::form`).
-pub type LinearForm = Vec<(Fp, BigRational)>;
+pub type LinearForm = Form<Fp>;
 
 /// The part of an angle that gets a random circle point: halves, thirds, quarters and sixths of an
 /// atom are then whole multiples of it.
@@ -113,25 +114,6 @@ impl Lane {
         }
     }
 
-    /// f′ of a function of one argument with its value there; `None` where it has none. `Atan2` has two
-    /// arguments and is a node of its own.
-    pub fn slope(
-        &mut self,
-        function: Function,
-        argument: Fp,
-        form: &LinearForm,
-        value: Fp,
-    ) -> Option<Fp> {
-        Some(match function {
-            Function::Sin => self.function(Function::Cos, argument, form),
-            Function::Cos => -self.function(Function::Sin, argument, form),
-            Function::Exp => value,
-            Function::Log => argument.inv()?,
-            Function::Sqrt => (value + value).inv()?,
-            Function::Atan2 => Fp::ZERO,
-        })
-    }
-
     /// √(c e) = √c √e with the factor c of the form; a number without a form has any root.
     fn root<const K: usize>(
         &self,
@@ -207,6 +189,56 @@ impl Lane {
                         magnitude
                     }
             })
+    }
+}
+
+impl Numbers for Lane {
+    operators!(Fp);
+
+    fn whole(&mut self, value: i32) -> Fp {
+        match value {
+            0 => Fp::ZERO,
+            1 => Fp::ONE,
+            other => Fp::from_i64(other.into()),
+        }
+    }
+
+    fn constant(&mut self, value: &BigRational) -> Option<Fp> {
+        Fp::from_rational(value)
+    }
+
+    fn symbol(&mut self, index: usize) -> Option<Fp> {
+        Some(self.symbols[index])
+    }
+
+    fn div(&mut self, a: &Fp, b: &Fp) -> Option<Fp> {
+        Some(*a * b.inv()?)
+    }
+
+    /// Roots that it does not have are noted (`is_stuck`).
+    fn apply(&mut self, function: Function, a: &Fp, form: &dyn Fn() -> LinearForm) -> Option<Fp> {
+        Some(self.function(function, *a, &form()))
+    }
+
+    fn atan2(&mut self, y: &Fp, x: &Fp) -> Option<Fp> {
+        Some(self.opaque(Function::Atan2, *y, *x))
+    }
+
+    fn is_zero(&self, a: &Fp) -> bool {
+        a.is_zero()
+    }
+
+    /// With one inverse.
+    fn quotient(&mut self, a: &Fp, b: &Fp) -> Option<[Fp; 3]> {
+        let inverse = b.inv()?;
+        let quotient = *a * inverse;
+        Some([quotient, inverse, -(quotient * inverse)])
+    }
+}
+
+impl Modular for Lane {
+    fn residue(&mut self, value: Fp) -> Fp {
+        value
     }
 }
 

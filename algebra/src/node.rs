@@ -1,5 +1,7 @@
 //! Edges, nodes and symbols of the expression graph.
 
+pub use super::function::Function;
+
 /// Index of a node.
 pub type NodeId = u32;
 
@@ -42,37 +44,6 @@ impl std::ops::Neg for Edge {
     }
 }
 
-/// Functions beyond the four operations.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub enum Function {
-    /// sine
-    Sin,
-    /// cosine
-    Cos,
-    /// exponential
-    Exp,
-    /// natural logarithm
-    Log,
-    /// square root
-    Sqrt,
-    /// angle of (x, y), arguments (y, x)
-    Atan2,
-}
-
-impl Function {
-    /// Its name in descriptions.
-    pub fn name(self) -> &'static str {
-        match self {
-            Function::Sin => "sin",
-            Function::Cos => "cos",
-            Function::Exp => "exp",
-            Function::Log => "log",
-            Function::Sqrt => "sqrt",
-            Function::Atan2 => "atan2",
-        }
-    }
-}
-
 /// What a node computes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Node {
@@ -103,6 +74,18 @@ impl Node {
             }
         };
         a.into_iter().chain(b)
+    }
+
+    /// The same of other children.
+    pub fn over(self, mut child: impl FnMut(Edge) -> Edge) -> Node {
+        match self {
+            Node::Constant(_) | Node::Symbol(_) => self,
+            Node::Apply(function, a) => Node::Apply(function, child(a)),
+            Node::Add(a, b) => Node::Add(child(a), child(b)),
+            Node::Mul(a, b) => Node::Mul(child(a), child(b)),
+            Node::Div(a, b) => Node::Div(child(a), child(b)),
+            Node::Atan2(a, b) => Node::Atan2(child(a), child(b)),
+        }
     }
 }
 

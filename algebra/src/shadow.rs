@@ -1,8 +1,10 @@
 //! The real values of a graph's nodes, found where they are needed to tell expressions apart: those of
 //! numbers with certainty, those of what has a square root below it at samples.
 
-use super::graph::{Edge, Function, Node, NodeId};
+use super::function::Function;
 use super::interval::Interval;
+use super::node::{Edge, Node, NodeId};
+use super::numbers::{Form, Numbers, compute};
 use super::reals::{Real, Reals, SAMPLES, contradict};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -95,16 +97,8 @@ impl Shadow {
 
     /// Whether a node of values that were filled in is another number than what is to stand for it.
     pub(super) fn refuses(&self, node: NodeId, other: Node) -> bool {
-        let pair = |a: Edge, b: Edge, of: fn(Real, Real) -> Real| -> Reals {
-            let (a, b) = (self.read(a), self.read(b));
-            std::array::from_fn(|sample| of(a[sample], b[sample]))
-        };
-        let other = match other {
-            Node::Add(a, b) => pair(a, b, Real::plus),
-            Node::Mul(a, b) => pair(a, b, Real::times),
-            _ => return true,
-        };
-        contradict(&self.values[node as usize], &other)
+        let is_known = matches!(other, Node::Add(..) | Node::Mul(..));
+        !is_known || contradict(&self.values[node as usize], &self.value(&[], other))
     }
 
     /// Whether a node that depends on no symbol, or what it is said to equal, is another number, or a
@@ -145,17 +139,12 @@ impl Shadow {
         constants: &[BigRational],
         node: Node,
     ) -> Option<Interval> {
-        let mut read = |edge: Edge| self.number(nodes, constants, edge);
-        match node {
-            Node::Constant(index) => Some(Interval::rational(&constants[index as usize])),
-            // π is the only symbol that is a number.
-            Node::Symbol(_) => Some(Interval::pi()),
-            Node::Add(a, b) => Some(read(a)?.plus(&read(b)?)),
-            Node::Mul(a, b) => Some(read(a)?.times(&read(b)?)),
-            Node::Div(a, b) => Some(read(a)?.times(&read(b)?.inverse()?)),
-            Node::Apply(function, a) => read(a)?.apply(function),
-            Node::Atan2(..) => None,
+        for child in node.children() {
+            self.number(nodes, constants, child)?;
         }
+        let at = |edge: Edge| self.numbers.get(&edge.node()).and_then(Option::as_ref);
+        let constant = |numbers: &mut Bounds, index| numbers.constant(&constants[index as usize]);
+        compute(&mut Bounds, node, constant, at, &Form::new)
     }
 
     fn read(&self, edge: Edge) -> Reals {
@@ -164,21 +153,114 @@ impl Shadow {
     }
 
     fn value(&self, constants: &[BigRational], node: Node) -> Reals {
-        let pair = |a: Edge, b: Edge, of: fn(Real, Real) -> Real| {
-            let (a, b) = (self.read(a), self.read(b));
-            std::array::from_fn(|sample| of(a[sample], b[sample]))
-        };
-        match node {
-            Node::Constant(index) => {
-                let value = constants[index as usize].to_f64().unwrap_or(f64::NAN);
-                [Real::new(value, value.abs() * f64::EPSILON); SAMPLES]
-            }
-            Node::Symbol(index) => self.symbol(index as usize),
-            Node::Add(a, b) => pair(a, b, Real::plus),
-            Node::Mul(a, b) => pair(a, b, Real::times),
-            Node::Div(a, b) => pair(a, b, Real::over),
-            Node::Apply(function, a) => self.read(a).map(|a| a.apply(function)),
-            Node::Atan2(y, x) => pair(y, x, Real::atan2),
-        }
+        let mut samples = Samples(&self.symbols);
+        let at = |edge: Edge| self.values.get(edge.node() as usize);
+        let constant = |numbers: &mut Samples, index| numbers.constant(&constants[index as usize]);
+        let value = compute(&mut samples, node, constant, at, &Form::new);
+        value.unwrap_or([Real::UNKNOWN; SAMPLES])
+    }
+}
+
+/// Numbers at real samples, with the values of symbols.
+struct Samples<'a>(&'a [Reals]);
+
+impl Samples<'_> {
+    fn pair(a: &Reals, b: &Reals, of: fn(Real, Real) -> Real) -> Reals {
+        std::array::from_fn(|sample| of(a[sample], b[sample]))
+    }
+}
+
+impl Numbers for Samples<'_> {
+    type Number = Reals;
+
+    fn whole(&mut self, value: i32) -> Reals {
+        [Real::new(value.into(), 0.0); SAMPLES]
+    }
+
+    fn constant(&mut self, value: &BigRational) -> Option<Reals> {
+        let value = value.to_f64().unwrap_or(f64::NAN);
+        Some([Real::new(value, value.abs() * f64::EPSILON); SAMPLES])
+    }
+
+    fn symbol(&mut self, index: usize) -> Option<Reals> {
+        let known = self.0.get(index).copied();
+        Some(known.unwrap_or([Real::UNKNOWN; SAMPLES]))
+    }
+
+    fn neg(&mut self, a: &Reals) -> Reals {
+        a.map(|a| a.signed(true))
+    }
+
+    fn add(&mut self, a: &Reals, b: &Reals) -> Reals {
+        Samples::pair(a, b, Real::plus)
+    }
+
+    fn mul(&mut self, a: &Reals, b: &Reals) -> Reals {
+        Samples::pair(a, b, Real::times)
+    }
+
+    fn div(&mut self, a: &Reals, b: &Reals) -> Option<Reals> {
+        Some(Samples::pair(a, b, Real::over))
+    }
+
+    fn apply(
+        &mut self,
+        function: Function,
+        a: &Reals,
+        _: &dyn Fn() -> Form<Reals>,
+    ) -> Option<Reals> {
+        Some(a.map(|a| a.apply(function)))
+    }
+
+    fn atan2(&mut self, y: &Reals, x: &Reals) -> Option<Reals> {
+        Some(Samples::pair(y, x, Real::atan2))
+    }
+}
+
+/// Numbers between certain bounds, of which π is the only symbol.
+struct Bounds;
+
+impl Numbers for Bounds {
+    type Number = Interval;
+
+    fn whole(&mut self, value: i32) -> Interval {
+        Interval::rational(&BigRational::from_integer(value.into()))
+    }
+
+    fn constant(&mut self, value: &BigRational) -> Option<Interval> {
+        Some(Interval::rational(value))
+    }
+
+    fn symbol(&mut self, _: usize) -> Option<Interval> {
+        Some(Interval::pi())
+    }
+
+    fn neg(&mut self, a: &Interval) -> Interval {
+        a.signed(true)
+    }
+
+    fn add(&mut self, a: &Interval, b: &Interval) -> Interval {
+        a.plus(b)
+    }
+
+    fn mul(&mut self, a: &Interval, b: &Interval) -> Interval {
+        a.times(b)
+    }
+
+    fn div(&mut self, a: &Interval, b: &Interval) -> Option<Interval> {
+        Some(a.times(&b.inverse()?))
+    }
+
+    fn apply(
+        &mut self,
+        function: Function,
+        a: &Interval,
+        _: &dyn Fn() -> Form<Interval>,
+    ) -> Option<Interval> {
+        a.apply(function)
+    }
+
+    fn atan2(&mut self, _: &Interval, _: &Interval) -> Option<Interval> {
+        None
     }
 }
