@@ -30,6 +30,11 @@ impl Edge {
         Edge(node << 1)
     }
 
+    /// The same edge where nodes have other places.
+    pub fn moved(self, places: &[NodeId]) -> Edge {
+        Edge::of(places[self.node() as usize]).signed(self.is_negative())
+    }
+
     /// This edge, negated where `negative`.
     pub fn signed(self, negative: bool) -> Edge {
         if negative { -self } else { self }

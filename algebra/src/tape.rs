@@ -37,8 +37,6 @@ impl Tape {
         let varying = graph.reachable(roots).into_iter().filter(|&id| id > 1);
         for id in [0, 1].into_iter().chain(varying) {
             places[id as usize] = tape.steps.len() as NodeId;
-            let place =
-                |edge: Edge| Edge::of(places[edge.node() as usize]).signed(edge.is_negative());
             let mut form = Vec::new();
             let node = match graph.node(id) {
                 Node::Constant(index) => {
@@ -50,14 +48,13 @@ impl Tape {
                     form = graph.form(function, a);
                     form.iter_mut()
                         .for_each(|(atom, _)| *atom = places[*atom as usize]);
-                    Node::Apply(function, place(a))
+                    Node::Apply(function, a.moved(&places))
                 }
-                node => node.over(place),
+                node => node.over(|edge| edge.moved(&places)),
             };
             tape.steps.push(Step { node, form });
         }
-        let root = |root: &Edge| Edge::of(places[root.node() as usize]).signed(root.is_negative());
-        tape.roots = roots.iter().map(root).collect();
+        tape.roots = roots.iter().map(|root| root.moved(&places)).collect();
         Some(tape)
     }
 

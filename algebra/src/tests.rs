@@ -3,6 +3,7 @@
 
 use super::derivation::Derivation;
 use super::fp::Random;
+use super::function::Slope;
 use super::graph::{Edge, Function, Graph};
 use super::lane::circle_point;
 use super::numeric::evaluate;
@@ -14,13 +15,10 @@ const PARAM: u8 = 1;
 const COORD: u8 = 2;
 
 /// Every function of one argument.
-pub(crate) const FUNCTIONS: [Function; 5] = [
-    Function::Sin,
-    Function::Cos,
-    Function::Exp,
-    Function::Log,
-    Function::Sqrt,
-];
+pub(crate) fn functions() -> impl Iterator<Item = Function> {
+    let all = Function::ALL.iter().copied();
+    all.filter(|function| function.row().slope != Slope::Two)
+}
 
 /// All of them of an argument, over what is not 0.
 pub(crate) fn quotients(graph: &mut Graph, argument: Edge, over: Edge) -> Vec<Edge> {
@@ -28,7 +26,7 @@ pub(crate) fn quotients(graph: &mut Graph, argument: Edge, over: Edge) -> Vec<Ed
         let value = graph.apply(function, argument);
         graph.div(value, over).expect("not 0")
     };
-    FUNCTIONS.map(quotient).to_vec()
+    functions().map(quotient).collect()
 }
 
 /// A graph with two parameters, two free coordinates and a point of the circle.
