@@ -5,6 +5,7 @@
 
 use super::double::Double;
 use super::interval::Interval;
+use super::node::NodeId;
 use super::reals::Real;
 
 /// f(−a).
@@ -72,8 +73,8 @@ pub struct Row {
     pub cost: Cost,
     /// f(−a).
     pub parity: Parity,
-    /// A whole a, and the whole number that f(a) is.
-    pub whole: Option<[i64; 2]>,
+    /// An a and f(a), both of them 0 or 1.
+    pub at: Option<[NodeId; 2]>,
     /// Its law.
     pub law: Law,
     /// f′(a).
@@ -122,7 +123,7 @@ table! {
         latex: r"\sin",
         cost: Cost::Turn,
         parity: Parity::Odd,
-        whole: Some([0, 0]),
+        at: Some([0, 0]),
         law: Law::Angle,
         slope: Slope::Is(Function::Cos),
         value: f64::sin,
@@ -137,7 +138,7 @@ table! {
         latex: r"\cos",
         cost: Cost::Turn,
         parity: Parity::Even,
-        whole: Some([0, 1]),
+        at: Some([0, 1]),
         law: Law::Angle,
         slope: Slope::IsMinus(Function::Sin),
         value: f64::cos,
@@ -152,7 +153,7 @@ table! {
         latex: r"\exp",
         cost: Cost::Other,
         parity: Parity::None,
-        whole: Some([0, 1]),
+        at: Some([0, 1]),
         law: Law::Power,
         slope: Slope::Itself,
         value: f64::exp,
@@ -167,7 +168,7 @@ table! {
         latex: r"\ln",
         cost: Cost::Other,
         parity: Parity::None,
-        whole: Some([1, 0]),
+        at: Some([1, 0]),
         law: Law::None,
         slope: Slope::Inverse,
         value: f64::ln,
@@ -182,7 +183,7 @@ table! {
         latex: r"\sqrt",
         cost: Cost::Root,
         parity: Parity::None,
-        whole: None,
+        at: None,
         law: Law::Root,
         slope: Slope::HalfInverse,
         value: f64::sqrt,
@@ -197,7 +198,7 @@ table! {
         latex: r"\operatorname{atan2}",
         cost: Cost::Other,
         parity: Parity::None,
-        whole: None,
+        at: None,
         law: Law::None,
         slope: Slope::Two,
         value: |_| f64::NAN,

@@ -70,7 +70,7 @@ pub enum Node {
 
 impl Node {
     /// The children, in order.
-    pub fn children(self) -> impl Iterator<Item = Edge> {
+    pub fn children(self) -> impl DoubleEndedIterator<Item = Edge> {
         let (a, b) = match self {
             Node::Constant(_) | Node::Symbol(_) => (None, None),
             Node::Apply(_, a) => (Some(a), None),

@@ -136,9 +136,10 @@ fn carry(
     };
     for id in from.reachable(edges) {
         let made = match from.node(id) {
-            Node::Constant(index) => into.rational(from.constant(index)),
+            Node::Constant(index) => into.number(from.constant(index), from.value(Edge::of(id))),
             Node::Symbol(index) => symbol(into, index),
             node => {
+                into.follow(from, id);
                 let mut children = node.children().map(|child| read(&image, into, child));
                 let a = children.next().unwrap_or(into.zero());
                 let b = children.next().unwrap_or(a);
