@@ -13,12 +13,12 @@ impl Tape {
     pub fn bend(&self, lane: &Lane, direction: &[Fp]) -> Option<Vec<Fp>> {
         let mut all = Duals {
             numbers: duals(lane, direction),
-            slopes: Record::default(),
+            slopes: Record::new(),
         };
         let place = self.run(&mut all)?.first()?.1;
         let row = all
             .slopes
-            .backwards(&mut all.numbers, place, direction.len());
+            .backwards(&mut all.numbers, place, direction.len())?;
         (!all.numbers.numbers.is_stuck()).then(|| row.into_iter().map(|(_, bent)| bent).collect())
     }
 }

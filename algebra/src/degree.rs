@@ -133,7 +133,7 @@ impl Degrees<'_> {
                 degree: form().iter().map(|(_, c)| count(c)).sum(),
                 ..Fraction::default()
             },
-            Law::Root => {
+            Law::Radical => {
                 let below = self.read(argument);
                 self.roots += 1;
                 Fraction {
@@ -141,7 +141,7 @@ impl Degrees<'_> {
                     ..Fraction::default()
                 }
             }
-            Law::None => Fraction {
+            Law::Free => Fraction {
                 degree: 1.0,
                 ..Fraction::default()
             },

@@ -11,9 +11,7 @@
 //! Numbers with slopes are numbers: slopes of slopes are those over [`Duals`].
 
 use super::fp::Fp;
-use super::function::Function;
-use super::numbers::{Form, Modular, Numbers, slope};
-use num_rational::BigRational;
+use super::numbers::{Form, Modular, Numbers, Step};
 
 /// ∂f/∂a of an operation.
 #[derive(Clone, Debug)]
@@ -28,11 +26,11 @@ pub enum Partial<N> {
 
 impl<N: Clone> Partial<N> {
     /// It times a slope.
-    fn times<C: Numbers<Number = N>>(&self, numbers: &mut C, slope: &N) -> N {
+    fn times<C: Numbers<Number = N>>(&self, numbers: &mut C, slope: &N) -> Option<N> {
         match self {
-            Partial::One => slope.clone(),
-            Partial::MinusOne => numbers.neg(slope),
-            Partial::By(factor) => numbers.mul(factor, slope),
+            Partial::One => Some(slope.clone()),
+            Partial::MinusOne => numbers.make(Step::Neg(slope)),
+            Partial::By(factor) => numbers.make(Step::Mul(factor, slope)),
         }
     }
 }
@@ -42,16 +40,14 @@ pub trait Slopes<C: Numbers> {
     /// What goes with a value.
     type Slope: Clone;
     /// Of a symbol.
-    fn symbol(&mut self, numbers: &mut C, index: usize, value: &C::Number) -> Self::Slope;
+    fn symbol(&mut self, numbers: &mut C, index: usize) -> Self::Slope;
     /// Σ ∂f/∂a times the slope of a, for f with this value.
     fn combine(
         &mut self,
         numbers: &mut C,
         value: &C::Number,
         parts: &[(Partial<C::Number>, &Self::Slope)],
-    ) -> Self::Slope;
-    /// Of −f.
-    fn neg(&mut self, numbers: &mut C, slope: &Self::Slope) -> Self::Slope;
+    ) -> Option<Self::Slope>;
     /// Whether it may differ from 0.
     fn moves(&self, numbers: &C, slope: &Self::Slope) -> bool;
 }
@@ -70,92 +66,88 @@ impl<C: Numbers, S: Slopes<C>> Duals<C, S> {
         &mut self,
         value: C::Number,
         parts: &[(Partial<C::Number>, &S::Slope)],
-    ) -> (C::Number, S::Slope) {
-        let slope = self.slopes.combine(&mut self.numbers, &value, parts);
-        (value, slope)
+    ) -> Option<(C::Number, S::Slope)> {
+        let slope = self.slopes.combine(&mut self.numbers, &value, parts)?;
+        Some((value, slope))
     }
 }
 
 impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
     type Number = (C::Number, S::Slope);
 
-    fn whole(&mut self, value: i32) -> Self::Number {
-        let value = self.numbers.whole(value);
-        self.with(value, &[])
-    }
-
-    fn constant(&mut self, value: &BigRational) -> Option<Self::Number> {
-        let value = self.numbers.constant(value)?;
-        Some(self.with(value, &[]))
-    }
-
-    fn symbol(&mut self, index: usize) -> Option<Self::Number> {
-        let value = self.numbers.symbol(index)?;
-        let slope = self.slopes.symbol(&mut self.numbers, index, &value);
-        Some((value, slope))
-    }
-
-    fn neg(&mut self, a: &Self::Number) -> Self::Number {
-        let slope = self.slopes.neg(&mut self.numbers, &a.1);
-        (self.numbers.neg(&a.0), slope)
-    }
-
-    fn add(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number {
-        let sum = self.numbers.add(&a.0, &b.0);
-        self.with(sum, &[(Partial::One, &a.1), (Partial::One, &b.1)])
-    }
-
-    fn sub(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number {
-        let difference = self.numbers.sub(&a.0, &b.0);
-        self.with(
-            difference,
-            &[(Partial::One, &a.1), (Partial::MinusOne, &b.1)],
-        )
-    }
-
-    fn mul(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number {
-        let product = self.numbers.mul(&a.0, &b.0);
+    fn make(&mut self, step: Step<Self::Number>) -> Option<Self::Number> {
+        let numbers = &mut self.numbers;
         let by = |factor: &C::Number| Partial::By(factor.clone());
-        self.with(product, &[(by(&b.0), &a.1), (by(&a.0), &b.1)])
-    }
-
-    fn div(&mut self, a: &Self::Number, b: &Self::Number) -> Option<Self::Number> {
-        let [quotient, by_a, by_b] = self.numbers.quotient(&a.0, &b.0)?;
-        let parts = [(Partial::By(by_a), &a.1), (Partial::By(by_b), &b.1)];
-        Some(self.with(quotient, &parts))
-    }
-
-    fn apply(
-        &mut self,
-        function: Function,
-        a: &Self::Number,
-        form: &dyn Fn() -> Form<Self::Number>,
-    ) -> Option<Self::Number> {
-        let numbers = &mut self.numbers;
-        let form = || -> Form<C::Number> {
-            let atoms = form().into_iter();
-            atoms.map(|((value, _), c)| (value, c)).collect()
-        };
-        let value = numbers.apply(function, &a.0, &form)?;
-        if !self.slopes.moves(numbers, &a.1) {
-            return Some(self.with(value, &[]));
+        match step {
+            Step::Whole(value) => {
+                let value = numbers.make(Step::Whole(value))?;
+                self.with(value, &[])
+            }
+            Step::Constant(value) => {
+                let value = numbers.make(Step::Constant(value))?;
+                self.with(value, &[])
+            }
+            Step::Symbol(index) => {
+                let value = numbers.make(Step::Symbol(index))?;
+                let slope = self.slopes.symbol(numbers, index);
+                Some((value, slope))
+            }
+            Step::Neg(a) => {
+                let value = numbers.make(Step::Neg(&a.0))?;
+                self.with(value, &[(Partial::MinusOne, &a.1)])
+            }
+            Step::Add(a, b) => {
+                let sum = numbers.make(Step::Add(&a.0, &b.0))?;
+                self.with(sum, &[(Partial::One, &a.1), (Partial::One, &b.1)])
+            }
+            Step::Sub(a, b) => {
+                let difference = numbers.make(Step::Sub(&a.0, &b.0))?;
+                self.with(
+                    difference,
+                    &[(Partial::One, &a.1), (Partial::MinusOne, &b.1)],
+                )
+            }
+            Step::Mul(a, b) => {
+                let product = numbers.make(Step::Mul(&a.0, &b.0))?;
+                self.with(product, &[(by(&b.0), &a.1), (by(&a.0), &b.1)])
+            }
+            Step::Div(a, b) => {
+                let [quotient, by_a, by_b] = numbers.quotient(&a.0, &b.0)?;
+                self.with(
+                    quotient,
+                    &[(Partial::By(by_a), &a.1), (Partial::By(by_b), &b.1)],
+                )
+            }
+            Step::Apply(function, a, form) => {
+                let form = || -> Form<C::Number> {
+                    let atoms = form().into_iter();
+                    atoms.map(|((value, _), c)| (value, c)).collect()
+                };
+                let value = numbers.make(Step::Apply(function, &a.0, &form))?;
+                if !self.slopes.moves(numbers, &a.1) {
+                    return self.with(value, &[]);
+                }
+                let factor = numbers.slope(function, (&a.0, &value), &form)?;
+                self.with(value, &[(Partial::By(factor), &a.1)])
+            }
+            // (x y′ − y x′)/(x² + y²).
+            Step::Atan2(y, x) => {
+                let value = numbers.make(Step::Atan2(&y.0, &x.0))?;
+                if [y, x].iter().all(|a| !self.slopes.moves(numbers, &a.1)) {
+                    return self.with(value, &[]);
+                }
+                let xx = numbers.make(Step::Mul(&x.0, &x.0))?;
+                let yy = numbers.make(Step::Mul(&y.0, &y.0))?;
+                let square = numbers.make(Step::Add(&xx, &yy))?;
+                let minus = numbers.make(Step::Neg(&y.0))?;
+                let by_y = numbers.make(Step::Div(&x.0, &square))?;
+                let by_x = numbers.make(Step::Div(&minus, &square))?;
+                self.with(
+                    value,
+                    &[(Partial::By(by_y), &y.1), (Partial::By(by_x), &x.1)],
+                )
+            }
         }
-        let factor = slope(numbers, function, (&a.0, &value), &form)?;
-        Some(self.with(value, &[(Partial::By(factor), &a.1)]))
-    }
-
-    /// (x y′ − y x′)/(x² + y²).
-    fn atan2(&mut self, y: &Self::Number, x: &Self::Number) -> Option<Self::Number> {
-        let numbers = &mut self.numbers;
-        let value = numbers.atan2(&y.0, &x.0)?;
-        if !self.slopes.moves(numbers, &y.1) && !self.slopes.moves(numbers, &x.1) {
-            return Some(self.with(value, &[]));
-        }
-        let (xx, yy) = (numbers.mul(&x.0, &x.0), numbers.mul(&y.0, &y.0));
-        let (square, minus) = (numbers.add(&xx, &yy), numbers.neg(&y.0));
-        let (by_y, by_x) = (numbers.div(&x.0, &square)?, numbers.div(&minus, &square)?);
-        let parts = [(Partial::By(by_y), &y.1), (Partial::By(by_x), &x.1)];
-        Some(self.with(value, &parts))
     }
 
     fn is_zero(&self, a: &Self::Number) -> bool {
@@ -164,18 +156,17 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
 
     /// With one inverse.
     fn quotient(&mut self, a: &Self::Number, b: &Self::Number) -> Option<[Self::Number; 3]> {
-        let one = self.whole(1);
-        let inverse = self.div(&one, b)?;
-        let quotient = self.mul(a, &inverse);
-        let by_b = self.mul(&quotient, &inverse);
-        let by_b = self.neg(&by_b);
-        Some([quotient, inverse, by_b])
+        let one = self.make(Step::Whole(1))?;
+        let inverse = self.make(Step::Div(&one, b))?;
+        let quotient = self.make(Step::Mul(a, &inverse))?;
+        let by_b = self.make(Step::Mul(&quotient, &inverse))?;
+        Some([quotient, inverse, self.make(Step::Neg(&by_b))?])
     }
 }
 
 impl<C: Modular, S: Slopes<C>> Modular for Duals<C, S> {
-    fn residue(&mut self, value: Fp) -> Self::Number {
-        let value = self.numbers.residue(value);
+    fn residue(&mut self, value: Fp) -> Option<Self::Number> {
+        let value = self.numbers.residue(value)?;
         self.with(value, &[])
     }
 }
@@ -187,7 +178,7 @@ pub struct Along<F>(pub F);
 impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for Along<F> {
     type Slope = C::Number;
 
-    fn symbol(&mut self, _: &mut C, index: usize, _: &C::Number) -> C::Number {
+    fn symbol(&mut self, _: &mut C, index: usize) -> C::Number {
         (self.0)(index)
     }
 
@@ -196,19 +187,18 @@ impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for Along<F> {
         numbers: &mut C,
         _: &C::Number,
         parts: &[(Partial<C::Number>, &C::Number)],
-    ) -> C::Number {
-        let mut sum = None;
+    ) -> Option<C::Number> {
+        let mut sum: Option<C::Number> = None;
         for (partial, slope) in parts {
             if !numbers.is_zero(slope) {
-                let term = partial.times(numbers, slope);
-                sum = Some(sum.map_or_else(|| term.clone(), |sum| numbers.add(&sum, &term)));
+                let term = partial.times(numbers, slope)?;
+                sum = Some(match sum {
+                    Some(sum) => numbers.make(Step::Add(&sum, &term))?,
+                    None => term,
+                });
             }
         }
-        sum.unwrap_or_else(|| numbers.whole(0))
-    }
-
-    fn neg(&mut self, numbers: &mut C, slope: &C::Number) -> C::Number {
-        numbers.neg(slope)
+        sum.or_else(|| numbers.make(Step::Whole(0)))
     }
 
     fn moves(&self, numbers: &C, slope: &C::Number) -> bool {
@@ -223,7 +213,7 @@ pub struct Across<F>(pub F);
 impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for Across<F> {
     type Slope = Vec<C::Number>;
 
-    fn symbol(&mut self, numbers: &mut C, index: usize, _: &C::Number) -> Vec<C::Number> {
+    fn symbol(&mut self, numbers: &mut C, index: usize) -> Vec<C::Number> {
         let slopes = (self.0)(index);
         let still = slopes.iter().all(|slope| numbers.is_zero(slope));
         if still { Vec::new() } else { slopes }
@@ -235,22 +225,18 @@ impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for Across<F> {
         numbers: &mut C,
         _: &C::Number,
         parts: &[(Partial<C::Number>, &Vec<C::Number>)],
-    ) -> Vec<C::Number> {
+    ) -> Option<Vec<C::Number>> {
         let width = parts.iter().map(|(_, slopes)| slopes.len()).max();
-        let mut sums = vec![numbers.whole(0); width.unwrap_or(0)];
+        let mut sums = vec![numbers.make(Step::Whole(0))?; width.unwrap_or(0)];
         for (partial, slopes) in parts {
             for (sum, slope) in sums.iter_mut().zip(*slopes) {
                 if !numbers.is_zero(slope) {
-                    let term = partial.times(numbers, slope);
-                    *sum = numbers.add(sum, &term);
+                    let term = partial.times(numbers, slope)?;
+                    *sum = numbers.make(Step::Add(sum, &term))?;
                 }
             }
         }
-        sums
-    }
-
-    fn neg(&mut self, numbers: &mut C, slopes: &Vec<C::Number>) -> Vec<C::Number> {
-        slopes.iter().map(|slope| numbers.neg(slope)).collect()
+        Some(sums)
     }
 
     fn moves(&self, _: &C, slopes: &Vec<C::Number>) -> bool {
@@ -258,36 +244,37 @@ impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for Across<F> {
     }
 }
 
-/// What values were made of: for each that moves, the places of what it is made of, with the
-/// derivatives by these.
+/// A place in a record, and the derivatives by earlier places.
+type Entry<N> = [Option<(Partial<N>, usize)>; 2];
+
+/// What values that move were made of.
 #[derive(Clone, Debug)]
 pub struct Record<N> {
-    entries: Vec<[Option<(Partial<N>, usize)>; 2]>,
-    /// Symbols with their places.
+    entries: Vec<Entry<N>>,
+    /// Places of symbols.
     symbols: Vec<(usize, usize)>,
 }
 
-impl<N> Default for Record<N> {
-    fn default() -> Self {
+impl<N: Clone> Record<N> {
+    /// Nothing yet.
+    pub fn new() -> Self {
         Record {
             entries: Vec::new(),
             symbols: Vec::new(),
         }
     }
-}
 
-impl<N: Clone> Record<N> {
     /// ∂f/∂xₖ of the first symbols, for f at a place.
     pub fn backwards<C: Numbers<Number = N>>(
         &self,
         numbers: &mut C,
         place: Option<usize>,
         symbols: usize,
-    ) -> Vec<N> {
-        let zero = numbers.whole(0);
+    ) -> Option<Vec<N>> {
+        let zero = numbers.make(Step::Whole(0))?;
         let mut weights = vec![zero.clone(); self.entries.len()];
         if let Some(place) = place {
-            weights[place] = numbers.whole(1);
+            weights[place] = numbers.make(Step::Whole(1))?;
         }
         for (place, parts) in self.entries.iter().enumerate().rev() {
             let weight = weights[place].clone();
@@ -295,8 +282,8 @@ impl<N: Clone> Record<N> {
                 continue;
             }
             for (partial, place) in parts.iter().flatten() {
-                let share = partial.times(numbers, &weight);
-                weights[*place] = numbers.add(&weights[*place], &share);
+                let share = partial.times(numbers, &weight)?;
+                weights[*place] = numbers.make(Step::Add(&weights[*place], &share))?;
             }
         }
         let mut row = vec![zero; symbols];
@@ -305,21 +292,17 @@ impl<N: Clone> Record<N> {
                 *entry = weights[place].clone();
             }
         }
-        row
-    }
-
-    fn push(&mut self, entry: [Option<(Partial<N>, usize)>; 2]) -> Option<usize> {
-        self.entries.push(entry);
-        Some(self.entries.len() - 1)
+        Some(row)
     }
 }
 
 impl<C: Numbers> Slopes<C> for Record<C::Number> {
     type Slope = Option<usize>;
 
-    fn symbol(&mut self, _: &mut C, index: usize, _: &C::Number) -> Option<usize> {
+    fn symbol(&mut self, _: &mut C, index: usize) -> Option<usize> {
         self.symbols.push((index, self.entries.len()));
-        self.push([None, None])
+        self.entries.push([None, None]);
+        Some(self.entries.len() - 1)
     }
 
     fn combine(
@@ -327,21 +310,17 @@ impl<C: Numbers> Slopes<C> for Record<C::Number> {
         _: &mut C,
         _: &C::Number,
         parts: &[(Partial<C::Number>, &Option<usize>)],
-    ) -> Option<usize> {
+    ) -> Option<Option<usize>> {
         let part = |k: usize| {
             let (partial, place) = parts.get(k)?;
             Some((partial.clone(), (**place)?))
         };
         let entry = [part(0), part(1)];
         if entry.iter().all(Option::is_none) {
-            return None;
+            return Some(None);
         }
-        self.push(entry)
-    }
-
-    fn neg(&mut self, _: &mut C, place: &Option<usize>) -> Option<usize> {
-        let place = (*place)?;
-        self.push([Some((Partial::MinusOne, place)), None])
+        self.entries.push(entry);
+        Some(Some(self.entries.len() - 1))
     }
 
     fn moves(&self, _: &C, place: &Option<usize>) -> bool {

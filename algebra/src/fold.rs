@@ -147,7 +147,7 @@ impl Graph {
     pub fn form(&self, function: Function, argument: Edge) -> Vec<(NodeId, BigRational)> {
         match function.row().law {
             Law::Angle | Law::Power => self.linear_form(argument),
-            Law::Root => {
+            Law::Radical => {
                 let number = self.as_rational(argument);
                 let is_number = self.class(argument.node()) == 0;
                 if is_number && !number.is_some_and(|number| number.is_positive()) {
@@ -155,7 +155,7 @@ impl Graph {
                 }
                 vec![(argument.node(), self.noted_content(argument))]
             }
-            Law::None => Vec::new(),
+            Law::Free => Vec::new(),
         }
     }
 

@@ -3,6 +3,11 @@
 //! A new function is a row here, with its values in numbers of every kind, and its values modulo p
 //! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
 
+use Cost::{Other, Root, Turn};
+use Law::{Angle, Free, Power, Radical};
+use Parity::{Even, Odd, Plain};
+use Slope::{HalfInverse, Inverse, Is, IsMinus, Itself, Two};
+
 use super::double::Double;
 use super::interval::Interval;
 use super::node::NodeId;
@@ -16,7 +21,7 @@ pub enum Parity {
     /// −f(a).
     Odd,
     /// Neither.
-    None,
+    Plain,
 }
 
 /// What f(a + b) or f(a b) is made of.
@@ -27,9 +32,9 @@ pub enum Law {
     /// Powers, multiplied.
     Power,
     /// √(a b) = √a √b of what is positive.
-    Root,
+    Radical,
     /// Of nothing: any value will do.
-    None,
+    Free,
 }
 
 /// f′(a).
@@ -90,11 +95,12 @@ pub struct Row {
 }
 
 macro_rules! table {
-    ($($(#[$doc:meta])* $id:ident { $($row:tt)* })*) => {
+    ($($id:ident $doc:literal $name:literal $rust:literal $latex:literal $cost:ident $parity:ident $law:ident
+        [$at:expr] [$slope:expr] $value:expr, $double:expr, $real:expr, $interval:expr;)*) => {
         /// Functions beyond the four operations.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
         pub enum Function {
-            $($(#[$doc])* $id,)*
+            $(#[doc = $doc] $id,)*
         }
 
         impl Function {
@@ -105,112 +111,48 @@ macro_rules! table {
             pub fn row(self) -> &'static Row {
                 match self {
                     $(Function::$id => {
-                        static ROW: Row = Row { $($row)* };
+                        static ROW: Row = Row {
+                            name: $name,
+                            rust: $rust,
+                            latex: $latex,
+                            cost: $cost,
+                            parity: $parity,
+                            law: $law,
+                            at: $at,
+                            slope: $slope,
+                            value: $value,
+                            double: $double,
+                            real: $real,
+                            interval: $interval,
+                        };
                         &ROW
                     })*
                 }
+            }
+
+            /// Its name in descriptions.
+            pub fn name(self) -> &'static str {
+                self.row().name
             }
         }
     };
 }
 
 // The place in the table chooses values modulo p: new functions come last.
+// Identifier, documentation, names, cost, parity, law, exact value, derivative; values in `f64`, in twice
+// the length, with bounds of errors, between bounds.
 table! {
-    /// sine
-    Sin {
-        name: "sin",
-        rust: "sin_cos().0",
-        latex: r"\sin",
-        cost: Cost::Turn,
-        parity: Parity::Odd,
-        at: Some([0, 0]),
-        law: Law::Angle,
-        slope: Slope::Is(Function::Cos),
-        value: f64::sin,
-        double: Double::sin,
-        real: Real::sin,
-        interval: Interval::sin,
-    }
-    /// cosine
-    Cos {
-        name: "cos",
-        rust: "sin_cos().1",
-        latex: r"\cos",
-        cost: Cost::Turn,
-        parity: Parity::Even,
-        at: Some([0, 1]),
-        law: Law::Angle,
-        slope: Slope::IsMinus(Function::Sin),
-        value: f64::cos,
-        double: Double::cos,
-        real: Real::cos,
-        interval: Interval::cos,
-    }
-    /// exponential
-    Exp {
-        name: "exp",
-        rust: "exp()",
-        latex: r"\exp",
-        cost: Cost::Other,
-        parity: Parity::None,
-        at: Some([0, 1]),
-        law: Law::Power,
-        slope: Slope::Itself,
-        value: f64::exp,
-        double: Double::exp,
-        real: Real::exp,
-        interval: Interval::exp,
-    }
-    /// natural logarithm
-    Log {
-        name: "log",
-        rust: "ln()",
-        latex: r"\ln",
-        cost: Cost::Other,
-        parity: Parity::None,
-        at: Some([1, 0]),
-        law: Law::None,
-        slope: Slope::Inverse,
-        value: f64::ln,
-        double: Double::log,
-        real: Real::log,
-        interval: |_| None,
-    }
-    /// square root
-    Sqrt {
-        name: "sqrt",
-        rust: "sqrt()",
-        latex: r"\sqrt",
-        cost: Cost::Root,
-        parity: Parity::None,
-        at: None,
-        law: Law::Root,
-        slope: Slope::HalfInverse,
-        value: f64::sqrt,
-        double: Double::sqrt,
-        real: Real::sqrt,
-        interval: Interval::sqrt,
-    }
-    /// angle of (x, y), arguments (y, x): a node of its own, without values of one argument
-    Atan2 {
-        name: "atan2",
-        rust: "atan2",
-        latex: r"\operatorname{atan2}",
-        cost: Cost::Other,
-        parity: Parity::None,
-        at: None,
-        law: Law::None,
-        slope: Slope::Two,
-        value: |_| f64::NAN,
-        double: |_| Double::new(f64::NAN),
-        real: |_| Real::UNKNOWN,
-        interval: |_| None,
-    }
-}
-
-impl Function {
-    /// Its name in descriptions.
-    pub fn name(self) -> &'static str {
-        self.row().name
-    }
+    Sin "sine" "sin" "sin_cos().0" r"\sin" Turn Odd Angle [Some([0, 0])] [Is(Function::Cos)]
+        f64::sin, Double::sin, Real::sin, Interval::sin;
+    Cos "cosine" "cos" "sin_cos().1" r"\cos" Turn Even Angle [Some([0, 1])] [IsMinus(Function::Sin)]
+        f64::cos, Double::cos, Real::cos, Interval::cos;
+    Exp "exponential" "exp" "exp()" r"\exp" Other Plain Power [Some([0, 1])] [Itself]
+        f64::exp, Double::exp, Real::exp, Interval::exp;
+    Log "natural logarithm" "log" "ln()" r"\ln" Other Plain Free [Some([1, 0])] [Inverse]
+        f64::ln, Double::log, Real::log, |_| None;
+    Sqrt "square root" "sqrt" "sqrt()" r"\sqrt" Root Plain Radical [None] [HalfInverse]
+        f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
+    Atan2 "angle of (x, y), arguments (y, x): a node of its own, without values of one argument"
+        "atan2" "atan2" r"\operatorname{atan2}" Other Plain Free [None] [Two]
+        |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
 }

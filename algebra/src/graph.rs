@@ -363,14 +363,14 @@ impl Graph {
         let (argument, negative) = match row.parity {
             Parity::Odd => (argument.abs(), argument.is_negative()),
             Parity::Even => (argument.abs(), false),
-            Parity::None => (argument, false),
+            Parity::Plain => (argument, false),
         };
         if let Some([a, value]) = row.at
             && argument == Edge::of(a)
         {
             return Edge::of(value);
         }
-        if row.law == Law::Root {
+        if row.law == Law::Radical {
             let exact = self.exact_root(argument);
             if let Some(exact) = exact.or_else(|| self.known_number_root(argument)) {
                 return exact;
@@ -389,7 +389,7 @@ impl Graph {
             .collect();
         let value = self.lane.function(function, self.value(argument), &form);
         let value = match row.law {
-            Law::Root => self.apart_from_root(argument, value),
+            Law::Radical => self.apart_from_root(argument, value),
             _ => value,
         };
         let class = self.class(argument.node());

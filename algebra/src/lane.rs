@@ -7,7 +7,7 @@
 
 use super::fp::{Fp, Random};
 use super::function::Function;
-use super::numbers::{Form, Modular, Numbers, operators};
+use super::numbers::{Form, Modular, Numbers, Step};
 use super::prime::Residue;
 use super::roots;
 use num_bigint::BigInt;
@@ -193,35 +193,25 @@ impl Lane {
 }
 
 impl Numbers for Lane {
-    operators!(Fp);
-
-    fn whole(&mut self, value: i32) -> Fp {
-        match value {
-            0 => Fp::ZERO,
-            1 => Fp::ONE,
-            other => Fp::from_i64(other.into()),
-        }
-    }
-
-    fn constant(&mut self, value: &BigRational) -> Option<Fp> {
-        Fp::from_rational(value)
-    }
-
-    fn symbol(&mut self, index: usize) -> Option<Fp> {
-        Some(self.symbols[index])
-    }
-
-    fn div(&mut self, a: &Fp, b: &Fp) -> Option<Fp> {
-        Some(*a * b.inv()?)
-    }
+    type Number = Fp;
 
     /// Roots that it does not have are noted (`is_stuck`).
-    fn apply(&mut self, function: Function, a: &Fp, form: &dyn Fn() -> LinearForm) -> Option<Fp> {
-        Some(self.function(function, *a, &form()))
-    }
-
-    fn atan2(&mut self, y: &Fp, x: &Fp) -> Option<Fp> {
-        Some(self.opaque(Function::Atan2, *y, *x))
+    #[inline]
+    fn make(&mut self, step: Step<Fp>) -> Option<Fp> {
+        Some(match step {
+            Step::Whole(0) => Fp::ZERO,
+            Step::Whole(1) => Fp::ONE,
+            Step::Whole(value) => Fp::from_i64(value.into()),
+            Step::Constant(value) => Fp::from_rational(value)?,
+            Step::Symbol(index) => self.symbols[index],
+            Step::Neg(a) => -*a,
+            Step::Add(a, b) => *a + *b,
+            Step::Sub(a, b) => *a - *b,
+            Step::Mul(a, b) => *a * *b,
+            Step::Div(a, b) => *a * b.inv()?,
+            Step::Apply(function, a, form) => self.function(function, *a, &form()),
+            Step::Atan2(y, x) => self.opaque(Function::Atan2, *y, *x),
+        })
     }
 
     fn is_zero(&self, a: &Fp) -> bool {
@@ -237,8 +227,8 @@ impl Numbers for Lane {
 }
 
 impl Modular for Lane {
-    fn residue(&mut self, value: Fp) -> Fp {
-        value
+    fn residue(&mut self, value: Fp) -> Option<Fp> {
+        Some(value)
     }
 }
 

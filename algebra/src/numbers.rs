@@ -20,39 +20,40 @@ use std::borrow::Cow;
 /// Σ coefficient · atom, as `Graph::form` has it, with the values of its atoms.
 pub type Form<N> = Vec<(N, BigRational)>;
 
+/// Finds a form for who needs it.
+pub type Former<'a, N> = &'a dyn Fn() -> Form<N>;
+
+/// An operation on numbers.
+pub enum Step<'a, N> {
+    /// A small whole number.
+    Whole(i32),
+    /// A rational.
+    Constant(&'a BigRational),
+    /// The value of a symbol.
+    Symbol(usize),
+    /// −a.
+    Neg(&'a N),
+    /// a + b.
+    Add(&'a N, &'a N),
+    /// a − b.
+    Sub(&'a N, &'a N),
+    /// a b.
+    Mul(&'a N, &'a N),
+    /// a / b.
+    Div(&'a N, &'a N),
+    /// A function of one argument.
+    Apply(Function, &'a N, Former<'a, N>),
+    /// The angle of (x, y), arguments (y, x).
+    Atan2(&'a N, &'a N),
+}
+
 /// Arithmetic at a point.
 pub trait Numbers {
     /// One number.
     type Number: Clone;
 
-    /// A small whole number.
-    fn whole(&mut self, value: i32) -> Self::Number;
-    /// A rational; `None` where it has no image.
-    fn constant(&mut self, value: &BigRational) -> Option<Self::Number>;
-    /// The value of a symbol.
-    fn symbol(&mut self, index: usize) -> Option<Self::Number>;
-    /// −a.
-    fn neg(&mut self, a: &Self::Number) -> Self::Number;
-    /// a + b.
-    fn add(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number;
-    /// a − b.
-    fn sub(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number {
-        let b = self.neg(b);
-        self.add(a, &b)
-    }
-    /// a b.
-    fn mul(&mut self, a: &Self::Number, b: &Self::Number) -> Self::Number;
-    /// a / b; `None` where b has no inverse.
-    fn div(&mut self, a: &Self::Number, b: &Self::Number) -> Option<Self::Number>;
-    /// A function of one argument; who needs its form asks for it.
-    fn apply(
-        &mut self,
-        function: Function,
-        a: &Self::Number,
-        form: &dyn Fn() -> Form<Self::Number>,
-    ) -> Option<Self::Number>;
-    /// The angle of (x, y).
-    fn atan2(&mut self, y: &Self::Number, x: &Self::Number) -> Option<Self::Number>;
+    /// What a step makes; `None` where there is no such number.
+    fn make(&mut self, step: Step<Self::Number>) -> Option<Self::Number>;
 
     /// Whether it is 0 for certain.
     fn is_zero(&self, _: &Self::Number) -> bool {
@@ -61,124 +62,106 @@ pub trait Numbers {
 
     /// a/b and its derivatives by a and b: 1/b and −(a/b)/b.
     fn quotient(&mut self, a: &Self::Number, b: &Self::Number) -> Option<[Self::Number; 3]> {
-        let one = self.whole(1);
-        let (quotient, by_a) = (self.div(a, b)?, self.div(&one, b)?);
-        let minus = self.neg(&quotient);
-        let by_b = self.div(&minus, b)?;
+        let one = self.make(Step::Whole(1))?;
+        let (quotient, by_a) = (self.make(Step::Div(a, b))?, self.make(Step::Div(&one, b))?);
+        let minus = self.make(Step::Neg(&quotient))?;
+        let by_b = self.make(Step::Div(&minus, b))?;
         Some([quotient, by_a, by_b])
+    }
+
+    /// f′(a) of a function with its value there.
+    fn slope(
+        &mut self,
+        function: Function,
+        (a, value): (&Self::Number, &Self::Number),
+        form: Former<Self::Number>,
+    ) -> Option<Self::Number> {
+        match function.row().slope {
+            Slope::Is(other) => self.make(Step::Apply(other, a, form)),
+            Slope::IsMinus(other) => {
+                let value = self.make(Step::Apply(other, a, form))?;
+                self.make(Step::Neg(&value))
+            }
+            Slope::Itself => Some(value.clone()),
+            Slope::Inverse => {
+                let one = self.make(Step::Whole(1))?;
+                self.make(Step::Div(&one, a))
+            }
+            Slope::HalfInverse => {
+                let (one, twice) = (
+                    self.make(Step::Whole(1))?,
+                    self.make(Step::Add(value, value))?,
+                );
+                self.make(Step::Div(&one, &twice))
+            }
+            Slope::Two => None,
+        }
+    }
+
+    /// A number with the sign of an edge.
+    fn signed<'a>(&mut self, value: &'a Self::Number, edge: Edge) -> Option<Cow<'a, Self::Number>> {
+        Some(match edge.is_negative() {
+            true => Cow::Owned(self.make(Step::Neg(value))?),
+            false => Cow::Borrowed(value),
+        })
+    }
+
+    /// The values of edges from those of all nodes.
+    fn read(&mut self, values: &[Self::Number], edges: &[Edge]) -> Option<Vec<Self::Number>> {
+        let value = |&edge: &Edge| self.signed(values.get(edge.node() as usize)?, edge);
+        let all = edges.iter().map(value);
+        all.map(|value| Some(value?.into_owned())).collect()
+    }
+
+    /// The value of a node that is no number from those of the nodes that it is made of.
+    #[inline]
+    fn node<'a>(
+        &mut self,
+        node: Node,
+        at: impl Fn(Edge) -> Option<&'a Self::Number>,
+        form: Former<Self::Number>,
+    ) -> Option<Self::Number>
+    where
+        Self::Number: 'a,
+    {
+        let mut read = |edge: Edge| self.signed(at(edge)?, edge);
+        match node {
+            Node::Constant(_) => None,
+            Node::Symbol(index) => self.make(Step::Symbol(index as usize)),
+            Node::Add(a, b) if !b.is_negative() && a.is_negative() => {
+                self.make(Step::Sub(at(b)?, at(a)?))
+            }
+            Node::Add(a, b) => {
+                let x = read(a)?;
+                match b.is_negative() {
+                    true => self.make(Step::Sub(&x, at(b)?)),
+                    false => self.make(Step::Add(&x, at(b)?)),
+                }
+            }
+            Node::Mul(a, b) => {
+                let (a, b) = (read(a)?, read(b)?);
+                self.make(Step::Mul(&a, &b))
+            }
+            Node::Div(a, b) => {
+                let (a, b) = (read(a)?, read(b)?);
+                self.make(Step::Div(&a, &b))
+            }
+            Node::Apply(function, a) => {
+                let a = read(a)?;
+                self.make(Step::Apply(function, &a, form))
+            }
+            Node::Atan2(y, x) => {
+                let (y, x) = (read(y)?, read(x)?);
+                self.make(Step::Atan2(&y, &x))
+            }
+        }
     }
 }
 
 /// Numbers over the two fields.
 pub trait Modular: Numbers {
     /// A number of the fields.
-    fn residue(&mut self, value: Fp) -> Self::Number;
-}
-
-/// The arithmetic of numbers with the operators of Rust.
-macro_rules! operators {
-    ($number:ty) => {
-        type Number = $number;
-
-        fn neg(&mut self, a: &$number) -> $number {
-            -*a
-        }
-
-        fn add(&mut self, a: &$number, b: &$number) -> $number {
-            *a + *b
-        }
-
-        fn sub(&mut self, a: &$number, b: &$number) -> $number {
-            *a - *b
-        }
-
-        fn mul(&mut self, a: &$number, b: &$number) -> $number {
-            *a * *b
-        }
-    };
-}
-pub(crate) use operators;
-
-/// f′(a) of a function with its value there.
-pub(crate) fn slope<C: Numbers>(
-    numbers: &mut C,
-    function: Function,
-    (a, value): (&C::Number, &C::Number),
-    form: &dyn Fn() -> Form<C::Number>,
-) -> Option<C::Number> {
-    let one = numbers.whole(1);
-    match function.row().slope {
-        Slope::Is(other) => numbers.apply(other, a, form),
-        Slope::IsMinus(other) => {
-            let value = numbers.apply(other, a, form)?;
-            Some(numbers.neg(&value))
-        }
-        Slope::Itself => Some(value.clone()),
-        Slope::Inverse => numbers.div(&one, a),
-        Slope::HalfInverse => {
-            let twice = numbers.add(value, value);
-            numbers.div(&one, &twice)
-        }
-        Slope::Two => None,
-    }
-}
-
-/// A number with the sign of an edge.
-pub(crate) fn signed<'a, C: Numbers>(
-    numbers: &mut C,
-    value: &'a C::Number,
-    edge: Edge,
-) -> Cow<'a, C::Number> {
-    if edge.is_negative() {
-        Cow::Owned(numbers.neg(value))
-    } else {
-        Cow::Borrowed(value)
-    }
-}
-
-/// The value of a node from those of the nodes that it is made of.
-#[inline]
-pub fn compute<'a, C: Numbers>(
-    numbers: &mut C,
-    node: Node,
-    constant: impl FnOnce(&mut C, u32) -> Option<C::Number>,
-    at: impl Fn(Edge) -> Option<&'a C::Number>,
-    form: &dyn Fn() -> Form<C::Number>,
-) -> Option<C::Number>
-where
-    C::Number: 'a,
-{
-    match node {
-        Node::Constant(index) => constant(numbers, index),
-        Node::Symbol(index) => numbers.symbol(index as usize),
-        Node::Add(a, b) => {
-            let (x, y) = (at(a)?, at(b)?);
-            Some(match (a.is_negative(), b.is_negative()) {
-                (false, false) => numbers.add(x, y),
-                (true, false) => numbers.sub(y, x),
-                (_, true) => {
-                    let x = signed(numbers, x, a);
-                    numbers.sub(&x, y)
-                }
-            })
-        }
-        Node::Mul(a, b) => {
-            let (a, b) = (signed(numbers, at(a)?, a), signed(numbers, at(b)?, b));
-            Some(numbers.mul(&a, &b))
-        }
-        Node::Div(a, b) => {
-            let (a, b) = (signed(numbers, at(a)?, a), signed(numbers, at(b)?, b));
-            numbers.div(&a, &b)
-        }
-        Node::Apply(function, a) => {
-            let a = signed(numbers, at(a)?, a);
-            numbers.apply(function, &a, form)
-        }
-        Node::Atan2(y, x) => {
-            let (y, x) = (signed(numbers, at(y)?, y), signed(numbers, at(x)?, x));
-            numbers.atan2(&y, &x)
-        }
-    }
+    fn residue(&mut self, value: Fp) -> Option<Self::Number>;
 }
 
 /// The values of expressions; `None` where something has none.
@@ -187,22 +170,22 @@ pub fn evaluate<C: Numbers>(
     roots: &[Edge],
     numbers: &mut C,
 ) -> Option<Vec<C::Number>> {
-    let mut values = vec![numbers.whole(0); graph.len()];
+    let mut values = vec![numbers.make(Step::Whole(0))?; graph.len()];
     // The number 1 is the atom of constant angles.
-    values[1] = numbers.whole(1);
+    values[1] = numbers.make(Step::Whole(1))?;
     for id in graph.reachable(roots) {
-        let node = graph.node(id);
-        let constant = |numbers: &mut C, index| numbers.constant(graph.constant(index));
         let form = || {
-            let Node::Apply(function, a) = node else {
+            let Node::Apply(function, a) = graph.node(id) else {
                 return Form::new();
             };
             let value = |(atom, c): (NodeId, BigRational)| (values[atom as usize].clone(), c);
             graph.form(function, a).into_iter().map(value).collect()
         };
         let at = |edge: Edge| values.get(edge.node() as usize);
-        values[id as usize] = compute(numbers, node, constant, at, &form)?;
+        values[id as usize] = match graph.node(id) {
+            Node::Constant(index) => numbers.make(Step::Constant(graph.constant(index)))?,
+            node => numbers.node(node, at, &form)?,
+        };
     }
-    let mut root = |root: &Edge| signed(numbers, &values[root.node() as usize], *root).into_owned();
-    Some(roots.iter().map(&mut root).collect())
+    numbers.read(&values, roots)
 }

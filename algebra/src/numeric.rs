@@ -1,10 +1,9 @@
 //! Numbers of expressions: in floating point, and exactly at fresh points modulo p.
 
 use super::fp::Fp;
-use super::graph::{Edge, Function, Graph};
+use super::graph::{Edge, Graph};
 use super::lane::Lane;
-use super::numbers::{self, Form, Numbers, operators};
-use num_rational::BigRational;
+use super::numbers::{self, Numbers, Step};
 use num_traits::ToPrimitive;
 
 /// Numbers in floating point, with the values of all symbols.
@@ -12,30 +11,22 @@ use num_traits::ToPrimitive;
 pub struct Floats<'a>(pub &'a [f64]);
 
 impl Numbers for Floats<'_> {
-    operators!(f64);
+    type Number = f64;
 
-    fn whole(&mut self, value: i32) -> f64 {
-        value.into()
-    }
-
-    fn constant(&mut self, value: &BigRational) -> Option<f64> {
-        Some(value.to_f64().unwrap_or(f64::NAN))
-    }
-
-    fn symbol(&mut self, index: usize) -> Option<f64> {
-        Some(self.0.get(index).copied().unwrap_or(f64::NAN))
-    }
-
-    fn div(&mut self, a: &f64, b: &f64) -> Option<f64> {
-        Some(a / b)
-    }
-
-    fn apply(&mut self, function: Function, a: &f64, _: &dyn Fn() -> Form<f64>) -> Option<f64> {
-        Some((function.row().value)(*a))
-    }
-
-    fn atan2(&mut self, y: &f64, x: &f64) -> Option<f64> {
-        Some(y.atan2(*x))
+    #[inline]
+    fn make(&mut self, step: Step<f64>) -> Option<f64> {
+        Some(match step {
+            Step::Whole(value) => value.into(),
+            Step::Constant(value) => value.to_f64().unwrap_or(f64::NAN),
+            Step::Symbol(index) => self.0.get(index).copied().unwrap_or(f64::NAN),
+            Step::Neg(a) => -a,
+            Step::Add(a, b) => a + b,
+            Step::Sub(a, b) => a - b,
+            Step::Mul(a, b) => a * b,
+            Step::Div(a, b) => a / b,
+            Step::Apply(function, a, _) => (function.row().value)(*a),
+            Step::Atan2(y, x) => y.atan2(*x),
+        })
     }
 
     fn is_zero(&self, a: &f64) -> bool {

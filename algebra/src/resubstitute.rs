@@ -8,7 +8,7 @@ use super::fp::Fp;
 use super::graph::{Graph, canonical};
 use super::node::{Edge, Node, NodeId};
 use super::shadow::Shadow;
-use super::transplant::rebuild;
+use super::transplant::{merged, read, rebuild};
 use rustc_hash::FxHashMap;
 
 /// Larger expressions are left as they are.
@@ -206,13 +206,7 @@ impl<'a> Network<'a> {
     }
 
     fn rebuild(&self, into: &mut Graph) -> Vec<Edge> {
-        let mut image: FxHashMap<NodeId, Edge> = FxHashMap::default();
-        let read = |image: &FxHashMap<NodeId, Edge>, edge: Edge| {
-            image
-                .get(&edge.node())
-                .copied()
-                .map_or(Edge::of(0), |known| known.signed(edge.is_negative()))
-        };
+        let mut image = vec![Edge::of(0); self.graph.len()];
         let alive = self.alive(None);
         let is_constant = |id: &&NodeId| self.graph.is_free(**id);
         let constants: Vec<Edge> = alive
@@ -221,25 +215,16 @@ impl<'a> Network<'a> {
             .map(|&id| Edge::of(id))
             .collect();
         let moved = rebuild(self.graph, into, &constants);
-        image.extend(constants.iter().map(|edge| edge.node()).zip(moved));
-        for id in alive {
-            let definition = self.definitions[id as usize];
-            let Some(node) = definition.filter(|_| !self.graph.is_free(id)) else {
-                continue;
-            };
+        for (edge, made) in constants.iter().zip(moved) {
+            image[edge.node() as usize] = made;
+        }
+        for id in alive.into_iter().filter(|&id| !self.graph.is_free(id)) {
             into.follow(self.graph, id);
-            let made = match node {
-                Node::Constant(index) => into.rational(self.graph.constant(index)),
-                Node::Symbol(index) => Edge::of(into.symbols()[index as usize].node),
-                Node::Add(a, b) => into.add(read(&image, a), read(&image, b)),
-                Node::Mul(a, b) => into.mul(read(&image, a), read(&image, b)),
-                Node::Div(a, b) => into
-                    .div(read(&image, a), read(&image, b))
-                    .unwrap_or(into.zero()),
-                Node::Apply(function, a) => into.apply(function, read(&image, a)),
-                Node::Atan2(y, x) => into.atan2(read(&image, y), read(&image, x)),
+            image[id as usize] = match self.definitions[id as usize] {
+                Some(Node::Symbol(index)) => Edge::of(into.symbols()[index as usize].node),
+                Some(node) => merged(into, node.over(|child| read(&image, child))),
+                None => continue,
             };
-            image.insert(id, made);
         }
         self.roots.iter().map(|&root| read(&image, root)).collect()
     }

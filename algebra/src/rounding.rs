@@ -14,10 +14,8 @@
 
 use super::double::Double;
 use super::dual::{Duals, Partial, Slopes};
-use super::function::Function;
 use super::graph::{Edge, Graph};
-use super::numbers::{Form, Numbers, evaluate, operators};
-use num_rational::BigRational;
+use super::numbers::{Numbers, Step, evaluate};
 
 /// Unit roundoff of `f64`.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
@@ -42,38 +40,22 @@ impl Rounded {
 struct Doubles<'a>(&'a [f64]);
 
 impl Numbers for Doubles<'_> {
-    operators!(Double);
+    type Number = Double;
 
-    fn whole(&mut self, value: i32) -> Double {
-        Double::new(value.into())
-    }
-
-    fn constant(&mut self, value: &BigRational) -> Option<Double> {
-        Some(Double::of_rational(value))
-    }
-
-    fn symbol(&mut self, index: usize) -> Option<Double> {
-        Some(match index {
-            0 => Double::PI,
-            _ => Double::new(self.0.get(index).copied().unwrap_or(0.0)),
+    fn make(&mut self, step: Step<Double>) -> Option<Double> {
+        Some(match step {
+            Step::Whole(value) => Double::new(value.into()),
+            Step::Constant(value) => Double::of_rational(value),
+            Step::Symbol(0) => Double::PI,
+            Step::Symbol(index) => Double::new(self.0.get(index).copied().unwrap_or(0.0)),
+            Step::Neg(a) => -*a,
+            Step::Add(a, b) => *a + *b,
+            Step::Sub(a, b) => *a - *b,
+            Step::Mul(a, b) => *a * *b,
+            Step::Div(a, b) => *a / *b,
+            Step::Apply(function, a, _) => (function.row().double)(*a),
+            Step::Atan2(y, x) => y.atan2(*x),
         })
-    }
-
-    fn div(&mut self, a: &Double, b: &Double) -> Option<Double> {
-        Some(*a / *b)
-    }
-
-    fn apply(
-        &mut self,
-        function: Function,
-        a: &Double,
-        _: &dyn Fn() -> Form<Double>,
-    ) -> Option<Double> {
-        Some((function.row().double)(*a))
-    }
-
-    fn atan2(&mut self, y: &Double, x: &Double) -> Option<Double> {
-        Some(y.atan2(*x))
     }
 }
 
@@ -81,60 +63,28 @@ impl Numbers for Doubles<'_> {
 /// machine.
 struct Both<'a>(Doubles<'a>);
 
-impl Both<'_> {
-    fn of(rounded: f64, exact: Double) -> Rounded {
-        Rounded { rounded, exact }
-    }
-
-    fn nearest(exact: Double) -> Rounded {
-        Both::of(exact.to_f64(), exact)
-    }
-}
-
 impl Numbers for Both<'_> {
     type Number = Rounded;
 
-    fn whole(&mut self, value: i32) -> Rounded {
-        Both::nearest(self.0.whole(value))
-    }
-
-    fn constant(&mut self, value: &BigRational) -> Option<Rounded> {
-        self.0.constant(value).map(Both::nearest)
-    }
-
-    fn symbol(&mut self, index: usize) -> Option<Rounded> {
-        self.0.symbol(index).map(Both::nearest)
-    }
-
-    fn neg(&mut self, a: &Rounded) -> Rounded {
-        Both::of(-a.rounded, -a.exact)
-    }
-
-    fn add(&mut self, a: &Rounded, b: &Rounded) -> Rounded {
-        Both::of(a.rounded + b.rounded, a.exact + b.exact)
-    }
-
-    fn mul(&mut self, a: &Rounded, b: &Rounded) -> Rounded {
-        Both::of(a.rounded * b.rounded, a.exact * b.exact)
-    }
-
-    fn div(&mut self, a: &Rounded, b: &Rounded) -> Option<Rounded> {
-        Some(Both::of(a.rounded / b.rounded, a.exact / b.exact))
-    }
-
-    fn apply(
-        &mut self,
-        function: Function,
-        a: &Rounded,
-        _: &dyn Fn() -> Form<Rounded>,
-    ) -> Option<Rounded> {
-        let of = function.row().double;
-        Some(Both::of(of(Double::new(a.rounded)).to_f64(), of(a.exact)))
-    }
-
-    fn atan2(&mut self, y: &Rounded, x: &Rounded) -> Option<Rounded> {
-        let angle = Double::new(y.rounded).atan2(Double::new(x.rounded));
-        Some(Both::of(angle.to_f64(), y.exact.atan2(x.exact)))
+    fn make(&mut self, step: Step<Rounded>) -> Option<Rounded> {
+        let long = |a: &Rounded| Double::new(a.rounded);
+        let nearest = |exact: Double| (exact.to_f64(), exact);
+        let (rounded, exact) = match step {
+            Step::Whole(value) => (value.into(), Double::new(value.into())),
+            Step::Constant(value) => nearest(self.0.make(Step::Constant(value))?),
+            Step::Symbol(index) => nearest(self.0.make(Step::Symbol(index))?),
+            Step::Neg(a) => (-a.rounded, -a.exact),
+            Step::Add(a, b) => (a.rounded + b.rounded, a.exact + b.exact),
+            Step::Sub(a, b) => (a.rounded - b.rounded, a.exact - b.exact),
+            Step::Mul(a, b) => (a.rounded * b.rounded, a.exact * b.exact),
+            Step::Div(a, b) => (a.rounded / b.rounded, a.exact / b.exact),
+            Step::Apply(function, a, _) => {
+                let of = function.row().double;
+                (of(long(a)).to_f64(), of(a.exact))
+            }
+            Step::Atan2(y, x) => (long(y).atan2(long(x)).to_f64(), y.exact.atan2(x.exact)),
+        };
+        Some(Rounded { rounded, exact })
     }
 }
 
@@ -158,8 +108,13 @@ struct Errors;
 impl Slopes<Doubles<'_>> for Errors {
     type Slope = f64;
 
-    fn symbol(&mut self, numbers: &mut Doubles, _: usize, value: &Double) -> f64 {
-        self.combine(numbers, value, &[])
+    /// Values of symbols are numbers of `f64`, but for π.
+    fn symbol(&mut self, _: &mut Doubles, index: usize) -> f64 {
+        if index == 0 {
+            UNIT * Double::PI.to_f64()
+        } else {
+            0.0
+        }
     }
 
     fn combine(
@@ -167,21 +122,20 @@ impl Slopes<Doubles<'_>> for Errors {
         _: &mut Doubles,
         value: &Double,
         parts: &[(Partial<Double>, &f64)],
-    ) -> f64 {
-        let size = |value: Double| value.abs().to_f64();
+    ) -> Option<f64> {
+        let size = |value: &Double| value.abs().to_f64();
         let part = |(partial, error): &(Partial<Double>, &f64)| match partial {
             Partial::One | Partial::MinusOne => **error,
-            Partial::By(factor) => size(*factor) * **error,
+            Partial::By(factor) => size(factor) * **error,
         };
         let inherited: f64 = parts.iter().map(part).sum();
-        if inherited == 0.0 && *value == Double::new(value.to_f64()) {
-            return 0.0;
-        }
-        inherited + UNIT * size(*value)
-    }
-
-    fn neg(&mut self, _: &mut Doubles, error: &f64) -> f64 {
-        *error
+        let is_exact = inherited == 0.0 && *value == Double::new(value.to_f64());
+        let is_exact = is_exact || matches!(parts, [(Partial::MinusOne, _)]);
+        Some(if is_exact {
+            inherited
+        } else {
+            inherited + UNIT * size(value)
+        })
     }
 
     fn moves(&self, _: &Doubles, error: &f64) -> bool {

@@ -4,7 +4,7 @@
 use super::function::Function;
 use super::interval::Interval;
 use super::node::{Edge, Node, NodeId};
-use super::numbers::{Form, Numbers, compute};
+use super::numbers::{Form, Numbers, Step};
 use super::reals::{Real, Reals, SAMPLES, contradict};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -143,8 +143,10 @@ impl Shadow {
             self.number(nodes, constants, child)?;
         }
         let at = |edge: Edge| self.numbers.get(&edge.node()).and_then(Option::as_ref);
-        let constant = |numbers: &mut Bounds, index| numbers.constant(&constants[index as usize]);
-        compute(&mut Bounds, node, constant, at, &Form::new)
+        match node {
+            Node::Constant(index) => Bounds.make(Step::Constant(&constants[index as usize])),
+            node => Bounds.node(node, at, &Form::new),
+        }
     }
 
     fn read(&self, edge: Edge) -> Reals {
@@ -155,8 +157,10 @@ impl Shadow {
     fn value(&self, constants: &[BigRational], node: Node) -> Reals {
         let mut samples = Samples(&self.symbols);
         let at = |edge: Edge| self.values.get(edge.node() as usize);
-        let constant = |numbers: &mut Samples, index| numbers.constant(&constants[index as usize]);
-        let value = compute(&mut samples, node, constant, at, &Form::new);
+        let value = match node {
+            Node::Constant(index) => samples.make(Step::Constant(&constants[index as usize])),
+            node => samples.node(node, at, &Form::new),
+        };
         value.unwrap_or([Real::UNKNOWN; SAMPLES])
     }
 }
@@ -164,56 +168,28 @@ impl Shadow {
 /// Numbers at real samples, with the values of symbols.
 struct Samples<'a>(&'a [Reals]);
 
-impl Samples<'_> {
-    fn pair(a: &Reals, b: &Reals, of: fn(Real, Real) -> Real) -> Reals {
-        std::array::from_fn(|sample| of(a[sample], b[sample]))
-    }
-}
-
 impl Numbers for Samples<'_> {
     type Number = Reals;
 
-    fn whole(&mut self, value: i32) -> Reals {
-        [Real::new(value.into(), 0.0); SAMPLES]
-    }
-
-    fn constant(&mut self, value: &BigRational) -> Option<Reals> {
-        let value = value.to_f64().unwrap_or(f64::NAN);
-        Some([Real::new(value, value.abs() * f64::EPSILON); SAMPLES])
-    }
-
-    fn symbol(&mut self, index: usize) -> Option<Reals> {
-        let known = self.0.get(index).copied();
-        Some(known.unwrap_or([Real::UNKNOWN; SAMPLES]))
-    }
-
-    fn neg(&mut self, a: &Reals) -> Reals {
-        a.map(|a| a.signed(true))
-    }
-
-    fn add(&mut self, a: &Reals, b: &Reals) -> Reals {
-        Samples::pair(a, b, Real::plus)
-    }
-
-    fn mul(&mut self, a: &Reals, b: &Reals) -> Reals {
-        Samples::pair(a, b, Real::times)
-    }
-
-    fn div(&mut self, a: &Reals, b: &Reals) -> Option<Reals> {
-        Some(Samples::pair(a, b, Real::over))
-    }
-
-    fn apply(
-        &mut self,
-        function: Function,
-        a: &Reals,
-        _: &dyn Fn() -> Form<Reals>,
-    ) -> Option<Reals> {
-        Some(a.map(|a| a.apply(function)))
-    }
-
-    fn atan2(&mut self, y: &Reals, x: &Reals) -> Option<Reals> {
-        Some(Samples::pair(y, x, Real::atan2))
+    fn make(&mut self, step: Step<Reals>) -> Option<Reals> {
+        let pair = |a: &Reals, b: &Reals, of: fn(Real, Real) -> Real| -> Reals {
+            std::array::from_fn(|sample| of(a[sample], b[sample]))
+        };
+        Some(match step {
+            Step::Whole(value) => [Real::new(value.into(), 0.0); SAMPLES],
+            Step::Constant(value) => {
+                let value = value.to_f64().unwrap_or(f64::NAN);
+                [Real::new(value, value.abs() * f64::EPSILON); SAMPLES]
+            }
+            Step::Symbol(index) => *self.0.get(index)?,
+            Step::Neg(a) => a.map(|a| a.signed(true)),
+            Step::Add(a, b) => pair(a, b, Real::plus),
+            Step::Sub(a, b) => pair(a, b, |a, b| a.plus(b.signed(true))),
+            Step::Mul(a, b) => pair(a, b, Real::times),
+            Step::Div(a, b) => pair(a, b, Real::over),
+            Step::Apply(function, a, _) => a.map(|a| a.apply(function)),
+            Step::Atan2(y, x) => pair(y, x, Real::atan2),
+        })
     }
 }
 
@@ -223,44 +199,20 @@ struct Bounds;
 impl Numbers for Bounds {
     type Number = Interval;
 
-    fn whole(&mut self, value: i32) -> Interval {
-        Interval::rational(&BigRational::from_integer(value.into()))
-    }
-
-    fn constant(&mut self, value: &BigRational) -> Option<Interval> {
-        Some(Interval::rational(value))
-    }
-
-    fn symbol(&mut self, _: usize) -> Option<Interval> {
-        Some(Interval::pi())
-    }
-
-    fn neg(&mut self, a: &Interval) -> Interval {
-        a.signed(true)
-    }
-
-    fn add(&mut self, a: &Interval, b: &Interval) -> Interval {
-        a.plus(b)
-    }
-
-    fn mul(&mut self, a: &Interval, b: &Interval) -> Interval {
-        a.times(b)
-    }
-
-    fn div(&mut self, a: &Interval, b: &Interval) -> Option<Interval> {
-        Some(a.times(&b.inverse()?))
-    }
-
-    fn apply(
-        &mut self,
-        function: Function,
-        a: &Interval,
-        _: &dyn Fn() -> Form<Interval>,
-    ) -> Option<Interval> {
-        a.apply(function)
-    }
-
-    fn atan2(&mut self, _: &Interval, _: &Interval) -> Option<Interval> {
-        None
+    fn make(&mut self, step: Step<Interval>) -> Option<Interval> {
+        match step {
+            Step::Whole(value) => {
+                Some(Interval::rational(&BigRational::from_integer(value.into())))
+            }
+            Step::Constant(value) => Some(Interval::rational(value)),
+            Step::Symbol(_) => Some(Interval::pi()),
+            Step::Neg(a) => Some(a.signed(true)),
+            Step::Add(a, b) => Some(a.plus(b)),
+            Step::Sub(a, b) => Some(a.plus(&b.signed(true))),
+            Step::Mul(a, b) => Some(a.times(b)),
+            Step::Div(a, b) => Some(a.times(&b.inverse()?)),
+            Step::Apply(function, a, _) => (function.row().interval)(a),
+            Step::Atan2(..) => None,
+        }
     }
 }

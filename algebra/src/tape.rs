@@ -6,7 +6,7 @@
 use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
 use super::lane::Lane;
-use super::numbers::{Form, Modular, compute, signed};
+use super::numbers::{Form, Modular};
 use num_rational::BigRational;
 
 /// A node of earlier steps, and the linear form of its argument.
@@ -62,19 +62,19 @@ impl Tape {
     pub(super) fn run<C: Modular>(&self, numbers: &mut C) -> Option<Vec<C::Number>> {
         let mut values: Vec<C::Number> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
-            let constant =
-                |numbers: &mut C, index: u32| Some(numbers.residue(self.constants[index as usize]));
-            let at = |edge: Edge| values.get(edge.node() as usize);
             let form = || -> Form<C::Number> {
                 let value =
                     |(atom, c): &(NodeId, BigRational)| (values[*atom as usize].clone(), c.clone());
                 step.form.iter().map(value).collect()
             };
-            let value = compute(numbers, step.node, constant, at, &form)?;
+            let at = |edge: Edge| values.get(edge.node() as usize);
+            let value = match step.node {
+                Node::Constant(index) => numbers.residue(self.constants[index as usize])?,
+                node => numbers.node(node, at, &form)?,
+            };
             values.push(value);
         }
-        let root = |root: &Edge| signed(numbers, &values[root.node() as usize], *root).into_owned();
-        Some(self.roots.iter().map(root).collect())
+        numbers.read(&values, &self.roots)
     }
 
     /// The values of the expressions at a point; `None` where something has no value there.

@@ -2,7 +2,7 @@
 
 use super::{Argument, Function, Program};
 use crate::algebra::graph::{Edge, Node, NodeId};
-use crate::algebra::numbers::{Form, compute};
+use crate::algebra::numbers::{Form, Numbers};
 use crate::algebra::numeric::Floats;
 use num_traits::ToPrimitive;
 
@@ -129,6 +129,6 @@ fn read(edge: Edge, values: &[f64]) -> f64 {
 fn run(step: Node, values: &[f64]) -> f64 {
     let at = |edge: Edge| values.get(edge.node() as usize);
     // Numbers and symbols are there from the start.
-    let value = compute(&mut Floats(&[]), step, |_, _| None, at, &Form::new);
+    let value = Floats(&[]).node(step, at, &Form::new);
     value.unwrap_or(f64::NAN)
 }
