@@ -102,6 +102,11 @@ impl Derivation {
                         let numerator = graph.mul(half, da);
                         graph.div(numerator, Edge::of(id)).unwrap_or(zero)
                     }
+                    Slope::OneMinusSquare => {
+                        let square = graph.mul(Edge::of(id), Edge::of(id));
+                        let slope = graph.sub(graph.one(), square);
+                        graph.mul(slope, da)
+                    }
                     Slope::Two => zero,
                 }
             }

@@ -4,9 +4,9 @@
 //! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
 
 use Cost::{Other, Root, Turn};
-use Law::{Angle, Free, Power, Radical};
+use Law::{Angle, Free, Hyperbola, Power, Radical};
 use Parity::{Even, Odd, Plain};
-use Slope::{HalfInverse, Inverse, Is, IsMinus, Itself, Two};
+use Slope::{HalfInverse, Inverse, Is, IsMinus, Itself, OneMinusSquare, Two};
 
 use super::double::Double;
 use super::interval::Interval;
@@ -31,6 +31,8 @@ pub enum Law {
     Angle,
     /// Powers, multiplied.
     Power,
+    /// Powers and their inverses, multiplied.
+    Hyperbola,
     /// √(a b) = √a √b of what is positive.
     Radical,
     /// Of nothing: any value will do.
@@ -50,6 +52,8 @@ pub enum Slope {
     Inverse,
     /// 1/(2 f(a)).
     HalfInverse,
+    /// 1 − f(a)².
+    OneMinusSquare,
     /// It has two arguments, and rules of its own.
     Two,
 }
@@ -155,4 +159,10 @@ table! {
     Atan2 "angle of (x, y), arguments (y, x): a node of its own, without values of one argument"
         "atan2" "atan2" r"\operatorname{atan2}" Other Plain Free [None] [Two]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
+    Sinh "hyperbolic sine" "sinh" "sinh()" r"\sinh" Other Odd Hyperbola [Some([0, 0])] [Is(Function::Cosh)]
+        f64::sinh, Double::sinh, Real::sinh, Interval::sinh;
+    Cosh "hyperbolic cosine" "cosh" "cosh()" r"\cosh" Other Even Hyperbola [Some([0, 1])] [Is(Function::Sinh)]
+        f64::cosh, Double::cosh, Real::cosh, Interval::cosh;
+    Tanh "hyperbolic tangent" "tanh" "tanh()" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquare]
+        f64::tanh, Double::tanh, Real::tanh, Interval::tanh;
 }

@@ -248,6 +248,28 @@ impl Interval {
         Some(result)
     }
 
+    pub(super) fn sinh(&self) -> Option<Self> {
+        Some(self.powers()?.0)
+    }
+
+    pub(super) fn cosh(&self) -> Option<Self> {
+        Some(self.powers()?.1)
+    }
+
+    pub(super) fn tanh(&self) -> Option<Self> {
+        let (sinh, cosh) = self.powers()?;
+        Some(sinh.times(&cosh.inverse()?))
+    }
+
+    /// (eˣ ∓ e⁻ˣ)/2.
+    fn powers(&self) -> Option<(Self, Self)> {
+        let power = self.exp()?;
+        let inverse = power.inverse()?;
+        let half = Interval::new(BigInt::one(), BigInt::one(), -1);
+        let (sum, difference) = (power.plus(&inverse), power.plus(&inverse.signed(true)));
+        Some((difference.times(&half), sum.times(&half)))
+    }
+
     fn contains_zero(&self) -> bool {
         self.lo.sign() != Sign::Plus && self.hi.sign() != Sign::Minus
     }

@@ -3,7 +3,7 @@
 //! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a
 //! random point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that
 //! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
-//! exp is treated likewise. Square roots keep the laws of positive numbers (`roots`).
+//! exp is treated likewise, and sinh, cosh and tanh follow from it. Square roots keep the laws of positive numbers (`roots`).
 
 use super::fp::{Fp, Random};
 use super::function::Function;
@@ -100,6 +100,10 @@ impl Lane {
             Function::Sin => Fp(self.angle(form, &first).1, self.angle(form, &second).1),
             Function::Cos => Fp(self.angle(form, &first).0, self.angle(form, &second).0),
             Function::Exp => Fp(self.exp(form, &first), self.exp(form, &second)),
+            Function::Sinh | Function::Cosh | Function::Tanh => Fp(
+                hyperbolic(function, self.exp(form, &first)),
+                hyperbolic(function, self.exp(form, &second)),
+            ),
             Function::Sqrt => {
                 let roots = (
                     self.root(argument.0, form, &first),
@@ -244,6 +248,17 @@ fn first(value: Fp) -> Residue<0> {
 
 fn second(value: Fp) -> Residue<1> {
     value.1
+}
+
+/// (e ∓ 1/e)/2, or the one over the other: e² is not −1, as p ≡ 3 mod 4.
+fn hyperbolic<const K: usize>(function: Function, e: Residue<K>) -> Residue<K> {
+    let inverse = |a: Residue<K>| a.inv().unwrap_or(Residue::ONE);
+    let (less, more) = (e - inverse(e), e + inverse(e));
+    match function {
+        Function::Sinh => less * inverse(Residue::new(2)),
+        Function::Cosh => more * inverse(Residue::new(2)),
+        _ => less * inverse(more),
+    }
 }
 
 /// Writes c·atom as a whole number of parts of a base, signs made canonical; where c is no

@@ -94,6 +94,13 @@ pub trait Numbers {
                 );
                 self.make(Step::Div(&one, &twice))
             }
+            Slope::OneMinusSquare => {
+                let (one, square) = (
+                    self.make(Step::Whole(1))?,
+                    self.make(Step::Mul(value, value))?,
+                );
+                self.make(Step::Sub(&one, &square))
+            }
             Slope::Two => None,
         }
     }

@@ -129,6 +129,20 @@ impl Real {
         Real::rounded(value, value * self.error.exp_m1())
     }
 
+    pub(super) fn sinh(self) -> Self {
+        let slope = (self.value.abs() + self.error).cosh();
+        Real::rounded(self.value.sinh(), slope * self.error)
+    }
+
+    pub(super) fn cosh(self) -> Self {
+        let slope = (self.value.abs() + self.error).sinh();
+        Real::rounded(self.value.cosh(), slope * self.error)
+    }
+
+    pub(super) fn tanh(self) -> Self {
+        Real::rounded(self.value.tanh(), self.error)
+    }
+
     pub(super) fn log(self) -> Self {
         let Real { value, error } = self;
         if value > error {

@@ -123,6 +123,13 @@ fn functions_obey_their_group_laws() {
     let (ea, eb) = (g.apply(Function::Exp, a), g.apply(Function::Exp, b));
     let product = g.mul(ea, eb);
     assert_eq!(g.apply(Function::Exp, sum), product);
+    // What follows from exp: eᵃ = cosh a + sinh a, cosh² − sinh² = 1, tanh = sinh/cosh.
+    let (sinh, cosh) = (g.apply(Function::Sinh, a), g.apply(Function::Cosh, a));
+    assert_eq!(g.add(sinh, cosh), ea);
+    let squares = g.dot(&[cosh, sinh], &[cosh, -sinh]);
+    assert_eq!(squares, g.one());
+    assert_eq!(g.div(sinh, cosh), Some(g.apply(Function::Tanh, a)));
+    assert_eq!(g.apply(Function::Tanh, -a), -g.apply(Function::Tanh, a));
     let twice = g.mul(ea, g.one());
     let inverse = g.apply(Function::Exp, -a);
     assert_eq!(g.mul(twice, inverse), g.one());
