@@ -13,7 +13,7 @@ impl Tape {
     pub fn bend(&self, lane: &Lane, direction: &[Fp]) -> Option<Vec<Fp>> {
         let mut all = Duals {
             numbers: duals(lane, direction),
-            slopes: Record::new(),
+            slopes: Record::default(),
         };
         let place = self.run(&mut all)?.first()?.1;
         let row = all

@@ -255,15 +255,16 @@ pub struct Record<N> {
     symbols: Vec<(usize, usize)>,
 }
 
-impl<N: Clone> Record<N> {
-    /// Nothing yet.
-    pub fn new() -> Self {
+impl<N> Default for Record<N> {
+    fn default() -> Self {
         Record {
             entries: Vec::new(),
             symbols: Vec::new(),
         }
     }
+}
 
+impl<N: Clone> Record<N> {
     /// ∂f/∂xₖ of the first symbols, for f at a place.
     pub fn backwards<C: Numbers<Number = N>>(
         &self,
