@@ -1,140 +1,26 @@
 //! Rows of second derivatives modulo p by dual numbers that run backwards: the slopes of f′ along one
 //! direction in all symbols at once, at the cost of a few evaluations however many symbols there are.
 
+use super::dual::{Duals, Record};
 use super::fp::Fp;
-use super::graph::Function;
 use super::lane::Lane;
-use super::tape::{Operand, Step, Tape, linear_form};
-
-/// A value and its slope along the direction.
-#[derive(Clone, Copy)]
-struct Dual(Fp, Fp);
-
-impl Dual {
-    const ZERO: Dual = Dual(Fp::ZERO, Fp::ZERO);
-
-    fn add(self, other: Dual) -> Dual {
-        Dual(self.0 + other.0, self.1 + other.1)
-    }
-
-    fn negated(self, negative: bool) -> Dual {
-        if negative {
-            Dual(-self.0, -self.1)
-        } else {
-            self
-        }
-    }
-
-    fn mul(self, other: Dual) -> Dual {
-        Dual(self.0 * other.0, self.1 * other.0 + self.0 * other.1)
-    }
-
-    fn inv(self) -> Option<Dual> {
-        let inverse = self.0.inv()?;
-        Some(Dual(inverse, -(self.1 * inverse * inverse)))
-    }
-
-    fn is_zero(self) -> bool {
-        self.0.is_zero() && self.1.is_zero()
-    }
-}
-
-/// What a step is of, with its derivatives by these operands.
-type Parts = [Option<(Operand, Dual)>; 2];
+use super::tangent::duals;
+use super::tape::Tape;
 
 impl Tape {
     /// ∂(∂f/∂s)/∂xₖ for every symbol xₖ, f the first of the expressions and s along `direction`; `None`
     /// where something has no value at the point.
     pub fn bend(&self, lane: &Lane, direction: &[Fp]) -> Option<Vec<Fp>> {
-        let mut lane = lane.clone();
-        let mut values: Vec<Dual> = Vec::with_capacity(self.steps.len());
-        let mut numbers: Vec<Fp> = Vec::with_capacity(self.steps.len());
-        let mut parts: Vec<Parts> = Vec::with_capacity(self.steps.len());
-        for step in &self.steps {
-            let (value, part) = forwards(step, &mut lane, (&values, &numbers), direction)?;
-            values.push(value);
-            numbers.push(value.0);
-            parts.push(part);
-        }
-        if lane.is_stuck() {
-            return None;
-        }
-        let root = self.roots.first()?;
-        let mut weights = vec![Dual::ZERO; self.steps.len()];
-        *weights.get_mut(root.place)? = Dual(Fp::ONE, Fp::ZERO).negated(root.negative);
-        let mut row = vec![Fp::ZERO; direction.len()];
-        for (place, step) in self.steps.iter().enumerate().rev() {
-            let weight = weights[place];
-            if weight.is_zero() {
-                continue;
-            }
-            if let Step::Symbol(index) = step
-                && let Some(entry) = row.get_mut(*index)
-            {
-                *entry = *entry + weight.1;
-            }
-            for &(operand, slope) in parts[place].iter().flatten() {
-                let share = weight.mul(slope).negated(operand.negative);
-                weights[operand.place] = weights[operand.place].add(share);
-            }
-        }
-        Some(row)
+        let mut all = Duals {
+            numbers: duals(lane, direction),
+            slopes: Record::default(),
+        };
+        let place = self.run(&mut all)?.first()?.1;
+        let row = all
+            .slopes
+            .backwards(&mut all.numbers, place, direction.len())?;
+        (!all.numbers.numbers.is_stuck()).then(|| row.into_iter().map(|(_, bent)| bent).collect())
     }
-}
-
-/// The value of a step, and its derivatives by what it is of.
-fn forwards(
-    step: &Step,
-    lane: &mut Lane,
-    (values, numbers): (&[Dual], &[Fp]),
-    direction: &[Fp],
-) -> Option<(Dual, Parts)> {
-    let read = |operand: Operand| values[operand.place].negated(operand.negative);
-    let one = Dual(Fp::ONE, Fp::ZERO);
-    Some(match step {
-        Step::Constant(value) => (Dual(*value, Fp::ZERO), [None, None]),
-        Step::Symbol(index) => {
-            let slope = direction.get(*index).copied().unwrap_or(Fp::ZERO);
-            (Dual(lane.symbol(*index), slope), [None, None])
-        }
-        Step::Add(a, b) => (read(*a).add(read(*b)), [Some((*a, one)), Some((*b, one))]),
-        Step::Mul(a, b) => (
-            read(*a).mul(read(*b)),
-            [Some((*a, read(*b))), Some((*b, read(*a)))],
-        ),
-        Step::Div(a, b) => {
-            let inverse = read(*b).inv()?;
-            let quotient = read(*a).mul(inverse);
-            let by_b = quotient.mul(inverse).negated(true);
-            (quotient, [Some((*a, inverse)), Some((*b, by_b))])
-        }
-        Step::Apply(function, a, form) => {
-            let argument = read(*a);
-            let form = linear_form(form, numbers);
-            let result = lane.function(*function, argument.0, &form);
-            let slope = lane.slope(*function, argument.0, &form, result)?;
-            let bent = match function {
-                Function::Sin | Function::Cos => -result,
-                Function::Exp => result,
-                Function::Log => -(slope * slope),
-                Function::Sqrt => -(slope * (argument.0 + argument.0).inv()?),
-                // Two arguments: its own step.
-                Function::Atan2 => Fp::ZERO,
-            };
-            (
-                Dual(result, slope * argument.1),
-                [Some((*a, Dual(slope, bent * argument.1))), None],
-            )
-        }
-        Step::Atan2(y, x) => {
-            let (dy, dx) = (read(*y), read(*x));
-            let inverse = dx.mul(dx).add(dy.mul(dy)).inv()?;
-            let (by_y, by_x) = (dx.mul(inverse), dy.mul(inverse).negated(true));
-            let value = lane.opaque(Function::Atan2, dy.0, dx.0);
-            let slope = by_y.0 * dy.1 + by_x.0 * dx.1;
-            (Dual(value, slope), [Some((*y, by_y)), Some((*x, by_x))])
-        }
-    })
 }
 
 #[cfg(test)]
@@ -144,7 +30,7 @@ mod tests {
     use crate::jets::Seeds;
     use crate::lane::Lane;
     use crate::tape::Tape;
-    use crate::tests::FUNCTIONS;
+    use crate::tests::functions;
 
     #[test]
     fn rows_are_the_mixed_derivatives_of_jets() {
@@ -160,7 +46,7 @@ mod tests {
         };
         let product = graph.mul(a, b);
         let mut sum = graph.sub(c, product);
-        for function in FUNCTIONS {
+        for function in functions() {
             let value = graph.apply(function, sum);
             let quotient = graph.div(value, product).expect("not 0");
             sum = graph.add(sum, quotient);

@@ -12,11 +12,13 @@
 //! | a / b | Nᵃ; mᵃ − mᵇ + 1 for the numerator of b |
 //! | coordinates of a circle, a sphere, a rotation | 2; 1 for 1 + t² and its kind |
 //! | sin, cos of Σ c a/12 | 2 Σ \|c\|; \|c\| for the circle of a |
+//! | sinh, cosh, tanh of Σ c a/12 | the same for the powers of a |
 //! | √a | ⌈(Nᵃ + Σ m deg d)/2⌉; the bound of the whole is taken four times |
 //!
 //! A root is a number r with r² = a: a polynomial in r vanishes only where its product with that of −r
 //! does, and points at which a is a square are half of all.
 
+use super::function::Law;
 use super::graph::{Edge, Function, Graph, Node, NodeId};
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive};
@@ -32,6 +34,8 @@ enum Divisor {
     Group(usize),
     /// The same of the circle of an atom of angles.
     Angle(NodeId),
+    /// The powers e and 1 + e² of an atom of exponents.
+    Power(NodeId),
 }
 
 /// A node as N / Π d^m.
@@ -120,19 +124,22 @@ impl Degrees<'_> {
             };
             parts.to_f64().unwrap_or(f64::INFINITY)
         };
-        match function {
-            Function::Sin | Function::Cos => {
-                let angles = form()
-                    .into_iter()
-                    .map(|(atom, c)| (Divisor::Angle(atom), count(&c)));
+        match function.row().law {
+            law @ (Law::Angle | Law::Hyperbola) => {
+                let divisor = match law {
+                    Law::Angle => Divisor::Angle,
+                    _ => Divisor::Power,
+                };
+                let angles = form().into_iter();
+                let angles = angles.map(|(atom, c)| (divisor(atom), count(&c)));
                 let angles: Vec<(Divisor, f64)> = angles.collect();
                 self.over(angles)
             }
-            Function::Exp => Fraction {
+            Law::Power => Fraction {
                 degree: form().iter().map(|(_, c)| count(c)).sum(),
                 ..Fraction::default()
             },
-            Function::Sqrt => {
+            Law::Radical => {
                 let below = self.read(argument);
                 self.roots += 1;
                 Fraction {
@@ -140,7 +147,7 @@ impl Degrees<'_> {
                     ..Fraction::default()
                 }
             }
-            Function::Log | Function::Atan2 => Fraction {
+            Law::Free => Fraction {
                 degree: 1.0,
                 ..Fraction::default()
             },

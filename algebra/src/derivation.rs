@@ -3,7 +3,8 @@
 //! After nodes were merged modulo φ only derivations tangent to X are meaningful: ∂ᵢ of KR18 (9),
 //! d/dt along ẋ = A ξ, and derivatives by symbols that φ does not contain (ξ, inputs, parameters).
 
-use super::graph::{Edge, Function, Graph, Node, NodeId};
+use super::function::Slope;
+use super::graph::{Edge, Graph, Node, NodeId};
 use rustc_hash::FxHashMap;
 
 /// A derivation, given by what it does to symbols; it remembers what it has differentiated.
@@ -85,23 +86,28 @@ impl Derivation {
                 if da == zero {
                     return zero;
                 }
-                match function {
-                    Function::Sin => {
-                        let cos = graph.apply(Function::Cos, a);
-                        graph.mul(cos, da)
+                match function.row().slope {
+                    Slope::Is(other) => {
+                        let slope = graph.apply(other, a);
+                        graph.mul(slope, da)
                     }
-                    Function::Cos => {
-                        let sin = graph.apply(Function::Sin, a);
-                        -graph.mul(sin, da)
+                    Slope::IsMinus(other) => {
+                        let slope = graph.apply(other, a);
+                        -graph.mul(slope, da)
                     }
-                    Function::Exp => graph.mul(Edge::of(id), da),
-                    Function::Log => graph.div(da, a).unwrap_or(zero),
-                    Function::Sqrt => {
+                    Slope::Itself => graph.mul(Edge::of(id), da),
+                    Slope::Inverse => graph.div(da, a).unwrap_or(zero),
+                    Slope::HalfInverse => {
                         let half = graph.ratio(1, 2);
                         let numerator = graph.mul(half, da);
                         graph.div(numerator, Edge::of(id)).unwrap_or(zero)
                     }
-                    Function::Atan2 => zero,
+                    Slope::OneMinusSquare => {
+                        let square = graph.mul(Edge::of(id), Edge::of(id));
+                        let slope = graph.sub(graph.one(), square);
+                        graph.mul(slope, da)
+                    }
+                    Slope::Two => zero,
                 }
             }
             Node::Atan2(y, x) => {

@@ -13,7 +13,6 @@
 //! | log a | y + a exp(−y) − 1 |
 //! | atan2(y, x) | θ + (y cos θ − x sin θ) / √(x² + y²) |
 
-use super::graph::Function;
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -38,6 +37,8 @@ const LOG_2: Double = Double {
 };
 /// Terms of Taylor's sums for sine and cosine: (π/4)³² / 32! < 2^-110.
 const TERMS: u32 = 32;
+/// Beyond this, hyperbolic functions are those of `f64`.
+const LARGEST: f64 = 300.0;
 /// The argument of exp is halved so often.
 const HALVINGS: u32 = 6;
 
@@ -169,17 +170,48 @@ impl Double {
         first + (y * cos - x * sin) / radius
     }
 
-    /// A function of one argument.
-    pub fn apply(self, function: Function) -> Self {
-        match function {
-            Function::Sin => self.sin_cos().0,
-            Function::Cos => self.sin_cos().1,
-            Function::Exp => self.exp(),
-            Function::Log => self.log(),
-            Function::Sqrt => self.sqrt(),
-            // Two arguments: its own node.
-            Function::Atan2 => Double::new(f64::NAN),
+    /// sin a.
+    pub fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    /// sinh a; near 0 by Taylor's sum, which loses no digits.
+    pub fn sinh(self) -> Self {
+        if self.high.abs() > LARGEST {
+            return Double::new(self.high.sinh());
         }
+        if self.high.abs() > 0.5 {
+            let power = self.exp();
+            return (power - Double::ONE / power).scaled(0.5);
+        }
+        let square = self * self;
+        let terms = (2..TERMS).step_by(2).rev();
+        let sum = terms.fold(Double::ONE, |inner, k| {
+            Double::ONE + square / Double::new(f64::from(k * (k + 1))) * inner
+        });
+        self * sum
+    }
+
+    /// cosh a.
+    pub fn cosh(self) -> Self {
+        if self.high.abs() > LARGEST {
+            return Double::new(self.high.cosh());
+        }
+        let power = self.exp();
+        (power + Double::ONE / power).scaled(0.5)
+    }
+
+    /// tanh a.
+    pub fn tanh(self) -> Self {
+        if self.high.abs() > LARGEST {
+            return Double::new(self.high.tanh());
+        }
+        self.sinh() / self.cosh()
+    }
+
+    /// cos a.
+    pub fn cos(self) -> Self {
+        self.sin_cos().1
     }
 }
 
@@ -326,6 +358,8 @@ mod tests {
             let (twice, _) = (a + a).sin_cos();
             assert!((twice - (sin * cos).scaled(2.0)).abs().to_f64() < 1e-30);
             close(a.exp() * (-a).exp(), Double::ONE);
+            close(a.abs().sinh() + a.cosh(), a.abs().exp());
+            close(a.tanh() * a.cosh(), a.sinh());
             if k != 0 {
                 assert!((a.abs().log().exp() - a.abs()).abs().to_f64() < 1e-30 * a.abs().to_f64());
             }

@@ -2,6 +2,7 @@
 //! and arguments of sin, cos and exp are read as linear forms.
 
 use super::fp::Fp;
+use super::function::Law;
 use super::graph::Graph;
 use super::node::{Edge, Function, Node, NodeId};
 use num_integer::Integer;
@@ -144,9 +145,9 @@ impl Graph {
     /// argument with a group law; of a square root the rational factor of its argument, nothing if
     /// the argument is a number that is not rational and positive.
     pub fn form(&self, function: Function, argument: Edge) -> Vec<(NodeId, BigRational)> {
-        match function {
-            Function::Sin | Function::Cos | Function::Exp => self.linear_form(argument),
-            Function::Sqrt => {
+        match function.row().law {
+            Law::Angle | Law::Power | Law::Hyperbola => self.linear_form(argument),
+            Law::Radical => {
                 let number = self.as_rational(argument);
                 let is_number = self.class(argument.node()) == 0;
                 if is_number && !number.is_some_and(|number| number.is_positive()) {
@@ -154,7 +155,7 @@ impl Graph {
                 }
                 vec![(argument.node(), self.noted_content(argument))]
             }
-            Function::Log | Function::Atan2 => Vec::new(),
+            Law::Free => Vec::new(),
         }
     }
 

@@ -72,6 +72,33 @@ impl Fp {
         Some(Fp(self.0.inv()?, self.1.inv()?))
     }
 
+    /// The inverses of many, at the price of one and of three products each, after Montgomery.
+    pub fn inverses(values: impl Iterator<Item = Fp>) -> Vec<Option<Self>> {
+        let has_inverse = |value: Fp| !value.0.is_zero() && !value.1.is_zero();
+        let mut product = Fp::ONE;
+        // Each with the product of those before it.
+        let before: Vec<(Fp, Fp)> = values
+            .map(|value| {
+                let before = product;
+                product = if has_inverse(value) {
+                    product * value
+                } else {
+                    product
+                };
+                (value, before)
+            })
+            .collect();
+        let mut rest = product.inv().unwrap_or(Fp::ONE);
+        let mut inverses = vec![None; before.len()];
+        for (inverse, (value, before)) in inverses.iter_mut().zip(before).rev() {
+            if has_inverse(value) {
+                *inverse = Some(rest * before);
+                rest = rest * value;
+            }
+        }
+        inverses
+    }
+
     /// A square root, of either sign in each field; `None` where a part has none.
     pub fn sqrt(self) -> Option<Self> {
         Some(Fp(self.0.sqrt()?, self.1.sqrt()?))
@@ -180,6 +207,9 @@ mod tests {
     #[test]
     fn what_is_zero_in_one_field_has_no_inverse() {
         let half = Fp(Residue::ZERO, Residue::ONE);
+        let values = [Fp::new(7), half, -Fp::PI, Fp::ZERO, Fp::new(9)];
+        let inverses = Fp::inverses(values.into_iter());
+        assert_eq!(inverses, values.map(Fp::inv));
         assert!(!half.is_zero() && half.inv().is_none());
         assert_eq!(half.is_negative(), Residue::<1>::ONE.is_negative());
     }

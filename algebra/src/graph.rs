@@ -11,6 +11,7 @@ mod merge;
 pub(crate) use merge::canonical;
 
 use super::fp::Fp;
+use super::function::{Law, Parity};
 use super::lane::{Lane, Roots};
 pub use super::node::{Edge, Function, Node, NodeId, Symbol};
 use super::prime::is_unfaithful;
@@ -34,6 +35,9 @@ pub struct Graph {
     shadow: Shadow,
     /// Rational factors of what stands under square roots, by its node.
     contents: FxHashMap<NodeId, BigRational>,
+    /// What the next node has as its value if it is made as in another graph at the same points, where
+    /// it is no number.
+    copied: Fp,
     /// Whether a number has no faithful image, because a prime divides it.
     unfaithful: bool,
     /// Class of the symbols that are constant at run time; products and sums of these are kept
@@ -54,6 +58,7 @@ impl Graph {
             lane: Lane::new(seed),
             shadow: Shadow::default(),
             contents: FxHashMap::default(),
+            copied: Fp::ZERO,
             unfaithful: false,
             free_class,
         };
@@ -185,6 +190,16 @@ impl Graph {
         }
     }
 
+    /// Whether an edge is a number.
+    pub(super) fn is_number(&self, edge: Edge) -> bool {
+        matches!(self.nodes[edge.node() as usize], Node::Constant(_))
+    }
+
+    fn both_rational(&self, a: Edge, b: Edge) -> Option<(BigRational, BigRational)> {
+        let numbers = self.is_number(a) && self.is_number(b);
+        numbers.then(|| Some((self.as_rational(a)?, self.as_rational(b)?)))?
+    }
+
     /// The constant at a place of the table of constants.
     pub fn constant(&self, index: u32) -> &BigRational {
         &self.constants[index as usize]
@@ -205,14 +220,25 @@ impl Graph {
 
     /// An exact number.
     pub fn rational(&mut self, value: &BigRational) -> Edge {
-        if let Some(image) = Fp::from_rational(value)
-            && let Some(edge) = self.lookup(image)
+        match Fp::from_rational(value) {
+            Some(image) => self.number(value, image),
+            None => self.new_number(value, Fp::ZERO),
+        }
+    }
+
+    /// The number with this image.
+    pub(super) fn number(&mut self, value: &BigRational, image: Fp) -> Edge {
+        if let Some(edge) = self.lookup(image)
+            && self.is_number(edge)
             && self.as_rational(edge).as_ref() == Some(value)
         {
             return edge;
         }
+        self.new_number(value, image)
+    }
+
+    fn new_number(&mut self, value: &BigRational, image: Fp) -> Edge {
         self.unfaithful |= is_unfaithful(value);
-        let image = Fp::from_rational(value).unwrap_or(Fp::ZERO);
         let index = self.constants.len() as u32;
         self.constants.push(value.clone());
         self.push(Node::Constant(index), image, 0)
@@ -238,7 +264,7 @@ impl Graph {
             let two = self.ratio(2, 1);
             return self.mul(two, a);
         }
-        if let (Some(x), Some(y)) = (self.as_rational(a), self.as_rational(b)) {
+        if let Some((x, y)) = self.both_rational(a, b) {
             return self.rational(&(x + y));
         }
         let value = self.value(a) + self.value(b);
@@ -285,7 +311,7 @@ impl Graph {
         if b == self.one() {
             return a.signed(negative);
         }
-        if let (Some(x), Some(y)) = (self.as_rational(a), self.as_rational(b)) {
+        if let Some((x, y)) = self.both_rational(a, b) {
             return self.rational(&(x * y)).signed(negative);
         }
         if let (true, Node::Apply(Function::Sqrt, square)) = (a == b, self.node(a.node()))
@@ -333,27 +359,26 @@ impl Graph {
 
     /// A function of one argument.
     pub fn apply(&mut self, function: Function, argument: Edge) -> Edge {
-        let (argument, negative) = match function {
-            Function::Sin => (argument.abs(), argument.is_negative()),
-            Function::Cos => (argument.abs(), false),
-            _ => (argument, false),
+        let row = function.row();
+        let (argument, negative) = match row.parity {
+            Parity::Odd => (argument.abs(), argument.is_negative()),
+            Parity::Even => (argument.abs(), false),
+            Parity::Plain => (argument, false),
         };
-        let exact = match function {
-            Function::Sin if argument == self.zero() => Some(self.zero()),
-            Function::Cos | Function::Exp if argument == self.zero() => Some(self.one()),
-            Function::Log if argument == self.one() => Some(self.zero()),
-            Function::Sqrt => {
-                let exact = self.exact_root(argument);
-                exact.or_else(|| self.known_number_root(argument))
+        if let Some([a, value]) = row.at
+            && argument == Edge::of(a)
+        {
+            return Edge::of(value);
+        }
+        if row.law == Law::Radical {
+            let exact = self.exact_root(argument);
+            if let Some(exact) = exact.or_else(|| self.known_number_root(argument)) {
+                return exact;
             }
-            _ => None,
-        };
-        if let Some(exact) = exact {
-            return exact;
         }
         self.note_content(function, argument);
         let form = self.form(function, argument);
-        if matches!(function, Function::Sin | Function::Cos)
+        if row.law == Law::Angle
             && let Some(turned) = self.without_right_angles(function, argument, &form)
         {
             return turned.signed(negative);
@@ -363,8 +388,8 @@ impl Graph {
             .map(|(atom, c)| (self.value(Edge::of(*atom)), c.clone()))
             .collect();
         let value = self.lane.function(function, self.value(argument), &form);
-        let value = match function {
-            Function::Sqrt => self.apart_from_root(argument, value),
+        let value = match row.law {
+            Law::Radical => self.apart_from_root(argument, value),
             _ => value,
         };
         let class = self.class(argument.node());

@@ -4,7 +4,7 @@
 //! another one: modulo a prime √2 is one of two roots. So such numbers are compared as real numbers,
 //! lo 2^exponent ≤ value ≤ hi 2^exponent, with some 320 bits; every operation rounds outwards.
 
-use super::graph::Function;
+use super::function::Function;
 use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
 use num_rational::BigRational;
@@ -148,16 +148,18 @@ impl Interval {
 
     /// A function of one argument; `None` where it has no value, or none is known.
     pub fn apply(&self, function: Function) -> Option<Self> {
-        match function {
-            Function::Sqrt => self.sqrt(),
-            Function::Sin => Some(self.angle()?.1),
-            Function::Cos => Some(self.angle()?.0),
-            Function::Exp => self.exp(),
-            Function::Log | Function::Atan2 => None,
-        }
+        (function.row().interval)(self)
     }
 
-    fn sqrt(&self) -> Option<Self> {
+    pub(super) fn sin(&self) -> Option<Self> {
+        Some(self.angle()?.1)
+    }
+
+    pub(super) fn cos(&self) -> Option<Self> {
+        Some(self.angle()?.0)
+    }
+
+    pub(super) fn sqrt(&self) -> Option<Self> {
         if self.hi.is_negative() {
             return None;
         }
@@ -228,7 +230,7 @@ impl Interval {
     }
 
     /// exp(x) = exp(x / 2^k)^(2^k).
-    fn exp(&self) -> Option<Self> {
+    pub(super) fn exp(&self) -> Option<Self> {
         const HALVINGS: u32 = 12;
         let (x, radius) = self.middle()?;
         if x.bits() > FRACTION + 10 {
@@ -244,6 +246,28 @@ impl Interval {
             result = result.times(&result);
         }
         Some(result)
+    }
+
+    pub(super) fn sinh(&self) -> Option<Self> {
+        Some(self.powers()?.0)
+    }
+
+    pub(super) fn cosh(&self) -> Option<Self> {
+        Some(self.powers()?.1)
+    }
+
+    pub(super) fn tanh(&self) -> Option<Self> {
+        let (sinh, cosh) = self.powers()?;
+        Some(sinh.times(&cosh.inverse()?))
+    }
+
+    /// (eˣ ∓ e⁻ˣ)/2.
+    fn powers(&self) -> Option<(Self, Self)> {
+        let power = self.exp()?;
+        let inverse = power.inverse()?;
+        let half = Interval::new(BigInt::one(), BigInt::one(), -1);
+        let (sum, difference) = (power.plus(&inverse), power.plus(&inverse.signed(true)));
+        Some((difference.times(&half), sum.times(&half)))
     }
 
     fn contains_zero(&self) -> bool {

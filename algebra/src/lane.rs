@@ -3,10 +3,11 @@
 //! Transcendental functions get values that obey their group laws. The angle of an atom `a` has a
 //! random point on the unit circle for a/12; sin and cos of n·a/12 follow by the group law, so that
 //! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
-//! exp is treated likewise. Square roots keep the laws of positive numbers (`roots`).
+//! exp is treated likewise, and sinh, cosh and tanh follow from it. Square roots keep the laws of positive numbers (`roots`).
 
 use super::fp::{Fp, Random};
-use super::graph::Function;
+use super::function::Function;
+use super::numbers::{Form, Modular, Numbers, Step};
 use super::prime::Residue;
 use super::roots;
 use num_bigint::BigInt;
@@ -15,7 +16,7 @@ use num_traits::ToPrimitive;
 
 /// Σ coefficient · atom, the argument of a function with a group law; atoms by their values. Of a
 /// square root: the rational factor of its argument (`Graph::form`).
-pub type LinearForm = Vec<(Fp, BigRational)>;
+pub type LinearForm = Form<Fp>;
 
 /// The part of an angle that gets a random circle point: halves, thirds, quarters and sixths of an
 /// atom are then whole multiples of it.
@@ -99,6 +100,10 @@ impl Lane {
             Function::Sin => Fp(self.angle(form, &first).1, self.angle(form, &second).1),
             Function::Cos => Fp(self.angle(form, &first).0, self.angle(form, &second).0),
             Function::Exp => Fp(self.exp(form, &first), self.exp(form, &second)),
+            Function::Sinh | Function::Cosh | Function::Tanh => Fp(
+                hyperbolic(function, self.exp(form, &first)),
+                hyperbolic(function, self.exp(form, &second)),
+            ),
             Function::Sqrt => {
                 let roots = (
                     self.root(argument.0, form, &first),
@@ -111,25 +116,6 @@ impl Lane {
             }
             Function::Log | Function::Atan2 => self.opaque(function, argument, Fp::ZERO),
         }
-    }
-
-    /// f′ of a function of one argument with its value there; `None` where it has none. `Atan2` has two
-    /// arguments and is a node of its own.
-    pub fn slope(
-        &mut self,
-        function: Function,
-        argument: Fp,
-        form: &LinearForm,
-        value: Fp,
-    ) -> Option<Fp> {
-        Some(match function {
-            Function::Sin => self.function(Function::Cos, argument, form),
-            Function::Cos => -self.function(Function::Sin, argument, form),
-            Function::Exp => value,
-            Function::Log => argument.inv()?,
-            Function::Sqrt => (value + value).inv()?,
-            Function::Atan2 => Fp::ZERO,
-        })
     }
 
     /// √(c e) = √c √e with the factor c of the form; a number without a form has any root.
@@ -210,6 +196,46 @@ impl Lane {
     }
 }
 
+impl Numbers for Lane {
+    type Number = Fp;
+
+    /// Roots that it does not have are noted (`is_stuck`).
+    #[inline]
+    fn make(&mut self, step: Step<Fp>) -> Option<Fp> {
+        Some(match step {
+            Step::Whole(0) => Fp::ZERO,
+            Step::Whole(1) => Fp::ONE,
+            Step::Whole(value) => Fp::from_i64(value.into()),
+            Step::Constant(value) => Fp::from_rational(value)?,
+            Step::Symbol(index) => self.symbols[index],
+            Step::Neg(a) => -*a,
+            Step::Add(a, b) => *a + *b,
+            Step::Sub(a, b) => *a - *b,
+            Step::Mul(a, b) => *a * *b,
+            Step::Div(a, b) => *a * b.inv()?,
+            Step::Apply(function, a, form) => self.function(function, *a, &form()),
+            Step::Atan2(y, x) => self.opaque(Function::Atan2, *y, *x),
+        })
+    }
+
+    fn is_zero(&self, a: &Fp) -> bool {
+        a.is_zero()
+    }
+
+    /// With one inverse.
+    fn quotient(&mut self, a: &Fp, b: &Fp) -> Option<[Fp; 3]> {
+        let inverse = b.inv()?;
+        let quotient = *a * inverse;
+        Some([quotient, inverse, -(quotient * inverse)])
+    }
+}
+
+impl Modular for Lane {
+    fn residue(&mut self, value: Fp) -> Option<Fp> {
+        Some(value)
+    }
+}
+
 /// Cosine and sine.
 type Turn<const K: usize> = (Residue<K>, Residue<K>);
 
@@ -222,6 +248,17 @@ fn first(value: Fp) -> Residue<0> {
 
 fn second(value: Fp) -> Residue<1> {
     value.1
+}
+
+/// (e ∓ 1/e)/2, or the one over the other: e² is not −1, as p ≡ 3 mod 4.
+fn hyperbolic<const K: usize>(function: Function, e: Residue<K>) -> Residue<K> {
+    let inverse = |a: Residue<K>| a.inv().unwrap_or(Residue::ONE);
+    let (less, more) = (e - inverse(e), e + inverse(e));
+    match function {
+        Function::Sinh => less * inverse(Residue::new(2)),
+        Function::Cosh => more * inverse(Residue::new(2)),
+        _ => less * inverse(more),
+    }
 }
 
 /// Writes c·atom as a whole number of parts of a base, signs made canonical; where c is no

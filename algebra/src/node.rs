@@ -1,5 +1,7 @@
 //! Edges, nodes and symbols of the expression graph.
 
+pub use super::function::Function;
+
 /// Index of a node.
 pub type NodeId = u32;
 
@@ -28,6 +30,11 @@ impl Edge {
         Edge(node << 1)
     }
 
+    /// The same edge where nodes have other places.
+    pub fn moved(self, places: &[NodeId]) -> Edge {
+        Edge::of(places[self.node() as usize]).signed(self.is_negative())
+    }
+
     /// This edge, negated where `negative`.
     pub fn signed(self, negative: bool) -> Edge {
         if negative { -self } else { self }
@@ -39,37 +46,6 @@ impl std::ops::Neg for Edge {
     /// Node 0 is the number 0, which is its own negative.
     fn neg(self) -> Edge {
         Edge(if self.node() == 0 { 0 } else { self.0 ^ 1 })
-    }
-}
-
-/// Functions beyond the four operations.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub enum Function {
-    /// sine
-    Sin,
-    /// cosine
-    Cos,
-    /// exponential
-    Exp,
-    /// natural logarithm
-    Log,
-    /// square root
-    Sqrt,
-    /// angle of (x, y), arguments (y, x)
-    Atan2,
-}
-
-impl Function {
-    /// Its name in descriptions.
-    pub fn name(self) -> &'static str {
-        match self {
-            Function::Sin => "sin",
-            Function::Cos => "cos",
-            Function::Exp => "exp",
-            Function::Log => "log",
-            Function::Sqrt => "sqrt",
-            Function::Atan2 => "atan2",
-        }
     }
 }
 
@@ -94,7 +70,7 @@ pub enum Node {
 
 impl Node {
     /// The children, in order.
-    pub fn children(self) -> impl Iterator<Item = Edge> {
+    pub fn children(self) -> impl DoubleEndedIterator<Item = Edge> {
         let (a, b) = match self {
             Node::Constant(_) | Node::Symbol(_) => (None, None),
             Node::Apply(_, a) => (Some(a), None),
@@ -103,6 +79,18 @@ impl Node {
             }
         };
         a.into_iter().chain(b)
+    }
+
+    /// The same of other children.
+    pub fn over(self, mut child: impl FnMut(Edge) -> Edge) -> Node {
+        match self {
+            Node::Constant(_) | Node::Symbol(_) => self,
+            Node::Apply(function, a) => Node::Apply(function, child(a)),
+            Node::Add(a, b) => Node::Add(child(a), child(b)),
+            Node::Mul(a, b) => Node::Mul(child(a), child(b)),
+            Node::Div(a, b) => Node::Div(child(a), child(b)),
+            Node::Atan2(a, b) => Node::Atan2(child(a), child(b)),
+        }
     }
 }
 

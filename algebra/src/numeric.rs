@@ -1,76 +1,50 @@
 //! Numbers of expressions: in floating point, and exactly at fresh points modulo p.
 
 use super::fp::Fp;
-use super::graph::{Edge, Function, Graph, Node};
+use super::graph::{Edge, Graph};
 use super::lane::Lane;
+use super::numbers::{self, Numbers, Step};
 use num_traits::ToPrimitive;
+
+/// Numbers in floating point, with the values of all symbols.
+#[derive(Clone, Copy, Debug)]
+pub struct Floats<'a>(pub &'a [f64]);
+
+impl Numbers for Floats<'_> {
+    type Number = f64;
+
+    #[inline]
+    fn make(&mut self, step: Step<f64>) -> Option<f64> {
+        Some(match step {
+            Step::Whole(value) => value.into(),
+            Step::Constant(value) => value.to_f64().unwrap_or(f64::NAN),
+            Step::Symbol(index) => self.0.get(index).copied().unwrap_or(f64::NAN),
+            Step::Neg(a) => -a,
+            Step::Add(a, b) => a + b,
+            Step::Sub(a, b) => a - b,
+            Step::Mul(a, b) => a * b,
+            Step::Div(a, b) => a / b,
+            Step::Apply(function, a, _) => (function.row().value)(*a),
+            Step::Atan2(y, x) => y.atan2(*x),
+        })
+    }
+
+    fn is_zero(&self, a: &f64) -> bool {
+        *a == 0.0
+    }
+}
 
 /// The expressions in floating point, given the value of every symbol.
 pub fn evaluate(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<f64> {
-    let mut values = vec![0.0; graph.len()];
-    let read = |values: &[f64], edge: Edge| {
-        let value = values[edge.node() as usize];
-        if edge.is_negative() { -value } else { value }
-    };
-    for id in graph.reachable(roots) {
-        values[id as usize] = match graph.node(id) {
-            Node::Constant(index) => graph.constant(index).to_f64().unwrap_or(f64::NAN),
-            Node::Symbol(index) => symbols[index as usize],
-            Node::Add(a, b) => read(&values, a) + read(&values, b),
-            Node::Mul(a, b) => read(&values, a) * read(&values, b),
-            Node::Div(a, b) => read(&values, a) / read(&values, b),
-            Node::Apply(function, a) => apply(function, read(&values, a)),
-            Node::Atan2(y, x) => read(&values, y).atan2(read(&values, x)),
-        };
-    }
-    roots.iter().map(|&root| read(&values, root)).collect()
-}
-
-fn apply(function: Function, value: f64) -> f64 {
-    match function {
-        Function::Sin => value.sin(),
-        Function::Cos => value.cos(),
-        Function::Exp => value.exp(),
-        Function::Log => value.ln(),
-        Function::Sqrt => value.sqrt(),
-        // Two arguments: its own node.
-        Function::Atan2 => f64::NAN,
-    }
+    let values = numbers::evaluate(graph, roots, &mut Floats(symbols));
+    values.unwrap_or_else(|| vec![f64::NAN; roots.len()])
 }
 
 /// The expressions modulo p at another point, whose symbols have been pushed into `lane`;
 /// `None` where a denominator vanishes or a square root has no value there.
 pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec<Fp>> {
-    let mut values = vec![Fp::ZERO; graph.len()];
-    // The number 1 is the atom of constant angles.
-    values[1] = Fp::ONE;
-    let read = |values: &[Fp], edge: Edge| {
-        let value = values[edge.node() as usize];
-        if edge.is_negative() { -value } else { value }
-    };
-    for id in graph.reachable(roots) {
-        values[id as usize] = match graph.node(id) {
-            Node::Constant(index) => Fp::from_rational(graph.constant(index))?,
-            Node::Symbol(index) => lane.symbol(index as usize),
-            Node::Add(a, b) => read(&values, a) + read(&values, b),
-            Node::Mul(a, b) => read(&values, a) * read(&values, b),
-            Node::Div(a, b) => read(&values, a) * read(&values, b).inv()?,
-            Node::Apply(function, a) => {
-                let form = graph
-                    .form(function, a)
-                    .into_iter()
-                    .map(|(atom, c)| (values[atom as usize], c))
-                    .collect();
-                let argument = read(&values, a);
-                lane.function(function, argument, &form)
-            }
-            Node::Atan2(y, x) => {
-                let (y, x) = (read(&values, y), read(&values, x));
-                lane.opaque(Function::Atan2, y, x)
-            }
-        };
-    }
-    (!lane.is_stuck()).then(|| roots.iter().map(|&root| read(&values, root)).collect())
+    let values = numbers::evaluate(graph, roots, lane)?;
+    (!lane.is_stuck()).then_some(values)
 }
 
 /// The solution of a square system over F_p; `None` where it is singular.

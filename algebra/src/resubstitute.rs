@@ -8,7 +8,7 @@ use super::fp::Fp;
 use super::graph::{Graph, canonical};
 use super::node::{Edge, Node, NodeId};
 use super::shadow::Shadow;
-use super::transplant::rebuild;
+use super::transplant::{merged, read, rebuild};
 use rustc_hash::FxHashMap;
 
 /// Larger expressions are left as they are.
@@ -39,7 +39,9 @@ struct Network<'a> {
     /// Real values, where square roots take part.
     shadow: Option<Shadow>,
     /// 1 / value of every node whose value is nowhere zero.
-    inverses: FxHashMap<NodeId, Fp>,
+    inverses: Vec<Option<Fp>>,
+    /// The nodes of each value or its negative.
+    by_value: FxHashMap<Fp, Vec<NodeId>>,
 }
 
 impl<'a> Network<'a> {
@@ -49,12 +51,24 @@ impl<'a> Network<'a> {
         for &id in &nodes {
             definitions[id as usize] = Some(graph.node(id));
         }
-        let inverse = |id: NodeId| Some((id, graph.value(Edge::of(id)).inv()?));
+        let value = |&id: &NodeId| graph.value(Edge::of(id));
+        let mut inverses = vec![None; graph.len()];
+        for (&id, inverse) in nodes.iter().zip(Fp::inverses(nodes.iter().map(value))) {
+            inverses[id as usize] = inverse;
+        }
+        let mut by_value: FxHashMap<Fp, Vec<NodeId>> = FxHashMap::default();
+        for id in &nodes {
+            by_value
+                .entry(canonical(value(id)).0)
+                .or_default()
+                .push(*id);
+        }
         Network {
             graph,
             roots,
             shadow: graph.sampled(&nodes),
-            inverses: nodes.iter().copied().filter_map(inverse).collect(),
+            inverses,
+            by_value,
             definitions,
         }
     }
@@ -154,16 +168,16 @@ impl<'a> Network<'a> {
             .copied()
             .filter(|&node| !above[node as usize])
             .collect();
-        let by_value: FxHashMap<Fp, Edge> = usable
-            .iter()
-            .map(|&node| {
-                let (value, negative) = canonical(self.value(node));
-                (value, Edge::of(node).signed(negative))
-            })
-            .collect();
+        let mut places = vec![0; self.definitions.len()];
+        for (place, &node) in usable.iter().enumerate() {
+            places[node as usize] = place + 1;
+        }
+        // The last of those that are usable.
         let signed = |value: Fp| -> Option<Edge> {
-            let (value, negative) = canonical(value);
-            by_value.get(&value).map(|edge| edge.signed(negative))
+            let nodes = self.by_value.get(&canonical(value).0)?.iter();
+            let last = nodes.max_by_key(|&&node| places[node as usize])?;
+            let edge = Edge::of(*last).signed(self.value(*last) != value);
+            (places[*last as usize] > 0).then_some(edge)
         };
         let target = self.value(id);
         let agrees = |node: &Node| {
@@ -171,7 +185,7 @@ impl<'a> Network<'a> {
             !refused.unwrap_or(false)
         };
         usable.iter().find_map(|&x| {
-            let inverse = self.inverses.get(&x)?;
+            let inverse = self.inverses[x as usize]?;
             let value = self.value(x);
             let difference = target - value;
             if let Some(y) = signed(difference) {
@@ -181,7 +195,7 @@ impl<'a> Network<'a> {
             if let Some(y) = signed(sum) {
                 return Some(Node::Add(-Edge::of(x), y)).filter(agrees);
             }
-            let quotient = target * *inverse;
+            let quotient = target * inverse;
             let y = signed(quotient).filter(|y| !y.is_negative())?;
             Some(Node::Mul(Edge::of(x), y)).filter(agrees)
         })
@@ -192,13 +206,7 @@ impl<'a> Network<'a> {
     }
 
     fn rebuild(&self, into: &mut Graph) -> Vec<Edge> {
-        let mut image: FxHashMap<NodeId, Edge> = FxHashMap::default();
-        let read = |image: &FxHashMap<NodeId, Edge>, edge: Edge| {
-            image
-                .get(&edge.node())
-                .copied()
-                .map_or(Edge::of(0), |known| known.signed(edge.is_negative()))
-        };
+        let mut image = vec![Edge::of(0); self.graph.len()];
         let alive = self.alive(None);
         let is_constant = |id: &&NodeId| self.graph.is_free(**id);
         let constants: Vec<Edge> = alive
@@ -207,24 +215,16 @@ impl<'a> Network<'a> {
             .map(|&id| Edge::of(id))
             .collect();
         let moved = rebuild(self.graph, into, &constants);
-        image.extend(constants.iter().map(|edge| edge.node()).zip(moved));
-        for id in alive {
-            let definition = self.definitions[id as usize];
-            let Some(node) = definition.filter(|_| !self.graph.is_free(id)) else {
-                continue;
+        for (edge, made) in constants.iter().zip(moved) {
+            image[edge.node() as usize] = made;
+        }
+        for id in alive.into_iter().filter(|&id| !self.graph.is_free(id)) {
+            into.follow(self.graph, id);
+            image[id as usize] = match self.definitions[id as usize] {
+                Some(Node::Symbol(index)) => Edge::of(into.symbols()[index as usize].node),
+                Some(node) => merged(into, node.over(|child| read(&image, child))),
+                None => continue,
             };
-            let made = match node {
-                Node::Constant(index) => into.rational(self.graph.constant(index)),
-                Node::Symbol(index) => Edge::of(into.symbols()[index as usize].node),
-                Node::Add(a, b) => into.add(read(&image, a), read(&image, b)),
-                Node::Mul(a, b) => into.mul(read(&image, a), read(&image, b)),
-                Node::Div(a, b) => into
-                    .div(read(&image, a), read(&image, b))
-                    .unwrap_or(into.zero()),
-                Node::Apply(function, a) => into.apply(function, read(&image, a)),
-                Node::Atan2(y, x) => into.atan2(read(&image, y), read(&image, x)),
-            };
-            image.insert(id, made);
         }
         self.roots.iter().map(|&root| read(&image, root)).collect()
     }

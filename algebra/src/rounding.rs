@@ -13,7 +13,9 @@
 //! but for terms of second order.
 
 use super::double::Double;
-use super::graph::{Edge, Function, Graph, Node};
+use super::dual::{Duals, Partial, Slopes};
+use super::graph::{Edge, Graph};
+use super::numbers::{Numbers, Step, evaluate};
 
 /// Unit roundoff of `f64`.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
@@ -34,76 +36,61 @@ impl Rounded {
     }
 }
 
-/// The expressions in `f64` and in twice the length, given the value of every symbol but π.
-pub fn rounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Rounded> {
-    let zero = Rounded {
-        rounded: 0.0,
-        exact: Double::ZERO,
-    };
-    let mut values = vec![zero; graph.len()];
-    let read = |values: &[Rounded], edge: Edge| {
-        let Rounded { rounded, exact } = values[edge.node() as usize];
-        let negative = edge.is_negative();
-        Rounded {
-            rounded: if negative { -rounded } else { rounded },
-            exact: exact.signed(negative),
-        }
-    };
-    for id in graph.reachable(roots) {
-        let pair = |a: Edge, b: Edge| (read(&values, a), read(&values, b));
-        values[id as usize] = match graph.node(id) {
-            Node::Constant(index) => nearest(Double::of_rational(graph.constant(index))),
-            Node::Symbol(0) => nearest(Double::PI),
-            Node::Symbol(index) => nearest(Double::new(
-                symbols.get(index as usize).copied().unwrap_or(0.0),
-            )),
-            Node::Add(a, b) => {
-                let (a, b) = pair(a, b);
-                Rounded {
-                    rounded: a.rounded + b.rounded,
-                    exact: a.exact + b.exact,
-                }
-            }
-            Node::Mul(a, b) => {
-                let (a, b) = pair(a, b);
-                Rounded {
-                    rounded: a.rounded * b.rounded,
-                    exact: a.exact * b.exact,
-                }
-            }
-            Node::Div(a, b) => {
-                let (a, b) = pair(a, b);
-                Rounded {
-                    rounded: a.rounded / b.rounded,
-                    exact: a.exact / b.exact,
-                }
-            }
-            // The nearest number to the function's value: the same on every machine.
-            Node::Apply(function, a) => {
-                let a = read(&values, a);
-                Rounded {
-                    rounded: Double::new(a.rounded).apply(function).to_f64(),
-                    exact: a.exact.apply(function),
-                }
-            }
-            Node::Atan2(y, x) => {
-                let (y, x) = pair(y, x);
-                let angle = Double::new(y.rounded).atan2(Double::new(x.rounded));
-                Rounded {
-                    rounded: angle.to_f64(),
-                    exact: y.exact.atan2(x.exact),
-                }
-            }
-        };
+/// Numbers of twice the length, with the values of all symbols but π; those that have none count as 0.
+struct Doubles<'a>(&'a [f64]);
+
+impl Numbers for Doubles<'_> {
+    type Number = Double;
+
+    fn make(&mut self, step: Step<Double>) -> Option<Double> {
+        Some(match step {
+            Step::Whole(value) => Double::new(value.into()),
+            Step::Constant(value) => Double::of_rational(value),
+            Step::Symbol(0) => Double::PI,
+            Step::Symbol(index) => Double::new(self.0.get(index).copied().unwrap_or(0.0)),
+            Step::Neg(a) => -*a,
+            Step::Add(a, b) => *a + *b,
+            Step::Sub(a, b) => *a - *b,
+            Step::Mul(a, b) => *a * *b,
+            Step::Div(a, b) => *a / *b,
+            Step::Apply(function, a, _) => (function.row().double)(*a),
+            Step::Atan2(y, x) => y.atan2(*x),
+        })
     }
-    roots.iter().map(|&root| read(&values, root)).collect()
 }
 
-fn nearest(exact: Double) -> Rounded {
-    Rounded {
-        rounded: exact.to_f64(),
-        exact,
+/// Both kinds at once. Functions in `f64` are the nearest numbers to their values: the same on every
+/// machine.
+struct Both<'a>(Doubles<'a>);
+
+impl Numbers for Both<'_> {
+    type Number = Rounded;
+
+    fn make(&mut self, step: Step<Rounded>) -> Option<Rounded> {
+        let long = |a: &Rounded| Double::new(a.rounded);
+        let nearest = |exact: Double| (exact.to_f64(), exact);
+        let (rounded, exact) = match step {
+            Step::Whole(value) => (value.into(), Double::new(value.into())),
+            Step::Constant(value) => nearest(self.0.make(Step::Constant(value))?),
+            Step::Symbol(index) => nearest(self.0.make(Step::Symbol(index))?),
+            Step::Neg(a) => (-a.rounded, -a.exact),
+            Step::Add(a, b) => (a.rounded + b.rounded, a.exact + b.exact),
+            Step::Sub(a, b) => (a.rounded - b.rounded, a.exact - b.exact),
+            Step::Mul(a, b) => (a.rounded * b.rounded, a.exact * b.exact),
+            Step::Div(a, b) => (a.rounded / b.rounded, a.exact / b.exact),
+            Step::Apply(function, a, _) => {
+                let of = function.row().double;
+                (of(long(a)).to_f64(), of(a.exact))
+            }
+            Step::Atan2(y, x) => (long(y).atan2(long(x)).to_f64(), y.exact.atan2(x.exact)),
+        };
+        Some(Rounded { rounded, exact })
     }
+}
+
+/// The expressions in `f64` and in twice the length, given the value of every symbol but π.
+pub fn rounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Rounded> {
+    evaluate(graph, roots, &mut Both(Doubles(symbols))).unwrap_or_default()
 }
 
 /// A value with a bound of what rounding in `f64` makes of it.
@@ -115,74 +102,60 @@ pub struct Bounded {
     pub error: f64,
 }
 
+/// Bounds of errors in the place of slopes: Σ |∂f/∂a| eₐ, and u |f| where f itself is rounded.
+struct Errors;
+
+impl Slopes<Doubles<'_>> for Errors {
+    type Slope = f64;
+
+    /// Values of symbols are numbers of `f64`, but for π.
+    fn symbol(&mut self, _: &mut Doubles, index: usize) -> f64 {
+        if index == 0 {
+            UNIT * Double::PI.to_f64()
+        } else {
+            0.0
+        }
+    }
+
+    fn combine(
+        &mut self,
+        _: &mut Doubles,
+        value: &Double,
+        parts: &[(Partial<Double>, &f64)],
+    ) -> Option<f64> {
+        let size = |value: &Double| value.abs().to_f64();
+        let part = |(partial, error): &(Partial<Double>, &f64)| match partial {
+            Partial::One | Partial::MinusOne => **error,
+            Partial::By(factor) => size(factor) * **error,
+        };
+        let inherited: f64 = parts.iter().map(part).sum();
+        let is_exact = inherited == 0.0 && *value == Double::new(value.to_f64());
+        let is_exact = is_exact || matches!(parts, [(Partial::MinusOne, _)]);
+        Some(if is_exact {
+            inherited
+        } else {
+            inherited + UNIT * size(value)
+        })
+    }
+
+    fn moves(&self, _: &Doubles, error: &f64) -> bool {
+        *error != 0.0
+    }
+}
+
 /// The expressions with bounds of their rounding, given the value of every symbol; symbols that have
 /// none count as 0.
 pub fn bounded(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<Bounded> {
-    let mut values = vec![(Double::ZERO, 0.0); graph.len()];
-    let read = |values: &[(Double, f64)], edge: Edge| {
-        let (value, error) = values[edge.node() as usize];
-        (value.signed(edge.is_negative()), error)
+    let mut numbers = Duals {
+        numbers: Doubles(symbols),
+        slopes: Errors,
     };
-    let size = |value: Double| value.abs().to_f64();
-    for id in graph.reachable(roots) {
-        let pair = |a: Edge, b: Edge| (read(&values, a), read(&values, b));
-        // The value, and what it inherits of errors.
-        let (value, inherited) = match graph.node(id) {
-            Node::Constant(index) => (Double::of_rational(graph.constant(index)), 0.0),
-            Node::Symbol(0) => (Double::PI, 0.0),
-            Node::Symbol(index) => {
-                let value = symbols.get(index as usize).copied().unwrap_or(0.0);
-                (Double::new(value), 0.0)
-            }
-            Node::Add(a, b) => {
-                let ((a, e), (b, f)) = pair(a, b);
-                (a + b, e + f)
-            }
-            Node::Mul(a, b) => {
-                let ((a, e), (b, f)) = pair(a, b);
-                (a * b, size(a) * f + size(b) * e)
-            }
-            Node::Div(a, b) => {
-                let ((a, e), (b, f)) = pair(a, b);
-                let quotient = a / b;
-                (quotient, (e + size(quotient) * f) / size(b))
-            }
-            Node::Apply(function, a) => {
-                let (a, e) = read(&values, a);
-                let value = a.apply(function);
-                (value, slope(function, a, value) * e)
-            }
-            Node::Atan2(y, x) => {
-                let ((y, e), (x, f)) = pair(y, x);
-                (y.atan2(x), (e + f) / (x * x + y * y).sqrt().to_f64())
-            }
-        };
-        let own = if value == Double::new(value.to_f64()) && inherited == 0.0 {
-            0.0
-        } else {
-            UNIT * size(value)
-        };
-        values[id as usize] = (value, inherited + own);
-    }
-    let all = roots.iter().map(|&root| read(&values, root));
-    all.map(|(value, error)| Bounded {
+    let values = evaluate(graph, roots, &mut numbers).unwrap_or_default();
+    let bounded = |(value, error): (Double, f64)| Bounded {
         value: value.to_f64(),
         error,
-    })
-    .collect()
-}
-
-/// |f'(a)|, where f(a) is known.
-fn slope(function: Function, a: Double, value: Double) -> f64 {
-    let slope = match function {
-        Function::Sin => a.sin_cos().1,
-        Function::Cos => a.sin_cos().0,
-        Function::Exp => value,
-        Function::Log => Double::ONE / a,
-        Function::Sqrt => Double::new(0.5) / value,
-        Function::Atan2 => Double::new(f64::NAN),
     };
-    slope.abs().to_f64()
+    values.into_iter().map(bounded).collect()
 }
 
 #[cfg(test)]

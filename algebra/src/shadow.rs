@@ -1,8 +1,10 @@
 //! The real values of a graph's nodes, found where they are needed to tell expressions apart: those of
 //! numbers with certainty, those of what has a square root below it at samples.
 
-use super::graph::{Edge, Function, Node, NodeId};
+use super::function::Function;
 use super::interval::Interval;
+use super::node::{Edge, Node, NodeId};
+use super::numbers::{Form, Numbers, Step};
 use super::reals::{Real, Reals, SAMPLES, contradict};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -95,16 +97,8 @@ impl Shadow {
 
     /// Whether a node of values that were filled in is another number than what is to stand for it.
     pub(super) fn refuses(&self, node: NodeId, other: Node) -> bool {
-        let pair = |a: Edge, b: Edge, of: fn(Real, Real) -> Real| -> Reals {
-            let (a, b) = (self.read(a), self.read(b));
-            std::array::from_fn(|sample| of(a[sample], b[sample]))
-        };
-        let other = match other {
-            Node::Add(a, b) => pair(a, b, Real::plus),
-            Node::Mul(a, b) => pair(a, b, Real::times),
-            _ => return true,
-        };
-        contradict(&self.values[node as usize], &other)
+        let is_known = matches!(other, Node::Add(..) | Node::Mul(..));
+        !is_known || contradict(&self.values[node as usize], &self.value(&[], other))
     }
 
     /// Whether a node that depends on no symbol, or what it is said to equal, is another number, or a
@@ -145,16 +139,13 @@ impl Shadow {
         constants: &[BigRational],
         node: Node,
     ) -> Option<Interval> {
-        let mut read = |edge: Edge| self.number(nodes, constants, edge);
+        for child in node.children() {
+            self.number(nodes, constants, child)?;
+        }
+        let at = |edge: Edge| self.numbers.get(&edge.node()).and_then(Option::as_ref);
         match node {
-            Node::Constant(index) => Some(Interval::rational(&constants[index as usize])),
-            // π is the only symbol that is a number.
-            Node::Symbol(_) => Some(Interval::pi()),
-            Node::Add(a, b) => Some(read(a)?.plus(&read(b)?)),
-            Node::Mul(a, b) => Some(read(a)?.times(&read(b)?)),
-            Node::Div(a, b) => Some(read(a)?.times(&read(b)?.inverse()?)),
-            Node::Apply(function, a) => read(a)?.apply(function),
-            Node::Atan2(..) => None,
+            Node::Constant(index) => Bounds.make(Step::Constant(&constants[index as usize])),
+            node => Bounds.node(node, at, &Form::new),
         }
     }
 
@@ -164,21 +155,64 @@ impl Shadow {
     }
 
     fn value(&self, constants: &[BigRational], node: Node) -> Reals {
-        let pair = |a: Edge, b: Edge, of: fn(Real, Real) -> Real| {
-            let (a, b) = (self.read(a), self.read(b));
+        let mut samples = Samples(&self.symbols);
+        let at = |edge: Edge| self.values.get(edge.node() as usize);
+        let value = match node {
+            Node::Constant(index) => samples.make(Step::Constant(&constants[index as usize])),
+            node => samples.node(node, at, &Form::new),
+        };
+        value.unwrap_or([Real::UNKNOWN; SAMPLES])
+    }
+}
+
+/// Numbers at real samples, with the values of symbols.
+struct Samples<'a>(&'a [Reals]);
+
+impl Numbers for Samples<'_> {
+    type Number = Reals;
+
+    fn make(&mut self, step: Step<Reals>) -> Option<Reals> {
+        let pair = |a: &Reals, b: &Reals, of: fn(Real, Real) -> Real| -> Reals {
             std::array::from_fn(|sample| of(a[sample], b[sample]))
         };
-        match node {
-            Node::Constant(index) => {
-                let value = constants[index as usize].to_f64().unwrap_or(f64::NAN);
+        Some(match step {
+            Step::Whole(value) => [Real::new(value.into(), 0.0); SAMPLES],
+            Step::Constant(value) => {
+                let value = value.to_f64().unwrap_or(f64::NAN);
                 [Real::new(value, value.abs() * f64::EPSILON); SAMPLES]
             }
-            Node::Symbol(index) => self.symbol(index as usize),
-            Node::Add(a, b) => pair(a, b, Real::plus),
-            Node::Mul(a, b) => pair(a, b, Real::times),
-            Node::Div(a, b) => pair(a, b, Real::over),
-            Node::Apply(function, a) => self.read(a).map(|a| a.apply(function)),
-            Node::Atan2(y, x) => pair(y, x, Real::atan2),
+            Step::Symbol(index) => *self.0.get(index)?,
+            Step::Neg(a) => a.map(|a| a.signed(true)),
+            Step::Add(a, b) => pair(a, b, Real::plus),
+            Step::Sub(a, b) => pair(a, b, |a, b| a.plus(b.signed(true))),
+            Step::Mul(a, b) => pair(a, b, Real::times),
+            Step::Div(a, b) => pair(a, b, Real::over),
+            Step::Apply(function, a, _) => a.map(|a| a.apply(function)),
+            Step::Atan2(y, x) => pair(y, x, Real::atan2),
+        })
+    }
+}
+
+/// Numbers between certain bounds, of which π is the only symbol.
+struct Bounds;
+
+impl Numbers for Bounds {
+    type Number = Interval;
+
+    fn make(&mut self, step: Step<Interval>) -> Option<Interval> {
+        match step {
+            Step::Whole(value) => {
+                Some(Interval::rational(&BigRational::from_integer(value.into())))
+            }
+            Step::Constant(value) => Some(Interval::rational(value)),
+            Step::Symbol(_) => Some(Interval::pi()),
+            Step::Neg(a) => Some(a.signed(true)),
+            Step::Add(a, b) => Some(a.plus(b)),
+            Step::Sub(a, b) => Some(a.plus(&b.signed(true))),
+            Step::Mul(a, b) => Some(a.times(b)),
+            Step::Div(a, b) => Some(a.times(&b.inverse()?)),
+            Step::Apply(function, a, _) => (function.row().interval)(a),
+            Step::Atan2(..) => None,
         }
     }
 }

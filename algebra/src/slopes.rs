@@ -1,8 +1,10 @@
 //! Numbers of expressions with their slopes along many directions, in floating point: no derivative is
 //! ever written as an expression, so that the cost is that of the values times the directions.
 
-use super::graph::{Edge, Function, Graph, Node};
-use num_traits::ToPrimitive;
+use super::dual::{Across, Duals};
+use super::graph::{Edge, Graph};
+use super::numbers::evaluate;
+use super::numeric::Floats;
 
 /// A value with its slope along every direction; nothing of it moves where there are no slopes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,14 +20,6 @@ impl Sloped {
     pub fn slope(&self, direction: usize) -> f64 {
         self.along.get(direction).copied().unwrap_or(0.0)
     }
-
-    fn negated(mut self, negative: bool) -> Self {
-        if negative {
-            self.value = -self.value;
-            self.along.iter_mut().for_each(|slope| *slope = -*slope);
-        }
-        self
-    }
 }
 
 /// The expressions, given the value of every symbol, with their slopes along directions: one entry for
@@ -36,85 +30,17 @@ pub fn slopes(
     symbols: &[f64],
     directions: &[Vec<f64>],
 ) -> Vec<Sloped> {
-    let mut all = vec![Sloped::default(); graph.len()];
-    for id in graph.reachable(roots) {
-        let made = of_node(graph, graph.node(id), &all, symbols, directions);
-        all[id as usize] = made;
-    }
-    let read = |root: &Edge| {
-        all[root.node() as usize]
-            .clone()
-            .negated(root.is_negative())
+    let of_symbol = |index: usize| -> Vec<f64> {
+        let slope = |row: &Vec<f64>| row.get(index).copied().unwrap_or(0.0);
+        directions.iter().map(slope).collect()
     };
-    roots.iter().map(read).collect()
-}
-
-fn of_node(
-    graph: &Graph,
-    node: Node,
-    all: &[Sloped],
-    symbols: &[f64],
-    directions: &[Vec<f64>],
-) -> Sloped {
-    let still = |value: f64| Sloped {
-        value,
-        along: Vec::new(),
+    let mut duals = Duals {
+        numbers: Floats(symbols),
+        slopes: Across(of_symbol),
     };
-    let value = |edge: Edge| {
-        let value = all[edge.node() as usize].value;
-        if edge.is_negative() { -value } else { value }
-    };
-    // Σ factor × slope; what does not move takes no part, also where its factor is infinite.
-    let moved = |value: f64, parts: &[(Edge, f64)]| {
-        let mut along = Vec::new();
-        for &(edge, factor) in parts {
-            let slopes = &all[edge.node() as usize].along;
-            let factor = if edge.is_negative() { -factor } else { factor };
-            along.resize(slopes.len().max(along.len()), 0.0);
-            for (sum, &slope) in along.iter_mut().zip(slopes) {
-                if slope != 0.0 {
-                    *sum += factor * slope;
-                }
-            }
-        }
-        Sloped { value, along }
-    };
-    match node {
-        Node::Constant(index) => still(graph.constant(index).to_f64().unwrap_or(f64::NAN)),
-        Node::Symbol(index) => {
-            let slope = |row: &Vec<f64>| row.get(index as usize).copied().unwrap_or(0.0);
-            let along: Vec<f64> = directions.iter().map(slope).collect();
-            let value = symbols.get(index as usize).copied().unwrap_or(f64::NAN);
-            match along.iter().all(|&slope| slope == 0.0) {
-                true => still(value),
-                false => Sloped { value, along },
-            }
-        }
-        Node::Add(a, b) => moved(value(a) + value(b), &[(a, 1.0), (b, 1.0)]),
-        Node::Mul(a, b) => moved(value(a) * value(b), &[(a, value(b)), (b, value(a))]),
-        Node::Div(a, b) => {
-            let quotient = value(a) / value(b);
-            moved(quotient, &[(a, 1.0 / value(b)), (b, -quotient / value(b))])
-        }
-        Node::Apply(function, a) => {
-            let x = value(a);
-            let (value, slope) = match function {
-                Function::Sin => (x.sin(), x.cos()),
-                Function::Cos => (x.cos(), -x.sin()),
-                Function::Exp => (x.exp(), x.exp()),
-                Function::Log => (x.ln(), 1.0 / x),
-                Function::Sqrt => (x.sqrt(), 0.5 / x.sqrt()),
-                // Two arguments: its own node.
-                Function::Atan2 => (f64::NAN, f64::NAN),
-            };
-            moved(value, &[(a, slope)])
-        }
-        Node::Atan2(y, x) => {
-            let square = value(x) * value(x) + value(y) * value(y);
-            let parts = [(y, value(x) / square), (x, -value(y) / square)];
-            moved(value(y).atan2(value(x)), &parts)
-        }
-    }
+    let values = evaluate(graph, roots, &mut duals).unwrap_or_default();
+    let sloped = |(value, along)| Sloped { value, along };
+    values.into_iter().map(sloped).collect()
 }
 
 #[cfg(test)]

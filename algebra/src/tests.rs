@@ -3,6 +3,7 @@
 
 use super::derivation::Derivation;
 use super::fp::Random;
+use super::function::Slope;
 use super::graph::{Edge, Function, Graph};
 use super::lane::circle_point;
 use super::numeric::evaluate;
@@ -14,13 +15,10 @@ const PARAM: u8 = 1;
 const COORD: u8 = 2;
 
 /// Every function of one argument.
-pub(crate) const FUNCTIONS: [Function; 5] = [
-    Function::Sin,
-    Function::Cos,
-    Function::Exp,
-    Function::Log,
-    Function::Sqrt,
-];
+pub(crate) fn functions() -> impl Iterator<Item = Function> {
+    let all = Function::ALL.iter().copied();
+    all.filter(|function| function.row().slope != Slope::Two)
+}
 
 /// All of them of an argument, over what is not 0.
 pub(crate) fn quotients(graph: &mut Graph, argument: Edge, over: Edge) -> Vec<Edge> {
@@ -28,7 +26,7 @@ pub(crate) fn quotients(graph: &mut Graph, argument: Edge, over: Edge) -> Vec<Ed
         let value = graph.apply(function, argument);
         graph.div(value, over).expect("not 0")
     };
-    FUNCTIONS.map(quotient).to_vec()
+    functions().map(quotient).collect()
 }
 
 /// A graph with two parameters, two free coordinates and a point of the circle.
@@ -125,6 +123,13 @@ fn functions_obey_their_group_laws() {
     let (ea, eb) = (g.apply(Function::Exp, a), g.apply(Function::Exp, b));
     let product = g.mul(ea, eb);
     assert_eq!(g.apply(Function::Exp, sum), product);
+    // What follows from exp: eᵃ = cosh a + sinh a, cosh² − sinh² = 1, tanh = sinh/cosh.
+    let (sinh, cosh) = (g.apply(Function::Sinh, a), g.apply(Function::Cosh, a));
+    assert_eq!(g.add(sinh, cosh), ea);
+    let squares = g.dot(&[cosh, sinh], &[cosh, -sinh]);
+    assert_eq!(squares, g.one());
+    assert_eq!(g.div(sinh, cosh), Some(g.apply(Function::Tanh, a)));
+    assert_eq!(g.apply(Function::Tanh, -a), -g.apply(Function::Tanh, a));
     let twice = g.mul(ea, g.one());
     let inverse = g.apply(Function::Exp, -a);
     assert_eq!(g.mul(twice, inverse), g.one());

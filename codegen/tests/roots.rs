@@ -71,6 +71,21 @@ const EXPRESSIONS: [Case; 16] = [
     }),
 ];
 
+/// Hyperbolic functions, and inverse ones, which are angles of points with a root.
+const FUNCTIONS: [Case; 9] = [
+    ("sinh(x - y)", |[_, _, x, y]| (x - y).sinh()),
+    ("tanh(x) * cosh(x) / sinh(x)", |_| 1.0),
+    ("cosh(x)^2 - sinh(x)^2", |_| 1.0),
+    ("exp(x) - cosh(x)", |[_, _, x, _]| x.sinh()),
+    ("tanh(x / 10^9) * 10^9", |[_, _, x, _]| x),
+    ("asin(x / 5)", |[_, _, x, _]| (x / 5.0).asin()),
+    ("acos(-x / 5)", |[_, _, x, _]| (-x / 5.0).acos()),
+    ("asin(x / 5) + acos(x / 5)", |_| std::f64::consts::FRAC_PI_2),
+    ("sin(asin(x / 5)) + acos(-1)", |[_, _, x, _]| {
+        x / 5.0 + std::f64::consts::PI
+    }),
+];
+
 /// A point with these outputs, the last one first where asked.
 fn outputs(cases: &[Case], reversed: bool) {
     let order: Vec<&Case> = if reversed {
@@ -122,6 +137,12 @@ fn of_numbers() {
 fn of_parameters_and_coordinates() {
     outputs(&EXPRESSIONS, false);
     outputs(&EXPRESSIONS, true);
+}
+
+#[test]
+fn within_other_functions() {
+    outputs(&FUNCTIONS, false);
+    outputs(&FUNCTIONS, true);
 }
 
 #[test]

@@ -40,6 +40,37 @@ pub trait Scalar:
     /// Natural logarithm; NaN below zero.
     fn ln(self) -> Self;
 
+    /// Hyperbolic sine, which keeps its digits near 0: x Σ x²ᵏ/(2k + 1)! there, (eˣ − e⁻ˣ)/2 elsewhere.
+    fn sinh(self) -> Self {
+        const TERMS: [f64; 7] = [
+            1.0,
+            1.0 / 6.0,
+            1.0 / 120.0,
+            1.0 / 5040.0,
+            1.0 / 362_880.0,
+            1.0 / 39_916_800.0,
+            1.0 / 6_227_020_800.0,
+        ];
+        let near = self * series(self * self, TERMS);
+        let power = self.exp();
+        let far = (power - Self::from_f64(1.0) / power) * Self::from_f64(0.5);
+        self.abs().select_lt(Self::from_f64(0.3), near, far)
+    }
+
+    /// Hyperbolic cosine.
+    fn cosh(self) -> Self {
+        let power = self.exp();
+        (power + Self::from_f64(1.0) / power) * Self::from_f64(0.5)
+    }
+
+    /// Hyperbolic tangent, which keeps its digits near 0: sinh/cosh there, 1 − 2/(e²ˣ + 1) elsewhere.
+    fn tanh(self) -> Self {
+        let (one, two) = (Self::from_f64(1.0), Self::from_f64(2.0));
+        let far = one - two / ((two * self).exp() + one);
+        let near = self.sinh() / self.cosh();
+        self.abs().select_lt(one, near, far)
+    }
+
     /// Angle in rad, in [−π, π], of the point with ordinate `self` and abscissa `x`.
     fn atan2(self, x: Self) -> Self;
 

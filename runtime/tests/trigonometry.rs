@@ -61,3 +61,24 @@ fn far_angles_are_reduced_and_no_angle_has_no_sine() {
         assert!(sine.is_nan() && cosine.is_nan());
     }
 }
+
+/// Hyperbolic functions keep their digits, near 0 and where their series end, and have their limits.
+#[test]
+fn hyperbolic_functions_are_those_of_the_c_library() {
+    let mut worst = [0.0_f64; 3];
+    let few = |x: &f64| x.abs() < 20.0;
+    for x in angles().filter(few).flat_map(|x| [x, -x]) {
+        let found = [Scalar::sinh(x), Scalar::cosh(x), Scalar::tanh(x)];
+        let known = [x.sinh(), x.cosh(), x.tanh()];
+        for ((worst, found), known) in worst.iter_mut().zip(found).zip(known) {
+            *worst = worst.max((found - known).abs() / spacing(known));
+        }
+    }
+    assert!(worst.iter().all(|&most| most < 12.0), "{worst:?}");
+    assert_eq!([Scalar::tanh(1e3_f64), Scalar::tanh(-1e3_f64)], [1.0, -1.0]);
+    assert_eq!(
+        (Scalar::sinh(0.0_f64), Scalar::sinh(1e3_f64)),
+        (0.0, f64::INFINITY)
+    );
+    assert!(Scalar::tanh(f64::NAN).is_nan());
+}

@@ -16,11 +16,10 @@ impl Graph {
             }
             None => {
                 // Together with a number it is another number only where the rest is one.
-                if class != 0
-                    && node
-                        .children()
-                        .any(|child| self.as_rational(child).is_some())
-                {
+                if class != 0 && node.children().any(|child| self.is_number(child)) {
+                    return None;
+                }
+                if value == self.copied || value == -self.copied {
                     return None;
                 }
                 let (n, d) = value.to_small_rational(29)?;
@@ -103,6 +102,12 @@ impl Graph {
                 self.push(node, value, class)
             }
         }
+    }
+
+    /// The next node is made as one of another graph, which spares the search for a number that it
+    /// might be: where the points are the same, what is none there is none here.
+    pub(crate) fn follow(&mut self, from: &Graph, id: NodeId) {
+        self.copied = from.values[id as usize];
     }
 
     pub(crate) fn lookup(&self, value: Fp) -> Option<Edge> {

@@ -5,7 +5,7 @@ use super::lower::{Operation, Statement};
 use super::names;
 use super::number;
 use super::places::{Place, Places, Time};
-use crate::algebra::graph::{Edge, Function, NodeId};
+use crate::algebra::graph::{Edge, NodeId};
 use crate::program::{Argument, Program};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
@@ -158,16 +158,7 @@ impl Printer<'_> {
             Operation::SinCos(a) => format!("{}.sin_cos()", self.receiver(a)),
             Operation::Atan2(y, x) => format!("{}.atan2({})", self.receiver(y), self.signed(x)),
             Operation::Apply(function, a) => {
-                let method = match function {
-                    Function::Sin => "sin_cos().0",
-                    Function::Cos => "sin_cos().1",
-                    Function::Exp => "exp()",
-                    Function::Log => "ln()",
-                    Function::Sqrt => "sqrt()",
-                    // The function of two arguments has a node of its own.
-                    Function::Atan2 => return number::scalar(f64::NAN),
-                };
-                format!("{}.{method}", self.receiver(a))
+                format!("{}.{}", self.receiver(a), function.row().rust)
             }
             Operation::Check(_, a) => self.signed(a),
         }

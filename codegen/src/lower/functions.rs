@@ -127,6 +127,11 @@ fn usage(name: &str) -> Option<&'static str> {
         "sqrt" => "`sqrt(a)` of a scalar",
         "exp" => "`exp(a)` of a scalar",
         "log" => "`log(a)` of a scalar",
+        "sinh" => "`sinh(a)` of a scalar",
+        "cosh" => "`cosh(a)` of a scalar",
+        "tanh" => "`tanh(a)` of a scalar",
+        "asin" => "`asin(a)` of a scalar",
+        "acos" => "`acos(a)` of a scalar",
         "atan2" => "`atan2(y, x)` of scalars",
         "dot" => "`dot(a, b)` of vectors of equal length",
         "cross" => "`cross(a, b)` of vectors of 3",
@@ -172,6 +177,20 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             Scalar(graph.div(s, c).ok_or(ZERO_DIVISOR)?)
         }
         ("exp", [Scalar(a)]) => Scalar(graph.apply(Function::Exp, *a)),
+        ("sinh", [Scalar(a)]) => Scalar(graph.apply(Function::Sinh, *a)),
+        ("cosh", [Scalar(a)]) => Scalar(graph.apply(Function::Cosh, *a)),
+        ("tanh", [Scalar(a)]) => Scalar(graph.apply(Function::Tanh, *a)),
+        ("asin" | "acos", [Scalar(a)]) => {
+            // The angle of (√(1 − a²), a) or (a, √(1 − a²)); (1 − a)(1 + a) keeps its digits near ±1.
+            let one = graph.one();
+            let (less, more) = (graph.sub(one, *a), graph.add(one, *a));
+            let square = graph.mul(less, more);
+            let other = real_root(graph, square)?;
+            Scalar(match name {
+                "asin" => graph.atan2(*a, other),
+                _ => graph.atan2(other, *a),
+            })
+        }
         ("log", [Scalar(a)]) => {
             let number = graph.as_rational(*a);
             if number.is_some_and(|n| !n.is_positive()) {

@@ -1,7 +1,8 @@
 //! Exact operation counts of straight-line code.
 
 use super::schedule::body;
-use crate::algebra::graph::{Edge, Function, Graph, Node, NodeId};
+use crate::algebra::function::Cost;
+use crate::algebra::graph::{Edge, Graph, Node, NodeId};
 use rustc_hash::FxHashMap;
 
 /// Operations of a function at run time; negation is free, parameters are hoisted.
@@ -48,9 +49,12 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
             Node::Add(..) => count.add += 1,
             Node::Mul(..) => count.mul += 1,
             Node::Div(..) => count.div += 1,
-            Node::Apply(Function::Sqrt, _) => count.sqrt += 1,
-            Node::Apply(Function::Sin | Function::Cos, angle) => angles.push(angle.abs()),
-            Node::Apply(..) | Node::Atan2(..) => count.other += 1,
+            Node::Apply(function, a) => match function.row().cost {
+                Cost::Root => count.sqrt += 1,
+                Cost::Turn => angles.push(a.abs()),
+                Cost::Other => count.other += 1,
+            },
+            Node::Atan2(..) => count.other += 1,
         }
     }
     angles.sort_unstable();

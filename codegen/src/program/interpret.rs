@@ -1,34 +1,21 @@
 //! Evaluation of a program's functions in floating point, without compiling them.
 
 use super::{Argument, Function, Program};
-use crate::algebra::graph::{Edge, Function as Elementary, Node, NodeId};
+use crate::algebra::graph::{Edge, Node, NodeId};
+use crate::algebra::numbers::{Form, Numbers};
+use crate::algebra::numeric::Floats;
 use num_traits::ToPrimitive;
-
-/// One step: what to compute from earlier places.
-#[derive(Clone, Copy, Debug)]
-enum Step {
-    Add(Place, Place),
-    Mul(Place, Place),
-    Div(Place, Place),
-    Apply(Elementary, Place),
-    Atan2(Place, Place),
-}
-
-/// A signed place in the table of values.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    index: usize,
-    negative: bool,
-}
 
 /// A function compiled to steps, with everything that is constant evaluated once.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
+    /// The number 0, as in a graph, the symbols, and what follows.
     initial: Vec<f64>,
-    steps: Vec<(usize, Step)>,
-    outputs: Vec<Place>,
+    /// Places with nodes of earlier places.
+    steps: Vec<(usize, Node)>,
+    outputs: Vec<Edge>,
     /// Guards with their numbers, in the order in which they are computed.
-    guards: Vec<(usize, Place)>,
+    guards: Vec<(usize, Edge)>,
     inputs: [usize; 5],
     arguments: [bool; 5],
 }
@@ -53,50 +40,34 @@ impl Interpreter {
             .collect();
         let reachable = graph.reachable(&roots);
         let symbols = graph.symbols().len();
-        let mut initial = vec![0.0; symbols];
-        initial[0] = std::f64::consts::PI;
-        initial[1..1 + params.len()].copy_from_slice(params);
-        let mut places: rustc_hash::FxHashMap<NodeId, usize> = rustc_hash::FxHashMap::default();
+        let first = 2 + params.len();
+        let mut initial = vec![0.0; 1 + symbols];
+        initial[1] = std::f64::consts::PI;
+        initial[2..first].copy_from_slice(params);
+        let mut places: Vec<NodeId> = vec![0; graph.len()];
         let mut steps = Vec::new();
         for id in reachable {
-            let place = |edge: Edge| Place {
-                index: places.get(&edge.node()).copied().unwrap_or(0),
-                negative: edge.is_negative(),
-            };
+            let node = graph.node(id);
+            if let Node::Symbol(symbol) = node {
+                places[id as usize] = 1 + symbol;
+                continue;
+            }
+            let step = node.over(|edge| edge.moved(&places));
             let index = initial.len();
-            let step = match graph.node(id) {
-                Node::Symbol(symbol) => {
-                    places.insert(id, symbol as usize);
-                    continue;
+            places[id as usize] = index as NodeId;
+            initial.push(match node {
+                Node::Constant(index) => graph.constant(index).to_f64().unwrap_or(f64::NAN),
+                _ if graph.is_free(id) => run(step, &initial),
+                _ => {
+                    steps.push((index, step));
+                    0.0
                 }
-                Node::Constant(constant) => {
-                    places.insert(id, index);
-                    initial.push(graph.constant(constant).to_f64().unwrap_or(f64::NAN));
-                    continue;
-                }
-                Node::Add(a, b) => Step::Add(place(a), place(b)),
-                Node::Mul(a, b) => Step::Mul(place(a), place(b)),
-                Node::Div(a, b) => Step::Div(place(a), place(b)),
-                Node::Apply(f, a) => Step::Apply(f, place(a)),
-                Node::Atan2(y, x) => Step::Atan2(place(y), place(x)),
-            };
-            places.insert(id, index);
-            let value = if graph.is_free(id) {
-                run(step, &initial)
-            } else {
-                steps.push((index, step));
-                0.0
-            };
-            initial.push(value);
+            });
         }
-        let place = |edge: &Edge| Place {
-            index: places.get(&edge.node()).copied().unwrap_or(0),
-            negative: edge.is_negative(),
-        };
-        let mut guards: Vec<(usize, Place)> =
+        let place = |edge: &Edge| edge.moved(&places);
+        let mut guards: Vec<(usize, Edge)> =
             function.guards.iter().map(place).enumerate().collect();
-        guards.sort_by_key(|(_, place)| place.index);
-        let first = 1 + params.len();
+        guards.sort_by_key(|(_, place)| place.node());
         let inputs = [
             first,
             first + program.nu,
@@ -150,25 +121,14 @@ impl Interpreter {
     }
 }
 
-fn read(place: Place, values: &[f64]) -> f64 {
-    if place.negative {
-        -values[place.index]
-    } else {
-        values[place.index]
-    }
+fn read(edge: Edge, values: &[f64]) -> f64 {
+    let value = values[edge.node() as usize];
+    if edge.is_negative() { -value } else { value }
 }
 
-fn run(step: Step, values: &[f64]) -> f64 {
-    match step {
-        Step::Add(a, b) => read(a, values) + read(b, values),
-        Step::Mul(a, b) => read(a, values) * read(b, values),
-        Step::Div(a, b) => read(a, values) / read(b, values),
-        Step::Apply(Elementary::Sin, a) => read(a, values).sin(),
-        Step::Apply(Elementary::Cos, a) => read(a, values).cos(),
-        Step::Apply(Elementary::Exp, a) => read(a, values).exp(),
-        Step::Apply(Elementary::Log, a) => read(a, values).ln(),
-        Step::Apply(Elementary::Sqrt, a) => read(a, values).sqrt(),
-        Step::Apply(Elementary::Atan2, _) => f64::NAN,
-        Step::Atan2(y, x) => read(y, values).atan2(read(x, values)),
-    }
+fn run(step: Node, values: &[f64]) -> f64 {
+    let at = |edge: Edge| values.get(edge.node() as usize);
+    // Numbers and symbols are there from the start.
+    let value = Floats(&[]).node(step, at, &Form::new);
+    value.unwrap_or(f64::NAN)
 }

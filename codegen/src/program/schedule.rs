@@ -76,7 +76,7 @@ pub fn is_hoisted(graph: &Graph, id: NodeId) -> bool {
 /// first 158, 518, 1935; by depth from the arguments 150, 607, 1933, from the results 151, 558, 1917.
 pub fn body(graph: &Graph, roots: &[Edge]) -> Vec<NodeId> {
     let mut order = Vec::new();
-    let mut seen = rustc_hash::FxHashSet::default();
+    let mut seen = vec![false; graph.len()];
     for root in roots {
         let mut stack = vec![(root.node(), false)];
         while let Some((id, done)) = stack.pop() {
@@ -84,12 +84,13 @@ pub fn body(graph: &Graph, roots: &[Edge]) -> Vec<NodeId> {
                 order.push(id);
                 continue;
             }
-            if graph.is_free(id) || matches!(graph.node(id), Node::Symbol(_)) || !seen.insert(id) {
+            let given = graph.is_free(id) || matches!(graph.node(id), Node::Symbol(_));
+            if given || std::mem::replace(&mut seen[id as usize], true) {
                 continue;
             }
             stack.push((id, true));
-            let children: Vec<NodeId> = graph.node(id).children().map(Edge::node).collect();
-            stack.extend(children.into_iter().rev().map(|child| (child, false)));
+            let children = graph.node(id).children().rev();
+            stack.extend(children.map(|child| (child.node(), false)));
         }
     }
     order

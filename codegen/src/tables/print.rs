@@ -92,7 +92,7 @@ impl Notation {
                 )
             }
             (Notation::Latex, Atom::Call(function, arguments), _) => {
-                let name = raised(self, latex_function(*function).into(), power);
+                let name = raised(self, function.row().latex.into(), power);
                 format!("{name}{}", self.group(&self.arguments(arguments)))
             }
         }
@@ -182,17 +182,6 @@ fn juxtaposed(factors: &[String]) -> String {
         text.push_str(factor);
     }
     text
-}
-
-fn latex_function(function: Function) -> &'static str {
-    match function {
-        Function::Sin => r"\sin",
-        Function::Cos => r"\cos",
-        Function::Exp => r"\exp",
-        Function::Log => r"\ln",
-        Function::Sqrt => r"\sqrt",
-        Function::Atan2 => r"\operatorname{atan2}",
-    }
 }
 
 /// Indices from 1: `135` where every size is at most 9, else `1,3,15`.

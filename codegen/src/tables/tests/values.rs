@@ -33,11 +33,7 @@ fn atom(values: &Values, atom: &Atom) -> f64 {
         Atom::Name(name) => values[name],
         Atom::Sum(terms) => arguments(terms).iter().sum(),
         Atom::Call(function, terms) => match (function, arguments(terms).as_slice()) {
-            (Function::Sin, [a]) => a.sin(),
-            (Function::Cos, [a]) => a.cos(),
-            (Function::Exp, [a]) => a.exp(),
-            (Function::Log, [a]) => a.ln(),
-            (Function::Sqrt, [a]) => a.sqrt(),
+            (function, [a]) => (function.row().value)(*a),
             (Function::Atan2, [y, x]) => y.atan2(*x),
             _ => f64::NAN,
         },

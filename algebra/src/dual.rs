@@ -1,0 +1,330 @@
+//! Numbers with slopes. The rules of derivation stand here once; how slopes are carried is a matter of
+//! its own:
+//!
+//! | slopes | carried as | cost |
+//! |---|---|---|
+//! | ∂f along one direction | [`Along`]: a number | that of a value |
+//! | ∂f along many directions | [`Across`]: a number for each; none where nothing moves | that of a value, times the directions |
+//! | ∂f/∂xₖ for all symbols | [`Record`]: a place in a record that is read backwards | that of a value |
+//! | Σ \|∂f/∂a\| eₐ, bounds of errors | `rounding` | that of a value |
+//!
+//! Numbers with slopes are numbers: slopes of slopes are those over [`Duals`].
+
+use super::fp::Fp;
+use super::numbers::{Form, Modular, Numbers, Step};
+
+/// ∂f/∂a of an operation.
+#[derive(Clone, Debug)]
+pub enum Partial<N> {
+    /// 1.
+    One,
+    /// −1.
+    MinusOne,
+    /// Any other.
+    By(N),
+}
+
+impl<N: Clone> Partial<N> {
+    /// It times a slope.
+    fn times<C: Numbers<Number = N>>(&self, numbers: &mut C, slope: &N) -> Option<N> {
+        match self {
+            Partial::One => Some(slope.clone()),
+            Partial::MinusOne => numbers.make(Step::Neg(slope)),
+            Partial::By(factor) => numbers.make(Step::Mul(factor, slope)),
+        }
+    }
+}
+
+/// A way to carry slopes.
+pub trait Slopes<C: Numbers> {
+    /// What goes with a value.
+    type Slope: Clone;
+    /// Of a symbol.
+    fn symbol(&mut self, numbers: &mut C, index: usize) -> Self::Slope;
+    /// Σ ∂f/∂a times the slope of a, for f with this value.
+    fn combine(
+        &mut self,
+        numbers: &mut C,
+        value: &C::Number,
+        parts: &[(Partial<C::Number>, &Self::Slope)],
+    ) -> Option<Self::Slope>;
+    /// Whether it may differ from 0.
+    fn moves(&self, numbers: &C, slope: &Self::Slope) -> bool;
+}
+
+/// Numbers with slopes.
+#[derive(Debug)]
+pub struct Duals<C, S> {
+    /// The numbers.
+    pub numbers: C,
+    /// How slopes are carried.
+    pub slopes: S,
+}
+
+impl<C: Numbers, S: Slopes<C>> Duals<C, S> {
+    fn with(
+        &mut self,
+        value: C::Number,
+        parts: &[(Partial<C::Number>, &S::Slope)],
+    ) -> Option<(C::Number, S::Slope)> {
+        let slope = self.slopes.combine(&mut self.numbers, &value, parts)?;
+        Some((value, slope))
+    }
+}
+
+impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
+    type Number = (C::Number, S::Slope);
+
+    fn make(&mut self, step: Step<Self::Number>) -> Option<Self::Number> {
+        let numbers = &mut self.numbers;
+        let by = |factor: &C::Number| Partial::By(factor.clone());
+        match step {
+            Step::Whole(value) => {
+                let value = numbers.make(Step::Whole(value))?;
+                self.with(value, &[])
+            }
+            Step::Constant(value) => {
+                let value = numbers.make(Step::Constant(value))?;
+                self.with(value, &[])
+            }
+            Step::Symbol(index) => {
+                let value = numbers.make(Step::Symbol(index))?;
+                let slope = self.slopes.symbol(numbers, index);
+                Some((value, slope))
+            }
+            Step::Neg(a) => {
+                let value = numbers.make(Step::Neg(&a.0))?;
+                self.with(value, &[(Partial::MinusOne, &a.1)])
+            }
+            Step::Add(a, b) => {
+                let sum = numbers.make(Step::Add(&a.0, &b.0))?;
+                self.with(sum, &[(Partial::One, &a.1), (Partial::One, &b.1)])
+            }
+            Step::Sub(a, b) => {
+                let difference = numbers.make(Step::Sub(&a.0, &b.0))?;
+                self.with(
+                    difference,
+                    &[(Partial::One, &a.1), (Partial::MinusOne, &b.1)],
+                )
+            }
+            Step::Mul(a, b) => {
+                let product = numbers.make(Step::Mul(&a.0, &b.0))?;
+                self.with(product, &[(by(&b.0), &a.1), (by(&a.0), &b.1)])
+            }
+            Step::Div(a, b) => {
+                let [quotient, by_a, by_b] = numbers.quotient(&a.0, &b.0)?;
+                self.with(
+                    quotient,
+                    &[(Partial::By(by_a), &a.1), (Partial::By(by_b), &b.1)],
+                )
+            }
+            Step::Apply(function, a, form) => {
+                let form = || -> Form<C::Number> {
+                    let atoms = form().into_iter();
+                    atoms.map(|((value, _), c)| (value, c)).collect()
+                };
+                let value = numbers.make(Step::Apply(function, &a.0, &form))?;
+                if !self.slopes.moves(numbers, &a.1) {
+                    return self.with(value, &[]);
+                }
+                let factor = numbers.slope(function, (&a.0, &value), &form)?;
+                self.with(value, &[(Partial::By(factor), &a.1)])
+            }
+            // (x y′ − y x′)/(x² + y²).
+            Step::Atan2(y, x) => {
+                let value = numbers.make(Step::Atan2(&y.0, &x.0))?;
+                if [y, x].iter().all(|a| !self.slopes.moves(numbers, &a.1)) {
+                    return self.with(value, &[]);
+                }
+                let xx = numbers.make(Step::Mul(&x.0, &x.0))?;
+                let yy = numbers.make(Step::Mul(&y.0, &y.0))?;
+                let square = numbers.make(Step::Add(&xx, &yy))?;
+                let minus = numbers.make(Step::Neg(&y.0))?;
+                let by_y = numbers.make(Step::Div(&x.0, &square))?;
+                let by_x = numbers.make(Step::Div(&minus, &square))?;
+                self.with(
+                    value,
+                    &[(Partial::By(by_y), &y.1), (Partial::By(by_x), &x.1)],
+                )
+            }
+        }
+    }
+
+    fn is_zero(&self, a: &Self::Number) -> bool {
+        self.numbers.is_zero(&a.0) && !self.slopes.moves(&self.numbers, &a.1)
+    }
+
+    /// With one inverse.
+    fn quotient(&mut self, a: &Self::Number, b: &Self::Number) -> Option<[Self::Number; 3]> {
+        let one = self.make(Step::Whole(1))?;
+        let inverse = self.make(Step::Div(&one, b))?;
+        let quotient = self.make(Step::Mul(a, &inverse))?;
+        let by_b = self.make(Step::Mul(&quotient, &inverse))?;
+        Some([quotient, inverse, self.make(Step::Neg(&by_b))?])
+    }
+}
+
+impl<C: Modular, S: Slopes<C>> Modular for Duals<C, S> {
+    fn residue(&mut self, value: Fp) -> Option<Self::Number> {
+        let value = self.numbers.residue(value)?;
+        self.with(value, &[])
+    }
+}
+
+/// Slopes along a direction in the symbols.
+#[derive(Clone, Debug)]
+pub struct Along<F>(pub F);
+
+impl<C: Numbers, F: Fn(usize) -> C::Number> Slopes<C> for Along<F> {
+    type Slope = C::Number;
+
+    fn symbol(&mut self, _: &mut C, index: usize) -> C::Number {
+        (self.0)(index)
+    }
+
+    fn combine(
+        &mut self,
+        numbers: &mut C,
+        _: &C::Number,
+        parts: &[(Partial<C::Number>, &C::Number)],
+    ) -> Option<C::Number> {
+        let mut sum: Option<C::Number> = None;
+        for (partial, slope) in parts {
+            if !numbers.is_zero(slope) {
+                let term = partial.times(numbers, slope)?;
+                sum = Some(match sum {
+                    Some(sum) => numbers.make(Step::Add(&sum, &term))?,
+                    None => term,
+                });
+            }
+        }
+        sum.or_else(|| numbers.make(Step::Whole(0)))
+    }
+
+    fn moves(&self, numbers: &C, slope: &C::Number) -> bool {
+        !numbers.is_zero(slope)
+    }
+}
+
+/// Slopes along many directions: none where nothing moves.
+#[derive(Clone, Debug)]
+pub struct Across<F>(pub F);
+
+impl<C: Numbers, F: Fn(usize) -> Vec<C::Number>> Slopes<C> for Across<F> {
+    type Slope = Vec<C::Number>;
+
+    fn symbol(&mut self, numbers: &mut C, index: usize) -> Vec<C::Number> {
+        let slopes = (self.0)(index);
+        let still = slopes.iter().all(|slope| numbers.is_zero(slope));
+        if still { Vec::new() } else { slopes }
+    }
+
+    /// What does not move takes no part, also where its factor is infinite.
+    fn combine(
+        &mut self,
+        numbers: &mut C,
+        _: &C::Number,
+        parts: &[(Partial<C::Number>, &Vec<C::Number>)],
+    ) -> Option<Vec<C::Number>> {
+        let width = parts.iter().map(|(_, slopes)| slopes.len()).max();
+        let mut sums = vec![numbers.make(Step::Whole(0))?; width.unwrap_or(0)];
+        for (partial, slopes) in parts {
+            for (sum, slope) in sums.iter_mut().zip(*slopes) {
+                if !numbers.is_zero(slope) {
+                    let term = partial.times(numbers, slope)?;
+                    *sum = numbers.make(Step::Add(sum, &term))?;
+                }
+            }
+        }
+        Some(sums)
+    }
+
+    fn moves(&self, _: &C, slopes: &Vec<C::Number>) -> bool {
+        !slopes.is_empty()
+    }
+}
+
+/// A place in a record, and the derivatives by earlier places.
+type Entry<N> = [Option<(Partial<N>, usize)>; 2];
+
+/// What values that move were made of.
+#[derive(Clone, Debug)]
+pub struct Record<N> {
+    entries: Vec<Entry<N>>,
+    /// Places of symbols.
+    symbols: Vec<(usize, usize)>,
+}
+
+impl<N> Default for Record<N> {
+    fn default() -> Self {
+        Record {
+            entries: Vec::new(),
+            symbols: Vec::new(),
+        }
+    }
+}
+
+impl<N: Clone> Record<N> {
+    /// ∂f/∂xₖ of the first symbols, for f at a place.
+    pub fn backwards<C: Numbers<Number = N>>(
+        &self,
+        numbers: &mut C,
+        place: Option<usize>,
+        symbols: usize,
+    ) -> Option<Vec<N>> {
+        let zero = numbers.make(Step::Whole(0))?;
+        let mut weights = vec![zero.clone(); self.entries.len()];
+        if let Some(place) = place {
+            weights[place] = numbers.make(Step::Whole(1))?;
+        }
+        for (place, parts) in self.entries.iter().enumerate().rev() {
+            let weight = weights[place].clone();
+            if numbers.is_zero(&weight) {
+                continue;
+            }
+            for (partial, place) in parts.iter().flatten() {
+                let share = partial.times(numbers, &weight)?;
+                weights[*place] = numbers.make(Step::Add(&weights[*place], &share))?;
+            }
+        }
+        let mut row = vec![zero; symbols];
+        for &(symbol, place) in &self.symbols {
+            if let Some(entry) = row.get_mut(symbol) {
+                *entry = weights[place].clone();
+            }
+        }
+        Some(row)
+    }
+}
+
+impl<C: Numbers> Slopes<C> for Record<C::Number> {
+    type Slope = Option<usize>;
+
+    fn symbol(&mut self, _: &mut C, index: usize) -> Option<usize> {
+        self.symbols.push((index, self.entries.len()));
+        self.entries.push([None, None]);
+        Some(self.entries.len() - 1)
+    }
+
+    fn combine(
+        &mut self,
+        _: &mut C,
+        _: &C::Number,
+        parts: &[(Partial<C::Number>, &Option<usize>)],
+    ) -> Option<Option<usize>> {
+        let part = |k: usize| {
+            let (partial, place) = parts.get(k)?;
+            Some((partial.clone(), (**place)?))
+        };
+        let entry = [part(0), part(1)];
+        if entry.iter().all(Option::is_none) {
+            return Some(None);
+        }
+        self.entries.push(entry);
+        Some(Some(self.entries.len() - 1))
+    }
+
+    fn moves(&self, _: &C, place: &Option<usize>) -> bool {
+        place.is_some()
+    }
+}

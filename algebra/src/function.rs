@@ -1,0 +1,168 @@
+//! The elementary functions: all that is known of each in one table.
+//!
+//! A new function is a row here, with its values in numbers of every kind, and its values modulo p
+//! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
+
+use Cost::{Other, Root, Turn};
+use Law::{Angle, Free, Hyperbola, Power, Radical};
+use Parity::{Even, Odd, Plain};
+use Slope::{HalfInverse, Inverse, Is, IsMinus, Itself, OneMinusSquare, Two};
+
+use super::double::Double;
+use super::interval::Interval;
+use super::node::NodeId;
+use super::reals::Real;
+
+/// f(−a).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parity {
+    /// f(a).
+    Even,
+    /// −f(a).
+    Odd,
+    /// Neither.
+    Plain,
+}
+
+/// What f(a + b) or f(a b) is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// Circles of angles, added.
+    Angle,
+    /// Powers, multiplied.
+    Power,
+    /// Powers and their inverses, multiplied.
+    Hyperbola,
+    /// √(a b) = √a √b of what is positive.
+    Radical,
+    /// Of nothing: any value will do.
+    Free,
+}
+
+/// f′(a).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slope {
+    /// g(a).
+    Is(Function),
+    /// −g(a).
+    IsMinus(Function),
+    /// f(a).
+    Itself,
+    /// 1/a.
+    Inverse,
+    /// 1/(2 f(a)).
+    HalfInverse,
+    /// 1 − f(a)².
+    OneMinusSquare,
+    /// It has two arguments, and rules of its own.
+    Two,
+}
+
+/// What it is counted as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cost {
+    /// A square root.
+    Root,
+    /// Half of a pair of sine and cosine.
+    Turn,
+    /// Any other function.
+    Other,
+}
+
+/// One row of the table.
+#[derive(Debug)]
+pub struct Row {
+    /// Its name in descriptions and in texts.
+    pub name: &'static str,
+    /// Its call as a method in Rust.
+    pub rust: &'static str,
+    /// Its name in LaTeX.
+    pub latex: &'static str,
+    /// What it is counted as.
+    pub cost: Cost,
+    /// f(−a).
+    pub parity: Parity,
+    /// An a and f(a), both of them 0 or 1.
+    pub at: Option<[NodeId; 2]>,
+    /// Its law.
+    pub law: Law,
+    /// f′(a).
+    pub slope: Slope,
+    /// f(a) in `f64`.
+    pub value: fn(f64) -> f64,
+    /// In twice the length.
+    pub double: fn(Double) -> Double,
+    /// With a bound of its error.
+    pub real: fn(Real) -> Real,
+    /// Between certain bounds; `None` where there is no value, or none is known.
+    pub interval: fn(&Interval) -> Option<Interval>,
+}
+
+macro_rules! table {
+    ($($id:ident $doc:literal $name:literal $rust:literal $latex:literal $cost:ident $parity:ident $law:ident
+        [$at:expr] [$slope:expr] $value:expr, $double:expr, $real:expr, $interval:expr;)*) => {
+        /// Functions beyond the four operations.
+        #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
+        pub enum Function {
+            $(#[doc = $doc] $id,)*
+        }
+
+        impl Function {
+            /// All of them, in the order of the table.
+            pub const ALL: &'static [Function] = &[$(Function::$id),*];
+
+            /// What is known of it.
+            pub fn row(self) -> &'static Row {
+                match self {
+                    $(Function::$id => {
+                        static ROW: Row = Row {
+                            name: $name,
+                            rust: $rust,
+                            latex: $latex,
+                            cost: $cost,
+                            parity: $parity,
+                            law: $law,
+                            at: $at,
+                            slope: $slope,
+                            value: $value,
+                            double: $double,
+                            real: $real,
+                            interval: $interval,
+                        };
+                        &ROW
+                    })*
+                }
+            }
+
+            /// Its name in descriptions.
+            pub fn name(self) -> &'static str {
+                self.row().name
+            }
+        }
+    };
+}
+
+// The place in the table chooses values modulo p: new functions come last.
+// Identifier, documentation, names, cost, parity, law, exact value, derivative; values in `f64`, in twice
+// the length, with bounds of errors, between bounds.
+table! {
+    Sin "sine" "sin" "sin_cos().0" r"\sin" Turn Odd Angle [Some([0, 0])] [Is(Function::Cos)]
+        f64::sin, Double::sin, Real::sin, Interval::sin;
+    Cos "cosine" "cos" "sin_cos().1" r"\cos" Turn Even Angle [Some([0, 1])] [IsMinus(Function::Sin)]
+        f64::cos, Double::cos, Real::cos, Interval::cos;
+    Exp "exponential" "exp" "exp()" r"\exp" Other Plain Power [Some([0, 1])] [Itself]
+        f64::exp, Double::exp, Real::exp, Interval::exp;
+    Log "natural logarithm" "log" "ln()" r"\ln" Other Plain Free [Some([1, 0])] [Inverse]
+        f64::ln, Double::log, Real::log, |_| None;
+    Sqrt "square root" "sqrt" "sqrt()" r"\sqrt" Root Plain Radical [None] [HalfInverse]
+        f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
+    Atan2 "angle of (x, y), arguments (y, x): a node of its own, without values of one argument"
+        "atan2" "atan2" r"\operatorname{atan2}" Other Plain Free [None] [Two]
+        |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
+    Sinh "hyperbolic sine" "sinh" "sinh()" r"\sinh" Other Odd Hyperbola [Some([0, 0])] [Is(Function::Cosh)]
+        f64::sinh, Double::sinh, Real::sinh, Interval::sinh;
+    Cosh "hyperbolic cosine" "cosh" "cosh()" r"\cosh" Other Even Hyperbola [Some([0, 1])] [Is(Function::Sinh)]
+        f64::cosh, Double::cosh, Real::cosh, Interval::cosh;
+    Tanh "hyperbolic tangent" "tanh" "tanh()" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquare]
+        f64::tanh, Double::tanh, Real::tanh, Interval::tanh;
+}

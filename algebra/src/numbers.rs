@@ -1,0 +1,198 @@
+//! Values of expressions in numbers of any kind, by one walk over their nodes.
+//!
+//! A kind of numbers is an implementation of [`Numbers`], which knows the values of symbols at a point:
+//!
+//! | numbers | implementation |
+//! |---|---|
+//! | `f64` | `numeric::Floats` |
+//! | F_p(i) × F_q(i) | `lane::Lane` |
+//! | with slopes along one direction or many, with a record for slopes in all symbols | `dual::Duals` over others |
+//! | twice the length, with bounds of rounding, beside `f64` | `rounding` |
+//! | real samples, certain bounds | `shadow` |
+
+use super::fp::Fp;
+use super::function::{Function, Slope};
+use super::graph::Graph;
+use super::node::{Edge, Node, NodeId};
+use num_rational::BigRational;
+use std::borrow::Cow;
+
+/// Σ coefficient · atom, as `Graph::form` has it, with the values of its atoms.
+pub type Form<N> = Vec<(N, BigRational)>;
+
+/// Finds a form for who needs it.
+pub type Former<'a, N> = &'a dyn Fn() -> Form<N>;
+
+/// An operation on numbers.
+pub enum Step<'a, N> {
+    /// A small whole number.
+    Whole(i32),
+    /// A rational.
+    Constant(&'a BigRational),
+    /// The value of a symbol.
+    Symbol(usize),
+    /// −a.
+    Neg(&'a N),
+    /// a + b.
+    Add(&'a N, &'a N),
+    /// a − b.
+    Sub(&'a N, &'a N),
+    /// a b.
+    Mul(&'a N, &'a N),
+    /// a / b.
+    Div(&'a N, &'a N),
+    /// A function of one argument.
+    Apply(Function, &'a N, Former<'a, N>),
+    /// The angle of (x, y), arguments (y, x).
+    Atan2(&'a N, &'a N),
+}
+
+/// Arithmetic at a point.
+pub trait Numbers {
+    /// One number.
+    type Number: Clone;
+
+    /// What a step makes; `None` where there is no such number.
+    fn make(&mut self, step: Step<Self::Number>) -> Option<Self::Number>;
+
+    /// Whether it is 0 for certain.
+    fn is_zero(&self, _: &Self::Number) -> bool {
+        false
+    }
+
+    /// a/b and its derivatives by a and b: 1/b and −(a/b)/b.
+    fn quotient(&mut self, a: &Self::Number, b: &Self::Number) -> Option<[Self::Number; 3]> {
+        let one = self.make(Step::Whole(1))?;
+        let (quotient, by_a) = (self.make(Step::Div(a, b))?, self.make(Step::Div(&one, b))?);
+        let minus = self.make(Step::Neg(&quotient))?;
+        let by_b = self.make(Step::Div(&minus, b))?;
+        Some([quotient, by_a, by_b])
+    }
+
+    /// f′(a) of a function with its value there.
+    fn slope(
+        &mut self,
+        function: Function,
+        (a, value): (&Self::Number, &Self::Number),
+        form: Former<Self::Number>,
+    ) -> Option<Self::Number> {
+        match function.row().slope {
+            Slope::Is(other) => self.make(Step::Apply(other, a, form)),
+            Slope::IsMinus(other) => {
+                let value = self.make(Step::Apply(other, a, form))?;
+                self.make(Step::Neg(&value))
+            }
+            Slope::Itself => Some(value.clone()),
+            Slope::Inverse => {
+                let one = self.make(Step::Whole(1))?;
+                self.make(Step::Div(&one, a))
+            }
+            Slope::HalfInverse => {
+                let (one, twice) = (
+                    self.make(Step::Whole(1))?,
+                    self.make(Step::Add(value, value))?,
+                );
+                self.make(Step::Div(&one, &twice))
+            }
+            Slope::OneMinusSquare => {
+                let (one, square) = (
+                    self.make(Step::Whole(1))?,
+                    self.make(Step::Mul(value, value))?,
+                );
+                self.make(Step::Sub(&one, &square))
+            }
+            Slope::Two => None,
+        }
+    }
+
+    /// A number with the sign of an edge.
+    fn signed<'a>(&mut self, value: &'a Self::Number, edge: Edge) -> Option<Cow<'a, Self::Number>> {
+        Some(match edge.is_negative() {
+            true => Cow::Owned(self.make(Step::Neg(value))?),
+            false => Cow::Borrowed(value),
+        })
+    }
+
+    /// The values of edges from those of all nodes.
+    fn read(&mut self, values: &[Self::Number], edges: &[Edge]) -> Option<Vec<Self::Number>> {
+        let value = |&edge: &Edge| self.signed(values.get(edge.node() as usize)?, edge);
+        let all = edges.iter().map(value);
+        all.map(|value| Some(value?.into_owned())).collect()
+    }
+
+    /// The value of a node that is no number from those of the nodes that it is made of.
+    #[inline]
+    fn node<'a>(
+        &mut self,
+        node: Node,
+        at: impl Fn(Edge) -> Option<&'a Self::Number>,
+        form: Former<Self::Number>,
+    ) -> Option<Self::Number>
+    where
+        Self::Number: 'a,
+    {
+        let mut read = |edge: Edge| self.signed(at(edge)?, edge);
+        match node {
+            Node::Constant(_) => None,
+            Node::Symbol(index) => self.make(Step::Symbol(index as usize)),
+            Node::Add(a, b) if !b.is_negative() && a.is_negative() => {
+                self.make(Step::Sub(at(b)?, at(a)?))
+            }
+            Node::Add(a, b) => {
+                let x = read(a)?;
+                match b.is_negative() {
+                    true => self.make(Step::Sub(&x, at(b)?)),
+                    false => self.make(Step::Add(&x, at(b)?)),
+                }
+            }
+            Node::Mul(a, b) => {
+                let (a, b) = (read(a)?, read(b)?);
+                self.make(Step::Mul(&a, &b))
+            }
+            Node::Div(a, b) => {
+                let (a, b) = (read(a)?, read(b)?);
+                self.make(Step::Div(&a, &b))
+            }
+            Node::Apply(function, a) => {
+                let a = read(a)?;
+                self.make(Step::Apply(function, &a, form))
+            }
+            Node::Atan2(y, x) => {
+                let (y, x) = (read(y)?, read(x)?);
+                self.make(Step::Atan2(&y, &x))
+            }
+        }
+    }
+}
+
+/// Numbers over the two fields.
+pub trait Modular: Numbers {
+    /// A number of the fields.
+    fn residue(&mut self, value: Fp) -> Option<Self::Number>;
+}
+
+/// The values of expressions; `None` where something has none.
+pub fn evaluate<C: Numbers>(
+    graph: &Graph,
+    roots: &[Edge],
+    numbers: &mut C,
+) -> Option<Vec<C::Number>> {
+    let mut values = vec![numbers.make(Step::Whole(0))?; graph.len()];
+    // The number 1 is the atom of constant angles.
+    values[1] = numbers.make(Step::Whole(1))?;
+    for id in graph.reachable(roots) {
+        let form = || {
+            let Node::Apply(function, a) = graph.node(id) else {
+                return Form::new();
+            };
+            let value = |(atom, c): (NodeId, BigRational)| (values[atom as usize].clone(), c);
+            graph.form(function, a).into_iter().map(value).collect()
+        };
+        let at = |edge: Edge| values.get(edge.node() as usize);
+        values[id as usize] = match graph.node(id) {
+            Node::Constant(index) => numbers.make(Step::Constant(graph.constant(index)))?,
+            node => numbers.node(node, at, &form)?,
+        };
+    }
+    numbers.read(&values, roots)
+}
