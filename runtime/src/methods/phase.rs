@@ -59,7 +59,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
             start: state.t,
             elapsed: 0.0,
             y: system.centre(&state.x),
-            p: system.momenta(&state.x, &state.xi),
+            p: system.split_momenta(&state.x, &state.xi),
         })
     }
 
@@ -70,7 +70,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         let x = self.system.uncentre(&self.y);
-        let xi = self.system.velocities(&x, &self.p);
+        let xi = self.system.split_velocities(&x, &self.p);
         let u = inputs(self.start + self.elapsed, &x, &xi);
         self.system.kick(&x, &u)
     }
@@ -146,7 +146,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     #[inline(always)]
     pub(crate) fn state(&self, h: f64) -> Result<State<Sys>, StepError> {
         let x = self.system.uncentre(&self.y);
-        let xi = self.system.velocities(&x, &self.p);
+        let xi = self.system.split_velocities(&x, &self.p);
         let t = self.start + h;
         let next = State { t, x, xi };
         if next.is_finite() {

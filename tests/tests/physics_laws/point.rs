@@ -214,7 +214,7 @@ macro_rules! models {
                 self.system.momentum_rate(x, xi, &self.inputs).to_vec()
             }
             fn velocity_of(&self, momentum: &[f64]) -> Vec<f64> {
-                let xi = self.system.velocity_of_momentum(&self.state.x, &array(momentum));
+                let xi = self.system.velocity_from_momentum(&self.state.x, &array(momentum));
                 xi.expect(&self.label).to_vec()
             }
             fn needed(&self, xi_dot: &[f64]) -> Vec<f64> {
