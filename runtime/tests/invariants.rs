@@ -344,12 +344,12 @@ fn a_singular_mass_matrix_is_an_error() {
         let mut state = State::start(&system);
         let error = hamel::step(&system, method, &mut state, 0.1, &|_, _, _| vec![0.0])
             .expect_err("singular");
-        let cause = Singular { pivot: 0 };
+        let cause = Singular::Inertia { pivot: 0 };
         assert_eq!(error, StepError::Singular { cause, time: 0.0 });
         assert!(error.source().is_some());
         assert_eq!(
             error.to_string(),
-            "mass matrix not positive definite at pivot 0, in the step from t = 0"
+            "the mass matrix is not positive definite: pivot 0 (from 0) of its factorisation is not positive, in the step from t = 0"
         );
     }
 }

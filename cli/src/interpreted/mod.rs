@@ -131,7 +131,7 @@ impl Interpreted {
 
     fn projection(&self, pivot: usize) -> Singular {
         self.fails(Failed::Projection);
-        Singular { pivot }
+        Singular::Inertia { pivot }
     }
 
     fn fails(&self, what: Failed) {
@@ -279,13 +279,13 @@ impl System for Interpreted {
     fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         self.count();
         let Some(accel) = &self.accel else {
-            return Err(Singular { pivot: 0 });
+            return Err(Singular::Inertia { pivot: 0 });
         };
         accel.call(x, xi, u, &[]).map_err(|pivot| {
             self.fails(Failed::Motion(x.clone()));
             match self.kinematic.get(pivot).copied().flatten() {
-                Some(pivot) => Singular::kinematics(pivot),
-                None => Singular { pivot },
+                Some(pivot) => Singular::Kinematics { pivot },
+                None => Singular::Inertia { pivot },
             }
         })
     }

@@ -150,7 +150,7 @@ impl Canonical for Interpreted {
         match &self.functions.velocity {
             Some(velocity) => velocity.call_with([x, &[], &[], &[], p]).map_err(|pivot| {
                 self.fails(Failed::Motion(x.clone()));
-                Singular { pivot }
+                Singular::Inertia { pivot }
             }),
             None => Ok(vec![f64::NAN; p.len()]),
         }
