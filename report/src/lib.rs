@@ -3,6 +3,7 @@
 //! | module | owns |
 //! |---|---|
 //! | [`auto`] | how good the chosen method is |
+//! | [`baselines`] | methods that are measured to show what they lose |
 //! | [`controlled`] | runs by error control as a table |
 //! | [`counted`] | a system that counts the evaluations of its forces |
 //! | [`problem`] | one system with its start, its errors and what it conserves |
@@ -25,6 +26,7 @@
 //! `maud` (MIT or Apache-2.0), which escapes whatever is inserted.
 
 pub mod auto;
+pub mod baselines;
 mod code;
 pub mod controlled;
 pub mod counted;

@@ -75,16 +75,6 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         self.system.kick(&x, &u)
     }
 
-    /// p ← p + h ṗ
-    #[inline(always)]
-    pub(crate) fn kick<U>(&mut self, h: f64, inputs: &U)
-    where
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
-        let force = self.force(inputs);
-        self.push(h, &force);
-    }
-
     /// p ← p + h ṗ for a force that is known.
     #[inline(always)]
     pub(crate) fn push(&mut self, h: f64, force: &Sys::Chart) {
