@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`auto`] | how good the chosen method is |
 //! | [`baselines`] | methods that are measured to show what they lose |
-//! | [`controlled`] | runs by error control as a table |
+//! | `controlled` | runs by error control as a table |
 //! | [`counted`] | a system that counts the evaluations of its forces |
 //! | [`problem`] | one system with its start, its errors and what it conserves |
 //! | [`entry`] | a method on a problem, in equal steps or by error control |
@@ -28,7 +28,7 @@
 pub mod auto;
 pub mod baselines;
 mod code;
-pub mod controlled;
+mod controlled;
 pub mod counted;
 pub mod data;
 pub mod drift;

@@ -20,19 +20,19 @@
 //!
 //! [`Adaptive`](crate::adaptive::Adaptive) chooses the steps of [`Rkmk54`] and [`Rkmk8`] itself.
 
-pub mod backward_euler;
-pub mod cf4;
+mod backward_euler;
+mod cf4;
 pub mod free;
-pub mod gauss;
-pub mod general;
-pub mod lgvi;
+mod gauss;
+mod general;
+mod lgvi;
 mod phase;
-pub mod rk4;
-pub mod rkmk4;
+mod rk4;
+mod rkmk4;
 pub mod rkmk54;
 pub mod rkmk8;
-pub mod scheme;
-pub mod splitting;
+mod scheme;
+mod splitting;
 pub mod tableau;
 
 pub use backward_euler::BackwardEuler;
