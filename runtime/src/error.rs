@@ -24,6 +24,18 @@ pub enum Singular {
     },
 }
 
+impl Singular {
+    /// [`Inertia`](Self::Inertia), as generated code writes it.
+    pub const fn inertia(pivot: usize) -> Self {
+        Self::Inertia { pivot }
+    }
+
+    /// [`Kinematics`](Self::Kinematics), as generated code writes it.
+    pub const fn kinematics(pivot: usize) -> Self {
+        Self::Kinematics { pivot }
+    }
+}
+
 impl fmt::Display for Singular {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1,7 +1,7 @@
 //! The part of Rust that most lines of the generated text are written in, and its parser.
 //!
 //! ```text
-//! statement  let PATTERN = SUM;   PLACE = SUM;   if !SUM { return Err(PATH { NAME: NUMBER }); }
+//! statement  let PATTERN = SUM;   PLACE = SUM;   if !SUM { return Err(PATH(NUMBER)); }
 //! value      [ENTRY, …]   Ok([ENTRY, …])                          entries are sums, or rows of them
 //! SUM        OPERAND (+ - * /) OPERAND …
 //! OPERAND    - & before a name, a path, a number or (SUM), and behind it [NUMBER] .name .0 (SUM, …)
@@ -156,8 +156,8 @@ impl<'a> Reader<'a> {
     fn leaves(&mut self) -> bool {
         let returns = self.take(b'{') && self.word("return") && self.word("Err") && self.take(b'(');
         let error = returns && self.path();
-        let of = self.take(b'{') && self.name() && self.take(b':') && self.integer();
-        error && of && self.take(b'}') && self.take(b')') && self.take(b';') && self.take(b'}')
+        let of = self.take(b'(') && self.integer() && self.take(b')');
+        error && of && self.take(b')') && self.take(b';') && self.take(b'}')
     }
 
     /// `a`, `mut a`, `_` or `(a, _)`.
@@ -275,8 +275,8 @@ mod tests {
             "out[1][2] = -t1;",
             "*out = t1;",
             "slots[3] = x[0] / a;",
-            "if !(-a).is_positive() { return Err(::hamel::Singular::Inertia { pivot: 1 }); }",
-            "if !k[3].is_positive() { return Err(::hamel::Singular::Kinematics { pivot: 1 }); }",
+            "if !(-a).is_positive() { return Err(::hamel::Singular::inertia(1)); }",
+            "if !k[3].is_positive() { return Err(::hamel::Singular::kinematics(1)); }",
         ] {
             assert!(is_statement(text), "{text}");
             syn::parse_str::<syn::Block>(&format!("{{{text}}}")).expect(text);
@@ -313,7 +313,7 @@ mod tests {
             "let a = b.mul_add(c d);",
             "a[b] = c;",
             "x;",
-            "if !a.is_positive() { return Err(::hamel::Singular::Inertia { pivot: 1 }; }",
+            "if !a.is_positive() { return Err(::hamel::Singular::inertia(1); }",
             "",
         ] {
             assert!(!is_statement(text), "{text}");

@@ -177,8 +177,8 @@ impl Printer<'_> {
 /// Leaves a function unless a pivot is positive: a pivot of [Y; Φ] or of the mass matrix.
 pub fn check(program: &Program, guard: Edge, pivot: &str, index: usize) -> String {
     let error = match program.kinematic_pivot(guard) {
-        Some(index) => format!("::hamel::Singular::Kinematics {{ pivot: {index} }}"),
-        None => format!("::hamel::Singular::Inertia {{ pivot: {index} }}"),
+        Some(index) => format!("::hamel::Singular::kinematics({index})"),
+        None => format!("::hamel::Singular::inertia({index})"),
     };
     format!("if !{pivot}.is_positive() {{ return Err({error}); }}\n")
 }
