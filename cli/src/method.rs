@@ -4,10 +4,11 @@ use crate::failure::Failure;
 use crate::interpreted::Interpreted;
 use crate::number::short;
 use hamel::flows::Flow;
-use hamel::methods::{Buss, Gauss4, Gauss6, General, Lgvi, Method, Scheme, Slide, Splitting};
+use hamel::methods::{Gauss4, Gauss6, General, Lgvi, Method, Scheme, Splitting};
 use hamel::{Canonical, Split, State, StepError, System};
 use hamel_codegen::derive::structure::choice::choose;
 use hamel_codegen::program::structure::Structure;
+use hamel_report::baselines::{Baseline, Buss, Slide};
 use hamel_report::data::{Kind, Missing};
 
 /// The name that leaves the choice to the structure of the system.
@@ -60,11 +61,11 @@ const METHODS: &[Entry] = entries! {
     "lgvi" Method Split |_| Stepper::Lgvi, "bodies in potentials; variational, order 2";
     "gauss4" Method Momenta |_| Stepper::Gauss4, "long runs with M(x); implicit, order 4, no drift";
     "gauss6" Method Momenta |_| Stepper::Gauss6, "the same; order 6";
-    "euler" Baseline Any |_| Stepper::General(General::ForwardEuler), "baseline; order 1";
+    "euler" Baseline Any |_| Stepper::Baseline(Baseline::ForwardEuler), "baseline; order 1";
     "backward-euler" Baseline Any |_| Stepper::General(General::BackwardEuler), "baseline; implicit, order 1";
-    "semi-implicit-euler" Baseline Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as game engines step";
+    "semi-implicit-euler" Baseline Any |_| Stepper::Baseline(Baseline::SemiImplicitEuler), "baseline; order 1, as game engines step";
     "rk4" Baseline Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, led back at the rate --lambda";
-    "rk4-projected" Baseline Any |_| Stepper::General(General::Rk4Projected), "baseline; the same, projected after each step";
+    "rk4-projected" Baseline Any |_| Stepper::Baseline(Baseline::Rk4Projected), "baseline; the same, projected after each step";
     "slide" Baseline Split |_| Stepper::Slide, "baseline; order 1, keeps angular momentum";
     "buss1" Baseline Split |_| Stepper::Buss(Buss::First), "baseline; order 1, keeps angular momentum";
     "buss2" Baseline Split |_| Stepper::Buss(Buss::Second), "baseline; the same, order 2";
@@ -216,6 +217,8 @@ impl Needs {
 pub enum Stepper {
     /// One for any system.
     General(General),
+    /// A baseline for any system.
+    Baseline(Baseline),
     /// Kicks between free motions.
     Splitting(Splitting),
     /// The free motion from the start, with nothing gathered on the way.
@@ -248,7 +251,7 @@ impl Stepper {
     /// What it evaluates, for counts.
     pub fn evaluated(&self) -> &'static str {
         match self {
-            Stepper::General(_) => "the acceleration",
+            Stepper::General(_) | Stepper::Baseline(_) => "the acceleration",
             Stepper::Gauss4 | Stepper::Gauss6 => "the rates of momenta",
             _ => "the forces",
         }
@@ -270,6 +273,7 @@ where
     fn order(&self) -> u32 {
         match self {
             Stepper::General(method) => Method::<Sys>::order(method),
+            Stepper::Baseline(method) => Method::<Sys>::order(method),
             Stepper::Splitting(method) => Method::<Sys>::order(method),
             Stepper::Closed { .. } => 0,
             Stepper::Lgvi => Method::<Sys>::order(&Lgvi),
@@ -292,6 +296,7 @@ where
     {
         match self {
             Stepper::General(method) => method.step(system, state, h, inputs),
+            Stepper::Baseline(method) => method.step(system, state, h, inputs),
             Stepper::Splitting(method) => method.step(system, state, h, inputs),
             Stepper::Closed { start, motion } => {
                 let (x, xi) = start.clone();

@@ -86,7 +86,7 @@ impl Interpreted {
 
     /// What is said of a failure of ξ̇, of a projection or of a change to velocities.
     pub fn singular(&self, cause: Singular) -> String {
-        if cause.kinematic_pivot().is_some() {
+        if let Singular::Kinematics { .. } = cause {
             return CONFIGURATION.into();
         }
         match self.failed() {

@@ -91,7 +91,7 @@ fn momenta_cost_no_more_than_motions(name: &str, counts: &Value) {
     let flops = |function: &str| number(counts, function, "flops");
     let inverse = flops("inverse_dynamics");
     for (function, most) in [
-        ("velocity_of_momentum", flops("accel")),
+        ("velocity_from_momentum", flops("accel")),
         ("momentum_rate", inverse * 22 / 10),
         ("momentum", inverse),
     ] {

@@ -15,7 +15,7 @@ use hamel_codegen::algebra::double::Double;
 use hamel_codegen::algebra::fp::Random;
 use hamel_codegen::functions::{Asked, FunctionId};
 use hamel_codegen::generate::Generated;
-use hamel_codegen::model;
+use hamel_codegen::lower;
 use hamel_codegen::model::layout::{Block, rotation};
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;

@@ -110,7 +110,7 @@ table! {
     MomentumRate "momentum_rate" (Coordinates, Velocities, Inputs) Callers false true [
         "Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a)).",
     ]
-    VelocityOfMomentum "velocity_of_momentum" (Coordinates, Momenta) Callers true true [
+    VelocityFromMomentum "velocity_from_momentum" (Coordinates, Momenta) Callers true true [
         "Velocity coordinates of a generalised momentum, ξ = M⁻¹ p.",
     ]
     KineticEnergy "kinetic_energy" (Coordinates, Velocities) System false true [
@@ -136,10 +136,10 @@ table! {
         "Multipliers λ of the constraints B(x) ξ = 0, M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ, in their order: the",
         "generalised force that keeps an inactive velocity at zero, a force where B ξ is a speed.",
     ]
-    Close "close" (Coordinates) System true false [
+    ProjectPosition "project_position" (Coordinates) System true false [
         "The step along A that closes the loops φ(x) = 0 to first order, −M⁻¹ Bᵀ S⁻¹ φ with S = B M⁻¹ Bᵀ.",
     ]
-    Settle "settle" (Coordinates, Velocities) System true false [
+    ProjectVelocity "project_velocity" (Coordinates, Velocities) System true false [
         "The velocities with B ξ = 0 that are nearest in kinetic energy, ξ − M⁻¹ Bᵀ S⁻¹ B ξ.",
     ]
     Linearize "linearize" (Coordinates, Velocities, Inputs) Asked true true [
@@ -153,12 +153,12 @@ table! {
     Uncentre "uncentre" (Coordinates) Split true false [
         "Coordinates x of those at centres of mass: the inverse of `centre`.",
     ]
-    Momenta "momenta" (Coordinates, Velocities) Split true false [
+    SplitMomenta "split_momenta" (Coordinates, Velocities) Split true false [
         "Momenta of the free motion in the chart: ẏ of plain coordinates at centres of mass, θ̇ of circles,",
         "the angular momentum P = J ω of rotors in body axes. T = ½ ẏᵀ D ẏ + ½ Σ P·J⁻¹P.",
     ]
-    Velocities "velocities" (Coordinates, Momenta) Split true false [
-        "Velocity coordinates ξ of such momenta: the inverse of `momenta`.",
+    SplitVelocities "split_velocities" (Coordinates, Momenta) Split true false [
+        "Velocity coordinates ξ of such momenta: the inverse of `split_momenta`.",
     ]
     Kick "kick" (Coordinates, Inputs) Split true false [
         "Rates of these momenta by the forces alone: accelerations of centres of mass and of circles,",

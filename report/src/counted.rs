@@ -107,17 +107,20 @@ impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
     }
 
     #[inline]
-    fn close(&self, x: &Self::Coordinates) -> Result<Option<Self::Velocities>, Singular> {
-        self.system.close(x)
+    fn project_position(
+        &self,
+        x: &Self::Coordinates,
+    ) -> Result<Option<Self::Velocities>, Singular> {
+        self.system.project_position(x)
     }
 
     #[inline]
-    fn settle(
+    fn project_velocity(
         &self,
         x: &Self::Coordinates,
         xi: &Self::Velocities,
     ) -> Result<Option<Self::Velocities>, Singular> {
-        self.system.settle(x, xi)
+        self.system.project_velocity(x, xi)
     }
 
     #[inline]
@@ -157,13 +160,13 @@ impl<Sys: Split + ?Sized> Split for Counted<'_, Sys> {
     }
 
     #[inline]
-    fn momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {
-        self.system.momenta(x, xi)
+    fn split_momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {
+        self.system.split_momenta(x, xi)
     }
 
     #[inline]
-    fn velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities {
-        self.system.velocities(x, p)
+    fn split_velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities {
+        self.system.split_velocities(x, p)
     }
 
     #[inline]
@@ -191,11 +194,11 @@ impl<Sys: Canonical + ?Sized> Canonical for Counted<'_, Sys> {
     }
 
     #[inline]
-    fn velocity_of_momentum(
+    fn velocity_from_momentum(
         &self,
         x: &Self::Coordinates,
         p: &Self::Velocities,
     ) -> Result<Self::Velocities, Singular> {
-        self.system.velocity_of_momentum(x, p)
+        self.system.velocity_from_momentum(x, p)
     }
 }

@@ -3,7 +3,8 @@
 //! | module | owns |
 //! |---|---|
 //! | [`auto`] | how good the chosen method is |
-//! | [`controlled`] | runs by error control as a table |
+//! | [`baselines`] | methods that are measured to show what they lose |
+//! | `controlled` | runs by error control as a table |
 //! | [`counted`] | a system that counts the evaluations of its forces |
 //! | [`problem`] | one system with its start, its errors and what it conserves |
 //! | [`entry`] | a method on a problem, in equal steps or by error control |
@@ -25,8 +26,9 @@
 //! `maud` (MIT or Apache-2.0), which escapes whatever is inserted.
 
 pub mod auto;
+pub mod baselines;
 mod code;
-pub mod controlled;
+mod controlled;
 pub mod counted;
 pub mod data;
 pub mod drift;

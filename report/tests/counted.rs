@@ -74,10 +74,10 @@ impl Split for Pendulum {
     fn uncentre(&self, y: &[f64; 2]) -> [f64; 2] {
         *y
     }
-    fn momenta(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] {
+    fn split_momenta(&self, _: &[f64; 2], xi: &[f64; 1]) -> [f64; 1] {
         *xi
     }
-    fn velocities(&self, _: &[f64; 2], p: &[f64; 1]) -> [f64; 1] {
+    fn split_velocities(&self, _: &[f64; 2], p: &[f64; 1]) -> [f64; 1] {
         *p
     }
     fn kick(&self, x: &[f64; 2], _: &[f64; 0]) -> [f64; 1] {
@@ -92,7 +92,7 @@ impl Canonical for Pendulum {
     fn momentum_rate(&self, x: &[f64; 2], _: &[f64; 1], _: &[f64; 0]) -> [f64; 1] {
         [-self.g * self.l * x[1]]
     }
-    fn velocity_of_momentum(&self, _: &[f64; 2], p: &[f64; 1]) -> Result<[f64; 1], Singular> {
+    fn velocity_from_momentum(&self, _: &[f64; 2], p: &[f64; 1]) -> Result<[f64; 1], Singular> {
         Ok([p[0] / (self.l * self.l)])
     }
 }
@@ -111,9 +111,12 @@ fn each_kind_of_force_counts_once() {
     assert_eq!(counted.evaluations(), 3);
     // Nothing else is an evaluation of forces.
     let p = counted.momentum(&x, &xi);
-    assert_eq!(counted.velocity_of_momentum(&x, &p), Ok(xi));
+    assert_eq!(counted.velocity_from_momentum(&x, &p), Ok(xi));
     assert_eq!(counted.uncentre(&counted.centre(&x)), x);
-    assert_eq!(counted.velocities(&x, &counted.momenta(&x, &xi)), xi);
+    assert_eq!(
+        counted.split_velocities(&x, &counted.split_momenta(&x, &xi)),
+        xi
+    );
     assert_eq!(counted.rate(&x, &xi), PENDULUM.rate(&x, &xi));
     assert_eq!(
         counted.kinetic_energy(&x, &xi),

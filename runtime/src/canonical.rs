@@ -9,7 +9,7 @@ use crate::system::System;
 #[diagnostic::on_unimplemented(
     message = "the momenta of `{Self}` are not generated",
     label = "this method steps generalised momenta",
-    note = "systems with constraints on velocities have none; a `generate` list has to name momentum_rate and velocity_of_momentum"
+    note = "systems with constraints on velocities have none; a `generate` list has to name momentum_rate and velocity_from_momentum"
 )]
 pub trait Canonical: System {
     /// p = M(x) ξ.
@@ -27,7 +27,7 @@ pub trait Canonical: System {
     ///
     /// # Errors
     /// [`Singular`] when M is not positive definite at x.
-    fn velocity_of_momentum(
+    fn velocity_from_momentum(
         &self,
         x: &Self::Coordinates,
         p: &Self::Velocities,

@@ -3,42 +3,50 @@
 use core::error::Error;
 use core::fmt;
 
-/// ξ̇ has no value: a pivot is zero, negative or not finite. The mass matrix cannot be factored, or
-/// the kinematics are singular (a linkage is locked, a lever has no length).
+/// Why ξ̇ has no value: a pivot that has to be positive is zero, negative or not finite.
+///
+/// Pivots are counted from 0. Those that depend on parameters alone are checked when parameters are set, and
+/// counted on their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Singular {
-    /// Index of the failing pivot, from 0: of the mass matrix, the velocity coordinate whose inertia,
-    /// with those before it eliminated, is not positive; from [`KINEMATICS`](Self::KINEMATICS) on, of
-    /// [Y; Φ], KR18 (5).
-    pub pivot: usize,
+#[non_exhaustive]
+pub enum Singular {
+    /// The mass matrix M is not positive definite: some motion has no inertia. With constraints that multipliers
+    /// keep, also S = B M⁻¹ Bᵀ, where rows of B depend on one another.
+    Inertia {
+        /// The pivot of the factorisation that is not positive, in the order of elimination.
+        pivot: usize,
+    },
+    /// The mechanism is at a kinematic singularity (a linkage is locked, a lever has no length): the definitions
+    /// of the velocities and the constraints, [Y; Φ] of KR18 (5), do not determine ẋ.
+    Kinematics {
+        /// The pivot of [Y; Φ] that has lost the sign that it has at the start.
+        pivot: usize,
+    },
 }
 
 impl Singular {
-    /// Pivots of the kinematics are numbered from here.
-    pub const KINEMATICS: usize = usize::MAX / 2 + 1;
-
-    /// A pivot of [Y; Φ], from 0, lost the sign that it has at the start: there the definitions of
-    /// the velocities and the constraints do not determine ẋ.
-    pub const fn kinematics(pivot: usize) -> Self {
-        Self {
-            pivot: Self::KINEMATICS + pivot,
-        }
+    /// [`Inertia`](Self::Inertia), as generated code writes it.
+    pub const fn inertia(pivot: usize) -> Self {
+        Self::Inertia { pivot }
     }
 
-    /// The number of the pivot of [Y; Φ], where that is what failed.
-    pub const fn kinematic_pivot(self) -> Option<usize> {
-        self.pivot.checked_sub(Self::KINEMATICS)
+    /// [`Kinematics`](Self::Kinematics), as generated code writes it.
+    pub const fn kinematics(pivot: usize) -> Self {
+        Self::Kinematics { pivot }
     }
 }
 
 impl fmt::Display for Singular {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.kinematic_pivot() {
-            Some(pivot) => write!(f, "kinematics singular at pivot {pivot} of [Y; Φ]"),
-            None => write!(
+        match self {
+            Self::Inertia { pivot } => write!(
                 f,
-                "mass matrix not positive definite at pivot {}",
-                self.pivot
+                "the mass matrix is not positive definite: pivot {pivot} (from 0) of its factorisation is \
+                 not positive"
+            ),
+            Self::Kinematics { pivot } => write!(
+                f,
+                "the mechanism is at a kinematic singularity: pivot {pivot} (from 0) of [Y; Φ] has changed sign"
             ),
         }
     }

@@ -44,12 +44,15 @@ where
     let time = state.t;
     let mut moved = false;
     let singular = |cause| StepError::Singular { cause, time };
-    if let Some(step) = system.close(&state.x).map_err(singular)? {
+    if let Some(step) = system.project_position(&state.x).map_err(singular)? {
         let chart = system.chart_rate(&state.x, &step);
         manifold::retract(system.blocks(), state.x.as_mut(), chart.as_ref());
         moved = true;
     }
-    if let Some(xi) = system.settle(&state.x, &state.xi).map_err(singular)? {
+    if let Some(xi) = system
+        .project_velocity(&state.x, &state.xi)
+        .map_err(singular)?
+    {
         state.xi = xi;
         moved = true;
     }

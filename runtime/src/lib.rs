@@ -69,27 +69,27 @@
 
 pub mod adapter;
 pub mod adaptive;
-pub mod canonical;
+mod canonical;
 #[cfg(feature = "nalgebra")]
 pub mod edge;
 #[cfg(feature = "ensemble")]
 pub mod ensemble;
-pub mod error;
+mod error;
 pub mod flows;
-pub mod integrate;
-pub mod lanes;
+mod integrate;
+mod lanes;
 pub mod manifold;
 pub mod methods;
-pub mod monitor;
+mod monitor;
 pub mod rotor;
 pub mod s1;
 pub mod s3;
-pub mod scalar;
+mod scalar;
 pub mod so3;
-pub mod split;
-pub mod state;
-pub mod store;
-pub mod system;
+mod split;
+mod state;
+mod store;
+mod system;
 mod trig;
 #[cfg(feature = "wide")]
 pub mod wide;

@@ -40,10 +40,10 @@ pub trait Split: System {
     fn uncentre(&self, y: &Self::Coordinates) -> Self::Coordinates;
 
     /// p of (x, ξ), linear in ξ.
-    fn momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart;
+    fn split_momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart;
 
-    /// ξ of (x, p): the inverse of [`momenta`](Self::momenta).
-    fn velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities;
+    /// ξ of (x, p): the inverse of [`split_momenta`](Self::split_momenta).
+    fn split_velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities;
 
     /// ṗ by the forces alone: ÿ (flat), θ̈ (circle), torque in body axes (quaternion, rotation).
     fn kick(&self, x: &Self::Coordinates, u: &Self::Inputs) -> Self::Chart;

@@ -33,9 +33,12 @@ impl<Sys: System + ?Sized> State<Sys> {
         self.t.is_finite() && is_finite(self.x.as_ref()) && is_finite(self.xi.as_ref())
     }
 
-    /// Compares the lengths of x and ξ with those of the system.
+    /// Compares the lengths of x and ξ with those of the system, as every [`Method`](crate::Method) has to.
+    ///
+    /// # Errors
+    /// [`StepError::Shape`], for the first list of another length.
     #[inline]
-    pub(crate) fn check_shape(&self, system: &Sys) -> Result<(), StepError> {
+    pub fn check_shape(&self, system: &Sys) -> Result<(), StepError> {
         let blocks = system.blocks();
         let checks = [
             (

@@ -112,7 +112,10 @@ pub trait System {
     /// # Errors
     /// [`Singular`] where the loops' rows depend on one another.
     #[inline]
-    fn close(&self, x: &Self::Coordinates) -> Result<Option<Self::Velocities>, Singular> {
+    fn project_position(
+        &self,
+        x: &Self::Coordinates,
+    ) -> Result<Option<Self::Velocities>, Singular> {
         let _ = x;
         Ok(None)
     }
@@ -123,7 +126,7 @@ pub trait System {
     /// # Errors
     /// [`Singular`] where the rows of B depend on one another.
     #[inline]
-    fn settle(
+    fn project_velocity(
         &self,
         x: &Self::Coordinates,
         xi: &Self::Velocities,

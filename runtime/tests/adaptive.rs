@@ -250,7 +250,7 @@ const WALL: Points<1> = Points {
         if x[0] < 1.0 {
             Ok([0.0])
         } else {
-            Err(Singular { pivot: 0 })
+            Err(Singular::Inertia { pivot: 0 })
         }
     },
 };
@@ -421,11 +421,11 @@ impl System for Ring {
     fn correction(&self, _: &[f64; 2]) -> [f64; 2] {
         [0.0; 2]
     }
-    fn close(&self, x: &[f64; 2]) -> Result<Option<[f64; 2]>, Singular> {
+    fn project_position(&self, x: &[f64; 2]) -> Result<Option<[f64; 2]>, Singular> {
         let factor = -0.5 * self.constraint(x);
         Ok(Some(x.map(|x| factor * x)))
     }
-    fn settle(&self, x: &[f64; 2], xi: &[f64; 2]) -> Result<Option<[f64; 2]>, Singular> {
+    fn project_velocity(&self, x: &[f64; 2], xi: &[f64; 2]) -> Result<Option<[f64; 2]>, Singular> {
         let outwards = x[0] * xi[0] + x[1] * xi[1];
         Ok(Some([xi[0] - outwards * x[0], xi[1] - outwards * x[1]]))
     }

@@ -7,7 +7,7 @@ use std::cell::Cell;
 
 use common::{FreeBody, QuaternionTop, Reference, Spin, Top, distance, relative, run};
 use hamel::flows::Flow;
-use hamel::methods::{Buss, Free, Gauss4, Gauss6, Lgvi, Scheme, Slide, Splitting};
+use hamel::methods::{Free, Gauss4, Gauss6, Lgvi, Scheme, Splitting};
 use hamel::{Method, State, StepError, System, s3, so3};
 
 const SCHEMES: [Scheme; 5] = [
@@ -94,7 +94,6 @@ fn a_run_evaluates_the_force_between_two_steps_once() -> Result<(), StepError> {
             compare(&top, Splitting::new(&top, scheme), scheme.drifts() as u32)?;
         }
         compare(&top, Lgvi, 1)?;
-        compare(&top, Buss::Fourth, 1)?;
     }
     Ok(())
 }
@@ -167,8 +166,6 @@ fn symmetric_methods_return_to_the_start() {
         returns.push(there_and_back(&top, &Gauss4, 0.02, 100));
         returns.push(there_and_back(&top, &Gauss6, 0.02, 100));
         assert!(returns.iter().all(|r| *r < RETURN), "{case}: {returns:?}");
-        // A method without that symmetry does not.
-        assert!(there_and_back(&top, &Slide, 0.02, 100) > 1e-3);
     }
 }
 
@@ -186,8 +183,6 @@ fn a_step_of_zero_changes_nothing() {
     assert!(there_and_back(&top, &Lgvi, 0.0, 1) < 2e-15);
     assert!(there_and_back(&top, &Gauss4, 0.0, 1) < 2e-15);
     assert!(there_and_back(&top, &Gauss6, 0.0, 1) < 2e-15);
-    assert!(there_and_back(&top, &Slide, 0.0, 1) < 2e-15);
-    assert!(there_and_back(&top, &Buss::Fourth, 0.0, 1) < 2e-15);
     assert!(there_and_back(&Spin(top), &Free, 0.0, 1) < 2e-15);
 }
 
@@ -287,15 +282,6 @@ fn steps_far_too_long_end_on_the_manifold_or_in_a_typed_error() {
             assert!(overstep(&top, &Lgvi) >= 2);
             assert!(overstep(&top, &Gauss4) >= 2);
             assert!(overstep(&top, &Gauss6) >= 2);
-            assert!(overstep(&top, &Slide) >= 2);
-            for method in [
-                Buss::First,
-                Buss::Second,
-                Buss::AugmentedSecond,
-                Buss::Fourth,
-            ] {
-                assert!(overstep(&top, &method) >= 2, "{method:?}");
-            }
             assert!(overstep(&Spin(top), &Free) >= 2);
         }
     }
@@ -327,8 +313,6 @@ fn spherical_and_symmetric_bodies_at_rest_or_hardly_moving_stay() {
             }
             stays("free", run(&spin, Free, 10.0, 10));
             stays("LGVI", run(&spin, Lgvi, 10.0, 10));
-            stays("slide", run(&spin, Slide, 10.0, 10));
-            stays("Buss", run(&spin, Buss::Fourth, 10.0, 10));
             stays("Gauss 4", run(&spin, Gauss4, 10.0, 10));
             stays("Gauss 6", run(&spin, Gauss6, 10.0, 10));
         }
@@ -348,7 +332,6 @@ fn a_state_of_nan_is_an_error() {
     }
     assert!(hamel::step(&top, Lgvi, &mut state, 0.1, &none).is_err());
     assert!(hamel::step(&top, Gauss4, &mut state, 0.1, &none).is_err());
-    assert!(hamel::step(&top, Slide, &mut state, 0.1, &none).is_err());
 }
 
 #[test]

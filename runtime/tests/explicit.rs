@@ -169,33 +169,17 @@ fn orders_on_the_benchmark_top_and_on_kovalevskayas() {
 }
 
 #[test]
-fn baselines_have_the_orders_that_they_are_kept_to_show() {
-    let case = "kovalevskaya-top";
-    for (method, order, coarsest) in [
-        (General::ForwardEuler, 1.0, 40_000),
-        (General::SemiImplicitEuler, 1.0, 40_000),
-        (General::BackwardEuler, 1.0, 40_000),
-        (General::Rk4Added, 2.0, 2000),
-    ] {
-        let errors = [1, 2, 4].map(|f| top_error(case, method, 20.0, f * coarsest));
-        assert_order(method.name(), &errors, order, 0.1);
-    }
-}
-
-#[test]
-fn leaving_out_dexpinv_costs_two_orders_and_more_than_ninety_times_the_error() {
-    for (case, until) in [("heavy-top-benchmark-150", 1.0), ("kovalevskaya-top", 20.0)] {
-        let added = top_error(case, General::Rk4Added, until, 8000);
-        let right = top_error(case, General::Rkmk4, until, 8000);
-        assert!(added > 90.0 * right, "{case}: {added:e} against {right:e}");
-    }
+fn the_implicit_method_of_euler_has_order_one() {
+    let method = General::BackwardEuler;
+    let errors = [1, 2, 4].map(|f| top_error("kovalevskaya-top", method, 20.0, f * 40_000));
+    assert_order(method.name(), &errors, 1.0, 0.1);
 }
 
 #[test]
 fn quaternions_and_matrices_agree() {
     let reference = Reference::read("kovalevskaya-top");
     for method in General::ALL.iter().copied() {
-        if let General::Rk4 { .. } | General::Rk4Projected = method {
+        if let General::Rk4 { .. } = method {
             continue; // on the entries: other errors
         }
         let unit = ends(&QuaternionTop(reference.body()), method, 2.0, 200);

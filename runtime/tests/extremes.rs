@@ -126,7 +126,7 @@ fn rotations_stay_orthonormal_at_six_radians_a_step() {
     let (matrix, unit) = (Top(body.clone()), QuaternionTop(body));
     for method in General::ALL {
         let name = method.name();
-        if let General::Rk4 { .. } | General::Rk4Projected = method {
+        if let General::Rk4 { .. } = method {
             continue; // not on the manifold within a step: useless at such steps
         }
         let (mut by_matrix, mut by_unit) = (State::start(&matrix), State::start(&unit));

@@ -8,11 +8,7 @@ use common::{Pendulum, QuaternionTop, Reference, Top, distance, run, slopes};
 use hamel::methods::General;
 use hamel::{Block, Monitor, Singular, State, StepError, System, integrate, so3};
 
-const METHODS: [General; 3] = [
-    General::Rkmk4,
-    General::Rk4 { lambda: 10.0 },
-    General::Rk4Projected,
-];
+const METHODS: [General; 2] = [General::Rkmk4, General::Rk4 { lambda: 10.0 }];
 
 fn kovalevskaya() -> Top<f64> {
     Top(Reference::read("kovalevskaya-top").body())
@@ -112,7 +108,7 @@ fn a_step_back_undoes_a_step() -> Result<(), StepError> {
             Ok(distance(state.x, start.x) + distance(state.xi, start.xi))
         };
         // The defect that a stabilised step leaves is damped and not undone: order 5, seen once λ h
-        // is small. The other two gain one order, as the leading terms of the error cancel.
+        // is small. The other gains one order, as the leading terms of the error cancel.
         let h = if let General::Rk4 { .. } = method {
             0.02
         } else {
@@ -344,12 +340,12 @@ fn a_singular_mass_matrix_is_an_error() {
         let mut state = State::start(&system);
         let error = hamel::step(&system, method, &mut state, 0.1, &|_, _, _| vec![0.0])
             .expect_err("singular");
-        let cause = Singular { pivot: 0 };
+        let cause = Singular::Inertia { pivot: 0 };
         assert_eq!(error, StepError::Singular { cause, time: 0.0 });
         assert!(error.source().is_some());
         assert_eq!(
             error.to_string(),
-            "mass matrix not positive definite at pivot 0, in the step from t = 0"
+            "the mass matrix is not positive definite: pivot 0 (from 0) of its factorisation is not positive, in the step from t = 0"
         );
     }
 }

@@ -4,7 +4,7 @@
 //! when Σ bᵢ φᵢ(t) = 1/γ(t) for every tree of at most p nodes, γ(t) = |t| Π γ(t'). Source: E. Hairer,
 //! S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I* (1993), II.2.
 
-use hamel::adaptive::pair::Pair;
+use hamel::adaptive::Pair;
 use hamel::methods::tableau::Weights;
 use hamel::methods::{rkmk8, rkmk54};
 

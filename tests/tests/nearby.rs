@@ -219,7 +219,7 @@ fn wrong_signs_are_never_emitted() {
     for name in [
         "momentum",
         "momentum_rate",
-        "velocity_of_momentum",
+        "velocity_from_momentum",
         "linearize",
         "angular_momentum",
         "spin",

@@ -23,7 +23,7 @@ fn a_refused_mass_leaves_everything_unchanged() {
     for refused in REFUSED {
         assert_eq!(
             system.set_m(refused),
-            Err(Singular { pivot: 0 }),
+            Err(Singular::Inertia { pivot: 0 }),
             "{refused}"
         );
         assert_eq!(system.m(), 1.3);
@@ -42,11 +42,15 @@ fn a_refused_inertia_names_its_pivot() {
             let mut j = [1.0, 2.0, 3.0];
             j[pivot] = refused;
             let result = PrincipalAxes::new(j[0], j[1], j[2]);
-            assert_eq!(result.err(), Some(Singular { pivot }), "{axis} = {refused}");
+            assert_eq!(
+                result.err(),
+                Some(Singular::Inertia { pivot }),
+                "{axis} = {refused}"
+            );
         }
     }
     let mut system: PrincipalAxes<f32> = PrincipalAxes::default();
-    assert_eq!(system.set_j2(-1.0), Err(Singular { pivot: 1 }));
+    assert_eq!(system.set_j2(-1.0), Err(Singular::Inertia { pivot: 1 }));
     assert_eq!(system.j2(), 2.0);
 }
 
@@ -61,11 +65,17 @@ fn an_inertia_smaller_than_its_offset_is_refused() {
     theta[1] = [0.0, 0.99 * m_s_s, 0.0];
     theta[0][1] = 0.0;
     let refused = system.set_theta(theta);
-    assert!(refused.is_err_and(|error| error.pivot >= 3), "{refused:?}");
+    assert!(
+        matches!(refused, Err(Singular::Inertia { pivot: 3.. })),
+        "{refused:?}"
+    );
     assert_eq!(system.theta(), kept);
 
     let refused = system.set_s([0.0, 0.0, 2.0]);
-    assert!(refused.is_err_and(|error| error.pivot >= 3), "{refused:?}");
+    assert!(
+        matches!(refused, Err(Singular::Inertia { pivot: 3.. })),
+        "{refused:?}"
+    );
     assert_eq!(system.s(), [0.1, -0.2, 0.3]);
 }
 
@@ -74,7 +84,10 @@ fn an_indefinite_inertia_with_a_positive_diagonal_is_refused() {
     let mut system: HeavyTop<f64> = HeavyTop::default();
     let kept = system.theta();
     let indefinite = [[1.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    assert_eq!(system.set_theta(indefinite), Err(Singular { pivot: 1 }));
+    assert_eq!(
+        system.set_theta(indefinite),
+        Err(Singular::Inertia { pivot: 1 })
+    );
     assert_eq!(system.theta(), kept);
     assert!(HeavyTop::new(1.0, 9.81, [0.0; 3], indefinite).is_err());
 }
@@ -86,7 +99,7 @@ fn a_mass_matrix_singular_in_places_is_an_error_there() {
     let xi = [3.0, 1.0];
     let on_axis = [1.0, 0.0, 1.0, 0.0];
     let beside = [1.0, 0.0, 0.6, 0.8];
-    let singular = Singular { pivot: 0 };
+    let singular = Singular::Inertia { pivot: 0 };
     assert_eq!(system.accel(&on_axis, &xi, &[0.5]), Err(singular));
     let regular = system.accel(&beside, &xi, &[0.5]).expect("M is regular");
     assert!(regular.into_iter().all(f64::is_finite));
@@ -112,7 +125,7 @@ fn a_mass_matrix_singular_in_places_is_an_error_there() {
 fn a_cart_without_mass_is_an_error_where_the_pole_stands() {
     // M is regular while the pole is inclined: what m_c = 0 leaves at θ = 0 is singular.
     match CartPole::new(0.0, 0.3, 0.5, 9.81) {
-        Err(singular) => assert!(singular.pivot < 2),
+        Err(singular) => assert!(matches!(singular, Singular::Inertia { pivot: 0 | 1 })),
         Ok(system) => {
             let accel = system.accel(&[0.0, 0.0], &[0.0, 1.0], &[1.0]);
             assert!(accel.is_err(), "{accel:?}");
@@ -154,7 +167,7 @@ fn states_that_are_not_numbers_are_errors() {
 
     let hoop: HoopBead<f64> = HoopBead::default();
     let accel = hoop.accel(&[1.0, 0.0, f64::NAN, f64::NAN], &[1.0; 2], &[0.0]);
-    assert_eq!(accel, Err(Singular { pivot: 0 }));
+    assert_eq!(accel, Err(Singular::Inertia { pivot: 0 }));
 }
 
 /// Constants kept from parameters follow every setter: the system is the one that `new` makes.

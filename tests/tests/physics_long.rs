@@ -128,7 +128,6 @@ fn rods_are_integrated_with_order_four() {
         General::Rkmk4,
         General::Rk4 { lambda: 0.0 },
         General::Rk4 { lambda: 10.0 },
-        General::Rk4Projected,
     ];
     for method in methods {
         let ends = [1000, 2000, 4000, 8000].map(|n| {

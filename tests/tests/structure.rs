@@ -46,7 +46,7 @@ fn differ(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
 fn kinetic_energy_falls_apart(case: &mut Case, splitting: &Splitting) {
     let n = case.generated.program.n;
     let energy = |case: &Case, x: &[f64], p: &[f64]| {
-        let xi = case.call("velocities", x, &[], &[], p);
+        let xi = case.call("split_velocities", x, &[], &[], p);
         case.call("kinetic_energy", x, xi.as_slice(), &[], &[])[0]
     };
     let rotors = case.rotors(splitting);
@@ -90,7 +90,7 @@ fn kinetic_energy_falls_apart(case: &mut Case, splitting: &Splitting) {
     }
 }
 
-/// `centre` and `uncentre`, `momenta` and `velocities` undo one another.
+/// `centre` and `uncentre`, `split_momenta` and `split_velocities` undo one another.
 fn inverses(case: &mut Case) {
     let n = case.generated.program.n;
     for _ in 0..STATES {
@@ -104,8 +104,8 @@ fn inverses(case: &mut Case) {
             ROUNDING,
             &format!("{}: x of y", case.name),
         );
-        let p = case.call("momenta", &x, &xi, &[], &[]);
-        let back = case.call("velocities", &x, &[], &[], p.as_slice());
+        let p = case.call("split_momenta", &x, &xi, &[], &[]);
+        let back = case.call("split_velocities", &x, &[], &[], p.as_slice());
         let xi = DVector::from_vec(xi);
         close(&back, &xi, ROUNDING, &format!("{}: ξ of p", case.name));
     }
@@ -128,11 +128,11 @@ fn motion_is_free_motion_and_kicks(case: &mut Case, splitting: &Splitting) {
             (step(&x, &rate), step(&xi, &accel))
         };
         let ((x1, xi1), (x2, xi2)) = (after(STEP), after(-STEP));
-        let p_dot = (case.call("momenta", &x1, &xi1, &[], &[])
-            - case.call("momenta", &x2, &xi2, &[], &[]))
+        let p_dot = (case.call("split_momenta", &x1, &xi1, &[], &[])
+            - case.call("split_momenta", &x2, &xi2, &[], &[]))
             / (2.0 * STEP);
         let y_dot = (case.moved("centre", &x1) - case.moved("centre", &x2)) / (2.0 * STEP);
-        let p = case.call("momenta", &x, &xi, &[], &[]);
+        let p = case.call("split_momenta", &x, &xi, &[], &[]);
         let mut expected = case.call("kick", &x, &[], &u, &[]);
         let mut rotor = rotors.iter();
         for (name, block, entries, rates) in case.parts() {
@@ -354,8 +354,8 @@ fn wrong_signs_are_noticed_before_emission() {
         for function in [
             "centre",
             "uncentre",
-            "momenta",
-            "velocities",
+            "split_momenta",
+            "split_velocities",
             "kick",
             "rotor_inertia",
         ] {

@@ -26,8 +26,8 @@ pub struct Interpreted {
     /// None where M is not positive definite.
     accel: Option<Interpreter>,
     correction: Interpreter,
-    close: Option<Interpreter>,
-    settle: Option<Interpreter>,
+    project_position: Option<Interpreter>,
+    project_velocity: Option<Interpreter>,
     constraint: Interpreter,
     momentum: Interpreter,
     force: Interpreter,
@@ -85,8 +85,8 @@ impl Interpreted {
             chart_rate: function("chart_rate")?,
             accel: function("accel").ok(),
             correction: function("correction")?,
-            close: function("close").ok(),
-            settle: function("settle").ok(),
+            project_position: function("project_position").ok(),
+            project_velocity: function("project_velocity").ok(),
             constraint: function("constraint")?,
             momentum: function("momentum")?,
             force: function("generalized_force")?,
@@ -131,7 +131,7 @@ impl Interpreted {
 
     fn projection(&self, pivot: usize) -> Singular {
         self.fails(Failed::Projection);
-        Singular { pivot }
+        Singular::Inertia { pivot }
     }
 
     fn fails(&self, what: Failed) {
@@ -279,13 +279,13 @@ impl System for Interpreted {
     fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         self.count();
         let Some(accel) = &self.accel else {
-            return Err(Singular { pivot: 0 });
+            return Err(Singular::Inertia { pivot: 0 });
         };
         accel.call(x, xi, u, &[]).map_err(|pivot| {
             self.fails(Failed::Motion(x.clone()));
             match self.kinematic.get(pivot).copied().flatten() {
-                Some(pivot) => Singular::kinematics(pivot),
-                None => Singular { pivot },
+                Some(pivot) => Singular::Kinematics { pivot },
+                None => Singular::Inertia { pivot },
             }
         })
     }
@@ -294,20 +294,22 @@ impl System for Interpreted {
         value(&self.correction, x, &[], &[])
     }
 
-    fn close(&self, x: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
+    fn project_position(&self, x: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
         let step = self
-            .close
+            .project_position
             .as_ref()
-            .map(|close| close.call(x, &[], &[], &[]));
+            .map(|function| function.call(x, &[], &[], &[]));
         step.transpose().map_err(|pivot| self.projection(pivot))
     }
 
-    fn settle(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
-        let settled = self
-            .settle
+    fn project_velocity(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
+        let projected = self
+            .project_velocity
             .as_ref()
-            .map(|settle| settle.call(x, xi, &[], &[]));
-        settled.transpose().map_err(|pivot| self.projection(pivot))
+            .map(|function| function.call(x, xi, &[], &[]));
+        projected
+            .transpose()
+            .map_err(|pivot| self.projection(pivot))
     }
 
     fn constraint_norm(&self, x: &Vec<f64>) -> f64 {

@@ -45,11 +45,11 @@ impl Functions {
             rotors,
             centre: function("centre"),
             uncentre: function("uncentre"),
-            momenta: function("momenta"),
-            velocities: function("velocities"),
+            momenta: function("split_momenta"),
+            velocities: function("split_velocities"),
             kick: function("kick"),
             rate: function("momentum_rate"),
-            velocity: function("velocity_of_momentum"),
+            velocity: function("velocity_from_momentum"),
         })
     }
 }
@@ -118,12 +118,12 @@ impl Split for Interpreted {
         }
     }
 
-    fn momenta(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+    fn split_momenta(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
         let momenta = self.functions.momenta.as_ref();
         value(momenta, [x, xi, &[], &[], &[]], self.chart)
     }
 
-    fn velocities(&self, x: &Vec<f64>, p: &Vec<f64>) -> Vec<f64> {
+    fn split_velocities(&self, x: &Vec<f64>, p: &Vec<f64>) -> Vec<f64> {
         let velocities = self.functions.velocities.as_ref();
         value(velocities, [x, &[], &[], &[], p], p.len())
     }
@@ -146,11 +146,11 @@ impl Canonical for Interpreted {
         value(rate, [x, xi, u, &[], &[]], xi.len())
     }
 
-    fn velocity_of_momentum(&self, x: &Vec<f64>, p: &Vec<f64>) -> Result<Vec<f64>, Singular> {
+    fn velocity_from_momentum(&self, x: &Vec<f64>, p: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         match &self.functions.velocity {
             Some(velocity) => velocity.call_with([x, &[], &[], &[], p]).map_err(|pivot| {
                 self.fails(Failed::Motion(x.clone()));
-                Singular { pivot }
+                Singular::Inertia { pivot }
             }),
             None => Ok(vec![f64::NAN; p.len()]),
         }

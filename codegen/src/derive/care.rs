@@ -64,7 +64,7 @@ impl Care {
 }
 
 /// Functions that are 0 on X: their digits mean nothing there.
-const ZERO: [&str; 3] = ["constraint", "correction", "close"];
+const ZERO: [&str; 3] = ["constraint", "correction", "project_position"];
 
 /// The digits that rounding takes of every function of a program, by their order; `None` for what is 0.
 pub fn losses(model: &Model, program: &Program) -> Vec<Option<f64>> {

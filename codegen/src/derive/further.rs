@@ -31,8 +31,8 @@ impl Builder<'_> {
         if self.model.asked.wants(FunctionId::MomentumRate) {
             self.momentum_rate(&recursions);
         }
-        if self.model.asked.wants(FunctionId::VelocityOfMomentum) {
-            self.velocity_of_momentum(&recursions);
+        if self.model.asked.wants(FunctionId::VelocityFromMomentum) {
+            self.velocity_from_momentum(&recursions);
         }
     }
 
@@ -61,14 +61,14 @@ impl Builder<'_> {
         self.push(FunctionId::MomentumRate, Shape::Vector(n), rate);
     }
 
-    fn velocity_of_momentum(&mut self, recursions: &[Recursion]) {
+    fn velocity_from_momentum(&mut self, recursions: &[Recursion]) {
         let n = self.model.n();
         let p = &self.model.momenta;
         let mut candidates = Candidates::with(&self.care);
         let mut recursive = false;
         for (graph, solution) in recursions
             .iter()
-            .filter_map(Recursion::velocity_of_momentum)
+            .filter_map(Recursion::velocity_from_momentum)
         {
             candidates.offer_own(graph, [solution.xi_dot, solution.pivots].concat());
             recursive = true;
@@ -90,7 +90,7 @@ impl Builder<'_> {
         let pivots = xi.split_off(n);
         let varying = |edge: &Edge| !self.graph.is_free(edge.node());
         let guards = pivots.into_iter().filter(varying).collect();
-        let id = FunctionId::VelocityOfMomentum;
+        let id = FunctionId::VelocityFromMomentum;
         self.push_guarded(id, Shape::Vector(n), xi, guards);
     }
 

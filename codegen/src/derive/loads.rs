@@ -2,7 +2,7 @@
 
 use super::calculus::{Calculus, into_frame};
 use crate::algebra::graph::Edge;
-use crate::algebra::linear::{Vec3, add3, apply3, cross};
+use crate::algebra::linear::{add3, cross};
 use crate::model::{Model, Wrench};
 use crate::syntax::ast::Axes;
 
@@ -85,13 +85,6 @@ pub fn applied(model: &mut Model, calculus: &mut Calculus) -> Vec<Vec<Edge>> {
         loads.push(model.generalized.clone());
     }
     loads
-}
-
-/// A point of a frame in the world, p + R a.
-pub fn point(model: &mut Model, frame: usize, a: Vec3) -> Vec3 {
-    let frame = model.frames[frame].clone();
-    let arm = apply3(&mut model.graph, &frame.rotation, a);
-    add3(&mut model.graph, frame.position, arm)
 }
 
 /// Applied forces summed, for the reference of validation.

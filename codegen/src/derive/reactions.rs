@@ -53,13 +53,18 @@ impl Builder<'_> {
         let n = self.model.n();
         let loops = !self.loops().is_empty();
         if loops {
-            let outputs = projections.close;
-            self.push_guarded(FunctionId::Close, Shape::Vector(n), outputs, guards.clone());
+            let outputs = projections.position;
+            self.push_guarded(
+                FunctionId::ProjectPosition,
+                Shape::Vector(n),
+                outputs,
+                guards.clone(),
+            );
         }
         self.push_guarded(
-            FunctionId::Settle,
+            FunctionId::ProjectVelocity,
             Shape::Vector(n),
-            projections.settle,
+            projections.velocity,
             guards,
         );
     }

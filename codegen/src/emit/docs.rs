@@ -99,12 +99,14 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
     lines.extend([String::new(), format!("Returns {result}.")]);
     if function.fallible {
         lines.extend([String::new(), "# Errors".into()]);
-        lines
-            .push("`Singular` where a pivot of the mass matrix is not positive and finite.".into());
+        lines.push(
+            "`Singular::Inertia` where a pivot of the mass matrix is not positive and finite."
+                .into(),
+        );
         let kinematic = |guard: &Edge| program.kinematic_pivot(*guard).is_some();
         if function.guards.iter().any(kinematic) {
             lines.push(
-                "`Singular::kinematics` where a pivot of [Y; Φ] has changed sign: the mechanism is at a kinematic singularity."
+                "`Singular::Kinematics` where a pivot of [Y; Φ] has changed sign: the mechanism is at a kinematic singularity."
                     .into(),
             );
         }

@@ -26,8 +26,8 @@ fn head(emitter: &Emitter, of: &str, body: &str) -> String {
 fn split(emitter: &Emitter) -> Option<String> {
     let splitting = emitter.program.structure.split.as_ref().ok()?;
     let [momenta, velocities, kick] = [
-        generated(emitter, "momenta")?,
-        generated(emitter, "velocities")?,
+        generated(emitter, "split_momenta")?,
+        generated(emitter, "split_velocities")?,
         generated(emitter, "kick")?,
     ];
     // Where no plain coordinate moves to a centre of mass, y is x.
@@ -41,8 +41,8 @@ fn split(emitter: &Emitter) -> Option<String> {
         "type Rotors = [::hamel::Rotor<S>; {}];\n\nconst FREE: bool = {};\n\nfn rotors(&self) -> Self::Rotors {{\n{rotors}\n}}\n\n\
          fn centre(&self, x: &Self::Coordinates) -> Self::Coordinates {{\n{centre}\n}}\n\n\
          fn uncentre(&self, y: &Self::Coordinates) -> Self::Coordinates {{\n{uncentre}\n}}\n\n\
-         fn momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {{\nself.{momenta}(x, xi)\n}}\n\n\
-         fn velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities {{\nself.{velocities}(x, p)\n}}\n\n\
+         fn split_momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {{\nself.{momenta}(x, xi)\n}}\n\n\
+         fn split_velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities {{\nself.{velocities}(x, p)\n}}\n\n\
          fn kick(&self, x: &Self::Coordinates, u: &Self::Inputs) -> Self::Chart {{\nself.{kick}(x, u)\n}}\n",
         splitting.rotors.len(),
         splitting.free,
@@ -90,9 +90,9 @@ fn canonical(emitter: &Emitter) -> Option<String> {
     let [momentum, rate, velocity] = [
         generated(emitter, "momentum")?,
         generated(emitter, "momentum_rate")?,
-        generated(emitter, "velocity_of_momentum")?,
+        generated(emitter, "velocity_from_momentum")?,
     ];
-    let fallible = program.function("velocity_of_momentum")?.fallible;
+    let fallible = program.function("velocity_from_momentum")?.fallible;
     let call = format!("self.{velocity}(x, p)");
     let call = if fallible {
         call
@@ -102,7 +102,7 @@ fn canonical(emitter: &Emitter) -> Option<String> {
     let body = format!(
         "fn momentum(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Velocities {{\nself.{momentum}(x, xi)\n}}\n\n\
          fn momentum_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities, u: &Self::Inputs) -> Self::Velocities {{\nself.{rate}(x, xi, u)\n}}\n\n\
-         fn velocity_of_momentum(&self, x: &Self::Coordinates, p: &Self::Velocities) -> ::core::result::Result<Self::Velocities, ::hamel::Singular> {{\n{call}\n}}\n",
+         fn velocity_from_momentum(&self, x: &Self::Coordinates, p: &Self::Velocities) -> ::core::result::Result<Self::Velocities, ::hamel::Singular> {{\n{call}\n}}\n",
     );
     Some(head(emitter, "Canonical", &body))
 }

@@ -68,7 +68,8 @@ pub fn kept_value(group: &Group, name: &str) -> String {
 
 /// What a doc comment says about errors.
 pub fn errors() -> Vec<String> {
-    let text = "`Singular` where a constant pivot of the mass matrix is not positive and finite.";
+    let text =
+        "`Singular::Inertia` where a constant pivot of the mass matrix is not positive and finite.";
     vec![String::new(), "# Errors".into(), text.into()]
 }
 

@@ -169,7 +169,7 @@ impl Printer<'_> {
 pub fn check(program: &Program, guard: Edge, pivot: &str, index: usize) -> String {
     let error = match program.kinematic_pivot(guard) {
         Some(index) => format!("::hamel::Singular::kinematics({index})"),
-        None => format!("::hamel::Singular {{ pivot: {index} }}"),
+        None => format!("::hamel::Singular::inertia({index})"),
     };
     format!("if !{pivot}.is_positive() {{ return Err({error}); }}\n")
 }

@@ -34,7 +34,7 @@ pub fn implementation(emitter: &Emitter) -> String {
         return String::new();
     };
     let mut methods = methods;
-    for name in ["close", "settle"] {
+    for name in ["project_position", "project_velocity"] {
         methods.push_str(&projection(emitter, name));
     }
     let chart: usize = program.blocks.iter().map(|block| block.dimension()).sum();
@@ -140,7 +140,7 @@ fn projection(emitter: &Emitter, name: &str) -> String {
     };
     let generated = &emitter.names.functions[index];
     let (signature, values) = match name {
-        "close" => ("x: &Self::Coordinates", "x"),
+        "project_position" => ("x: &Self::Coordinates", "x"),
         _ => ("x: &Self::Coordinates, xi: &Self::Velocities", "x, xi"),
     };
     format!(

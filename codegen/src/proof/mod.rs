@@ -24,15 +24,15 @@
 
 pub mod check;
 pub mod confidence;
-pub mod constrained;
+pub(crate) mod constrained;
 pub mod correction;
 pub mod forms;
-pub mod gibbs;
-pub mod hamel_form;
-pub mod invariants;
+pub(crate) mod gibbs;
+pub(crate) mod hamel_form;
+pub(crate) mod invariants;
 mod kernel;
 pub mod levi_civita;
-pub mod motion;
+pub(crate) mod motion;
 mod numbers;
 mod points;
 mod reference;
@@ -40,7 +40,7 @@ mod slopes;
 mod splitting;
 pub mod validate;
 mod verdict;
-pub mod virtual_power;
+pub(crate) mod virtual_power;
 
 use crate::derive::reduction::Reduction;
 use crate::diagnostics::Diagnostic;

@@ -4,10 +4,10 @@
 //!
 //! | function | has to be |
 //! |---|---|
-//! | `velocities` | a right inverse of `momenta`: p of ξ of p is p |
+//! | `split_velocities` | a right inverse of `split_momenta`: p of ξ of p is p |
 //! | `uncentre` | a left inverse of `centre` |
 //! | `centre` | y with ẏ = p for plain coordinates, x itself for all others |
-//! | `momenta` | θ̇ of circles, J ω of rotors |
+//! | `split_momenta` | θ̇ of circles, J ω of rotors |
 //! | `kick` | d/dt p of plain coordinates and circles, d/dt P − P × ω of rotors |
 
 use super::numbers::{Numbers, Values};
@@ -74,10 +74,10 @@ impl Proof {
         };
         let x: Vec<Fp> = self.x.iter().map(|&place| lane.symbol(place)).collect();
         let p: Vec<Fp> = self.p.iter().map(|&place| lane.symbol(place)).collect();
-        let xi = at("velocities", lane)?;
+        let xi = at("split_velocities", lane)?;
         let mut moving = lane.clone();
         set(&mut moving, &self.xi, &xi);
-        if at("momenta", &moving)? != p {
+        if at("split_momenta", &moving)? != p {
             return wrong("p of ξ of p is p, for the emitted momenta");
         }
         if program.function(FunctionId::Centre).is_some() {
@@ -171,7 +171,7 @@ impl Proof {
         let y = program
             .function(FunctionId::Centre)
             .map_or(&model.x, |f| &f.outputs);
-        let momenta = program.function(FunctionId::Momenta)?;
+        let momenta = program.function(FunctionId::SplitMomenta)?;
         Some((slopes(&momenta.outputs)?, slopes(y)?))
     }
 }

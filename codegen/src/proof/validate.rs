@@ -14,7 +14,7 @@
 //! | `kick` and its kind | the motion of the system, see `structure/proof` |
 //! | `mass_matrix` | M |
 //! | `momentum_rate` | Ṁ ξ + f − h − ∂V |
-//! | `velocity_of_momentum` | the ξ with M ξ = p |
+//! | `velocity_from_momentum` | the ξ with M ξ = p |
 
 use super::check::failures;
 use super::forms::Symbols;
@@ -103,7 +103,7 @@ pub(super) const COMPARED: [&str; 14] = [
     "potential_energy",
     "potential_force",
     "rate",
-    "velocity_of_momentum",
+    "velocity_from_momentum",
 ];
 
 impl Emitted {
@@ -213,7 +213,7 @@ fn compare(
     {
         return Some(Err("ṗ".into()));
     }
-    if let Some(xi) = emitted.get("velocity_of_momentum") {
+    if let Some(xi) = emitted.get("velocity_from_momentum") {
         let momenta = evaluate_at(&model.graph, &model.momenta, &mut lane.clone())?;
         if product(xi) != momenta {
             return Some(Err("ξ of p".into()));

@@ -52,19 +52,19 @@
 //! # }
 //! ```
 
-pub mod control;
-pub mod events;
-pub mod pair;
+pub(crate) mod control;
+mod events;
+mod pair;
 mod start;
-pub mod step;
+mod step;
 mod stiff;
 
 pub use control::Tolerance;
 pub use events::{Direction, Event};
+pub use pair::Pair;
 pub use step::Step;
 
 use crate::adaptive::control::{Controller, power};
-use crate::adaptive::pair::Pair;
 use crate::adaptive::stiff::Stiffness;
 use crate::error::StepError;
 use crate::integrate::{acceleration, projected};

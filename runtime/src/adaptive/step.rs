@@ -7,7 +7,7 @@
 
 use core::fmt;
 
-use crate::adaptive::pair::Pair;
+use crate::adaptive::Pair;
 use crate::manifold;
 use crate::methods::tableau::{Stages, Sums};
 use crate::scalar::Scalar;

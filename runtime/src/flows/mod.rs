@@ -11,14 +11,14 @@
 //! They act on an [`Attitude`] (matrix or quaternion) and on the angular momentum P, in principal
 //! axes, and keep R P. [`Flow`] chooses among them and takes rotors with other body axes.
 
-pub mod attitude;
+mod attitude;
 mod carlson;
-pub mod exact;
+mod exact;
 mod jacobi;
 mod nodes;
-pub mod turns;
+mod turns;
 
-pub use attitude::Attitude;
+pub use attitude::{Attitude, SineCosine};
 pub use exact::{exact, half_period};
 pub use turns::{axes, axial, pair, spherical};
 

@@ -1,4 +1,4 @@
-//! Euler's implicit step in the chart, a baseline of order 1.
+//! Euler's implicit step in the chart, of order 1.
 //!
 //! u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u, solved for z = (u, ξ₁) by Broyden's method:
 //! it starts as the fixed-point iteration, learns the stiff directions from its own steps, and needs no
@@ -15,7 +15,7 @@ use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
 
-/// Order 1, some five evaluations of ξ̇ a step and more where the system is stiff; a baseline.
+/// Order 1, some five evaluations of ξ̇ a step and more where the system is stiff.
 ///
 /// Damps every oscillation; stable at any step that it can solve.
 /// [`StepError::NotConverged`] where it cannot.

@@ -128,7 +128,7 @@ where
     let rates = |node: f64, z: &Sys::Coordinates, p: &Sys::Velocities| {
         let mut x = state.x.clone();
         compose(blocks, x.as_mut(), z.as_ref());
-        let xi = system.velocity_of_momentum(&x, p).map_err(|cause| {
+        let xi = system.velocity_from_momentum(&x, p).map_err(|cause| {
             if is_finite(x.as_ref()) && is_finite(p.as_ref()) {
                 singular(cause)
             } else {
@@ -192,7 +192,9 @@ where
     next.t += h;
     compose(blocks, next.x.as_mut(), z.as_ref());
     manifold::normalise(blocks, next.x.as_mut());
-    next.xi = system.velocity_of_momentum(&next.x, &p).map_err(singular)?;
+    next.xi = system
+        .velocity_from_momentum(&next.x, &p)
+        .map_err(singular)?;
     if next.is_finite() {
         Ok(next)
     } else {

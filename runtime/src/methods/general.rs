@@ -1,10 +1,7 @@
 //! A method for any system, chosen at run time.
 
 use crate::error::StepError;
-use crate::methods::{
-    BackwardEuler, Cf4, ForwardEuler, Method, Rk4, Rk4Added, Rk4Projected, Rkmk4, Rkmk8, Rkmk54,
-    SemiImplicitEuler,
-};
+use crate::methods::{BackwardEuler, Cf4, Method, Rk4, Rkmk4, Rkmk8, Rkmk54};
 use crate::state::State;
 use crate::system::System;
 
@@ -73,14 +70,6 @@ general! {
     Rkmk54 "rkmk54",
     /// [`Rkmk8`]
     Rkmk8 "rkmk8",
-    /// [`Rk4Projected`]
-    Rk4Projected "rk4-projected",
-    /// [`Rk4Added`]
-    Rk4Added "rk4-added",
-    /// [`ForwardEuler`]
-    ForwardEuler "euler",
-    /// [`SemiImplicitEuler`]
-    SemiImplicitEuler "semi-implicit-euler",
     /// [`BackwardEuler`]
     BackwardEuler "backward-euler",
 }

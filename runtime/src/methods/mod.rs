@@ -15,46 +15,38 @@
 //! | [`Free`] | exact | bodies without forces, at any time |
 //! | [`Lgvi`] | 2 | bodies in potentials; the variational reference |
 //! | [`Gauss4`], [`Gauss6`] | 4, 6 | long runs of systems with M(x) ([`Canonical`](crate::Canonical)); implicit |
-//! | [`Rk4`], [`Rk4Projected`] | 4 | baselines on the coordinates x |
-//! | [`Rk4Added`] | 2 | baseline: rotations without dexpinv |
-//! | [`ForwardEuler`], [`SemiImplicitEuler`], [`BackwardEuler`] | 1 | baselines |
-//! | [`Slide`], [`Buss`] | 1, 2, 4 | baselines that keep R P |
+//! | [`Rk4`] | 4 | starts off the manifold, which the stabilising term leads back; on the coordinates x |
+//! | [`BackwardEuler`] | 1 | implicit: damps whatever is fast, and all else as well |
 //!
 //! [`Adaptive`](crate::adaptive::Adaptive) chooses the steps of [`Rkmk54`] and [`Rkmk8`] itself.
 
-pub mod backward_euler;
-pub mod cf4;
-pub mod euler;
+mod backward_euler;
+mod cf4;
 pub mod free;
-pub mod gauss;
-pub mod general;
-pub mod lgvi;
+mod gauss;
+mod general;
+mod lgvi;
 mod phase;
-pub mod rk4;
-pub mod rk4_added;
-pub mod rkmk4;
+mod rk4;
+mod rkmk4;
 pub mod rkmk54;
 pub mod rkmk8;
-pub mod scheme;
-pub mod splitting;
+mod scheme;
+mod splitting;
 pub mod tableau;
-pub mod world;
 
 pub use backward_euler::BackwardEuler;
 pub use cf4::Cf4;
-pub use euler::{ForwardEuler, SemiImplicitEuler};
 pub use free::Free;
 pub use gauss::{Gauss4, Gauss6};
 pub use general::General;
 pub use lgvi::Lgvi;
-pub use rk4::{Rk4, Rk4Projected};
-pub use rk4_added::Rk4Added;
+pub use rk4::Rk4;
 pub use rkmk4::Rkmk4;
 pub use rkmk8::Rkmk8;
 pub use rkmk54::Rkmk54;
 pub use scheme::Scheme;
 pub use splitting::Splitting;
-pub use world::{Buss, Slide};
 
 use crate::error::StepError;
 use crate::manifold;

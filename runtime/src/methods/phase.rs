@@ -59,7 +59,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
             start: state.t,
             elapsed: 0.0,
             y: system.centre(&state.x),
-            p: system.momenta(&state.x, &state.xi),
+            p: system.split_momenta(&state.x, &state.xi),
         })
     }
 
@@ -70,19 +70,9 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         let x = self.system.uncentre(&self.y);
-        let xi = self.system.velocities(&x, &self.p);
+        let xi = self.system.split_velocities(&x, &self.p);
         let u = inputs(self.start + self.elapsed, &x, &xi);
         self.system.kick(&x, &u)
-    }
-
-    /// p ← p + h ṗ
-    #[inline(always)]
-    pub(crate) fn kick<U>(&mut self, h: f64, inputs: &U)
-    where
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
-        let force = self.force(inputs);
-        self.push(h, &force);
     }
 
     /// p ← p + h ṗ for a force that is known.
@@ -146,7 +136,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     #[inline(always)]
     pub(crate) fn state(&self, h: f64) -> Result<State<Sys>, StepError> {
         let x = self.system.uncentre(&self.y);
-        let xi = self.system.velocities(&x, &self.p);
+        let xi = self.system.split_velocities(&x, &self.p);
         let t = self.start + h;
         let next = State { t, x, xi };
         if next.is_finite() {

@@ -3,27 +3,22 @@
 //! The method leaves φ(x) = 0 at its own order. The stabilising term of KR18 (8),
 //! ẋ = A ξ − λ Ψ φ, bounds the defect. A fixed λ keeps order 4; λ proportional to 1/h acts on the
 //! stages and costs two orders, and λ h ≥ 5 is unstable. [`Rkmk4`](crate::methods::Rkmk4) is more accurate
-//! and needs no λ; this method serves for comparison and for starts off the manifold.
+//! and needs no λ; this method serves for starts off the manifold, and for comparison.
 
 use crate::error::StepError;
 use crate::integrate::acceleration;
-use crate::manifold;
 use crate::methods::Method;
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::store::add_scaled;
 use crate::system::System;
 
-/// Order 4, four evaluations of ξ̇ a step; a baseline.
+/// Order 4, four evaluations of ξ̇ a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rk4 {
     /// λ ≥ 0 in 1/time, 0 for no stabilisation. Fixed, of the order of 10/s: λ ~ 1/h costs two orders.
     pub lambda: f64,
 }
-
-/// [`Rk4`] without stabilisation, each step followed by [`manifold::normalise`]: order 4.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rk4Projected;
 
 impl<Sys: System + ?Sized> Method<Sys> for Rk4 {
     fn order(&self) -> u32 {
@@ -42,32 +37,6 @@ impl<Sys: System + ?Sized> Method<Sys> for Rk4 {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         step(system, state, h, self.lambda, inputs)
-    }
-}
-
-impl<Sys: System + ?Sized> Method<Sys> for Rk4Projected {
-    fn order(&self) -> u32 {
-        4
-    }
-
-    #[inline]
-    fn step<U>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        h: f64,
-        inputs: &U,
-    ) -> Result<State<Sys>, StepError>
-    where
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
-        let mut next = step(system, state, h, 0.0, inputs)?;
-        manifold::normalise(system.blocks(), next.x.as_mut());
-        if next.is_finite() {
-            Ok(next)
-        } else {
-            Err(StepError::NonFinite { time: state.t })
-        }
     }
 }
 

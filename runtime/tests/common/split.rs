@@ -116,11 +116,11 @@ macro_rules! split {
             fn uncentre(&self, y: &$coordinates) -> $coordinates {
                 *y
             }
-            fn momenta(&self, _: &$coordinates, xi: &[S; 3]) -> [S; 3] {
+            fn split_momenta(&self, _: &$coordinates, xi: &[S; 3]) -> [S; 3] {
                 let $this = self;
                 $body.momentum(*xi)
             }
-            fn velocities(&self, _: &$coordinates, p: &[S; 3]) -> [S; 3] {
+            fn split_velocities(&self, _: &$coordinates, p: &[S; 3]) -> [S; 3] {
                 let $this = self;
                 $body.velocity(*p)
             }
@@ -146,7 +146,7 @@ macro_rules! split {
                     Split::kick(self, x, u),
                 )
             }
-            fn velocity_of_momentum(
+            fn velocity_from_momentum(
                 &self,
                 _: &$coordinates,
                 p: &[S; 3],
@@ -183,13 +183,13 @@ impl Split for FreeBody {
         let lever = so3::apply(rotation(y), self.body.s);
         pose(sub(position(y), lever), rotation(y))
     }
-    fn momenta(&self, x: &[f64; 12], xi: &[f64; 6]) -> [f64; 6] {
+    fn split_momenta(&self, x: &[f64; 12], xi: &[f64; 6]) -> [f64; 6] {
         let (v, w) = twist(xi);
         let [a, b, c] = so3::apply(rotation(x), add(v, so3::cross(w, self.body.s)));
         let [d, e, f] = so3::apply(self.about_centre(), w);
         [a, b, c, d, e, f]
     }
-    fn velocities(&self, x: &[f64; 12], p: &[f64; 6]) -> [f64; 6] {
+    fn split_velocities(&self, x: &[f64; 12], p: &[f64; 6]) -> [f64; 6] {
         let (velocity, momentum) = twist(p);
         let w = solve(rows(self.about_centre()), momentum).expect("an inertia");
         let v = so3::apply_transpose(rotation(x), velocity);
@@ -232,10 +232,10 @@ impl Split for Pendulum {
     fn uncentre(&self, y: &Vec<f64>) -> Vec<f64> {
         y.clone()
     }
-    fn momenta(&self, _: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+    fn split_momenta(&self, _: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
         xi.clone()
     }
-    fn velocities(&self, _: &Vec<f64>, p: &Vec<f64>) -> Vec<f64> {
+    fn split_velocities(&self, _: &Vec<f64>, p: &Vec<f64>) -> Vec<f64> {
         p.clone()
     }
     fn kick(&self, x: &Vec<f64>, u: &Vec<f64>) -> Vec<f64> {
@@ -251,7 +251,7 @@ impl Canonical for Pendulum {
     fn momentum_rate(&self, x: &Vec<f64>, _: &Vec<f64>, u: &Vec<f64>) -> Vec<f64> {
         vec![u[0] - self.g * self.l * x[1]]
     }
-    fn velocity_of_momentum(&self, _: &Vec<f64>, p: &Vec<f64>) -> Result<Vec<f64>, Singular> {
+    fn velocity_from_momentum(&self, _: &Vec<f64>, p: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         solve([[self.l * self.l]], [p[0]]).map(|xi| xi.to_vec())
     }
 }
@@ -273,7 +273,7 @@ impl Canonical for FreeBody {
         let [d, e, f] = add(turning, add(so3::cross(s, weight), torque));
         [a, b, c, d, e, f]
     }
-    fn velocity_of_momentum(&self, _: &[f64; 12], p: &[f64; 6]) -> Result<[f64; 6], Singular> {
+    fn velocity_from_momentum(&self, _: &[f64; 12], p: &[f64; 6]) -> Result<[f64; 6], Singular> {
         solve(self.mass(), *p)
     }
 }

@@ -7,11 +7,10 @@
 
 use divan::{Bencher, black_box};
 use hamel::flows::Flow;
-use hamel::methods::{
-    Buss, Cf4, Free, Gauss4, Gauss6, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, Slide, Splitting,
-};
+use hamel::methods::{Cf4, Free, Gauss4, Gauss6, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, Splitting};
 use hamel::{Method, State, System, so3};
 use hamel_cases::bodies::benchmark_top;
+use hamel_report::baselines::{Buss, Slide};
 use hamel_tests_long::common::{Body, QuaternionTop, Reference, Spin, Top};
 
 /// Steps of one measurement: the state moves on, so that nothing is computed once for all.

@@ -4,8 +4,9 @@
 //! a correct implementation gives them to about 5 %.
 
 use hamel::flows::Flow;
-use hamel::methods::{Buss, Gauss4, Gauss6, Lgvi, Scheme, Slide, Splitting, free};
+use hamel::methods::{Gauss4, Gauss6, Lgvi, Scheme, Splitting, free};
 use hamel::{Method, State, StepError};
+use hamel_report::baselines::{Buss, Slide};
 use hamel_tests_long::common::{Reference, Spin, Top, distance, run, slopes};
 
 /// How far a measured error may be from the expected one.

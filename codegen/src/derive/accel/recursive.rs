@@ -176,7 +176,7 @@ impl Recursion {
 
     /// ξ = M⁻¹ p by articulated bodies: what ξ̇ is where nothing but p acts; `None` where a velocity is not
     /// the rate of one freedom, or M is singular everywhere.
-    pub fn velocity_of_momentum(&self) -> Option<(Graph, Solution)> {
+    pub fn velocity_from_momentum(&self) -> Option<(Graph, Solution)> {
         let mut graph = self.model.graph.clone();
         if !self.tree.is_plain(&graph, self.model.n()) {
             return None;

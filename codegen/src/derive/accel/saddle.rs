@@ -173,29 +173,29 @@ impl Factored {
 #[derive(Clone, Debug)]
 pub struct Projections {
     /// −M⁻¹ Bᵀ S⁻¹ φ(x): the step along A that closes the loops, to first order.
-    pub close: Vec<Edge>,
+    pub position: Vec<Edge>,
     /// ξ − M⁻¹ Bᵀ S⁻¹ B ξ: the velocities nearest in kinetic energy that satisfy B ξ = 0.
-    pub settle: Vec<Edge>,
+    pub velocity: Vec<Edge>,
 }
 
 /// The projections of a model; its constraints are those that are kept.
 pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Projections {
     let rest = vec![graph.zero(); model.n()];
     let residuals: Vec<Edge> = model.constraints.iter().map(|c| -c.residual).collect();
-    let close = factored.solve(graph, &rest, &residuals).xi_dot;
+    let position = factored.solve(graph, &rest, &residuals).xi_dot;
     let speeds: Vec<Edge> = model
         .constraints
         .iter()
         .map(|c| -graph.dot(&c.row, &model.xi))
         .collect();
     let change = factored.solve(graph, &rest, &speeds).xi_dot;
-    let settle = model
+    let velocity = model
         .xi
         .iter()
         .zip(change)
         .map(|(&xi, change)| graph.add(xi, change))
         .collect();
-    Projections { close, settle }
+    Projections { position, velocity }
 }
 
 /// L D Lᵀ.

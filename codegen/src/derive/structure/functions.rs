@@ -169,8 +169,8 @@ impl Functions {
         match id {
             FunctionId::Centre => self.centre.as_ref(),
             FunctionId::Uncentre => self.uncentre.as_ref(),
-            FunctionId::Momenta => Some(&self.momenta),
-            FunctionId::Velocities => Some(&self.velocities),
+            FunctionId::SplitMomenta => Some(&self.momenta),
+            FunctionId::SplitVelocities => Some(&self.velocities),
             FunctionId::Kick => Some(&self.kick),
             FunctionId::RotorInertia => (!self.rotors.is_empty()).then_some(&self.inertia),
             _ => None,

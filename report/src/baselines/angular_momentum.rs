@@ -1,30 +1,23 @@
-//! Baselines that keep the angular momentum of the world: slide and Buss' methods.
+//! Methods that keep the angular momentum in world axes: slide and Buss' methods.
 //!
 //! They turn R by exp(θ) and P back with it, so that L = R P changes by torques alone. None is
 //! symplectic: energy drifts. Source: S. R. Buss, J. Comput. Phys. 164 (2000) 377.
 
-use core::array::from_fn;
-
-use crate::error::StepError;
-use crate::flows::Attitude;
-use crate::methods::Method;
-use crate::methods::phase::{Drift, Phase, strang};
-use crate::rotor::Rotor;
-use crate::scalar::Scalar;
-use crate::so3::{self, Vector};
-use crate::split::Split;
-use crate::state::State;
+use super::phase::{Phase, strang};
+use hamel::flows::Attitude;
+use hamel::so3::{self, Vector};
+use hamel::{Method, Rotor, Scalar, Split, State, StepError};
+use std::array::from_fn;
 
 /// The angular momentum method, R ← exp(h ω) R with ω of L, then L ← L + h τ: order 1, one evaluation
-/// of forces a step; a baseline.
+/// of forces a step.
 ///
 /// |L| of a free body is exact, and the energy error of order 1: the body ends in a spin about its axis of
 /// least inertia.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Slide;
 
-/// Buss' methods: baselines. With forces the turn is taken between two half kicks, which limits the
-/// order to 2.
+/// Buss' methods. With forces the turn is taken between two half kicks, which limits the order to 2.
 ///
 /// In world derivatives at the start of the turn, θ is the sum of h ω (first), h²/2 ω̇ (second),
 /// h³/12 ω̇ × ω (augmented second), and h³/6 ω̈ + h⁴/24 (ω⃛ + ω̈ × ω) (fourth), up to the method's own.
@@ -58,8 +51,7 @@ impl<Sys: Split + ?Sized> Method<Sys> for Slide {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         let mut phase = Phase::new(system, state)?;
-        // A turn in closed form, which always has a value.
-        let _ = phase.drift(h, &Buss::First);
+        phase.drift(h, Buss::First);
         phase.arrive();
         phase.kick(h, inputs);
         phase.state(h)
@@ -101,26 +93,25 @@ impl<Sys: Split + ?Sized> Method<Sys> for Buss {
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        strang(system, state, h, self, inputs, force)?.ok_or(StepError::NonFinite { time: state.t })
-    }
-}
-
-impl Drift for Buss {
-    #[inline]
-    fn turn<S: Scalar, A: Attitude<S>>(
-        &self,
-        rotor: &Rotor<S>,
-        attitude: A,
-        p: &mut Vector<S>,
-        h: S,
-    ) -> Option<A> {
-        let theta = rotor.to_body(self.angle(rotor.moments, rotor.to_principal(*p), h));
-        *p = so3::apply(so3::exp(theta.map(|component| -component)), *p);
-        Some(attitude.turned(theta))
+        strang(system, state, h, *self, inputs, force)
     }
 }
 
 impl Buss {
+    /// The attitude after `h`, P changed with it.
+    #[inline]
+    pub(super) fn turn<S: Scalar, A: Attitude<S>>(
+        self,
+        rotor: &Rotor<S>,
+        attitude: A,
+        p: &mut Vector<S>,
+        h: S,
+    ) -> A {
+        let theta = rotor.to_body(self.angle(rotor.moments, rotor.to_principal(*p), h));
+        *p = so3::apply(so3::exp(theta.map(|component| -component)), *p);
+        attitude.turned(theta)
+    }
+
     /// θ in body axes.
     ///
     /// Derivatives in the body: P' = P × ω, P'' = P' × ω + P × ω', P''' = P'' × ω + 2 P' × ω' + P × ω'';

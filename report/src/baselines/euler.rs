@@ -1,23 +1,17 @@
-//! Euler's explicit steps in the chart, baselines of order 1.
+//! Euler's explicit steps in the chart, of order 1.
 //!
 //! x ⊕ u moves x along its chart, w(x, ξ) is the chart rate, f(x, ξ) = ξ̇.
 
-use crate::error::StepError;
-use crate::integrate::acceleration;
-use crate::manifold;
-use crate::methods::{Method, arrive};
-use crate::scalar::Scalar;
-use crate::state::State;
-use crate::store::{add_scaled, scale};
-use crate::system::System;
+use super::step::{acceleration, add_scaled, arrive, scale};
+use hamel::{Method, Scalar, State, StepError, System, manifold};
 
-/// x₁ = x ⊕ h w(x, ξ), ξ₁ = ξ + h f(x, ξ): order 1, one evaluation of ξ̇ a step; a baseline.
+/// x₁ = x ⊕ h w(x, ξ), ξ₁ = ξ + h f(x, ξ): order 1, one evaluation of ξ̇ a step.
 ///
 /// Gains energy at every oscillation; it is here to be seen failing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ForwardEuler;
 
-/// ξ₁ = ξ + h f(x, ξ), x₁ = x ⊕ h w(x, ξ₁): order 1, one evaluation of ξ̇ a step; a baseline, the step
+/// ξ₁ = ξ + h f(x, ξ), x₁ = x ⊕ h w(x, ξ₁): order 1, one evaluation of ξ̇ a step, the step
 /// of most engines.
 ///
 /// Energy stays bounded where T does not depend on x and the forces not on ξ; spinning bodies, whose

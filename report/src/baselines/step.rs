@@ -1,0 +1,66 @@
+//! What every step of a baseline is put together from.
+
+use hamel::{Scalar, State, StepError, System, manifold};
+
+/// y ← y + a x, element by element.
+#[inline]
+pub(super) fn add_scaled<S: Scalar>(y: &mut [S], a: S, x: &[S]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y = a.mul_add(*x, *y);
+    }
+}
+
+/// y ← a y, element by element.
+#[inline]
+pub(super) fn scale<S: Scalar>(y: &mut [S], a: S) {
+    for y in y {
+        *y *= a;
+    }
+}
+
+/// ξ̇ at a point of the step that starts at `time`, with the inputs of `time + offset`.
+///
+/// A pivot that is NaN because the state is NaN is reported as such.
+#[inline]
+pub(super) fn acceleration<Sys, U>(
+    system: &Sys,
+    time: f64,
+    offset: f64,
+    x: &Sys::Coordinates,
+    xi: &Sys::Velocities,
+    inputs: &U,
+) -> Result<Sys::Velocities, StepError>
+where
+    Sys: System + ?Sized,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    let u = inputs(time + offset, x, xi);
+    system.accel(x, xi, &u).map_err(|cause| {
+        let mut entries = x.as_ref().iter().chain(xi.as_ref());
+        if entries.all(|entry| entry.is_finite()) {
+            StepError::Singular { cause, time }
+        } else {
+            StepError::NonFinite { time }
+        }
+    })
+}
+
+/// The end of a step of length `h` from `state`: (x, ξ), with x brought back onto its manifold from
+/// what rounding did.
+#[inline]
+pub(super) fn arrive<Sys: System + ?Sized>(
+    system: &Sys,
+    state: &State<Sys>,
+    h: f64,
+    mut x: Sys::Coordinates,
+    xi: Sys::Velocities,
+) -> Result<State<Sys>, StepError> {
+    manifold::normalise(system.blocks(), x.as_mut());
+    let t = state.t + h;
+    let next = State { t, x, xi };
+    if next.is_finite() {
+        Ok(next)
+    } else {
+        Err(StepError::NonFinite { time: state.t })
+    }
+}
