@@ -41,7 +41,8 @@ impl Span {
     /// The region from the start of this one to the end of another.
     pub fn to(self, other: Span) -> Self {
         match (self.range(), other.range()) {
-            (Some(first), Some(last)) => Span::new(first.start..last.end.max(first.end)),
+            (Some(first), Some(last)) if last.end > first.start => Span::new(first.start..last.end),
+            (Some(_), Some(_)) => self,
             (None, _) => other,
             (_, None) => self,
         }
