@@ -166,3 +166,20 @@ table! {
     Tanh "hyperbolic tangent" "tanh" "tanh()" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquare]
         f64::tanh, Double::tanh, Real::tanh, Interval::tanh;
 }
+
+impl Interval {
+    /// A function of one argument; `None` where it has no value, or none is known.
+    pub fn apply(&self, function: Function) -> Option<Self> {
+        (function.row().interval)(self)
+    }
+}
+
+impl Real {
+    /// A function of one argument.
+    pub fn apply(self, function: Function) -> Self {
+        if !self.is_known() {
+            return self.without(self);
+        }
+        (function.row().real)(self)
+    }
+}

@@ -4,7 +4,6 @@
 //! another one: modulo a prime √2 is one of two roots. So such numbers are compared as real numbers,
 //! lo 2^exponent ≤ value ≤ hi 2^exponent, with some 320 bits; every operation rounds outwards.
 
-use super::function::Function;
 use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
 use num_rational::BigRational;
@@ -144,11 +143,6 @@ impl Interval {
         let lo = unit.div_floor(&self.hi);
         let hi = -((-unit).div_floor(&self.lo));
         Some(Interval::new(lo, hi, -(shift as i64) - self.exponent))
-    }
-
-    /// A function of one argument; `None` where it has no value, or none is known.
-    pub fn apply(&self, function: Function) -> Option<Self> {
-        (function.row().interval)(self)
     }
 
     pub(super) fn sin(&self) -> Option<Self> {
@@ -294,6 +288,7 @@ impl Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::function::Function;
 
     fn number(n: i64, d: i64) -> Interval {
         Interval::rational(&BigRational::new(n.into(), d.into()))

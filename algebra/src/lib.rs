@@ -53,3 +53,4 @@ mod tests;
 pub mod text;
 pub mod topoly;
 pub mod transplant;
+pub mod walk;

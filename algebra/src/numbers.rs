@@ -1,4 +1,4 @@
-//! Values of expressions in numbers of any kind, by one walk over their nodes.
+//! Numbers of any kind, in which the walk over nodes of `walk::evaluate` has its values.
 //!
 //! A kind of numbers is an implementation of [`Numbers`], which knows the values of symbols at a point:
 //!
@@ -12,8 +12,7 @@
 
 use super::fp::Fp;
 use super::function::{Function, Slope};
-use super::graph::Graph;
-use super::node::{Edge, Node, NodeId};
+use super::node::{Edge, Node};
 use num_rational::BigRational;
 use std::borrow::Cow;
 
@@ -169,30 +168,4 @@ pub trait Numbers {
 pub trait Modular: Numbers {
     /// A number of the fields.
     fn residue(&mut self, value: Fp) -> Option<Self::Number>;
-}
-
-/// The values of expressions; `None` where something has none.
-pub fn evaluate<C: Numbers>(
-    graph: &Graph,
-    roots: &[Edge],
-    numbers: &mut C,
-) -> Option<Vec<C::Number>> {
-    let mut values = vec![numbers.make(Step::Whole(0))?; graph.len()];
-    // The number 1 is the atom of constant angles.
-    values[1] = numbers.make(Step::Whole(1))?;
-    for id in graph.reachable(roots) {
-        let form = || {
-            let Node::Apply(function, a) = graph.node(id) else {
-                return Form::new();
-            };
-            let value = |(atom, c): (NodeId, BigRational)| (values[atom as usize].clone(), c);
-            graph.form(function, a).into_iter().map(value).collect()
-        };
-        let at = |edge: Edge| values.get(edge.node() as usize);
-        values[id as usize] = match graph.node(id) {
-            Node::Constant(index) => numbers.make(Step::Constant(graph.constant(index)))?,
-            node => numbers.node(node, at, &form)?,
-        };
-    }
-    numbers.read(&values, roots)
 }

@@ -3,7 +3,8 @@
 use super::fp::Fp;
 use super::graph::{Edge, Graph};
 use super::lane::Lane;
-use super::numbers::{self, Numbers, Step};
+use super::numbers::{Numbers, Step};
+use super::walk;
 use num_traits::ToPrimitive;
 
 /// Numbers in floating point, with the values of all symbols.
@@ -36,14 +37,14 @@ impl Numbers for Floats<'_> {
 
 /// The expressions in floating point, given the value of every symbol.
 pub fn evaluate(graph: &Graph, roots: &[Edge], symbols: &[f64]) -> Vec<f64> {
-    let values = numbers::evaluate(graph, roots, &mut Floats(symbols));
+    let values = walk::evaluate(graph, roots, &mut Floats(symbols));
     values.unwrap_or_else(|| vec![f64::NAN; roots.len()])
 }
 
 /// The expressions modulo p at another point, whose symbols have been pushed into `lane`;
 /// `None` where a denominator vanishes or a square root has no value there.
 pub fn evaluate_at(graph: &Graph, roots: &[Edge], lane: &mut Lane) -> Option<Vec<Fp>> {
-    let values = numbers::evaluate(graph, roots, lane)?;
+    let values = walk::evaluate(graph, roots, lane)?;
     (!lane.is_stuck()).then_some(values)
 }
 

@@ -6,8 +6,6 @@
 //! value wherever the other has one. Values carry a bound of their rounding errors; where the value of a
 //! symbol is not known, a sample says nothing.
 
-use super::function::Function;
-
 /// Number of real samples: |e| and e differ at one of them but for bad luck.
 pub const SAMPLES: usize = 8;
 
@@ -41,7 +39,7 @@ impl Real {
     }
 
     /// Whether there is a number, and it is known.
-    fn is_known(self) -> bool {
+    pub(super) fn is_known(self) -> bool {
         !self.value.is_nan()
     }
 
@@ -50,7 +48,7 @@ impl Real {
     }
 
     /// What operations make of operands of which one is no known number.
-    fn without(self, b: Real) -> Self {
+    pub(super) fn without(self, b: Real) -> Self {
         if self.is_undefined() || b.is_undefined() {
             Real::UNDEFINED
         } else {
@@ -106,14 +104,6 @@ impl Real {
         } else {
             Real::UNKNOWN
         }
-    }
-
-    /// A function of one argument.
-    pub fn apply(self, function: Function) -> Self {
-        if !self.is_known() {
-            return self.without(self);
-        }
-        (function.row().real)(self)
     }
 
     pub(super) fn sin(self) -> Self {

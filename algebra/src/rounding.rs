@@ -15,7 +15,8 @@
 use super::double::Double;
 use super::dual::{Duals, Partial, Slopes};
 use super::graph::{Edge, Graph};
-use super::numbers::{Numbers, Step, evaluate};
+use super::numbers::{Numbers, Step};
+use super::walk::evaluate;
 
 /// Unit roundoff of `f64`.
 pub const UNIT: f64 = f64::EPSILON / 2.0;

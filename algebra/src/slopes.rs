@@ -3,8 +3,8 @@
 
 use super::dual::{Across, Duals};
 use super::graph::{Edge, Graph};
-use super::numbers::evaluate;
 use super::numeric::Floats;
+use super::walk::evaluate;
 
 /// A value with its slope along every direction; nothing of it moves where there are no slopes.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,7 +5,7 @@ use super::dual::{Along, Duals};
 use super::fp::Fp;
 use super::graph::{Edge, Graph};
 use super::lane::Lane;
-use super::numbers::evaluate;
+use super::walk::evaluate;
 
 /// A value and its slope.
 pub type Dual = (Fp, Fp);

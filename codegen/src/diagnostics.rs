@@ -65,6 +65,16 @@ impl Report {
         self.errors.push(error);
     }
 
+    /// Adds an error, unless the same is said of the same place already.
+    pub fn push_once(&mut self, error: Diagnostic) {
+        let same = |known: &Diagnostic| {
+            known.message == error.message && known.span.range() == error.span.range()
+        };
+        if !self.errors.iter().any(same) {
+            self.errors.push(error);
+        }
+    }
+
     /// Keeps the error of a result and hands on its value.
     pub fn keep<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
         match result {

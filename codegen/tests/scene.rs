@@ -48,6 +48,7 @@ system Everything {
     param m = 1.3e-7, k: vec2 = [1, -2], J: sym2 = [[1, 0], [0, 2]], N: mat2 = [[1, 0], [0, 2]];
     const c = 3 / 2;
     let e: vec3 = [0, 0, 0.000000000000000001];
+    fn drag(a: vec3, b) = -b * norm(a) * a;
     coord q, r: R3, a: S1, b: S3, R: SO3, X: SE3;
     velocity u, v: vec3, w = a.c * rate(a.s) - a.s * rate(a.c);
     input F: vec3, t;
@@ -79,7 +80,7 @@ system Everything {
     damper coefficient m on u;
     dissipation m * u^2;
     generalized force v = -m * v;
-    start X.p = [0, 0, 1];
+    start X.p = [0, 0, 1], q = 2;
     output speed = norm(v) - (1 - (2 - 3)) / (4 / 5) * (6 * 7);
     invariant energy when F = 0, k[1] = 2;
     invariant e_0 = energy;

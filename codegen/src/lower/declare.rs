@@ -1,5 +1,6 @@
 //! Declarations: every symbol of the description, with values at points of X.
 
+use super::applied;
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
 use crate::algebra::fp::Fp;
@@ -50,6 +51,11 @@ pub fn declare(
             }
         }
     }
+    for item in &system.items {
+        if let ItemKind::Function(function) = &item.kind {
+            applied::declare(function, system, scope, report);
+        }
+    }
     let mut declarer = Declarer {
         graph,
         next,
@@ -93,6 +99,11 @@ pub fn declare(
         if let ItemKind::Input(list) = &item.kind {
             let (groups, u) = (&mut declared.inputs, &mut declared.u);
             declarer.groups(list, NameKind::Input, class::INPUT, groups, u);
+        }
+    }
+    for item in &system.items {
+        if let ItemKind::Function(function) = &item.kind {
+            applied::claim(function, scope, report);
         }
     }
     let velocities = graph
@@ -213,12 +224,7 @@ pub fn declared_value(
         report.push(error.help(missing));
         return None;
     };
-    let value = Evaluator {
-        graph,
-        scope,
-        report,
-    }
-    .value(expr);
+    let value = Evaluator::new(graph, scope, report).value(expr);
     value.filter(|value| shape_fits(declaration, value, report))
 }
 

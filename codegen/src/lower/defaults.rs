@@ -48,12 +48,7 @@ fn default_of(
         );
         return None;
     };
-    let value = Evaluator {
-        graph,
-        scope,
-        report,
-    }
-    .value(expr)?;
+    let value = Evaluator::new(graph, scope, report).value(expr)?;
     if value
         .entries()
         .iter()

@@ -62,11 +62,7 @@ pub fn read(
     let mut with_rates = graph.clone();
     let (scope, x_dot) = rates(&mut with_rates, scope, &declared.x);
     for declaration in list {
-        let evaluator = Evaluator {
-            graph: &mut with_rates,
-            scope: &scope,
-            report,
-        };
+        let evaluator = Evaluator::new(&mut with_rates, &scope, report);
         let read = define(declaration, evaluator, &x_dot);
         let group = declared
             .velocities

@@ -41,11 +41,7 @@ pub fn read(
     let mut gravity: Option<Span> = None;
     let mut has_inertia = false;
     for item in &system.items {
-        let evaluator = Evaluator {
-            graph,
-            scope,
-            report,
-        };
+        let evaluator = Evaluator::new(graph, scope, report);
         let mut reader = Reader {
             evaluator,
             frames,

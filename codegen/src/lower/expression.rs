@@ -8,6 +8,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
 use num_traits::ToPrimitive;
+use std::collections::BTreeMap;
 
 /// Largest graph of one description: what grows beyond is a mistake, such as products of large
 /// matrices of parameters.
@@ -24,9 +25,34 @@ pub struct Evaluator<'a> {
     pub scope: &'a Scope,
     /// Where errors go.
     pub report: &'a mut Report,
+    /// Values of the parameters of the function whose value is wanted; none outside of functions.
+    locals: BTreeMap<&'a str, Value>,
 }
 
-impl Evaluator<'_> {
+impl<'a> Evaluator<'a> {
+    /// An evaluator outside of functions.
+    pub fn new(graph: &'a mut Graph, scope: &'a Scope, report: &'a mut Report) -> Self {
+        Evaluator {
+            graph,
+            scope,
+            report,
+            locals: BTreeMap::new(),
+        }
+    }
+
+    /// An evaluator of the value of a function, where its parameters have these values.
+    pub fn within<'b>(
+        &'b mut self,
+        report: &'b mut Report,
+        locals: BTreeMap<&'b str, Value>,
+    ) -> Evaluator<'b> {
+        Evaluator {
+            graph: self.graph,
+            scope: self.scope,
+            report,
+            locals,
+        }
+    }
     /// The value of an expression.
     pub fn value(&mut self, expr: &Expr) -> Option<Value> {
         if self.graph.len() > MOST_NODES {
@@ -114,7 +140,14 @@ impl Evaluator<'_> {
     }
 
     fn name(&mut self, name: &str, span: Span) -> Option<Value> {
+        if let Some(value) = self.locals.get(name) {
+            return Some(value.clone());
+        }
         match self.scope.get(name) {
+            Some(entry) if entry.kind == NameKind::Function => self.error(
+                Diagnostic::new(span, format!("`{name}` is a function"))
+                    .help(format!("write its arguments in parentheses: `{name}(…)`")),
+            ),
             Some(entry) => entry.value.clone(),
             None if name == "world" => Some(self.world()),
             None if name == "pi" => {

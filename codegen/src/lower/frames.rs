@@ -76,11 +76,7 @@ pub fn relative_pose(
     report: &mut Report,
 ) -> Option<Value> {
     let Relation { name, pose, .. } = relation;
-    let mut evaluator = Evaluator {
-        graph,
-        scope,
-        report,
-    };
+    let mut evaluator = Evaluator::new(graph, scope, report);
     let value = evaluator.value(pose)?;
     let Value::Pose(rotation, position) = value else {
         let message = format!("a frame has to be a pose, this is {}", value.shape());
@@ -126,11 +122,7 @@ pub fn parent_pose(
     scope: &Scope,
     report: &mut Report,
 ) -> Option<Value> {
-    let mut evaluator = Evaluator {
-        graph,
-        scope,
-        report,
-    };
+    let mut evaluator = Evaluator::new(graph, scope, report);
     match evaluator.scope.get(&parent.name) {
         Some(entry) if entry.kind == NameKind::Frame => entry.value.clone(),
         None if parent.name == "world" => Some(evaluator.world()),

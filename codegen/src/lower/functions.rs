@@ -19,6 +19,10 @@ const MOST_ROWS: usize = 64;
 impl Evaluator<'_> {
     /// A call; wrong names, counts and shapes are reported.
     pub fn call(&mut self, function: &Ident, arguments: &[Expr], span: Span) -> Option<Value> {
+        let scope = self.scope;
+        if let Some(own) = scope.functions.get(&function.name) {
+            return self.applied(own, arguments, span);
+        }
         if function.name == "rate" {
             return self.rate(arguments, span);
         }
@@ -73,7 +77,9 @@ impl Evaluator<'_> {
         if self.scope.get(name).is_some() {
             return self.error(error.help("a product is written with `*`"));
         }
-        match closest(name, known()) {
+        let scope = self.scope;
+        let own = scope.functions.keys().map(String::as_str);
+        match closest(name, known().chain(own)) {
             Some(known) => self.error(error.help(format!("did you mean `{known}`?"))),
             None => {
                 let all: Vec<&str> = known().collect();
@@ -103,6 +109,11 @@ impl Evaluator<'_> {
             _ => None,
         }
     }
+}
+
+/// Whether a name is that of a function of the language.
+pub fn is_function(name: &str) -> bool {
+    usage(name).is_some() || FUNCTIONS.contains(&name) || name == "rate"
 }
 
 /// Why a call has no value.

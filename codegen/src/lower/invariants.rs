@@ -56,11 +56,7 @@ pub fn read(
         else {
             continue;
         };
-        let evaluator = Evaluator {
-            graph,
-            scope,
-            report,
-        };
+        let evaluator = Evaluator::new(graph, scope, report);
         let mut reader = Reader {
             evaluator,
             frames,

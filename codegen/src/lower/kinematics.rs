@@ -32,11 +32,7 @@ pub fn read(
             continue;
         };
         tried.push(&target.name.name);
-        let evaluator = Evaluator {
-            graph,
-            scope,
-            report,
-        };
+        let evaluator = Evaluator::new(graph, scope, report);
         read_rate(target, value, item, evaluator, declared, &mut rates, system);
     }
     let definitions = definitions::read(system, graph, scope, declared, report);

@@ -4,6 +4,7 @@
 //! one cannot fail on user input.
 
 mod agreement;
+mod applied;
 mod arithmetic;
 mod axes;
 mod bodies;

@@ -6,6 +6,7 @@
 //! that hangs together with the world; the order of its statements does not matter. What is about
 //! velocities of frames waits until the rates of the coordinates are known.
 
+use super::applied;
 use super::frames::{Relation, define_let, parent_pose, relative_pose};
 use super::scope::{NameKind, Scope};
 use super::{frames, motion};
@@ -14,7 +15,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::Frame;
 use crate::model::value::Value;
 use crate::syntax::ast::{Declaration, Expr, ExprKind, ItemKind, System};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What the `let` and `frame` statements say, and which of them wait for the rates.
 #[derive(Default)]
@@ -30,6 +31,8 @@ pub struct Names<'a> {
     nodes: BTreeSet<&'a str>,
     /// Names on the left side of a `frame` statement.
     named: BTreeSet<&'a str>,
+    /// What the values of functions mention, but for their parameters.
+    functions: BTreeMap<&'a str, BTreeSet<&'a str>>,
 }
 
 /// A statement that is still to be read.
@@ -70,6 +73,8 @@ fn mentioned<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
             list.iter().for_each(|entry| mentioned(entry, names));
         }
         ExprKind::Call(function, list) => {
+            // Where it is a function of the description, what that mentions follows.
+            names.insert(&function.name);
             if motion::needs_rates(&function.name) {
                 names.insert(RATES);
             }
@@ -92,6 +97,14 @@ impl<'a> Names<'a> {
         report: &mut Report,
     ) -> Self {
         let mut names = Names::default();
+        for (name, function) in applied::functions(system) {
+            let mut mentions = BTreeSet::new();
+            mentioned(&function.value, &mut mentions);
+            for (parameter, _) in &function.parameters {
+                mentions.remove(parameter.name.as_str());
+            }
+            names.functions.insert(name, mentions);
+        }
         for item in &system.items {
             match &item.kind {
                 ItemKind::Let(list) => names.tasks.extend(list.iter().map(Task::Let)),
@@ -134,12 +147,28 @@ impl<'a> Names<'a> {
                 continue;
             }
             let later = self.later(scope);
-            let stuck = |task: &Task| later.iter().all(|name| !task.mentions().contains(name));
-            if !self.tasks.iter().any(stuck) {
+            let stuck: Vec<bool> = self
+                .tasks
+                .iter()
+                .map(|task| later.is_disjoint(&self.mentions(task)))
+                .collect();
+            if !stuck.contains(&true) {
                 return;
             }
-            self.give_up(stuck, graph, scope, report);
+            self.give_up(&stuck, graph, scope, report);
         }
+    }
+
+    /// Names that a statement mentions, itself and by the functions that it calls.
+    fn mentions(&self, task: &Task<'a>) -> BTreeSet<&'a str> {
+        let mut all = BTreeSet::new();
+        let mut open: Vec<&'a str> = task.mentions().into_iter().collect();
+        while let Some(name) = open.pop() {
+            if all.insert(name) {
+                open.extend(self.functions.get(name).into_iter().flatten());
+            }
+        }
+        all
     }
 
     /// Whether a statement needs what is not known yet.
@@ -155,7 +184,7 @@ impl<'a> Names<'a> {
                 .iter()
                 .any(|task| matches!(task, Task::Let(other) if other.name.name == name))
         };
-        task.mentions().into_iter().any(|name| {
+        self.mentions(task).into_iter().any(|name| {
             let rates = scope.motion.is_some() || scope.unmoved;
             (name == RATES && !rates)
                 || scope.get(name).is_none() && (self.nodes.contains(name) || earlier(name))
@@ -176,7 +205,7 @@ impl<'a> Names<'a> {
         loop {
             let before = later.len();
             for task in &self.tasks {
-                if !task.mentions().iter().any(|name| later.contains(name)) {
+                if !self.mentions(task).iter().any(|name| later.contains(name)) {
                     continue;
                 }
                 match task {
@@ -318,7 +347,7 @@ impl<'a> Names<'a> {
     /// for its errors, or else reports the frames that nothing places.
     fn give_up(
         &mut self,
-        stuck: impl Fn(&Task) -> bool,
+        stuck: &[bool],
         graph: &mut Graph,
         scope: &mut Scope,
         report: &mut Report,
@@ -343,9 +372,9 @@ impl<'a> Names<'a> {
                 return;
             }
         }
-        let first = self.tasks.iter().position(|task| {
+        let first = self.tasks.iter().zip(stuck).position(|(task, &stuck)| {
             let placed = matches!(task, Task::Frame(_)) && !unplaced(self, task, scope);
-            placed && stuck(task)
+            placed && stuck
         });
         if let Some(first) = first {
             let task = self.tasks.remove(first);
@@ -360,7 +389,7 @@ impl<'a> Names<'a> {
             })
             .collect();
         let Some(first) = relations.first() else {
-            if let Some(first) = self.tasks.iter().position(&stuck) {
+            if let Some(first) = stuck.iter().position(|&stuck| stuck) {
                 let task = self.tasks.remove(first);
                 self.define(task, graph, scope, report);
             }

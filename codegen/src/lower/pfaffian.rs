@@ -25,11 +25,7 @@ pub fn read(
 ) -> Vec<Pfaffian> {
     let mut all = Vec::new();
     let mut reader = Reader {
-        evaluator: Evaluator {
-            graph,
-            scope,
-            report,
-        },
+        evaluator: Evaluator::new(graph, scope, report),
         declared,
         kinematics,
     };

@@ -4,7 +4,7 @@ use super::motion::Motion;
 use crate::algebra::graph::{Edge, NodeId};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, Ident, ItemKind, Span, System};
+use crate::syntax::ast::{CoordKind, Function, Ident, ItemKind, Span, System};
 use crate::syntax::suggest::closest;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
@@ -28,6 +28,8 @@ pub enum NameKind {
     Frame,
     /// An output.
     Output,
+    /// A function of expressions.
+    Function,
 }
 
 impl NameKind {
@@ -42,6 +44,7 @@ impl NameKind {
             NameKind::Input => "an input",
             NameKind::Frame => "a frame",
             NameKind::Output => "an output",
+            NameKind::Function => "a function",
         }
     }
 }
@@ -119,6 +122,8 @@ pub struct Scope {
     pub unmoved: bool,
     /// What `rate(…)` stands for, in definitions of velocities.
     pub rates: Option<Rates>,
+    /// The functions of the description.
+    pub functions: BTreeMap<String, Function>,
 }
 
 impl Scope {
@@ -146,6 +151,10 @@ impl Scope {
                     note(name, NameKind::Frame);
                     continue;
                 }
+                ItemKind::Function(function) => {
+                    note(&function.name, NameKind::Function);
+                    continue;
+                }
                 _ => continue,
             };
             list.iter()
@@ -164,6 +173,7 @@ impl Scope {
             motion: None,
             unmoved: false,
             rates: None,
+            functions: BTreeMap::new(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Declarations that nothing uses: parameters, constants, named expressions, inputs and frames.
+//! Declarations that nothing uses: parameters, constants, named expressions, functions, inputs and frames.
 //!
 //! Such a description is correct, so these are warnings. What is looked at is the text as written, before joints
 //! are written out: a frame that a joint moves is used by the joint. Names that begin with `_` are left alone.
@@ -29,6 +29,10 @@ pub fn warnings(system: &System) -> Vec<Diagnostic> {
                 if statements == 1 && placed.insert(&name.name) {
                     warnings.extend(uses.unused(name, "frame"));
                 }
+                continue;
+            }
+            ItemKind::Function(function) => {
+                warnings.extend(uses.unused(&function.name, "function"));
                 continue;
             }
             _ => continue,
@@ -86,7 +90,11 @@ impl<'a> Uses<'a> {
                 self.expr(base);
                 self.all(list);
             }
-            ExprKind::Call(_, list) | ExprKind::Array(list) => self.all(list),
+            ExprKind::Call(function, list) => {
+                self.name(function);
+                self.all(list);
+            }
+            ExprKind::Array(list) => self.all(list),
             ExprKind::Binary(_, left, right) => self.all([&**left, &**right]),
         }
     }
@@ -128,6 +136,14 @@ impl<'a> Uses<'a> {
             | ItemKind::Velocity(list)
             | ItemKind::Input(list) => self.values(list),
             ItemKind::Coord(_) => {}
+            ItemKind::Function(function) => {
+                let mut inner = Uses::default();
+                inner.expr(&function.value);
+                for (parameter, _) in &function.parameters {
+                    inner.names.remove(parameter.name.as_str());
+                }
+                self.names.extend(inner.names);
+            }
             ItemKind::Constraint { left, right } => self.all([left, right]),
             ItemKind::Rate { value, .. }
             | ItemKind::Generalized { value, .. }

@@ -58,11 +58,7 @@ impl Variety {
             let ItemKind::Constraint { left, right } = &item.kind else {
                 continue;
             };
-            let mut evaluator = Evaluator {
-                graph: &mut graph,
-                scope: &scope,
-                report: &mut silent,
-            };
+            let mut evaluator = Evaluator::new(&mut graph, &scope, &mut silent);
             let sides = (evaluator.value(left), evaluator.value(right));
             let difference = match sides {
                 (Some(a), Some(b)) if a.same_shape(&b) => a.zip(&b, |x, y| graph.sub(x, y)),
@@ -185,11 +181,7 @@ impl Variety {
             let ItemKind::Constraint { left, right } = &item.kind else {
                 continue;
             };
-            let mut evaluator = Evaluator {
-                graph,
-                scope,
-                report,
-            };
+            let mut evaluator = Evaluator::new(graph, scope, report);
             let (a, b) = (evaluator.value(left), evaluator.value(right));
             let (Some(a), Some(b)) = (a, b) else { continue };
             let span = left.span.to(right.span);

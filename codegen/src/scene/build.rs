@@ -5,8 +5,8 @@ use super::parts::{Body, Element, Frame, Joint, Load};
 use super::{Scene, SceneError, print};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
-    Condition, Conserved, CoordKind, Declaration, Expr, Item, ItemKind, Shape, ShapeKind, Span,
-    System, Target,
+    Condition, Conserved, CoordKind, Declaration, Expr, Function, Item, ItemKind, Shape, ShapeKind,
+    Span, System, Target,
 };
 use crate::syntax::parse_text;
 
@@ -92,6 +92,25 @@ impl SceneBuilder {
             value,
         )]));
         Expr::name(name)
+    }
+
+    /// A function of expressions, each of its parameters with its shape; a scalar's stands for any shape. It is
+    /// called by [`call`](super::call).
+    pub fn function(
+        &mut self,
+        name: &str,
+        parameters: &[(&str, ShapeKind)],
+        value: impl Into<Expr>,
+    ) {
+        let span = Span::NOWHERE;
+        let parameters = parameters
+            .iter()
+            .map(|&(name, kind)| (ident(name), Shape { kind, span }));
+        self.add(ItemKind::Function(Function {
+            name: ident(name),
+            parameters: parameters.collect(),
+            value: value.into(),
+        }));
     }
 
     /// A configuration coordinate.

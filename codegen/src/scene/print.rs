@@ -32,6 +32,13 @@ pub fn statement(item: &Item) -> String {
         ItemKind::Param(list) => format!("param {}", declarations(list)),
         ItemKind::Const(list) => format!("const {}", declarations(list)),
         ItemKind::Let(list) => format!("let {}", declarations(list)),
+        ItemKind::Function(function) => {
+            let parameters = each(&function.parameters, |(name, of)| {
+                format!("{}{}", name.name, shape(of.kind))
+            });
+            let (name, value) = (&function.name.name, written(&function.value));
+            format!("fn {name}({parameters}) = {value}")
+        }
         ItemKind::Coord(list) => format!("coord {}", each(list, coordinate)),
         ItemKind::Velocity(list) => format!("velocity {}", declarations(list)),
         ItemKind::Constraint { left, right } => format!("constraint {}", equation(left, right)),

@@ -181,6 +181,17 @@ pub struct Declaration {
     pub value: Option<Expr>,
 }
 
+/// `fn name(a, b: vec3) = value;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Function {
+    /// Its name.
+    pub name: Ident,
+    /// Its parameters; a scalar's shape stands for any where none was written.
+    pub parameters: Vec<(Ident, Shape)>,
+    /// Its value, in its parameters and all names of the description.
+    pub value: Expr,
+}
+
 /// A name or one of its parts on the left of `rate` and `start`: `R`, `X.p`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
@@ -338,6 +349,8 @@ pub enum ItemKind {
     Const(Vec<Declaration>),
     /// `let e = m * s;` a named expression.
     Let(Vec<Declaration>),
+    /// `fn drag(v: vec3, c) = -c * norm(v) * v;` a function of expressions.
+    Function(Function),
     /// `coord r: R3, R: SO3, q;`
     Coord(Vec<(Ident, CoordKind)>),
     /// `velocity v: vec3, w: vec3, u;`, or with rows of Y: `velocity v: vec3 = R.T * rate(r);`

@@ -1,9 +1,10 @@
 //! Statements that declare names: parameters, coordinates, velocities, inputs.
 
-use super::ast::{CoordKind, Declaration, Ident, Shape, ShapeKind, Span};
+use super::ast::{CoordKind, Declaration, Function, Ident, Shape, ShapeKind, Span};
 use super::cursor::{Cursor, Parsed, shown};
 use super::expression::expression;
 use crate::diagnostics::Diagnostic;
+use proc_macro2::Delimiter;
 
 /// The largest vector, matrix or Euclidean coordinate.
 const MAX_SIZE: usize = 64;
@@ -69,6 +70,22 @@ pub(super) fn coordinates(cursor: &mut Cursor<'_>) -> Parsed<Vec<(Ident, CoordKi
             );
         }
         Ok((name, kind))
+    })
+}
+
+/// `drag(v: vec3, c) = -c * norm(v) * v`
+pub(super) fn function(cursor: &mut Cursor<'_>) -> Parsed<Function> {
+    let name = cursor.name("a function")?;
+    if !cursor.eat_open(Delimiter::Parenthesis) {
+        return Err(cursor.unexpected("`(` and the names of its parameters"));
+    }
+    let parameters = separated(cursor, |cursor| head(cursor, "a parameter"))?;
+    cursor.expect_close(Delimiter::Parenthesis, false)?;
+    cursor.assign()?;
+    Ok(Function {
+        name,
+        parameters,
+        value: expression(cursor)?,
     })
 }
 

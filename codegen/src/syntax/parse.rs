@@ -72,7 +72,7 @@ fn items(cursor: &mut Cursor<'_>) -> Vec<Item> {
         let mark = cursor.mark();
         let word = cursor.peek();
         match statement(cursor) {
-            Ok(item) => items.push(item),
+            Ok(list) => items.extend(list),
             Err(error) => {
                 cursor.errors.push(match form(&word.text) {
                     Some(form) => with_form(error, form),

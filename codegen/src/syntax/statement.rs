@@ -1,6 +1,6 @@
 //! The statements, by their first word.
 
-use super::ast::{Expr, Ident, Item, ItemKind, Target};
+use super::ast::{Expr, Ident, Item, ItemKind, Span, Target};
 use super::blocks::since;
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
@@ -10,8 +10,8 @@ use super::words::statements;
 use super::{body, declaration, element, invariant, joint, load};
 use crate::diagnostics::Diagnostic;
 
-/// Parses one statement with its `;`.
-pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
+/// Parses one statement with its `;`: one item, or one for each part of a list.
+pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
     let start = cursor.here();
     let word = cursor.peek();
     if word.kind != Kind::Word {
@@ -23,6 +23,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
         "param" => ItemKind::Param(declaration::values(cursor, "a parameter")?),
         "const" => ItemKind::Const(declaration::values(cursor, "a constant")?),
         "let" => ItemKind::Let(declaration::values(cursor, "an expression")?),
+        "fn" => ItemKind::Function(declaration::function(cursor)?),
         "coord" => ItemKind::Coord(declaration::coordinates(cursor)?),
         "velocity" => ItemKind::Velocity(declaration::velocities(cursor)?),
         "input" => ItemKind::Input(declaration::inputs(cursor)?),
@@ -65,14 +66,6 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
                 stabilized,
             }
         }
-        "start" => {
-            let target = target(cursor, "a coordinate or velocity")?;
-            cursor.assign()?;
-            ItemKind::Start {
-                target,
-                value: expression(cursor)?,
-            }
-        }
         "generalized" => {
             cursor.expect_word("force")?;
             let target = target(cursor, "a velocity")?;
@@ -82,31 +75,21 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
                 value: expression(cursor)?,
             }
         }
-        "output" => {
-            let name = cursor.name("an output")?;
-            cursor.assign()?;
-            ItemKind::Output {
-                name,
-                value: expression(cursor)?,
-            }
-        }
+        "start" => return list(cursor, start, starting),
+        "output" => return list(cursor, start, output),
         "frame" => frame(cursor)?,
         // Ends with its braces.
         "body" => {
             let kind = ItemKind::Body(body::body(cursor)?);
             cursor.eat_punct(';');
-            return Ok(Item {
-                kind,
-                span: since(start, cursor),
-            });
+            let span = since(start, cursor);
+            return Ok(vec![Item { kind, span }]);
         }
         // Ends with its braces, where it has any.
         "joint" => {
             let kind = ItemKind::Joint(Box::new(joint::joint(cursor)?));
-            return Ok(Item {
-                kind,
-                span: since(start, cursor),
-            });
+            let span = since(start, cursor);
+            return Ok(vec![Item { kind, span }]);
         }
         "particle" => body::particle(cursor)?,
         "kinetic" => ItemKind::Kinetic(expression(cursor)?),
@@ -143,9 +126,51 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Item> {
             | "generate"
     );
     cursor.end(!names)?;
-    Ok(Item {
-        kind,
-        span: since(start, cursor),
+    let span = since(start, cursor);
+    Ok(vec![Item { kind, span }])
+}
+
+/// `start a = 1, b = 2;`, `output p = a, q = b;`: an item for each part.
+fn list(
+    cursor: &mut Cursor<'_>,
+    start: Span,
+    part: fn(&mut Cursor<'_>) -> Parsed<ItemKind>,
+) -> Parsed<Vec<Item>> {
+    let mut parts = vec![(start, part(cursor)?)];
+    while cursor.eat_punct(',') {
+        parts.push((cursor.here(), part(cursor)?));
+    }
+    cursor.end(true)?;
+    let whole = since(start, cursor);
+    let several = parts.len() > 1;
+    let item = |(begin, kind): (Span, ItemKind)| {
+        let value = match &kind {
+            ItemKind::Start { value, .. } | ItemKind::Output { value, .. } => value.span,
+            _ => whole,
+        };
+        let span = if several { begin.to(value) } else { whole };
+        Item { kind, span }
+    };
+    Ok(parts.into_iter().map(item).collect())
+}
+
+/// `w = [0.01, 1, 0]`
+fn starting(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let target = target(cursor, "a coordinate or velocity")?;
+    cursor.assign()?;
+    Ok(ItemKind::Start {
+        target,
+        value: expression(cursor)?,
+    })
+}
+
+/// `speed = norm(v)`
+fn output(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let name = cursor.name("an output")?;
+    cursor.assign()?;
+    Ok(ItemKind::Output {
+        name,
+        value: expression(cursor)?,
     })
 }
 

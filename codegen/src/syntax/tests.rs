@@ -103,6 +103,14 @@ fn told(kind: &ItemKind) -> String {
         all.iter().map(one).collect::<Vec<_>>().join("; ")
     };
     match kind {
+        ItemKind::Function(function) => {
+            let parameters = function.parameters.iter();
+            let parameters =
+                parameters.map(|(name, shape)| format!("{}: {:?}", name.name, shape.kind));
+            let parameters = parameters.collect::<Vec<_>>().join(", ");
+            let value = spelled(&function.value);
+            format!("fn {}({parameters}) = {value}", function.name.name)
+        }
         Param(all) => format!("param {}", declared(all)),
         Const(all) => format!("const {}", declared(all)),
         Let(all) => format!("let {}", declared(all)),

@@ -1,13 +1,17 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 29] = [
+const STATEMENTS: [(&str, &str); 30] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
     ),
     ("const", "a constant is written `const k = 3/2;`"),
     ("let", "a named expression is written `let e = m * s;`"),
+    (
+        "fn",
+        "a function is written `fn drag(v: vec3, c) = -c * norm(v) * v;`",
+    ),
     ("coord", "coordinates are written `coord r: R3, R: SO3, q;`"),
     (
         "velocity",

@@ -101,11 +101,7 @@ pub(super) fn numbers(
     let mut complete = true;
     let values = values(joint, field)?;
     for expr in values {
-        let mut evaluator = Evaluator {
-            graph,
-            scope,
-            report,
-        };
+        let mut evaluator = Evaluator::new(graph, scope, report);
         let Some(edge) = evaluator.scalar(expr, what) else {
             complete = false;
             continue;
@@ -171,11 +167,7 @@ pub(crate) fn armature(
         let Some([expr]) = values(joint, Armature) else {
             continue;
         };
-        let mut evaluator = Evaluator {
-            graph,
-            scope,
-            report,
-        };
+        let mut evaluator = Evaluator::new(graph, scope, report);
         let Some(inertia) = evaluator.scalar(expr, WHAT) else {
             continue;
         };

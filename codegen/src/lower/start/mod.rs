@@ -54,11 +54,7 @@ pub fn read(
         let ItemKind::Start { target, value } = &item.kind else {
             continue;
         };
-        let evaluator = Evaluator {
-            graph,
-            scope,
-            report,
-        };
+        let evaluator = Evaluator::new(graph, scope, report);
         complete &= start
             .read(target, value, evaluator, declared, &symbols)
             .is_some();

@@ -1,0 +1,182 @@
+//! Functions of the description: `fn drag(v: vec3, c) = -c * norm(v) * v;`.
+//!
+//! The value of a call is the function's expression with the values of the arguments in the place of its parameters;
+//! all other names are those of the description. Functions may call others, but not themselves.
+
+use super::expression::Evaluator;
+use super::functions::is_function;
+use super::scope::{NameKind, Scope};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::value::Value;
+use crate::syntax::ast::{
+    Expr, ExprKind, Function, Ident, ItemKind, Shape, ShapeKind, Span, System,
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Makes a function known; one that calls itself, or has two parameters of one name, is refused.
+pub fn declare(function: &Function, system: &System, scope: &mut Scope, report: &mut Report) {
+    let name = &function.name;
+    if scope.functions.contains_key(&name.name) {
+        // Its name is claimed later, and refused then.
+        return;
+    }
+    let mut known: Vec<&Ident> = Vec::new();
+    for (parameter, _) in &function.parameters {
+        if let Some(first) = known.iter().find(|first| first.name == parameter.name) {
+            let message = format!("two parameters are called `{}`", parameter.name);
+            report.push(
+                Diagnostic::new(parameter.span, message)
+                    .help("rename one of the two")
+                    .note(first.span, "the first one"),
+            );
+            return;
+        }
+        known.push(parameter);
+    }
+    if reaches(system, function, &name.name) {
+        let message = format!("the value of `{}` needs `{}` itself", name.name, name.name);
+        report
+            .push(Diagnostic::new(function.value.span, message).help(
+                "a function may call others, but there is no recursion: write its value out",
+            ));
+        return;
+    }
+    scope.functions.insert(name.name.clone(), function.clone());
+}
+
+/// Takes the name of a function, after all others are taken.
+pub fn claim(function: &Function, scope: &mut Scope, report: &mut Report) {
+    let name = &function.name;
+    if is_function(&name.name) {
+        let message = format!("`{}` is a function of the language", name.name);
+        report.push(
+            Diagnostic::new(name.span, message)
+                .help(format!("choose another name, such as `{}_1`", name.name)),
+        );
+    } else {
+        scope.claim(name, NameKind::Function, report);
+    }
+}
+
+/// The functions of a description, by their names.
+pub fn functions(system: &System) -> BTreeMap<&str, &Function> {
+    let functions = system.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Function(function) => Some((function.name.name.as_str(), function)),
+        _ => None,
+    });
+    functions.collect()
+}
+
+/// Whether the value of a function calls a name, itself or by functions that it calls.
+fn reaches(system: &System, function: &Function, wanted: &str) -> bool {
+    let all = functions(system);
+    let mut reached = BTreeSet::new();
+    let mut open = vec![function];
+    while let Some(function) = open.pop() {
+        let mut calls = BTreeSet::new();
+        called(&function.value, &mut calls);
+        for name in calls {
+            if reached.insert(name) {
+                open.extend(all.get(name));
+            }
+        }
+    }
+    reached.contains(wanted)
+}
+
+/// The functions that an expression calls.
+fn called<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
+    match &expr.kind {
+        ExprKind::Number(_) | ExprKind::Name(_) => {}
+        ExprKind::Field(base, _) | ExprKind::Neg(base) => called(base, names),
+        ExprKind::Index(base, list) => {
+            called(base, names);
+            list.iter().for_each(|entry| called(entry, names));
+        }
+        ExprKind::Call(function, list) => {
+            names.insert(&function.name);
+            list.iter().for_each(|entry| called(entry, names));
+        }
+        ExprKind::Array(list) => list.iter().for_each(|entry| called(entry, names)),
+        ExprKind::Binary(_, left, right) => {
+            called(left, names);
+            called(right, names);
+        }
+    }
+}
+
+impl Evaluator<'_> {
+    /// The value of a call of a function of the description. An error in the function's expression is reported
+    /// there, with a note at the call.
+    pub fn applied(
+        &mut self,
+        function: &Function,
+        arguments: &[Expr],
+        span: Span,
+    ) -> Option<Value> {
+        let values: Vec<Option<Value>> = arguments
+            .iter()
+            .map(|argument| self.value(argument))
+            .collect();
+        let (name, wanted) = (&function.name, function.parameters.len());
+        if wanted != arguments.len() {
+            let plural = if wanted == 1 { "" } else { "s" };
+            let message = format!(
+                "`{}` takes {wanted} argument{plural}, not {}",
+                name.name,
+                arguments.len()
+            );
+            let parameters = function
+                .parameters
+                .iter()
+                .map(|(name, _)| name.name.as_str());
+            let parameters: Vec<&str> = parameters.collect();
+            let usage = format!("write `{}({})`", name.name, parameters.join(", "));
+            let error = Diagnostic::new(span, message).help(usage);
+            return self.error(error.note(name.span, "defined here"));
+        }
+        let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
+        let mut locals = BTreeMap::new();
+        let parameters = function.parameters.iter().zip(arguments);
+        for (((parameter, shape), argument), value) in parameters.zip(values) {
+            if !fits(shape, &value) {
+                let (what, found) = (words(shape.kind), value.shape());
+                let message = format!(
+                    "`{}` of `{}` has to be {what}, this is {found}",
+                    parameter.name, name.name
+                );
+                let error = Diagnostic::new(argument.span, message)
+                    .help("make the shapes agree")
+                    .note(shape.span, "declared here");
+                return self.error(error);
+            }
+            locals.insert(parameter.name.as_str(), value);
+        }
+        let mut inner = Report::new();
+        let value = self.within(&mut inner, locals).value(&function.value);
+        for error in inner.finish().err().unwrap_or_default() {
+            self.report.push_once(error.note(span, "in this call"));
+        }
+        value
+    }
+}
+
+/// Whether a value has the shape of a parameter; one without a written shape takes any.
+fn fits(shape: &Shape, value: &Value) -> bool {
+    match (shape.kind, value) {
+        (ShapeKind::Scalar, _) => true,
+        (ShapeKind::Vector(n), Value::Vector(v)) => v.len() == n,
+        (ShapeKind::Matrix(n) | ShapeKind::Symmetric(n), Value::Matrix(m)) => {
+            m.len() == n && m.iter().all(|row| row.len() == n)
+        }
+        _ => false,
+    }
+}
+
+fn words(shape: ShapeKind) -> String {
+    match shape {
+        ShapeKind::Scalar => "a scalar".into(),
+        ShapeKind::Vector(n) => format!("a vector of {n}"),
+        ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => format!("a {n}×{n} matrix"),
+    }
+}
