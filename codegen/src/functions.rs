@@ -31,6 +31,19 @@ pub enum Serves {
     Asked,
 }
 
+/// What a function returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Returns {
+    /// One number.
+    Number,
+    /// A vector.
+    Vector,
+    /// A matrix of n rows, n the number of velocities.
+    Rows,
+    /// A matrix of 2 n rows: those of h and of δξ.
+    DoubleRows,
+}
+
 /// One row of the table.
 #[derive(Debug)]
 pub struct Row {
@@ -38,6 +51,8 @@ pub struct Row {
     pub name: &'static str,
     /// What it takes.
     pub arguments: &'static [Argument],
+    /// What it returns.
+    pub returns: Returns,
     /// Its documentation, line by line.
     pub docs: &'static [&'static str],
     /// What it is wanted for.
@@ -49,7 +64,7 @@ pub struct Row {
 }
 
 macro_rules! table {
-    ($($id:ident $name:literal ($($argument:ident),*) $serves:ident $inverse:literal $named:literal [$($line:literal),* $(,)?])*) => {
+    ($($id:ident $name:literal ($($argument:ident),*) $returns:ident $serves:ident $inverse:literal $named:literal [$($line:literal),* $(,)?])*) => {
         /// A function that the generator knows.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum FunctionId {
@@ -66,6 +81,7 @@ macro_rules! table {
                     $(FunctionId::$id => &Row {
                         name: $name,
                         arguments: &[$($argument),*],
+                        returns: Returns::$returns,
                         docs: &[$($line),*],
                         serves: Serves::$serves,
                         inverse: $inverse,
@@ -77,94 +93,94 @@ macro_rules! table {
     };
 }
 
-// Identifier, name, arguments, what it serves, whether M⁻¹ is in it, whether `generate` names it.
+// Identifier, name, arguments, what it returns, what it serves, whether M⁻¹ is in it, whether `generate` names it.
 table! {
-    Rate "rate" (Coordinates, Velocities) System false true [
+    Rate "rate" (Coordinates, Velocities) Vector System false true [
         "Rates of the coordinates, ẋ = A(x) ξ (KR18 (5)).",
     ]
-    ChartRate "chart_rate" (Coordinates, Velocities) System false false [
+    ChartRate "chart_rate" (Coordinates, Velocities) Vector System false false [
         "Rates in the charts of the coordinate kinds: ẋ of plain coordinates, θ̇ of a circle, the body",
         "angular velocity of a quaternion or rotation matrix (KR18 (36)).",
     ]
-    Accel "accel" (Coordinates, Velocities, Inputs) System true true [
+    Accel "accel" (Coordinates, Velocities, Inputs) Vector System true true [
         "Forward dynamics: ξ̇ from M ξ̇ + Γ ξ ξ + ∂V = f (KR18 (30c)).",
     ]
-    InverseDynamics "inverse_dynamics" (Coordinates, Velocities, Accelerations) Callers false true [
+    InverseDynamics "inverse_dynamics" (Coordinates, Velocities, Accelerations) Vector Callers false true [
         "Inverse dynamics: the generalised force f = M ξ̇ + Γ ξ ξ + ∂V that ξ̇ needs (KR18 (30c)).",
     ]
-    MassMatrix "mass_matrix" (Coordinates) Callers false true [
+    MassMatrix "mass_matrix" (Coordinates) Rows Callers false true [
         "Mass matrix M(x) (KR18 (20)), by rows.",
     ]
-    Bias "bias" (Coordinates, Velocities) Callers false true [
+    Bias "bias" (Coordinates, Velocities) Vector Callers false true [
         "Bias force Γᵢⱼₖ ξʲ ξᵏ (KR18 (30c)): Coriolis, centrifugal and gyroscopic terms.",
     ]
-    PotentialForce "potential_force" (Coordinates) Callers false true [
+    PotentialForce "potential_force" (Coordinates) Vector Callers false true [
         "Slope of the potential, ∂ᵢV along the columns of A (KR18 (9)); gravity included.",
     ]
-    GeneralizedForce "generalized_force" (Coordinates, Velocities, Inputs) Callers false true [
+    GeneralizedForce "generalized_force" (Coordinates, Velocities, Inputs) Vector Callers false true [
         "Generalised force fᵢ of the applied loads (KR18 (28)).",
     ]
-    Momentum "momentum" (Coordinates, Velocities) Callers false true [
+    Momentum "momentum" (Coordinates, Velocities) Vector Callers false true [
         "Generalised momentum p = M ξ = ∂L/∂ξ.",
     ]
-    MomentumRate "momentum_rate" (Coordinates, Velocities, Inputs) Callers false true [
+    MomentumRate "momentum_rate" (Coordinates, Velocities, Inputs) Vector Callers false true [
         "Rate of the generalised momentum, ṗᵢ = ∂ᵢL − γᵢⱼᵏ ξʲ pₖ + fᵢ with p = M ξ (KR18 (30a)).",
     ]
-    VelocityFromMomentum "velocity_from_momentum" (Coordinates, Momenta) Callers true true [
+    VelocityFromMomentum "velocity_from_momentum" (Coordinates, Momenta) Vector Callers true true [
         "Velocity coordinates of a generalised momentum, ξ = M⁻¹ p.",
     ]
-    KineticEnergy "kinetic_energy" (Coordinates, Velocities) System false true [
+    KineticEnergy "kinetic_energy" (Coordinates, Velocities) Number System false true [
         "Kinetic energy T = ½ ξᵀ M ξ (J).",
     ]
-    PotentialEnergy "potential_energy" (Coordinates) System false true [
+    PotentialEnergy "potential_energy" (Coordinates) Number System false true [
         "Potential energy V(x) (J).",
     ]
-    Energy "energy" (Coordinates, Velocities) Callers false true [
+    Energy "energy" (Coordinates, Velocities) Number Callers false true [
         "Energy T + V (J).",
     ]
-    Dissipation "dissipation" (Coordinates, Velocities) Callers false true [
+    Dissipation "dissipation" (Coordinates, Velocities) Number Callers false true [
         "Rayleigh's dissipation function D(x, ξ) (W), half the power that dampers take: its force is",
         "−∂D/∂ξⁱ, part of the generalised force, and d/dt (T + V) = −2 D + power of all else.",
     ]
-    Constraint "constraint" (Coordinates) System false true [
+    Constraint "constraint" (Coordinates) Vector System false true [
         "Geometric constraint φ(x), zero on the configuration manifold (KR18 (3)).",
     ]
-    Correction "correction" (Coordinates) System false false [
+    Correction "correction" (Coordinates) Vector System false false [
         "The stabilising direction −Ψ φ(x) of KR18 (8): ẋ = A ξ − λ Ψ φ makes φ decay like exp(−λ t).",
     ]
-    ConstraintForce "constraint_force" (Coordinates, Velocities, Inputs) Callers true true [
+    ConstraintForce "constraint_force" (Coordinates, Velocities, Inputs) Vector Callers true true [
         "Multipliers λ of the constraints B(x) ξ = 0, M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ, in their order: the",
         "generalised force that keeps an inactive velocity at zero, a force where B ξ is a speed.",
     ]
-    ProjectPosition "project_position" (Coordinates) System true false [
+    ProjectPosition "project_position" (Coordinates) Vector System true false [
         "The step along A that closes the loops φ(x) = 0 to first order, −M⁻¹ Bᵀ S⁻¹ φ with S = B M⁻¹ Bᵀ.",
     ]
-    ProjectVelocity "project_velocity" (Coordinates, Velocities) System true false [
+    ProjectVelocity "project_velocity" (Coordinates, Velocities) Vector System true false [
         "The velocities with B ξ = 0 that are nearest in kinetic energy, ξ − M⁻¹ Bᵀ S⁻¹ B ξ.",
     ]
-    Linearize "linearize" (Coordinates, Velocities, Inputs) Asked true true [
+    Linearize "linearize" (Coordinates, Velocities, Inputs) DoubleRows Asked true true [
         "The linearisation in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,",
         "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).",
     ]
-    Splitting "splitting" () Split true true []
-    Centre "centre" (Coordinates) Split true false [
+    Splitting "splitting" () Vector Split true true []
+    Centre "centre" (Coordinates) Vector Split true false [
         "Coordinates with plain ones moved to centres of mass, y = r + R s.",
     ]
-    Uncentre "uncentre" (Coordinates) Split true false [
+    Uncentre "uncentre" (Coordinates) Vector Split true false [
         "Coordinates x of those at centres of mass: the inverse of `centre`.",
     ]
-    SplitMomenta "split_momenta" (Coordinates, Velocities) Split true false [
+    SplitMomenta "split_momenta" (Coordinates, Velocities) Vector Split true false [
         "Momenta of the free motion in the chart: ẏ of plain coordinates at centres of mass, θ̇ of circles,",
         "the angular momentum P = J ω of rotors in body axes. T = ½ ẏᵀ D ẏ + ½ Σ P·J⁻¹P.",
     ]
-    SplitVelocities "split_velocities" (Coordinates, Momenta) Split true false [
+    SplitVelocities "split_velocities" (Coordinates, Momenta) Vector Split true false [
         "Velocity coordinates ξ of such momenta: the inverse of `split_momenta`.",
     ]
-    Kick "kick" (Coordinates, Inputs) Split true false [
+    Kick "kick" (Coordinates, Inputs) Vector Split true false [
         "Rates of these momenta by the forces alone: accelerations of centres of mass and of circles,",
         "torques on rotors in body axes, about the centre of mass or the fixed point.",
     ]
-    RotorInertia "rotor_inertia" () Split true false [
+    RotorInertia "rotor_inertia" () Vector Split true false [
         "Inertia J of the rotors: J₁, J₂, J₃ where body axes are principal, else J by rows.",
     ]
 }

@@ -13,7 +13,7 @@ use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
 use crate::program::structure::Structure;
-use crate::program::{Argument, Function, FunctionId, Program, Shape};
+use crate::program::{Argument, Function, FunctionId, Program};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
 /// Derives the functions of a model that are wanted; `reduction` solves its constraints. The program is
@@ -106,17 +106,17 @@ impl Builder<'_> {
         let rate = rebuild(&model.graph, &mut self.graph, &model.rate);
         let x = model.x.clone();
         let chart = kinematics::chart_rates(&mut self.graph, &model.blocks, &x, &rate);
-        self.push(FunctionId::Rate, Shape::Vector(rate.len()), rate);
-        self.push(FunctionId::ChartRate, Shape::Vector(chart.len()), chart);
+        self.push(FunctionId::Rate, rate);
+        self.push(FunctionId::ChartRate, chart);
     }
 
     fn dynamics(&mut self, reference: &Graph, potential: Edge) {
-        let n = self.model.n();
+        let _n = self.model.n();
         let xi = self.model.xi.clone();
         let guards = self.guards();
         let route = format!("Route: {}.", self.chosen.route);
         let xi_dot = self.chosen.xi_dot.clone();
-        self.push_guarded(FunctionId::Accel, Shape::Vector(n), xi_dot, guards);
+        self.push_guarded(FunctionId::Accel, xi_dot, guards);
         if let Some(accel) = self.functions.last_mut() {
             accel.docs.push(route);
         }
@@ -132,16 +132,15 @@ impl Builder<'_> {
         let kinetic = graph.mul(half, twice);
         let potential = rebuild(reference, graph, &[potential])[0];
         let energy = graph.add(kinetic, potential);
-        let vector = Shape::Vector(n);
-        self.push(FunctionId::InverseDynamics, vector, inverse);
-        self.push(FunctionId::MassMatrix, Shape::Matrix(n, n), mass.concat());
-        self.push(FunctionId::Bias, vector, bias);
-        self.push(FunctionId::PotentialForce, vector, slope);
-        self.push(FunctionId::GeneralizedForce, vector, applied);
-        self.push(FunctionId::Momentum, vector, momentum);
-        self.push(FunctionId::KineticEnergy, Shape::Scalar, vec![kinetic]);
-        self.push(FunctionId::PotentialEnergy, Shape::Scalar, vec![potential]);
-        self.push(FunctionId::Energy, Shape::Scalar, vec![energy]);
+        self.push(FunctionId::InverseDynamics, inverse);
+        self.push(FunctionId::MassMatrix, mass.concat());
+        self.push(FunctionId::Bias, bias);
+        self.push(FunctionId::PotentialForce, slope);
+        self.push(FunctionId::GeneralizedForce, applied);
+        self.push(FunctionId::Momentum, momentum);
+        self.push(FunctionId::KineticEnergy, vec![kinetic]);
+        self.push(FunctionId::PotentialEnergy, vec![potential]);
+        self.push(FunctionId::Energy, vec![energy]);
     }
 
     /// D, where there is one.
@@ -152,7 +151,7 @@ impl Builder<'_> {
             return;
         }
         let value = rebuild(&model.graph, &mut self.graph, &[model.dissipation]);
-        self.push(FunctionId::Dissipation, Shape::Scalar, value);
+        self.push(FunctionId::Dissipation, value);
     }
 
     /// φ and −Ψ φ, which are wanted off X: copied node by node from the graph with free points.
@@ -166,12 +165,8 @@ impl Builder<'_> {
         let mut phi = copy(&free, &mut self.graph, &rows);
         phi.extend(self.loops());
         let correction = copy(&free, &mut self.graph, &correction);
-        self.push(FunctionId::Constraint, Shape::Vector(phi.len()), phi);
-        self.push(
-            FunctionId::Correction,
-            Shape::Vector(correction.len()),
-            correction,
-        );
+        self.push(FunctionId::Constraint, phi);
+        self.push(FunctionId::Correction, correction);
         Ok(())
     }
 

@@ -58,7 +58,7 @@ impl Builder<'_> {
             }
         }
         let rate = candidates.cheapest(&mut self.graph);
-        self.push(FunctionId::MomentumRate, Shape::Vector(n), rate);
+        self.push(FunctionId::MomentumRate, rate);
     }
 
     fn velocity_from_momentum(&mut self, recursions: &[Recursion]) {
@@ -91,7 +91,7 @@ impl Builder<'_> {
         let varying = |edge: &Edge| !self.graph.is_free(edge.node());
         let guards = pivots.into_iter().filter(varying).collect();
         let id = FunctionId::VelocityFromMomentum;
-        self.push_guarded(id, Shape::Vector(n), xi, guards);
+        self.push_guarded(id, xi, guards);
     }
 
     /// [A B] of the linearisation: of ξ̇ as it is computed, or as it would be by the cheapest candidate that
@@ -131,14 +131,11 @@ impl Builder<'_> {
         let Some((_, linear, motion)) = best else {
             return;
         };
-        let rows = linear.rows.len();
-        let columns = linear.rows.first().map_or(0, Vec::len);
         let outputs = graft(&linear.graph, &mut self.graph, &linear.rows.concat());
         let pivots = graft(&motion.graph, &mut self.graph, &motion.pivots);
         let varying = |edge: &Edge| !self.graph.is_free(edge.node());
         let guards = pivots.into_iter().filter(varying).collect();
-        let shape = Shape::Matrix(rows, columns);
-        self.push_guarded(FunctionId::Linearize, shape, outputs, guards);
+        self.push_guarded(FunctionId::Linearize, outputs, guards);
     }
 
     /// What is claimed to be constant, as functions that watch it.

@@ -64,22 +64,17 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a function that always has a value.
-    pub(super) fn push(&mut self, id: FunctionId, shape: Shape, outputs: Vec<Edge>) {
-        self.functions.push(Function::known(id, shape, outputs));
+    pub(super) fn push(&mut self, id: FunctionId, outputs: Vec<Edge>) {
+        self.functions
+            .push(Function::known(id, self.model.n(), outputs));
     }
 
     /// Adds a function that has a value where the guards are positive.
-    pub(super) fn push_guarded(
-        &mut self,
-        id: FunctionId,
-        shape: Shape,
-        outputs: Vec<Edge>,
-        guards: Vec<Edge>,
-    ) {
+    pub(super) fn push_guarded(&mut self, id: FunctionId, outputs: Vec<Edge>, guards: Vec<Edge>) {
         self.functions.push(Function {
             guards,
             fallible: true,
-            ..Function::known(id, shape, outputs)
+            ..Function::known(id, self.model.n(), outputs)
         });
     }
 

@@ -7,7 +7,7 @@ use super::reduction::Reduction;
 use crate::algebra::graph::Edge;
 use crate::algebra::transplant::rebuild;
 use crate::model::Model;
-use crate::program::{FunctionId, Shape};
+use crate::program::FunctionId;
 
 impl Builder<'_> {
     /// φ of the loops that multipliers keep.
@@ -40,8 +40,7 @@ impl Builder<'_> {
         let mut outputs = candidates.cheapest(&mut self.graph);
         outputs.truncate(full.constraints.len());
         let guards = self.guards();
-        let shape = Shape::Vector(outputs.len());
-        self.push_guarded(FunctionId::ConstraintForce, shape, outputs, guards);
+        self.push_guarded(FunctionId::ConstraintForce, outputs, guards);
     }
 
     /// What leads back to the constraints that are kept.
@@ -50,22 +49,11 @@ impl Builder<'_> {
             return;
         };
         let guards = self.guards();
-        let n = self.model.n();
         let loops = !self.loops().is_empty();
         if loops {
             let outputs = projections.position;
-            self.push_guarded(
-                FunctionId::ProjectPosition,
-                Shape::Vector(n),
-                outputs,
-                guards.clone(),
-            );
+            self.push_guarded(FunctionId::ProjectPosition, outputs, guards.clone());
         }
-        self.push_guarded(
-            FunctionId::ProjectVelocity,
-            Shape::Vector(n),
-            projections.velocity,
-            guards,
-        );
+        self.push_guarded(FunctionId::ProjectVelocity, projections.velocity, guards);
     }
 }

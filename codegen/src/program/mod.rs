@@ -12,6 +12,7 @@ use crate::model::layout::Block;
 use crate::model::{Coordinate, Group};
 use structure::Structure;
 
+use crate::functions::Returns;
 pub use crate::functions::{Argument, FunctionId};
 
 /// The shape of a result.
@@ -48,8 +49,15 @@ pub struct Function {
 
 impl Function {
     /// A function that the generator knows, without guards.
-    pub fn known(id: FunctionId, shape: Shape, outputs: Vec<Edge>) -> Self {
+    pub fn known(id: FunctionId, n: usize, outputs: Vec<Edge>) -> Self {
         let row = id.row();
+        let matrix = |rows: usize| Shape::Matrix(rows, outputs.len() / rows.max(1));
+        let shape = match row.returns {
+            Returns::Number => Shape::Scalar,
+            Returns::Vector => Shape::Vector(outputs.len()),
+            Returns::Rows => matrix(n),
+            Returns::DoubleRows => matrix(2 * n),
+        };
         Function {
             id: Some(id),
             name: row.name.into(),

@@ -103,7 +103,7 @@ fn told(kind: &ItemKind) -> String {
         all.iter().map(one).collect::<Vec<_>>().join("; ")
     };
     match kind {
-        ItemKind::Function(function) => {
+        Function(function) => {
             let parameters = function.parameters.iter();
             let parameters =
                 parameters.map(|(name, shape)| format!("{}: {:?}", name.name, shape.kind));

@@ -13,9 +13,9 @@ use crate::algebra::transplant::rebuild;
 use crate::derive::candidates::Candidates;
 use crate::derive::program::Builder;
 use crate::model::class;
+use crate::program::FunctionId;
 use crate::program::count::count;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
-use crate::program::{FunctionId, Shape};
 
 /// The functions, in a graph of their own.
 pub struct Functions {
@@ -191,9 +191,8 @@ impl Functions {
                     candidates.offer_both(other.graph.clone(), outputs.clone(), &builder.graph);
                 }
             }
-            let shape = Shape::Vector(outputs.len());
             let outputs = candidates.cheapest(&mut builder.graph);
-            builder.push(id, shape, outputs);
+            builder.push(id, outputs);
         }
         rebuild(&self.graph, &mut builder.graph, &self.pivots)
     }
