@@ -4,15 +4,20 @@
 //! P = J ω for rotors. The generalised force in the rates η is T⁻ᵀ Nᵀ f: the torque of a rotor about
 //! its centre of mass or fixed point, and for all else a force that D⁻¹ makes an acceleration.
 
+use super::centre::matrix_of;
 use super::constant::settle;
 use super::inertia::Separated;
+use super::rates::Part;
 use super::setting::Setting;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{Mat3, multiply, solve_symmetric, transpose};
+use crate::algebra::linear::{
+    Mat3, Vec3, apply_transposed, apply3, multiply, solve_symmetric, transpose,
+};
 use crate::algebra::transplant::rebuild;
 use crate::derive::candidates::Candidates;
 use crate::derive::program::Builder;
 use crate::model::class;
+use crate::model::layout::Block;
 use crate::program::FunctionId;
 use crate::program::count::count;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
@@ -24,6 +29,8 @@ pub struct Functions {
     centre: Option<Vec<Edge>>,
     uncentre: Option<Vec<Edge>>,
     momenta: Vec<Edge>,
+    /// The momenta once more, each in a graph of its own.
+    turned: Vec<(Graph, Vec<Edge>)>,
     velocities: Vec<Edge>,
     kick: Vec<Edge>,
     /// J₁, J₂, J₃ or J by rows, for one rotor after the other.
@@ -43,6 +50,7 @@ impl Functions {
         force: &[Edge],
     ) -> Option<Self> {
         let model = setting.model;
+        let before = graph.clone();
         let graph = &mut graph;
         let n = model.n();
         let Separated {
@@ -80,6 +88,7 @@ impl Functions {
         let stepwise = times(graph, &forward, &w);
         let product = multiply(graph, &forward, &rates.of_velocities);
         let at_once = times(graph, &product, &model.xi);
+        let of_velocities = product;
         let mut momenta = cheaper(graph, stepwise, at_once);
         let mut eta = model.momenta.clone();
         for (part, inertia) in turning.iter().zip(rotors) {
@@ -147,6 +156,7 @@ impl Functions {
         let positive = |pivot: &Edge| graph.as_rational(*pivot).is_none();
         pivots.retain(positive);
         Some(Functions {
+            turned: in_body_axes(graph, &before, setting, &of_velocities, rotors),
             centre,
             uncentre,
             momenta,
@@ -186,6 +196,11 @@ impl Functions {
             };
             let mut candidates = Candidates::with(&builder.care);
             candidates.offer_both(self.graph.clone(), outputs.clone(), &builder.graph);
+            if id == FunctionId::SplitMomenta {
+                for (graph, momenta) in &self.turned {
+                    candidates.offer(graph, momenta.clone());
+                }
+            }
             for other in others.iter().filter(|other| other.rotors == self.rotors) {
                 if let Some(outputs) = other.value(id) {
                     candidates.offer_both(other.graph.clone(), outputs.clone(), &builder.graph);
@@ -196,6 +211,61 @@ impl Functions {
         }
         rebuild(&self.graph, &mut builder.graph, &self.pivots)
     }
+}
+
+/// The momenta where rates of points are taken in the axes of a rotor, ẏ = R (Rᵀ ẏ): of a point of a body Rᵀ ẏ is
+/// v + ω × s. One candidate for every rotor, in a graph where ẏ is not computed yet; η = `rows` ξ, in `from`.
+fn in_body_axes(
+    from: &Graph,
+    before: &Graph,
+    setting: &Setting,
+    rows: &[Vec<Edge>],
+    rotors: &[Mat3],
+) -> Vec<(Graph, Vec<Edge>)> {
+    let (model, parts) = (setting.model, setting.parts);
+    let points = parts.iter().filter(|part| part.block == Block::Flat(3));
+    let points: Vec<&Part> = points.collect();
+    let turning: Vec<&Part> = parts.iter().filter(|part| part.turns()).collect();
+    let mut candidates = Vec::new();
+    for rotor in turning.iter().filter(|_| !points.is_empty()) {
+        let mut graph = before.clone();
+        let rows: Vec<Vec<Edge>> = rows
+            .iter()
+            .map(|row| rebuild(from, &mut graph, row))
+            .collect();
+        let Some(axes) = matrix_of(&mut graph, rotor, rotor.entries(&model.x)) else {
+            continue;
+        };
+        let mut momenta: Vec<Option<Edge>> = vec![None; rows.len()];
+        for point in &points {
+            let first = point.rates().start;
+            let columns: Vec<Vec3> = (0..model.n())
+                .map(|j| {
+                    let column = std::array::from_fn(|i| rows[first + i][j]);
+                    apply_transposed(&mut graph, &axes, column)
+                })
+                .collect();
+            let inner = std::array::from_fn(|i| {
+                let row: Vec<Edge> = columns.iter().map(|column| column[i]).collect();
+                graph.dot(&row, &model.xi)
+            });
+            let rate = apply3(&mut graph, &axes, inner);
+            (0..3).for_each(|i| momenta[first + i] = Some(rate[i]));
+        }
+        let mut rate = |graph: &mut Graph, place: usize| {
+            *momenta[place].get_or_insert_with(|| graph.dot(&rows[place], &model.xi))
+        };
+        let mut all: Vec<Edge> = (0..rows.len()).map(|i| rate(&mut graph, i)).collect();
+        for (part, inertia) in turning.iter().zip(rotors) {
+            let spin: Vec<Edge> = part.rates().map(|i| all[i]).collect();
+            for (row, place) in inertia.iter().zip(part.rates()) {
+                let row = rebuild(from, &mut graph, row);
+                all[place] = graph.dot(&row, &spin);
+            }
+        }
+        candidates.push((graph, all));
+    }
+    candidates
 }
 
 /// Of two ways to write the same, the one with fewer operations.
