@@ -1,7 +1,8 @@
 //! A file that gives a state, in either of its forms: by coordinates, or by joints.
 
 use super::sample::{Sample, is_sample};
-use super::{State, strict};
+use super::strict;
+use super::values::State;
 use crate::failure::Failure;
 use crate::source::Source;
 use hamel_codegen::generate::Generated;

@@ -15,6 +15,9 @@ mod solved;
 pub mod strict;
 #[cfg(test)]
 mod tests;
+mod values;
+
+pub use values::State;
 
 use crate::failure::Failure;
 use crate::source::Source;
@@ -29,19 +32,6 @@ use std::path::Path;
 
 /// Larger values of |φ(x)| are no rounding of a state that was written down.
 const OFF: f64 = 1e-6;
-
-/// Numbers for everything that a model takes.
-#[derive(Clone, Debug)]
-pub struct State {
-    /// Parameters, in order of their symbols.
-    pub params: Vec<f64>,
-    /// x.
-    pub x: Vec<f64>,
-    /// ξ.
-    pub xi: Vec<f64>,
-    /// u.
-    pub u: Vec<f64>,
-}
 
 impl State {
     /// Defaults, start and zero input.

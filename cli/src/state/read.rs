@@ -1,7 +1,7 @@
 //! JSON values to numbers, with the path of every mistake.
 
-use super::State;
 use super::solved::solved;
+use super::values::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};

@@ -1,8 +1,8 @@
 //! States by the names of joints: `{"configuration": {…}, "velocity": {…}, "force": […]}`.
 
-use super::State;
 use super::joints::{Joint, Place, joints};
 use super::read::{Reader, kind, put};
+use super::values::State;
 use hamel_codegen::generate::Generated;
 use serde_json::{Map, Value};
 

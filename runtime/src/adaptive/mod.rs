@@ -54,7 +54,7 @@
 
 pub(crate) mod control;
 mod events;
-mod pair;
+pub(crate) mod pair;
 mod start;
 mod step;
 mod stiff;

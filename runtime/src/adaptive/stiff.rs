@@ -5,7 +5,7 @@
 //! bound of the region of stability, the step is not chosen by the motion. Source: E. Hairer, G. Wanner,
 //! *Solving Ordinary Differential Equations II* (1996), IV.2.
 
-use crate::adaptive::Pair;
+use crate::adaptive::pair::Pair;
 use crate::methods::tableau::Stages;
 use crate::scalar::Scalar;
 use crate::store::add_scaled;

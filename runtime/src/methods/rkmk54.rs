@@ -5,7 +5,7 @@
 //! Ordinary Differential Equations I* (1993), II.6. Row 6 is the closing b: its stage is the first of
 //! the next step.
 
-use crate::adaptive::Pair;
+use crate::adaptive::pair::Pair;
 use crate::error::StepError;
 use crate::methods::Method;
 use crate::methods::tableau::{Row, Stages};

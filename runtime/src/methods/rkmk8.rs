@@ -4,7 +4,7 @@
 //! (1993), II.5 and II.6 (DOP853), rounded to the nearest `f64`. Row 12 is the closing b, at which
 //! the next step starts; rows 13 to 15 serve the dense output of order 7 alone.
 
-use crate::adaptive::Pair;
+use crate::adaptive::pair::Pair;
 use crate::error::StepError;
 use crate::methods::Method;
 use crate::methods::tableau::{Row, Stages};
