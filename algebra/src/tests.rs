@@ -2,14 +2,18 @@
 //! those of numbers.
 
 use super::derivation::Derivation;
+use super::double::Double;
 use super::fp::Random;
-use super::function::Slope;
+use super::function::{Parity, Slope};
 use super::graph::{Edge, Function, Graph};
+use super::interval::Interval;
 use super::lane::circle_point;
 use super::numeric::evaluate;
 use super::poly::monomial::Var;
+use super::reals::{Real, contradict};
 use super::topoly::Expander;
 use super::transplant::{copy, rebuild};
+use num_rational::BigRational;
 
 const PARAM: u8 = 1;
 const COORD: u8 = 2;
@@ -182,6 +186,56 @@ fn derivatives_are_those_of_numbers() {
             (numeric - exact).abs() <= 1e-7 * (1.0 + exact.abs()),
             "{numeric} and {exact}"
         );
+    }
+}
+
+/// What the table says of each function, against the differences of its values: its slope, its parity, its value in
+/// numbers of every kind.
+#[test]
+fn the_table_of_functions_is_true() {
+    for function in functions() {
+        let row = function.row();
+        for at in [0.3, 0.8, 1.7] {
+            let (mut g, [_, _, a, ..]) = graph();
+            let f = g.apply(function, a);
+            let slope = Derivation::new([(a.node(), g.one())]).of(&mut g, f);
+            let value =
+                |edge: Edge, x: f64| evaluate(&g, &[edge], &[0.0, 0.0, x, 0.0, 0.0, 0.0])[0];
+            assert_eq!(value(f, at), (row.value)(at), "{function:?}");
+            let h = 1e-5;
+            let numeric = (value(f, at + h) - value(f, at - h)) / (2.0 * h);
+            let exact = value(slope, at);
+            assert!(
+                (numeric - exact).abs() < 1e-8 * (1.0 + exact.abs()),
+                "{function:?}"
+            );
+            let negative = (row.value)(-at);
+            match row.parity {
+                Parity::Even => assert_eq!(negative, (row.value)(at), "{function:?}"),
+                Parity::Odd => assert_eq!(negative, -(row.value)(at), "{function:?}"),
+                Parity::Plain => assert!(negative.abs() != (row.value)(at).abs(), "{function:?}"),
+            }
+            let expected = (row.value)(at);
+            let near = |found: f64| (found - expected).abs() < 1e-14 * (1.0 + expected.abs());
+            assert!(near((row.double)(Double::new(at)).to_f64()), "{function:?}");
+            let real = [(row.real)(Real::new(at, 0.0))];
+            assert!(
+                !contradict(&real, &[Real::new(expected, 1e-14)]),
+                "{function:?}"
+            );
+            assert!(
+                contradict(&real, &[Real::new(expected + 1e-9, 1e-14)]),
+                "{function:?}"
+            );
+            let number = BigRational::from_float(at).expect("finite");
+            let between = (row.interval)(&Interval::rational(&number));
+            if let Some(between) = between {
+                assert!(near(between.to_f64()), "{function:?}");
+            }
+        }
+        if let Some([at, value]) = row.at {
+            assert_eq!((row.value)(f64::from(at)), f64::from(value), "{function:?}");
+        }
     }
 }
 
