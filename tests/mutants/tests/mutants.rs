@@ -165,8 +165,12 @@ fn mutants() -> Vec<Mutant> {
 
 #[test]
 fn every_mutant_is_caught() {
-    let copy = Copy::new();
     let mutants = mutants();
+    // What cannot be applied is seen before anything is built.
+    for mutant in &mutants {
+        mutant.applied(&read(&root().join(&mutant.file)));
+    }
+    let copy = Copy::new();
     for mutant in &mutants {
         let sound = copy.check(&mutant.model);
         assert_eq!(sound.status.code(), Some(0), "{} as it is", mutant.model);
