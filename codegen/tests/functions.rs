@@ -175,3 +175,32 @@ fn a_function_without_a_call_is_a_warning() {
             .any(|warning| warning.message == "the function `f1` is never used")
     );
 }
+
+/// Chains of calls and calls that double end with an error, soon and without an overflow.
+#[test]
+fn what_functions_write_out_is_bounded() {
+    let system = |functions: &str, first: &str| {
+        format!(
+            "system S {{ coord x; velocity v; rate x = v; kinetic v^2 / 2; {functions} potential {first}(x)^2; }}"
+        )
+    };
+    let chain = |count: usize| -> String {
+        let links = (0..count).map(|i| format!("fn f{i}(a) = f{}(a);", i + 1));
+        links.chain([format!("fn f{count}(a) = a;")]).collect()
+    };
+    let doubling = |count: usize| -> String {
+        let links = (0..count).map(|i| format!("fn f{i}(a) = f{0}(a) + f{0}(a);", i + 1));
+        links.chain([format!("fn f{count}(a) = a;")]).collect()
+    };
+    assert!(from_text(&system(&chain(50), "f0")).is_ok());
+    assert!(from_text(&system(&doubling(10), "f0")).is_ok());
+    for (functions, message) in [
+        (chain(1000), "functions call one another too deeply here"),
+        (doubling(40), "functions call one another too often here"),
+    ] {
+        let errors = from_text(&system(&functions, "f0")).expect_err("too much");
+        assert_eq!(errors.len(), 1, "{errors:#?}");
+        assert_eq!(errors[0].message, message);
+        assert!(errors[0].notes.len() <= 4);
+    }
+}

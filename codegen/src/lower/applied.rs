@@ -13,8 +13,19 @@ use crate::syntax::ast::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
+/// The most calls of functions that a description writes out.
+const MOST_CALLS: usize = 100_000;
+
+/// Calls around an error that are shown with it.
+const MOST_NOTES: usize = 4;
+
 /// Makes a function known; one that calls itself, or has two parameters of one name, is refused.
-pub fn declare(function: &Function, system: &System, scope: &mut Scope, report: &mut Report) {
+pub fn declare(
+    function: &Function,
+    all: &BTreeMap<&str, &Function>,
+    scope: &mut Scope,
+    report: &mut Report,
+) {
     let name = &function.name;
     if scope.functions.contains_key(&name.name) {
         // Its name is claimed later, and refused then.
@@ -33,7 +44,7 @@ pub fn declare(function: &Function, system: &System, scope: &mut Scope, report: 
         }
         known.push(parameter);
     }
-    if reaches(system, function, &name.name) {
+    if reaches(all, function, &name.name) {
         let message = format!("the value of `{}` needs `{}` itself", name.name, name.name);
         report
             .push(Diagnostic::new(function.value.span, message).help(
@@ -68,8 +79,7 @@ pub fn functions(system: &System) -> BTreeMap<&str, &Function> {
 }
 
 /// Whether the value of a function calls a name, itself or by functions that it calls.
-fn reaches(system: &System, function: &Function, wanted: &str) -> bool {
-    let all = functions(system);
+fn reaches(all: &BTreeMap<&str, &Function>, function: &Function, wanted: &str) -> bool {
     let mut reached = BTreeSet::new();
     let mut open = vec![function];
     while let Some(function) = open.pop() {
@@ -114,6 +124,18 @@ impl Evaluator<'_> {
         arguments: &[Expr],
         span: Span,
     ) -> Option<Value> {
+        let calls = self.scope.calls.get() + 1;
+        self.scope.calls.set(calls);
+        if calls > MOST_CALLS {
+            // Reported where it was crossed.
+            return match calls == MOST_CALLS + 1 {
+                true => self.error(
+                    Diagnostic::new(span, "functions call one another too often here")
+                        .help("give what they have in common a name with `let`"),
+                ),
+                false => None,
+            };
+        }
         let values: Vec<Option<Value>> = arguments
             .iter()
             .map(|argument| self.value(argument))
@@ -155,7 +177,11 @@ impl Evaluator<'_> {
         let mut inner = Report::new();
         let value = self.within(&mut inner, locals).value(&function.value);
         for error in inner.finish().err().unwrap_or_default() {
-            self.report.push_once(error.note(span, "in this call"));
+            let error = match error.notes.len() < MOST_NOTES {
+                true => error.note(span, "in this call"),
+                false => error,
+            };
+            self.report.push_once(error);
         }
         value
     }

@@ -51,9 +51,10 @@ pub fn declare(
             }
         }
     }
+    let functions = applied::functions(system);
     for item in &system.items {
         if let ItemKind::Function(function) = &item.kind {
-            applied::declare(function, system, scope, report);
+            applied::declare(function, &functions, scope, report);
         }
     }
     let mut declarer = Declarer {

@@ -14,6 +14,9 @@ use std::collections::BTreeMap;
 /// matrices of parameters.
 const MOST_NODES: usize = 200_000;
 
+/// The deepest nesting of expressions, functions written out: one expression alone is never so deep.
+const MOST_LEVELS: usize = 640;
+
 /// Largest number of entries of an array.
 const MOST_ENTRIES: usize = 64;
 
@@ -27,6 +30,8 @@ pub struct Evaluator<'a> {
     pub report: &'a mut Report,
     /// Values of the parameters of the function whose value is wanted; none outside of functions.
     locals: BTreeMap<&'a str, Value>,
+    /// How deep expressions are nested here, those of the functions around included.
+    level: usize,
 }
 
 impl<'a> Evaluator<'a> {
@@ -37,6 +42,7 @@ impl<'a> Evaluator<'a> {
             scope,
             report,
             locals: BTreeMap::new(),
+            level: 0,
         }
     }
 
@@ -51,6 +57,7 @@ impl<'a> Evaluator<'a> {
             scope: self.scope,
             report,
             locals,
+            level: self.level,
         }
     }
     /// The value of an expression.
@@ -59,7 +66,27 @@ impl<'a> Evaluator<'a> {
             // Reported where it was crossed.
             return None;
         }
-        let value = match &expr.kind {
+        if self.level >= MOST_LEVELS {
+            let error = Diagnostic::new(expr.span, "functions call one another too deeply here");
+            return self.error(error.help("write some of them out, or name parts with `let`"));
+        }
+        self.level += 1;
+        let value = self.evaluated(expr);
+        self.level -= 1;
+        if self.graph.len() > MOST_NODES && value.is_some() {
+            return self.error(
+                Diagnostic::new(
+                    expr.span,
+                    "the description grows too large with this expression",
+                )
+                .help("use smaller matrices, or write out the entries that matter"),
+            );
+        }
+        value.map(|value| value.unsigned_zeros(self.graph))
+    }
+
+    fn evaluated(&mut self, expr: &Expr) -> Option<Value> {
+        match &expr.kind {
             ExprKind::Number(number) => {
                 let edge = self.graph.rational(number);
                 self.bounded(Value::Scalar(edge), expr.span)
@@ -74,17 +101,7 @@ impl<'a> Evaluator<'a> {
                 self.binary(*op, a?, b?, left, right, expr.span)
             }
             ExprKind::Array(items) => self.array(items, expr.span),
-        };
-        if self.graph.len() > MOST_NODES && value.is_some() {
-            return self.error(
-                Diagnostic::new(
-                    expr.span,
-                    "the description grows too large with this expression",
-                )
-                .help("use smaller matrices, or write out the entries that matter"),
-            );
         }
-        value.map(|value| value.unsigned_zeros(self.graph))
     }
 
     /// The value of an expression that has to be a scalar.

@@ -7,6 +7,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Function, Ident, ItemKind, Span, System};
 use crate::syntax::suggest::closest;
 use rustc_hash::FxHashMap;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 /// What kind of thing a name is.
@@ -124,6 +125,8 @@ pub struct Scope {
     pub rates: Option<Rates>,
     /// The functions of the description.
     pub functions: BTreeMap<String, Function>,
+    /// How many calls of them have been written out.
+    pub calls: Cell<usize>,
 }
 
 impl Scope {
@@ -174,6 +177,7 @@ impl Scope {
             unmoved: false,
             rates: None,
             functions: BTreeMap::new(),
+            calls: Cell::new(0),
         }
     }
 
