@@ -85,7 +85,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .flat_map(names::group)
         .collect();
     // Displacements along the full frame, changes of the velocities that constraints leave.
-    let frame = names::velocities(&generated.model);
+    let mut frame = names::velocities(&generated.model);
+    if let Some(clock) = generated.model.clock {
+        // The time is not displaced.
+        frame.remove(clock.xi);
+    }
     let velocities = names::velocities(&generated.active);
     let displacements = frame.iter().map(|name| format!("h({name})"));
     let changes = velocities.iter().map(|name| format!("d({name})"));

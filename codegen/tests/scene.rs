@@ -55,6 +55,8 @@ system Everything {
     constraint q^2 = 4 * (m - 1);
     rate q = u;
     rate X.p = X.R * v;
+    time t;
+    prescribe u = 3 * t;
     inactive u, v[2];
     nonholonomic u = m * v[1] stabilized 20;
     nonholonomic u = v[1];

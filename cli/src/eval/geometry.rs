@@ -99,7 +99,7 @@ fn mass(
     let full = &generated.model;
     let of =
         |graph: &Graph, roots: &[Edge]| slopes(graph, roots, &numbers(full, state), directions);
-    if full.constraints.is_empty()
+    if !full.is_constrained()
         && let Some(emitted) = generated.program.function("mass_matrix")
     {
         return Ok(of(&generated.program.graph, &emitted.outputs));

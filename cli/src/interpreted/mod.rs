@@ -99,7 +99,7 @@ impl Interpreted {
             evaluations: Cell::new(0),
             velocity_names: names::velocities(&generated.active),
             constant_singular: constant_singular(program, &state.params),
-            constrained: !generated.model.constraints.is_empty(),
+            constrained: generated.model.is_constrained(),
             failed: RefCell::new(None),
         })
     }

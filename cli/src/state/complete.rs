@@ -28,7 +28,9 @@ impl State {
             normalise(&active.blocks, &mut self.x);
         }
         let mut x = self.x.clone();
-        let closed = Closure::of(full, &self.params).close_loops(&mut x, given_x);
+        let closed = Closure::of(full, &self.params)
+            .with_inputs(&self.u)
+            .close_loops(&mut x, given_x);
         closed.map_err(|open| {
             vec![format!(
                 "coord: this configuration leaves {} open by {:.2e}, and no change of coordinates that are not given closes it",
@@ -40,7 +42,9 @@ impl State {
         // Steps along the loops may leave constraints that are no loops.
         none(self.violations(active))?;
         let mut xi = self.xi.clone();
-        let settled = Closure::of(active, &self.params).settle(&self.x, &mut xi, given_xi);
+        let settled = Closure::of(active, &self.params)
+            .with_inputs(&self.u)
+            .settle(&self.x, &mut xi, given_xi);
         settled.map_err(|open| {
             vec![format!(
                 "velocity: violates {} by {:.2e}, and no change of velocities that are not given keeps it",

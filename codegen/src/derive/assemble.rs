@@ -111,8 +111,6 @@ impl Builder<'_> {
     }
 
     fn dynamics(&mut self, reference: &Graph, potential: Edge) {
-        let _n = self.model.n();
-        let xi = self.model.xi.clone();
         let guards = self.guards();
         let route = format!("Route: {}.", self.chosen.route);
         let xi_dot = self.chosen.xi_dot.clone();
@@ -127,9 +125,7 @@ impl Builder<'_> {
         let applied = self.parts.applied.clone();
         let momentum = self.parts.momentum_of(graph, self.model);
         let inverse = self.parts.whole(graph, self.model);
-        let twice = graph.dot(&momentum, &xi);
-        let half = graph.ratio(1, 2);
-        let kinetic = graph.mul(half, twice);
+        let kinetic = self.parts.kinetic_of(graph, self.model, &momentum);
         let potential = rebuild(reference, graph, &[potential])[0];
         let energy = graph.add(kinetic, potential);
         self.push(FunctionId::InverseDynamics, inverse);

@@ -32,7 +32,8 @@ impl Calculus {
                     .x
                     .iter()
                     .zip(&model.rate)
-                    .map(|(x, &rate)| (x.node(), rate)),
+                    .chain(model.input_rates.iter().map(|(u, rate)| (u, rate)))
+                    .map(|(symbol, &rate)| (symbol.node(), rate)),
             ),
         }
     }

@@ -1,5 +1,7 @@
 //! Kinetic energy T = ½ M_ij ξⁱ ξʲ, potential energy V, and power.
 
+use super::calculus::Calculus;
+use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{add3, apply3};
 use crate::model::Model;
@@ -35,4 +37,42 @@ pub fn kinetic(model: &mut Model, mass: &[Vec<Edge>]) -> Edge {
     let twice = graph.dot(&momentum, &model.xi);
     let half = graph.ratio(1, 2);
     graph.mul(half, twice)
+}
+
+/// T as points and bodies move, ½ Σ m |ċ|² + ½ Σ ω · Θ ω, with what was written as `kinetic`: T₂ + T₁ + T₀ where ẋ has
+/// terms without ξ.
+pub fn traced(model: &mut Model, calculus: &mut Calculus) -> Edge {
+    let graph = &mut model.graph;
+    let mut twice = Vec::new();
+    for body in &model.bodies {
+        let frame = &model.frames[body.frame];
+        let arm = apply3(graph, &frame.rotation, body.com);
+        let centre = add3(graph, frame.position, arm);
+        let velocity = calculus.rate3(graph, centre);
+        let square = graph.dot(&velocity, &velocity);
+        twice.push(graph.mul(body.mass, square));
+        let omega = calculus.spin(graph, &frame.rotation);
+        let spin = apply3(graph, &body.inertia_com, omega);
+        twice.push(graph.dot(&omega, &spin));
+    }
+    for particle in &model.particles {
+        let velocity = calculus.rate3(graph, particle.position);
+        let square = graph.dot(&velocity, &velocity);
+        twice.push(graph.mul(particle.mass, square));
+    }
+    let half = graph.ratio(1, 2);
+    let sum = graph.sum(&twice);
+    let moved = graph.mul(half, sum);
+    graph.add(moved, model.kinetic)
+}
+
+/// p = ∂T/∂ξ.
+pub fn momentum(model: &mut Model, kinetic: Edge) -> Vec<Edge> {
+    let graph = &mut model.graph;
+    let one = graph.one();
+    let by = model
+        .xi
+        .iter()
+        .map(|xi| Derivation::new([(xi.node(), one)]));
+    by.map(|mut by| by.of(graph, kinetic)).collect()
 }

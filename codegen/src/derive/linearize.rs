@@ -50,8 +50,10 @@ pub struct Linear {
 
 /// The frame that displacements are measured in, as edges of the graph of F.
 pub struct Displacements {
-    /// A of the full frame, ν rows of n.
+    /// A of the full frame, ν rows of n; without the column of ξ⁰.
     a: Vec<Vec<Edge>>,
+    /// The places of the displacements in ξ: all but that of ξ⁰, as the time is not displaced.
+    places: Vec<usize>,
     /// ξ = C ξₐ.
     xi: Vec<Edge>,
     /// γ of the full frame.
@@ -71,8 +73,12 @@ impl Displacements {
             Some(images) => map_symbols(&own.graph, graph, edges, images),
             None => rebuild(&own.graph, graph, edges),
         };
+        let time = full.clock.map(|clock| clock.xi);
+        let places: Vec<usize> = (0..own.n()).filter(|&i| Some(i) != time).collect();
+        let displaced = |row: &Vec<Edge>| places.iter().map(|&i| row[i]).collect::<Vec<_>>();
         Some(Displacements {
-            a: own.a.iter().map(|row| carry(row)).collect(),
+            a: own.a.iter().map(|row| carry(&displaced(row))).collect(),
+            places: places.clone(),
             xi: carry(&own.xi),
             gamma: gamma
                 .iter()
@@ -81,8 +87,9 @@ impl Displacements {
         })
     }
 
+    /// Number of displacements.
     fn n(&self) -> usize {
-        self.xi.len()
+        self.places.len()
     }
 }
 
@@ -139,23 +146,19 @@ pub fn linearize(model: &Model, motion: &Motion, care: &Care) -> Linear {
 fn upper(model: &Model, motion: &Motion) -> Linear {
     let mut graph = motion.graph.clone();
     let nearby = &motion.nearby;
-    let (n, zero) = (nearby.n(), graph.zero());
     let mut columns = columns(model, &mut graph, nearby);
-    let rows = (0..n)
-        .map(|k| {
+    let rows = (nearby.places.iter())
+        .map(|&k| {
             let mut row: Vec<Edge> = columns
                 .iter_mut()
                 .map(|column| column.of(&mut graph, nearby.xi[k]))
                 .collect();
-            for (j, entry) in row.iter_mut().enumerate().take(n) {
-                for i in 0..n {
+            for (entry, &j) in row.iter_mut().zip(&nearby.places) {
+                for i in 0..nearby.xi.len() {
                     let product = graph.mul(nearby.gamma[i][j][k], nearby.xi[i]);
                     *entry = graph.sub(*entry, product);
                 }
             }
-            row.iter_mut()
-                .skip(n + model.n())
-                .for_each(|entry| *entry = zero);
             row
         })
         .collect();

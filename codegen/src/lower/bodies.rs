@@ -1,6 +1,7 @@
 //! Bodies, particles and kinetic energies.
 
 use super::reader::Reader;
+use super::time;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Graph};
@@ -119,6 +120,7 @@ impl Reader<'_, '_> {
                     .help("it is a function of coordinates, velocities and parameters"),
             );
         }
+        let energy = time::homogeneous(self.evaluator.graph, self.declared, energy);
         if !is_quadratic(self.evaluator.graph.clone(), energy, &self.declared.xi) {
             return self.evaluator.error(
                 Diagnostic::new(

@@ -6,7 +6,9 @@ use super::names::Names;
 use super::rate::At;
 use super::scope::Scope;
 use super::variety::Variety;
-use super::{defaults, dynamics, invariants, joints, kinematics, pfaffian, start, unused};
+use super::{
+    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, time, unused,
+};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -25,6 +27,7 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
     let mut first = Report::new();
     let warnings = unused::warnings(system);
     let system = &joints::expand(system, &mut first);
+    let system = &time::expand(system, &mut first);
     let mut variety = Variety::read(system, SEED, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     let mut branches = false;
@@ -166,15 +169,32 @@ impl<'a> Reading<'a> {
         let joints = joints::read(system, graph, scope, report);
         let armature = joints::armature(system, graph, scope, declared, &mut dynamics, report);
         let invariants = invariants::read(system, graph, scope, &frames, declared, report);
-        let constraints =
+        let mut constraints =
             pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
+        let (drives, prescribed) = prescribe::read(
+            system,
+            graph,
+            scope,
+            declared,
+            variety,
+            kinematics.as_ref(),
+            report,
+        );
+        constraints.extend(drives);
         if let (Some(start), Some(kinematics), true) = (
             &mut starts,
             &kinematics,
             report.is_empty() && last.is_empty(),
         ) {
             let (all, n) = (&declared.coordinates, declared.xi.len());
-            let closure = Closure::new(graph, all, &kinematics.a, n, &constraints, &defaults);
+            let closure = Closure::new(
+                graph,
+                all,
+                (&kinematics.a, n),
+                declared.clock,
+                &constraints,
+                &defaults,
+            );
             report.keep(start.close(&closure, &constraints, &defaults));
         }
         last.finish()
@@ -213,6 +233,10 @@ impl<'a> Reading<'a> {
             rate: kinematics.rate,
             a: kinematics.a,
             constraints,
+            clock: declared.clock,
+            prescribed,
+            input_rates: declared.input_rates,
+            whole: None,
             spans: true,
             overconstrained: false,
             kinetic_terms: None,

@@ -3,6 +3,7 @@
 use super::declare::{Declared, shape_fits};
 use super::expression::Evaluator;
 use super::scope::{Rates, Scope};
+use super::time;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Graph};
@@ -63,7 +64,7 @@ pub fn read(
     let (scope, x_dot) = rates(&mut with_rates, scope, &declared.x);
     for declaration in list {
         let evaluator = Evaluator::new(&mut with_rates, &scope, report);
-        let read = define(declaration, evaluator, &x_dot);
+        let read = define(declaration, evaluator, declared, &x_dot);
         let group = declared
             .velocities
             .iter()
@@ -102,6 +103,7 @@ fn rates(graph: &mut Graph, scope: &Scope, x: &[Edge]) -> (Scope, Vec<Edge>) {
 fn define(
     declaration: &Declaration,
     mut evaluator: Evaluator,
+    declared: &Declared,
     x_dot: &[Edge],
 ) -> Option<Vec<Vec<Edge>>> {
     let expr = declaration.value.as_ref()?;
@@ -138,9 +140,16 @@ fn define(
         .collect();
     let mut rows = Vec::new();
     for &entry in &entries {
-        let row: Vec<Edge> = columns.iter_mut().map(|c| c.of(graph, entry)).collect();
+        let mut row: Vec<Edge> = columns.iter_mut().map(|c| c.of(graph, entry)).collect();
         let whole = graph.dot(&row, x_dot);
-        let rest = graph.sub(entry, whole);
+        let mut rest = graph.sub(entry, whole);
+        // ξ = Y ẋ + y(x, t): the term without a rate goes with ṫ.
+        if let (Some(clock), Some((_, given))) =
+            (declared.clock, time::carried(graph, declared, rest))
+        {
+            row[clock.x] = graph.add(row[clock.x], given);
+            rest = graph.zero();
+        }
         let found = row
             .iter()
             .chain([&rest])

@@ -8,6 +8,7 @@
 use super::bodies::is_quadratic;
 use super::line::{Line, is_root};
 use super::reader::{Dynamics, Reader};
+use super::time;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{scale3, sub3};
 use crate::diagnostics::Diagnostic;
@@ -269,6 +270,7 @@ impl Reader<'_, '_> {
                 .help("what depends on inputs is a load: `generalized force w = -u * w;`"),
             );
         }
+        let energy = time::homogeneous(graph, self.declared, energy);
         if !is_quadratic(graph.clone(), energy, &self.declared.xi) {
             return self.evaluator.error(
                 Diagnostic::new(

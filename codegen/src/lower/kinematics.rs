@@ -56,7 +56,7 @@ pub fn read(
             report.push(Diagnostic::new(coordinate.span, message).help(help));
         }
     }
-    let a = linear_part(system, graph, &rates, declared, report).filter(|_| complete);
+    let a = linear_part(system, graph, &mut rates, declared, report).filter(|_| complete);
     relate(
         system,
         graph,

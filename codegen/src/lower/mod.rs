@@ -28,6 +28,7 @@ mod motion;
 mod names;
 mod observe;
 mod pfaffian;
+mod prescribe;
 mod rate;
 mod rates;
 mod reader;
@@ -35,6 +36,7 @@ mod relations;
 mod scope;
 mod start;
 mod tangency;
+mod time;
 mod unused;
 mod variety;
 

@@ -5,6 +5,7 @@ use super::declare::Declared;
 use super::expression::Evaluator;
 use super::rate::Kinematics;
 use super::scope::Scope;
+use super::time;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
@@ -95,6 +96,7 @@ impl Reader<'_> {
             rows.push(Pfaffian {
                 kind: Kind::Inactive,
                 row,
+                shift: graph.zero(),
                 residual: graph.zero(),
                 stabilized: None,
                 written: written(expr),
@@ -114,12 +116,20 @@ impl Reader<'_> {
         let graph = &mut *self.evaluator.graph;
         let mut rows = Vec::new();
         for edge in entries {
-            let row: Vec<Edge> = self
+            let mut row: Vec<Edge> = self
                 .declared
                 .xi
                 .iter()
                 .map(|xi| Derivation::new([(xi.node(), graph.one())]).of(graph, edge))
                 .collect();
+            let mut edge = edge;
+            let linear = graph.dot(&row, &self.declared.xi);
+            let rest = graph.sub(edge, linear);
+            // B ξ = b(x, t): the term without a velocity goes with ξ⁰.
+            if let Some((place, rest)) = time::carried(graph, self.declared, rest) {
+                row[place] = graph.add(row[place], rest);
+                edge = graph.dot(&row, &self.declared.xi);
+            }
             let whole = graph.dot(&row, &self.declared.xi);
             let class = row
                 .iter()
@@ -148,6 +158,7 @@ impl Reader<'_> {
             rows.push(Pfaffian {
                 kind: Kind::Nonholonomic,
                 row,
+                shift: graph.zero(),
                 residual: graph.zero(),
                 stabilized,
                 written: equation(left, right),
@@ -198,6 +209,7 @@ impl Reader<'_> {
             rows.push(Pfaffian {
                 kind: Kind::Loop,
                 row,
+                shift: graph.zero(),
                 residual: edge,
                 stabilized,
                 written: equation(left, right),

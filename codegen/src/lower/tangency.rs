@@ -2,6 +2,7 @@
 
 use super::declare::Declared;
 use super::rate::{Rate, rate_help, velocity_for};
+use super::time;
 use super::variety::{Origin, Variety};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Fp;
@@ -19,20 +20,32 @@ const LONGEST: usize = 60;
 pub fn linear_part(
     system: &System,
     graph: &mut Graph,
-    rates: &[Option<Rate>],
+    rates: &mut [Option<Rate>],
     declared: &Declared,
     report: &mut Report,
 ) -> Option<Vec<Vec<Edge>>> {
     let mut a = vec![Vec::new(); rates.len()];
     for &xi in &declared.xi {
         let mut derivation = Derivation::new([(xi.node(), graph.one())]);
-        for (row, rate) in a.iter_mut().zip(rates) {
-            row.extend(rate.map(|rate| derivation.of(graph, rate.edge)));
+        for (row, rate) in a.iter_mut().zip(rates.iter()) {
+            row.extend(rate.as_ref().map(|rate| derivation.of(graph, rate.edge)));
+        }
+    }
+    if declared.clock.is_some() {
+        for (row, rate) in a.iter_mut().zip(rates.iter_mut()) {
+            let Some(rate) = rate else { continue };
+            let linear = graph.dot(row, &declared.xi);
+            let rest = graph.sub(rate.edge, linear);
+            // ẋ = A ξ + a(x, t): the term without a velocity goes with ξ⁰.
+            if let Some((place, rest)) = time::carried(graph, declared, rest) {
+                row[place] = graph.add(row[place], rest);
+                rate.edge = graph.dot(row, &declared.xi);
+            }
         }
     }
     // One error a statement.
     let mut bad: Vec<usize> = Vec::new();
-    for (row, rate) in a.iter().zip(rates) {
+    for (row, rate) in a.iter().zip(rates.iter()) {
         let Some(rate) = rate else { continue };
         let whole = graph.dot(row, &declared.xi);
         let class = row

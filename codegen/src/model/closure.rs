@@ -5,8 +5,8 @@
 //! rounding.
 
 use super::layout::{Block, blocks};
-use super::pfaffian::{Kind, Pfaffian};
-use super::{Coordinate, Model};
+use super::pfaffian::Pfaffian;
+use super::{Clock, Coordinate, Model};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::{evaluate, least_norm};
 
@@ -23,8 +23,11 @@ pub struct Closure<'a> {
     blocks: Vec<Block>,
     a: Vec<Edge>,
     n: usize,
+    /// The place of ξ⁰ among the velocities: the time is always given.
+    time: Option<usize>,
     constraints: &'a [Pfaffian],
     params: &'a [f64],
+    inputs: Option<&'a [f64]>,
 }
 
 /// A constraint that could not be kept.
@@ -41,8 +44,8 @@ impl<'a> Closure<'a> {
     pub fn new(
         graph: &'a Graph,
         coordinates: &[Coordinate],
-        a: &[Vec<Edge>],
-        n: usize,
+        (a, n): (&[Vec<Edge>], usize),
+        clock: Option<Clock>,
         constraints: &'a [Pfaffian],
         params: &'a [f64],
     ) -> Self {
@@ -52,8 +55,10 @@ impl<'a> Closure<'a> {
             blocks: kinds.flat_map(blocks).collect(),
             a: a.concat(),
             n,
+            time: clock.map(|clock| clock.xi),
             constraints,
             params,
+            inputs: None,
         }
     }
 
@@ -64,14 +69,22 @@ impl<'a> Closure<'a> {
             blocks: model.blocks.clone(),
             a: model.a.concat(),
             n: model.n(),
+            time: model.clock.filter(|_| model.spans).map(|clock| clock.xi),
             constraints: &model.constraints,
             params,
+            inputs: None,
         }
+    }
+
+    /// The same where inputs are not zero; prescribed motion may depend on them.
+    pub fn with_inputs(mut self, inputs: &'a [f64]) -> Self {
+        self.inputs = Some(inputs);
+        self
     }
 
     /// The loops, by their places among the constraints.
     fn loops(&self) -> Vec<usize> {
-        let is_loop = |&place: &usize| self.constraints[place].kind == Kind::Loop;
+        let is_loop = |&place: &usize| self.constraints[place].is_holonomic();
         (0..self.constraints.len()).filter(is_loop).collect()
     }
 
@@ -121,6 +134,7 @@ impl<'a> Closure<'a> {
             let a = evaluate(self.graph, &self.a, &numbers);
             // A velocity that moves a fixed coordinate stays zero.
             let free: Vec<usize> = (0..n)
+                .filter(|&i| self.time != Some(i))
                 .filter(|i| (0..x.len()).all(|alpha| !fixed[alpha] || a[alpha * n + i] == 0.0))
                 .collect();
             let jacobian: Vec<Vec<f64>> = b
@@ -149,10 +163,12 @@ impl<'a> Closure<'a> {
         let rows = self.constraints.iter().flat_map(|c| c.row.iter().copied());
         let rows: Vec<Edge> = rows.collect();
         let b = evaluate(self.graph, &rows, &self.numbers(x));
+        let shifts: Vec<Edge> = self.constraints.iter().map(|c| c.shift).collect();
+        let shifts = evaluate(self.graph, &shifts, &self.numbers(x));
         let speeds = |xi: &[f64]| -> Vec<f64> {
-            b.chunks(n.max(1))
-                .map(|row| row.iter().zip(xi).map(|(b, v)| b * v).sum())
-                .collect()
+            let moved = |row: &[f64]| row.iter().zip(xi).map(|(b, v)| b * v).sum::<f64>();
+            let rows = b.chunks(n.max(1)).zip(&shifts);
+            rows.map(|(row, shift)| moved(row) + shift).collect()
         };
         let Some((constraint, residual)) = worst(&speeds(xi)) else {
             return Ok(());
@@ -163,7 +179,8 @@ impl<'a> Closure<'a> {
             .flatten()
         {
             let mut settled = xi.clone();
-            let free: Vec<usize> = (0..n).filter(|&i| !fixed[i]).collect();
+            let free = (0..n).filter(|&i| !fixed[i] && self.time != Some(i));
+            let free: Vec<usize> = free.collect();
             let jacobian: Vec<Vec<f64>> = b
                 .chunks(n)
                 .map(|row| free.iter().map(|&i| row[i]).collect())
@@ -198,6 +215,10 @@ impl<'a> Closure<'a> {
     fn numbers(&self, x: &[f64]) -> Vec<f64> {
         let mut numbers = vec![std::f64::consts::PI];
         numbers.extend(self.params.iter().chain(x));
+        if let Some(inputs) = self.inputs {
+            numbers.extend(vec![0.0; self.n]);
+            numbers.extend(inputs);
+        }
         numbers.resize(self.graph.symbols().len(), 0.0);
         numbers
     }

@@ -8,7 +8,7 @@ use super::invariants::{Invariant, Quantity};
 use super::motion::Observed;
 use super::pfaffian::Pfaffian;
 use super::value::Value;
-use super::{Body, Frame, Group, KineticTerms, Model, Particle, Wrench};
+use super::{Body, Frame, Group, KineticTerms, Model, Particle, Whole, Wrench};
 use crate::algebra::graph::{Edge, Graph};
 
 /// What holds expressions of a graph.
@@ -83,6 +83,13 @@ impl Edges for Value {
     }
 }
 
+/// Expressions by their places.
+impl Edges for (usize, Edge) {
+    fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
+        self.1.for_each_edge(f);
+    }
+}
+
 /// Expressions with names.
 impl Edges for (String, Value) {
     fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
@@ -107,8 +114,9 @@ fields!(Frame { rotation, position, relative; name, parent });
 fields!(Body { mass, com, inertia_com, inertia_origin; frame });
 fields!(Particle { mass, position; });
 fields!(Wrench { at, force, torque; frame, axes });
+fields!(Whole { images; full, active });
 fields!(KineticTerms { mass, bias; });
-fields!(Pfaffian { row, residual, stabilized; kind, written, span });
+fields!(Pfaffian { row, shift, residual, stabilized; kind, written, span });
 fields!(Completion { y, pivots, constants; independent });
 fields!(Observed { rotation, position, point, value; quantity });
 fields!(Spring { stiffness, length, along, wrenches; });
@@ -121,8 +129,8 @@ fields!(Elements {
 fields!(Model {
     x, xi, xi_dot, u, momenta, rate, a, frames, bodies, particles, wrenches, elements, dissipation, observed,
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
-    completion, params, velocities, inputs;
-    name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained,
+    completion, params, velocities, inputs, prescribed, input_rates, whole;
+    name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, clock,
     joints, start_x, start_xi, asked, span, warnings
 });
 

@@ -29,6 +29,7 @@ use layout::Block;
 use motion::Observed;
 use pfaffian::Pfaffian;
 use points::Points;
+use std::sync::Arc;
 use value::Value;
 
 /// Classes of symbols, one bit each.
@@ -140,6 +141,26 @@ pub struct KineticTerms {
     pub bias: Vec<Edge>,
 }
 
+/// Where the time is: a coordinate whose velocity is ξ⁰ = 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Clock {
+    /// Its place in x.
+    pub x: usize,
+    /// The place of ξ⁰ in ξ of the full frame.
+    pub xi: usize,
+}
+
+/// The full frame of a system whose other velocities are all given: by the time, or prescribed.
+#[derive(Clone, Debug)]
+pub struct Whole {
+    /// The system in the full frame, in a graph of its own.
+    pub full: Arc<Model>,
+    /// What every symbol of that graph becomes, in the graph of the system.
+    pub images: Vec<Edge>,
+    /// Places of the system's velocities in the full frame.
+    pub active: Vec<usize>,
+}
+
 /// A mechanical system: configuration, kinematics, inertia, loads.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -185,6 +206,14 @@ pub struct Model {
     pub a: Vec<Vec<Edge>>,
     /// Constraints B(x) ξ = 0 beyond the choice of ξ.
     pub constraints: Vec<Pfaffian>,
+    /// The time, where the description declares it.
+    pub clock: Option<Clock>,
+    /// Coordinates whose value is given, by their places in x.
+    pub prescribed: Vec<(usize, Edge)>,
+    /// Inputs with their rates, which are inputs, too.
+    pub input_rates: Vec<(Edge, Edge)>,
+    /// The full frame, where all that was solved for is given ahead.
+    pub whole: Option<Whole>,
     /// Whether A spans the tangent space of X: not so where constraints have been solved.
     pub spans: bool,
     /// Whether constraints that are kept depend on one another along the whole motion.
@@ -242,6 +271,16 @@ impl Model {
     /// n, the number of velocities.
     pub fn n(&self) -> usize {
         self.xi.len()
+    }
+
+    /// Whether not all velocities of the full frame are free: constraints act on them, or one is that of time.
+    pub fn is_constrained(&self) -> bool {
+        !self.constraints.is_empty() || self.clock.is_some()
+    }
+
+    /// Whether ẋ, and velocities of points with it, have terms without ξ: so it is where ξ⁰ = 1 was put in.
+    pub fn is_affine(&self) -> bool {
+        self.clock.is_some() && !self.spans
     }
 
     /// ν, the number of coordinates.

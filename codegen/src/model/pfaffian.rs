@@ -1,6 +1,6 @@
-//! Constraints B(x) ξ = 0 on the velocities of a frame.
+//! Constraints B(x, t) ξ = 0 on the velocities of a frame.
 
-use crate::algebra::graph::Edge;
+use crate::algebra::graph::{Edge, Graph};
 use crate::syntax::ast::Span;
 
 /// What a row of B says.
@@ -12,6 +12,11 @@ pub enum Kind {
     Nonholonomic,
     /// The rate of a closed loop, ∂ᵢφ.
     Loop,
+    /// A velocity that is given; with a residual, that of a coordinate that is.
+    Drive {
+        /// Whether it is a coordinate that is given.
+        position: bool,
+    },
 }
 
 /// One row of B ξ = 0.
@@ -21,6 +26,8 @@ pub struct Pfaffian {
     pub kind: Kind,
     /// B, n entries.
     pub row: Vec<Edge>,
+    /// b in B ξ + b = 0 where ξ⁰ = 1 was put in; 0 in the full frame.
+    pub shift: Edge,
     /// φ(x) of a loop, in units of the description; 0 otherwise.
     pub residual: Edge,
     /// λ (1/s) in d/dt (B ξ) = −2 λ B ξ − λ² φ; nothing is added where absent.
@@ -29,4 +36,17 @@ pub struct Pfaffian {
     pub written: String,
     /// Where it was written.
     pub span: Span,
+}
+
+impl Pfaffian {
+    /// B ξ + b.
+    pub fn speed(&self, graph: &mut Graph, xi: &[Edge]) -> Edge {
+        let moved = graph.dot(&self.row, xi);
+        graph.add(moved, self.shift)
+    }
+
+    /// Whether it is the rate of an equation of coordinates, φ(x) = 0.
+    pub fn is_holonomic(&self) -> bool {
+        matches!(self.kind, Kind::Loop | Kind::Drive { position: true })
+    }
 }

@@ -95,6 +95,8 @@ pub enum Reason {
         /// What they are: "`inactive` velocities", ….
         by: String,
     },
+    /// The equations depend on the time.
+    Time,
     /// Coordinates that the description ties to one another, or fewer velocities than directions.
     Tied {
         /// Dimension of the coordinates' kinds.
@@ -126,6 +128,7 @@ pub enum Reason {
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Reason::Time => f.write_str("the equations depend on the time"),
             Reason::Constrained { by } => write!(f, "velocities are constrained by {by}"),
             Reason::Tied {
                 directions,

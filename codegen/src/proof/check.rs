@@ -55,7 +55,7 @@ fn verdicts(
     mut proofs: Option<Proofs>,
 ) -> Vec<Identity> {
     let mut all = described(&mut symbols);
-    if model.constraints.is_empty() {
+    if !model.is_constrained() {
         all.extend(motion::emitted(&mut symbols, program));
     }
     let graph = &symbols.geometry.model.graph;
@@ -76,7 +76,7 @@ fn verdicts(
             }
         })
         .collect();
-    if model.constraints.is_empty() {
+    if !model.is_constrained() {
         identities.extend(invariants::identities(model));
     } else {
         identities.extend(with_constraints(model, program));

@@ -12,6 +12,7 @@ use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tangent::tangent_at;
+use crate::algebra::transplant::substitute;
 use crate::derive::accel::saddle;
 use crate::derive::calculus::Calculus;
 use crate::derive::reduction::{Reduction, drift};
@@ -32,7 +33,7 @@ const IDENTITIES: [(&str, &str); 8] = [
     ("(28)", "the emitted forces are Cᵀ f and Cᵀ ∂V"),
     (
         "power",
-        "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ = 0",
+        "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ + b = 0",
     ),
     (
         "nearby",
@@ -43,8 +44,9 @@ const IDENTITIES: [(&str, &str); 8] = [
 /// Everything of the full frame that is compared with.
 struct Full {
     reference: Reference,
-    /// Ċ ξₐ.
+    /// Ċ ξₐ + ċ.
     drift: Vec<Edge>,
+    /// C by rows, then c.
     complement: Vec<Edge>,
     /// B, all rows.
     rows: Vec<Edge>,
@@ -64,16 +66,18 @@ impl Full {
         let mut reference = Reference::new(&full)?;
         let full = &mut reference.model;
         let xi: Vec<Edge> = reduction.active.iter().map(|&i| full.xi[i]).collect();
-        let drift = drift(full, &xi, &reduction.complement);
+        let drift = drift(full, &xi, &reduction.section);
+        let section = &reduction.section;
+        let section = [section.complement.concat(), section.shift.clone()].concat();
         let mut calculus = Calculus::new(full);
         let energy = full.graph.add(reference.kinetic, reference.potential);
         let change = calculus.rate(&mut full.graph, energy);
         let mut reduced = reduction.model.clone();
         let mut calculus = Calculus::new(&reduced);
         let right = saddle::right_side(&mut reduced, &mut calculus);
-        Some(Full {
+        let mut full = Full {
             drift,
-            complement: reduction.complement.concat(),
+            complement: section,
             rows: model
                 .constraints
                 .iter()
@@ -83,7 +87,42 @@ impl Full {
             reduced,
             right,
             reference,
-        })
+        };
+        full.prescribe();
+        Some(full)
+    }
+
+    /// Puts prescribed coordinates in, now that all derivatives are taken: at a point, sin q of a symbol q and sin f
+    /// of a sum f with the same value would differ.
+    fn prescribe(&mut self) {
+        let reference = &mut self.reference;
+        let model = &mut reference.model;
+        let first = model.points.first;
+        let given = model.prescribed.iter();
+        let set: Vec<(usize, Edge)> = given.map(|(place, edge)| (first + place, *edge)).collect();
+        let graph = &mut model.graph;
+        let rows = [&mut reference.mass, &mut model.a];
+        let rows = rows.into_iter().flatten();
+        let lists = [
+            &mut reference.bias,
+            &mut reference.slope,
+            &mut reference.force,
+            &mut self.drift,
+            &mut self.complement,
+            &mut self.rows,
+        ];
+        for list in rows.chain(lists) {
+            *list = substitute(graph, list, &set);
+        }
+        let single = [
+            &mut reference.kinetic,
+            &mut reference.potential,
+            &mut reference.dissipation,
+            &mut self.change,
+        ];
+        for edge in single {
+            *edge = substitute(graph, &[*edge], &set)[0];
+        }
     }
 }
 
@@ -203,14 +242,16 @@ fn at_point(
 ) -> Option<[Comparison; IDENTITIES.len()]> {
     let (n, na) = (full.reference.model.n(), reduction.active.len());
     let graph = &full.reference.model.graph;
-    let c = evaluate_at(graph, &full.complement, &mut lane.clone())?;
+    let section = evaluate_at(graph, &full.complement, &mut lane.clone())?;
+    let (c, shift) = section.split_at(n * na);
+    let time = full.reference.model.clock.map(|clock| clock.xi);
     let column = |j: usize| -> Vec<Fp> { (0..n).map(|i| c[i * na + j]).collect() };
     let project = |v: &[Fp]| -> Vec<Fp> { (0..na).map(|j| dot(&column(j), v)).collect() };
     let rows = evaluate_at(graph, &full.rows, &mut lane.clone())?;
-    let vanish = reduction
-        .solved
-        .iter()
-        .all(|&(row, _)| (0..na).all(|j| dot(&rows[row * n..][..n], &column(j)).is_zero()));
+    let vanish = reduction.solved.iter().all(|&(row, _)| {
+        let row = &rows[row * n..][..n];
+        (0..na).all(|j| dot(row, &column(j)).is_zero()) && dot(row, shift).is_zero()
+    });
     let place = places(graph, class::VELOCITY);
     let random: Vec<Fp> = reduction
         .active
@@ -222,7 +263,8 @@ fn at_point(
         reduction,
         program,
         lane,
-        c: &c,
+        c,
+        shift,
     };
     let (point, inner) = at.lanes(&random);
     let values = at.values(&point)?;
@@ -235,8 +277,9 @@ fn at_point(
     };
     let balanced = match (emitted("accel")?, emitted("constraint_force")?) {
         (Some(xi_dot), Some(lambda)) => {
-            let xi_dot = values.lift(&c, &xi_dot);
-            (0..n).all(|i| {
+            let xi_dot = values.lift(c, &xi_dot);
+            // The row of ξ⁰ is no equation of motion.
+            (0..n).filter(|&i| Some(i) != time).all(|i| {
                 let inertial = dot(&mass[i * n..][..n], &xi_dot);
                 let bond = (0..lambda.len())
                     .fold(Fp::ZERO, |sum, row| sum + rows[row * n + i] * lambda[row]);
@@ -286,14 +329,20 @@ fn at_point(
         && equal("kinetic_energy", vec![values.kinetic])?
         && equal("potential_energy", vec![values.potential])?
         && equal("dissipation", vec![values.dissipation])?;
-    let power = at.power(&kept, &random, seed)?;
+    let shifts: Vec<Edge> = full.reduced.constraints.iter().map(|c| c.shift).collect();
+    let shifts = evaluate_at(inner_graph, &shifts, &mut inner.clone())?;
+    let momentum: Vec<Fp> = (0..n)
+        .map(|i| dot(&mass[i * n..][..n], &values.xi))
+        .collect();
+    let same_mass = same_mass && equal("momentum", project(&momentum))?;
+    let power = at.power((&kept, &shifts), &random, seed)?;
     let nearby = at.nearby(&point, &inner)?;
     let result = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_string()) };
     Some([
         result(vanish, "a row does not vanish"),
         result(balanced, "the forces do not balance"),
         result(held, "the constraint is left"),
-        result(same_mass, "M differs"),
+        result(same_mass, "M or p differs"),
         result(same_bias, "the bias differs"),
         result(same_loads, "a force or energy differs"),
         result(power, "the power differs"),
@@ -308,6 +357,7 @@ struct At<'a> {
     program: &'a Program,
     lane: &'a Lane,
     c: &'a [Fp],
+    shift: &'a [Fp],
 }
 
 /// Numbers of the full frame.
@@ -339,8 +389,9 @@ impl At<'_> {
         let velocities = places(graph, class::VELOCITY);
         let others = [class::ACCEL, class::MOMENTUM].map(|class| places(graph, class));
         let mut point = self.lane.clone();
-        for (&symbol, row) in velocities.iter().zip(self.c.chunks(xi_active.len())) {
-            point.set_symbol(symbol, dot(row, xi_active));
+        let rows = self.c.chunks(xi_active.len()).zip(self.shift);
+        for (&symbol, (row, &shift)) in velocities.iter().zip(rows) {
+            point.set_symbol(symbol, dot(row, xi_active) + shift);
         }
         let mut inner = point.fresh();
         for index in 0..graph.symbols().len() {
@@ -394,12 +445,13 @@ impl At<'_> {
         })
     }
 
-    /// d/dt (T + V) = f ξ at a ξₐ that satisfies the rows that are kept.
-    fn power(&self, kept: &[Fp], random: &[Fp], seed: u64) -> Option<bool> {
+    /// d/dt (T + V) = f ξ at a ξₐ that satisfies the rows that are kept. With time, the row of ξ⁰ takes part by the
+    /// power that it would need: −∂L/∂t, and that of the drives.
+    fn power(&self, kept: (&[Fp], &[Fp]), random: &[Fp], seed: u64) -> Option<bool> {
         let Some(accel) = self.program.function(FunctionId::Accel) else {
             return Some(true);
         };
-        let xi_active = in_kernel(kept, random, seed)?;
+        let xi_active = in_kernel(kept.0, kept.1, random, seed)?;
         let (point, inner) = self.lanes(&xi_active);
         let values = self.values(&point)?;
         let xi_dot = evaluate_at(&self.program.graph, &accel.outputs, &mut inner.clone())?;
@@ -408,7 +460,24 @@ impl At<'_> {
         let momentum: Vec<Fp> = (0..n)
             .map(|i| dot(&values.mass[i * n..][..n], &values.xi))
             .collect();
-        Some(values.change + dot(&momentum, &xi_dot) == dot(&values.force, &values.xi))
+        let mut power = dot(&values.force, &values.xi);
+        if let Some(clock) = self.full.reference.model.clock {
+            let i = clock.xi;
+            let inertial = dot(&values.mass[i * n..][..n], &xi_dot);
+            let mut row = inertial + values.bias[i] + values.slope[i] - values.force[i];
+            if !self.full.rows.is_empty() {
+                let Some(force) = self.program.function(FunctionId::ConstraintForce) else {
+                    return Some(true);
+                };
+                let graph = &self.full.reference.model.graph;
+                let rows = evaluate_at(graph, &self.full.rows, &mut point.clone())?;
+                let lambda = evaluate_at(&self.program.graph, &force.outputs, &mut inner.clone())?;
+                row = (lambda.iter().enumerate())
+                    .fold(row, |sum, (row, &lambda)| sum - rows[row * n + i] * lambda);
+            }
+            power = power + row;
+        }
+        Some(values.change + dot(&momentum, &xi_dot) == power)
     }
 }
 
@@ -423,10 +492,14 @@ impl At<'_> {
         };
         let reduced = &self.full.reduced;
         let full = &self.full.reference.model;
-        let (n, na, nu) = (full.n(), reduced.n(), full.nu());
+        let (all, na, nu) = (full.n(), reduced.n(), full.nu());
+        let n = all - usize::from(full.clock.is_some());
         let width = n + na + reduced.u.len();
         let table = evaluate_at(&self.program.graph, &linear.outputs, &mut inner.clone())?;
         let entry = |row: usize, column: usize| table[row * width + column];
+        // The time is not displaced.
+        let time = full.clock.map(|clock| clock.xi);
+        let places_of: Vec<usize> = (0..full.n()).filter(|&i| Some(i) != time).collect();
         let a_edges = full.a.concat();
         let a = evaluate_at(&full.graph, &a_edges, &mut point.clone())?;
         let rate = evaluate_at(&reduced.graph, &reduced.rate, &mut inner.clone())?;
@@ -444,7 +517,7 @@ impl At<'_> {
             let mut direction = vec![Fp::ZERO; size];
             if column < n {
                 for (alpha, &place) in x.iter().enumerate() {
-                    direction[place] = a[alpha * n + column];
+                    direction[place] = a[alpha * all + places_of[column]];
                 }
             } else {
                 direction[others[column - n]] = Fp::ONE;
@@ -459,9 +532,11 @@ impl At<'_> {
             )?;
             let bent = (0..na).any(|row| entry(n + row, column) != slopes[row].1);
             let moved = (0..nu).all(|alpha| {
-                let sum = (0..n).fold(Fp::ZERO, |sum, k| sum + a[alpha * n + k] * entry(k, column));
+                let sum = (0..n).fold(Fp::ZERO, |sum, k| {
+                    sum + a[alpha * all + places_of[k]] * entry(k, column)
+                });
                 let swept = match column < n {
-                    true => swept[alpha * n + column].1,
+                    true => swept[alpha * all + places_of[column]].1,
                     false => Fp::ZERO,
                 };
                 sum == ahead[alpha].1 - swept

@@ -1,12 +1,16 @@
-//! Points of a system with constraints on its velocities: ξ moved to where B ξ = 0.
+//! Points of a system with constraints on its velocities: ξ moved to where B ξ + b = 0.
 
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::Graph;
 
-/// A vector near `random` on which all rows vanish: by elimination, dependent entries replaced.
-pub(super) fn in_kernel(rows: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>> {
+/// A vector ξ near `random` with B ξ + b = 0: by elimination, dependent entries replaced. B by rows.
+pub(super) fn in_kernel(rows: &[Fp], shift: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>> {
     let n = random.len();
-    let mut rows: Vec<Vec<Fp>> = rows.chunks(n).map(<[Fp]>::to_vec).collect();
+    let mut rows: Vec<Vec<Fp>> = rows
+        .chunks(n)
+        .zip(shift)
+        .map(|(row, &shift)| [row, &[shift]].concat())
+        .collect();
     let mut stream = Random::new(seed);
     let mut xi: Vec<Fp> = random.iter().map(|&v| v + stream.element()).collect();
     let mut pivots: Vec<usize> = Vec::new();
@@ -28,7 +32,7 @@ pub(super) fn in_kernel(rows: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>
     for (row, &pivot) in rows.iter().zip(&pivots) {
         xi[pivot] = (0..n)
             .filter(|j| !pivots.contains(j))
-            .fold(Fp::ZERO, |sum, j| sum - row[j] * xi[j]);
+            .fold(-row[n], |sum, j| sum - row[j] * xi[j]);
     }
     Some(xi)
 }

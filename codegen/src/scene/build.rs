@@ -159,6 +159,20 @@ impl SceneBuilder {
         });
     }
 
+    /// The time: a coordinate t with ṫ = 1.
+    pub fn time(&mut self, name: &str) -> Expr {
+        self.add(ItemKind::Time(ident(name)));
+        Expr::name(name)
+    }
+
+    /// The motion of a coordinate or a velocity is given, as a function of time and inputs.
+    pub fn prescribe(&mut self, of: &str, value: impl Into<Expr>) {
+        self.add(ItemKind::Prescribe {
+            target: target(of),
+            value: value.into(),
+        });
+    }
+
     /// Velocities that stay zero.
     pub fn inactive(&mut self, velocities: impl IntoIterator<Item = Expr>) {
         self.add(ItemKind::Inactive(velocities.into_iter().collect()));

@@ -45,6 +45,10 @@ pub fn statement(item: &Item) -> String {
         ItemKind::Rate { target, value } => {
             format!("rate {} = {}", part(target), written(value))
         }
+        ItemKind::Time(name) => format!("time {}", name.name),
+        ItemKind::Prescribe { target, value } => {
+            format!("prescribe {} = {}", part(target), written(value))
+        }
         ItemKind::Inactive(velocities) => format!("inactive {}", list(velocities)),
         ItemKind::Nonholonomic {
             left,

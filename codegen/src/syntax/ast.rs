@@ -369,6 +369,15 @@ pub enum ItemKind {
         /// Its time derivative, linear in the velocities.
         value: Expr,
     },
+    /// `time t;` the time, under a name of the user's.
+    Time(Ident),
+    /// `prescribe q = 0.3 * sin(t);` the motion of a coordinate or of a velocity is given.
+    Prescribe {
+        /// The coordinate or velocity.
+        target: Target,
+        /// Its value, of time and inputs.
+        value: Expr,
+    },
     /// `inactive v, w[3];` velocities that stay zero.
     Inactive(Vec<Expr>),
     /// `nonholonomic a = b;` both sides linear in the velocities.

@@ -43,6 +43,15 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
                 value: expression(cursor)?,
             }
         }
+        "time" => ItemKind::Time(cursor.name("the time")?),
+        "prescribe" => {
+            let target = target(cursor, "a coordinate or velocity")?;
+            cursor.assign()?;
+            ItemKind::Prescribe {
+                target,
+                value: expression(cursor)?,
+            }
+        }
         "inactive" => {
             let mut list = vec![expression(cursor)?];
             while cursor.eat_punct(',') {
@@ -116,6 +125,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
     let names = matches!(
         word,
         "coord"
+            | "time"
             | "velocity"
             | "input"
             | "force"

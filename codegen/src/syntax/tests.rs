@@ -124,6 +124,10 @@ fn told(kind: &ItemKind) -> String {
             )
         }
         Constraint { left, right } => format!("constraint {} = {}", spelled(left), spelled(right)),
+        Time(name) => format!("time {}", name.name),
+        Prescribe { target, value } => {
+            format!("prescribe {} = {}", aimed(target), spelled(value))
+        }
         Inactive(list) => {
             let list: Vec<String> = list.iter().map(spelled).collect();
             format!("inactive {}", list.join("; "))

@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 30] = [
+const STATEMENTS: [(&str, &str); 32] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -19,6 +19,11 @@ const STATEMENTS: [(&str, &str); 30] = [
     ),
     ("constraint", "a constraint is written `constraint a = b;`"),
     ("rate", "a rate is written `rate r = R * v;`"),
+    ("time", "the time is written `time t;`"),
+    (
+        "prescribe",
+        "a given motion is written `prescribe q = 0.3 * sin(t);`",
+    ),
     (
         "inactive",
         "velocities that stay zero are written `inactive v, w[3];`",

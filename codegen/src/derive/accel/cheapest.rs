@@ -66,7 +66,9 @@ pub fn cheapest(
     };
     let products = composed.momentum_of(&mut graph, model);
     let sums = composed.whole(&mut graph, model);
-    momentum.offer(&graph, products);
+    if !model.is_affine() {
+        momentum.offer(&graph, products);
+    }
     whole.offer(&graph, sums);
     let mut around = chosen.clone();
     let into = &mut around;

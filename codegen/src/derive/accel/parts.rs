@@ -11,7 +11,7 @@ use crate::derive::commutation::gamma;
 use crate::derive::connection::quadratic;
 use crate::derive::inertia::{accumulate, kinetic_mass, symmetric};
 use crate::derive::normal::without_coordinates;
-use crate::derive::{kinematics, loads};
+use crate::derive::{energy, kinematics, loads};
 use crate::model::{Body, Model};
 
 /// The axes in which linear motion is traced.
@@ -59,6 +59,7 @@ impl Parts {
             applied: vector(&self.applied),
             inverse_dynamics: self.inverse_dynamics.as_deref().map(&mut vector),
             momentum: self.momentum.as_deref().map(&mut vector),
+            kinetic: self.kinetic.and_then(|edge| vector(&[edge]).pop()),
         }
     }
 }
@@ -89,12 +90,24 @@ pub struct Parts {
     pub applied: Vec<Edge>,
     /// M ξ̇ + Γ ξ ξ + ∂V, where it was traced as a whole.
     pub inverse_dynamics: Option<Vec<Edge>>,
-    /// M ξ, where it was traced by itself.
+    /// ∂T/∂ξ, where it was traced by itself: M ξ, and more where ẋ has terms without ξ.
     pub momentum: Option<Vec<Edge>>,
+    /// T, where it is not ½ ξᵀ M ξ.
+    pub kinetic: Option<Edge>,
 }
 
 impl Parts {
-    /// M ξ.
+    /// T.
+    pub fn kinetic_of(&self, graph: &mut Graph, model: &Model, momentum: &[Edge]) -> Edge {
+        if let Some(kinetic) = self.kinetic {
+            return kinetic;
+        }
+        let twice = graph.dot(momentum, &model.xi);
+        let half = graph.ratio(1, 2);
+        graph.mul(half, twice)
+    }
+
+    /// ∂T/∂ξ.
     pub fn momentum_of(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
         match &self.momentum {
             Some(momentum) => momentum.clone(),
@@ -180,6 +193,8 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
             );
         }
     }
+    let kinetic = model.is_affine().then(|| energy::traced(model, calculus));
+    let momentum = kinetic.map(|kinetic| energy::momentum(model, kinetic));
     let potential = loads::elastic(model, calculus);
     let loads = loads::applied(model, calculus);
     let graph = &mut model.graph;
@@ -198,7 +213,9 @@ pub fn parts(model: &mut Model, calculus: &mut Calculus, variant: Variant) -> Pa
         inertia,
         conservative,
         applied,
-        ..Parts::default()
+        inverse_dynamics: None,
+        momentum,
+        kinetic,
     }
 }
 

@@ -9,6 +9,7 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::{Vec3, zero3};
 use crate::algebra::transplant::map_symbols;
+use crate::derive::calculus::Calculus;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
 use crate::derive::tree::momentum::{swing, total};
@@ -22,23 +23,48 @@ const SHORT: usize = 3;
 
 /// A model whose inertia is that of links.
 pub struct Recursion {
-    /// The model, its graph holding constants and loads.
+    /// The model, its graph holding constants and loads: in its full frame, where the other velocities are given.
     model: Model,
     tree: Tree,
     /// −∂V of what is not gravity.
     elastic: Vec<Edge>,
     /// fᴱ.
     applied: Vec<Edge>,
+    /// How to get from the full frame to the velocities that are free.
+    free: Option<Free>,
+}
+
+/// The velocities that are free of a full frame.
+struct Free {
+    /// Their graph.
+    graph: Graph,
+    /// What the symbols of the full frame become there.
+    images: Vec<Edge>,
+    /// Their places in ξ.
+    active: Vec<usize>,
 }
 
 impl Recursion {
     /// The recursion over a model's links, where they are a tree.
     pub fn of(setting: &Setting, placement: Placement) -> Option<Self> {
-        let mut model = setting.model.clone();
-        let mut calculus = setting.calculus.clone();
-        if !model.constraints.is_empty() || setting.back.is_some() {
+        let reduced = &setting.model;
+        if !reduced.constraints.is_empty() || setting.back.is_some() {
             return None;
         }
+        let (mut model, mut calculus, free) = match &reduced.whole {
+            Some(whole) => {
+                let full = Model::clone(&whole.full);
+                let calculus = Calculus::new(&full);
+                let free = Free {
+                    graph: reduced.graph.clone(),
+                    images: whole.images.clone(),
+                    active: whole.active.clone(),
+                };
+                (full, calculus, Some(free))
+            }
+            None if reduced.is_affine() => return None,
+            None => (reduced.clone(), setting.calculus.clone(), None),
+        };
         let tree = Tree::of(&mut model, &mut calculus, placement)?;
         let elastic = loads::elastic(&mut model, &mut calculus);
         let loads = loads::applied(&mut model, &mut calculus);
@@ -53,6 +79,7 @@ impl Recursion {
             tree,
             elastic,
             applied,
+            free,
         })
     }
 
@@ -67,18 +94,54 @@ impl Recursion {
         both.map(|(&a, &b)| graph.add(a, b)).collect()
     }
 
+    /// Places of the velocities that are free, and of those that are not.
+    fn places(&self) -> (Vec<usize>, Vec<usize>) {
+        let all = 0..self.model.n();
+        match &self.free {
+            None => (all.collect(), Vec::new()),
+            Some(free) => all.partition(|i| free.active.contains(i)),
+        }
+    }
+
+    /// ξ̇ where what is free does not accelerate.
+    fn rest(&self) -> Vec<Edge> {
+        let mut rest = vec![self.model.graph.zero(); self.model.n()];
+        for i in self.places().1 {
+            rest[i] = self.model.xi_dot[i];
+        }
+        rest
+    }
+
+    /// Expressions of the full frame as those of the velocities that are free, with their graph.
+    fn leave<const N: usize>(
+        &self,
+        graph: Graph,
+        lists: [Vec<Edge>; N],
+    ) -> (Graph, [Vec<Edge>; N]) {
+        let Some(free) = &self.free else {
+            return (graph, lists);
+        };
+        let mut into = free.graph.clone();
+        let lists = lists.map(|list| map_symbols(&graph, &mut into, &list, &free.images));
+        (into, lists)
+    }
+
     /// Counts articulated bodies, and M with elimination from the leaves and from the root.
     pub(super) fn search(&self, best: &mut Best) {
         let n = self.model.n();
-        let rest = vec![self.model.graph.zero(); n];
+        let (active, given) = self.places();
+        let rest = self.rest();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
-        if self.tree.is_plain(&self.model.graph, n) {
+        if self.tree.is_plain(&self.model.graph, n, &given) {
             let mut graph = self.model.graph.clone();
             let load = self.load(&mut graph);
             let forces = wrenches(&mut graph, &self.tree, xi, &rest, gravity);
-            if let Some(solution) = articulated::forward(&mut graph, &self.tree, &forces, &load) {
+            let solution = articulated::forward(&mut graph, &self.tree, &given, &forces, &load);
+            if let Some(Solution { xi_dot, pivots }) = solution {
                 let route = "links traced, articulated bodies".to_string();
-                let candidate = candidate(graph, solution.xi_dot, solution.pivots, route);
+                let xi_dot = active.iter().map(|&i| xi_dot[i]).collect();
+                let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
+                let candidate = candidate(graph, xi_dot, pivots, route);
                 best.keep(Family::Links, candidate);
             }
         }
@@ -86,17 +149,16 @@ impl Recursion {
         let load = self.load(&mut graph);
         let bias = inverse(&mut graph, &self.tree, xi, &rest, gravity);
         let mass = composite::mass_matrix(&mut graph, &self.tree, n);
-        let right = load
-            .iter()
-            .zip(&bias)
-            .map(|(&load, &bias)| graph.sub(load, bias))
-            .collect();
-        let given = Parts {
-            mass,
+        let right = active.iter().map(|&i| graph.sub(load[i], bias[i]));
+        let right = right.collect();
+        let of_free = |row: &Vec<Edge>| active.iter().map(|&j| row[j]).collect();
+        let of_parts = Parts {
+            mass: active.iter().map(|&i| of_free(&mass[i])).collect(),
             groups: vec![right],
             ..Parts::default()
         };
-        for order in [(0..n).rev().collect::<Vec<_>>(), (0..n).collect()] {
+        let free = active.len();
+        for order in [(0..free).rev().collect::<Vec<_>>(), (0..free).collect()] {
             let way = if order.first() == Some(&0) {
                 "from the first velocity to the last"
             } else {
@@ -109,9 +171,10 @@ impl Recursion {
                 inverse: false,
             };
             let mut graph = graph.clone();
-            if let Some(solution) = solve(&mut graph, &given, &plan) {
+            if let Some(Solution { xi_dot, pivots }) = solve(&mut graph, &of_parts, &plan) {
                 let route = format!("links traced, composite bodies, M eliminated {way}");
-                let candidate = candidate(graph, solution.xi_dot, solution.pivots, route);
+                let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
+                let candidate = candidate(graph, xi_dot, pivots, route);
                 best.keep(Family::Links, candidate);
             }
         }
@@ -121,38 +184,67 @@ impl Recursion {
     pub fn parts(&self) -> Computation {
         let mut graph = self.model.graph.clone();
         let n = self.model.n();
+        let (active, _) = self.places();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
         let (still, weightless) = (vec![graph.zero(); n], zero3(&graph));
         let whole = inverse(&mut graph, &self.tree, xi, &self.model.xi_dot, gravity);
-        let inverse_dynamics = whole
-            .iter()
-            .zip(&self.elastic)
-            .map(|(&whole, &elastic)| graph.sub(whole, elastic))
+        let inverse_dynamics = (active.iter())
+            .map(|&i| graph.sub(whole[i], self.elastic[i]))
             .collect();
-        let bias = inverse(&mut graph, &self.tree, xi, &still, weightless);
+        let bias = inverse(&mut graph, &self.tree, xi, &self.rest(), weightless);
         let weight = inverse(&mut graph, &self.tree, &still, &still, gravity);
         let momentum = inverse(&mut graph, &self.tree, &still, xi, weightless);
         let mass = composite::mass_matrix(&mut graph, &self.tree, n);
-        let conservative = self
-            .elastic
-            .iter()
-            .zip(&weight)
-            .map(|(&elastic, &weight)| graph.sub(elastic, weight))
+        let conservative = (active.iter())
+            .map(|&i| graph.sub(self.elastic[i], weight[i]))
             .collect();
-        let parts = Parts {
-            mass,
-            groups: Vec::new(),
-            inertia: bias.into_iter().map(|edge| -edge).collect(),
+        let kinetic: Vec<Edge> = match self.free {
+            None => Vec::new(),
+            Some(_) => {
+                let twice = graph.dot(&momentum, xi);
+                let half = graph.ratio(1, 2);
+                vec![graph.mul(half, twice)]
+            }
+        };
+        let of_free = |list: &[Edge]| active.iter().map(|&i| list[i]).collect::<Vec<Edge>>();
+        let rows: Vec<Edge> = active.iter().flat_map(|&i| of_free(&mass[i])).collect();
+        let lists = [
+            rows,
+            of_free(&bias).into_iter().map(|edge| -edge).collect(),
             conservative,
-            applied: self.applied.clone(),
+            of_free(&self.applied),
+            inverse_dynamics,
+            of_free(&momentum),
+            kinetic,
+        ];
+        let (graph, lists) = self.leave(graph, lists);
+        let [
+            mass,
+            inertia,
+            conservative,
+            applied,
+            inverse_dynamics,
+            momentum,
+            kinetic,
+        ] = lists;
+        let parts = Parts {
+            mass: mass.chunks(active.len()).map(<[Edge]>::to_vec).collect(),
+            groups: Vec::new(),
+            inertia,
+            conservative,
+            applied,
             inverse_dynamics: Some(inverse_dynamics),
             momentum: Some(momentum),
+            kinetic: kinetic.first().copied(),
         };
         Computation { graph, parts }
     }
 
     /// ṗ of (x, ξ, u), in a graph of its own; `None` where a joint varies with x.
     pub fn momentum_rate(&self) -> Option<(Graph, Vec<Edge>)> {
+        if self.free.is_some() {
+            return None;
+        }
         let mut graph = self.model.graph.clone();
         let still = vec![graph.zero(); self.model.n()];
         let swing = swing(&mut graph, &self.tree, &self.model.xi)?;
@@ -171,14 +263,16 @@ impl Recursion {
     pub fn total_momentum(&self) -> (Graph, Vec3, Vec3) {
         let mut graph = self.model.graph.clone();
         let (linear, angular) = total(&mut graph, &self.tree, &self.model.xi);
-        (graph, linear, angular)
+        let (graph, [linear, angular]) = self.leave(graph, [linear.to_vec(), angular.to_vec()]);
+        let three = |list: &[Edge]| std::array::from_fn(|i| list[i]);
+        (graph, three(&linear), three(&angular))
     }
 
     /// ξ = M⁻¹ p by articulated bodies: what ξ̇ is where nothing but p acts; `None` where a velocity is not
     /// the rate of one freedom, or M is singular everywhere.
     pub fn velocity_from_momentum(&self) -> Option<(Graph, Solution)> {
         let mut graph = self.model.graph.clone();
-        if !self.tree.is_plain(&graph, self.model.n()) {
+        if self.free.is_some() || !self.tree.is_plain(&graph, self.model.n(), &[]) {
             return None;
         }
         let none = zero3(&graph);
@@ -188,13 +282,16 @@ impl Recursion {
         };
         let wrenches = vec![nothing; self.tree.links.len()];
         let momenta = &self.model.momenta;
-        let solution = articulated::forward(&mut graph, &self.tree, &wrenches, momenta)?;
+        let solution = articulated::forward(&mut graph, &self.tree, &[], &wrenches, momenta)?;
         Some((graph, solution))
     }
 
     /// ∂(f − M ξ̇ − Γ ξ ξ − ∂V) along displacements, velocities and inputs at constant ξ̇: n rows of
     /// 2 n + m, in `into`, where ξ̇ is F. `None` where a joint varies with x.
     pub fn slopes(&self, into: &mut Graph, rates: &[Edge]) -> Option<Vec<Vec<Edge>>> {
+        if self.free.is_some() {
+            return None;
+        }
         let mut graph = self.model.graph.clone();
         let model = &self.model;
         let (xi, xi_dot) = (&model.xi, &model.xi_dot);

@@ -16,14 +16,14 @@ pub struct Saddle {
     pub multipliers: Vec<Edge>,
 }
 
-/// b = −Ḃ ξ − 2 λ B ξ − λ² φ.
+/// The right side of B ξ̇ = … where s = B ξ + b decays: −Ḃ ξ − ḃ − 2 λ s − λ² φ.
 pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     let constraints = model.constraints.clone();
     constraints
         .iter()
         .map(|constraint| {
             let graph = &mut model.graph;
-            let speed = graph.dot(&constraint.row, &model.xi);
+            let speed = constraint.speed(graph, &model.xi);
             let mut sum = calculus.rate(graph, speed);
             if let Some(lambda) = constraint.stabilized {
                 let two = graph.ratio(2, 1);
@@ -186,7 +186,7 @@ pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Pro
     let speeds: Vec<Edge> = model
         .constraints
         .iter()
-        .map(|c| -graph.dot(&c.row, &model.xi))
+        .map(|c| -c.speed(graph, &model.xi))
         .collect();
     let change = factored.solve(graph, &rest, &speeds).xi_dot;
     let velocity = model

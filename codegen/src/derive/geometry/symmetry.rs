@@ -31,6 +31,7 @@ pub fn symmetries(geometry: &mut Geometry, applied: &[Edge]) -> Vec<Symmetry> {
     let n = geometry.model.n();
     let zero = geometry.model.graph.zero().node();
     let (mass, gamma) = (&geometry.mass, &geometry.gamma);
+    let constrained = geometry.model.is_constrained();
     let graph = &mut geometry.model.graph;
     (0..n)
         .map(|i| {
@@ -50,8 +51,7 @@ pub fn symmetries(geometry: &mut Geometry, applied: &[Edge]) -> Vec<Symmetry> {
                 mass_constant,
                 keeps_kinetic,
                 keeps_potential: slope.node() == zero,
-                unloaded: applied.get(i).is_none_or(|force| force.node() == zero)
-                    && geometry.model.constraints.is_empty(),
+                unloaded: applied.get(i).is_none_or(|force| force.node() == zero) && !constrained,
             }
         })
         .collect()

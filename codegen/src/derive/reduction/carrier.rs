@@ -1,6 +1,7 @@
 //! Carries a model over to a graph without the velocities that were solved for.
 
-use super::kinetic::{drift, kinetic_terms};
+use super::Section;
+use super::kinetic::{drift, kinetic_terms, lifted};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::map_symbols;
@@ -24,18 +25,16 @@ pub struct Carrier {
 }
 
 impl Carrier {
-    pub fn new(mut full: Model, active: &[usize], complement: &[Vec<Edge>]) -> Self {
+    pub fn new(mut full: Model, active: &[usize], section: &Section) -> Self {
         let xi_active: Vec<Edge> = active.iter().map(|&i| full.xi[i]).collect();
-        let kinetic = kinetic_terms(&mut full, &xi_active, complement);
-        // ξ = C ξₐ and ξ̇ = C ξ̇ₐ + Ċ ξₐ, in the full graph.
+        let kinetic = kinetic_terms(&mut full, &xi_active, section);
+        // ξ = C ξₐ + c and ξ̇ = C ξ̇ₐ + Ċ ξₐ + ċ, in the full graph.
         let accelerations: Vec<Edge> = active.iter().map(|&i| full.xi_dot[i]).collect();
-        let drift = drift(&mut full, &xi_active, complement);
+        let drift = drift(&mut full, &xi_active, section);
         let graph = &mut full.graph;
-        let xi: Vec<Edge> = complement
-            .iter()
-            .map(|row| graph.dot(row, &xi_active))
-            .collect();
-        let xi_dot: Vec<Edge> = complement
+        let xi = lifted(graph, &xi_active, section);
+        let xi_dot: Vec<Edge> = section
+            .complement
             .iter()
             .zip(&drift)
             .map(|(row, &drift)| {
@@ -66,7 +65,12 @@ impl Carrier {
     }
 
     /// The model in ξₐ, with some rows of constraints kept.
-    pub fn model(mut self, kept_rows: &[Vec<Edge>], kept: &[usize], pivots: &[Edge]) -> Model {
+    pub fn model(
+        mut self,
+        kept_rows: &[(Vec<Edge>, Edge)],
+        kept: &[usize],
+        pivots: &[Edge],
+    ) -> Model {
         let full = self.full.clone();
         let mut model = full.clone();
         let active = |all: &[Edge]| self.active.iter().map(|&i| all[i]).collect::<Vec<_>>();
@@ -88,8 +92,9 @@ impl Carrier {
         model.constraints = kept
             .iter()
             .zip(kept_rows)
-            .map(|(&i, row)| Pfaffian {
+            .map(|(&i, (row, shift))| Pfaffian {
                 row: row.clone(),
+                shift: *shift,
                 ..full.constraints[i].clone()
             })
             .collect();
@@ -103,6 +108,12 @@ impl Carrier {
         let mut model = model.carried(self.graph.clone(), |from, into, edges| {
             map_symbols(from, into, edges, images)
         });
+        // Prescribed coordinates stay in x, though nothing depends on them.
+        let first = full.points.first;
+        let symbols = model.graph.symbols();
+        model.x = (first..first + full.nu())
+            .map(|index| Edge::of(symbols[index].node))
+            .collect();
         // A C = ∂ẋ/∂ξₐ.
         let graph = &mut model.graph;
         model.a = vec![Vec::new(); model.rate.len()];
@@ -210,6 +221,12 @@ fn restricted(
         reals.push(from.reals(index));
     }
     graph.set_reals(reals);
+    // Prescribed coordinates are what they are prescribed to be.
+    let given: Vec<Edge> = full.prescribed.iter().map(|(_, edge)| *edge).collect();
+    let made = map_symbols(&full.graph, &mut graph, &given, &images);
+    for ((place, _), edge) in full.prescribed.iter().zip(made) {
+        images[full.points.first + place] = edge;
+    }
     // What was solved for is written in symbols that stay.
     let expressions: Vec<Edge> = solved.iter().map(|(_, edge)| *edge).collect();
     let made = map_symbols(&full.graph, &mut graph, &expressions, &images);

@@ -1,30 +1,40 @@
-//! What C(x) contributes to the equations of motion: Ċ ξₐ, and a kinetic energy that the user wrote.
+//! What ξ = C ξₐ + c contributes to the equations of motion: Ċ ξₐ + ċ, and a kinetic energy that the user wrote.
 
+use super::Section;
 use crate::algebra::derivation::Derivation;
-use crate::algebra::graph::Edge;
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{multiply, transpose};
 use crate::derive::calculus::Calculus;
 use crate::derive::{commutation, connection, inertia, kinematics};
 use crate::model::{KineticTerms, Model};
 
-/// Ċ ξₐ along ẋ = A C ξₐ.
-pub fn drift(full: &mut Model, xi_active: &[Edge], complement: &[Vec<Edge>]) -> Vec<Edge> {
+/// ξ = C ξₐ + c.
+pub fn lifted(graph: &mut Graph, xi_active: &[Edge], section: &Section) -> Vec<Edge> {
+    let rows = section.complement.iter().zip(&section.shift);
+    rows.map(|(row, &shift)| {
+        let part = graph.dot(row, xi_active);
+        graph.add(part, shift)
+    })
+    .collect()
+}
+
+/// Ċ ξₐ + ċ along ẋ = A (C ξₐ + c).
+pub fn drift(full: &mut Model, xi_active: &[Edge], section: &Section) -> Vec<Edge> {
     let graph = &mut full.graph;
-    let xi: Vec<Edge> = complement
-        .iter()
-        .map(|row| graph.dot(row, xi_active))
-        .collect();
+    let xi = lifted(graph, xi_active, section);
     let rate: Vec<Edge> = full.a.iter().map(|row| graph.dot(row, &xi)).collect();
-    let mut along = Derivation::new(full.x.iter().zip(&rate).map(|(x, &rate)| (x.node(), rate)));
+    let moving = full.x.iter().zip(&rate);
+    let moving = moving.chain(full.input_rates.iter().map(|(u, rate)| (u, rate)));
+    let mut along = Derivation::new(moving.map(|(symbol, &rate)| (symbol.node(), rate)));
     xi.iter().map(|&xi| along.of(graph, xi)).collect()
 }
 
-/// Cᵀ K C and Cᵀ (h + K Ċ ξₐ) of the kinetic energy that the user wrote, with Hamel's h before the
+/// Cᵀ K C and Cᵀ (h + K (Ċ ξₐ + ċ)) of the kinetic energy that the user wrote, with Hamel's h before the
 /// constraints are put in; still in terms of ξ.
 pub fn kinetic_terms(
     full: &mut Model,
     xi_active: &[Edge],
-    complement: &[Vec<Edge>],
+    section: &Section,
 ) -> Option<KineticTerms> {
     if full.kinetic == full.graph.zero() {
         return None;
@@ -34,9 +44,9 @@ pub fn kinetic_terms(
     let rows = kinematics::left_inverse(full)?;
     let gamma = commutation::gamma(full, &mut calculus, &rows);
     let h = connection::quadratic(full, &mut calculus, &mass, &gamma);
-    let drift = drift(full, xi_active, complement);
+    let drift = drift(full, xi_active, section);
     let graph = &mut full.graph;
-    let columns = transpose(complement);
+    let columns = transpose(&section.complement);
     let sum: Vec<Edge> = mass
         .iter()
         .zip(&h)
@@ -45,7 +55,7 @@ pub fn kinetic_terms(
             graph.add(h, part)
         })
         .collect();
-    let half = multiply(graph, &mass, complement);
+    let half = multiply(graph, &mass, &section.complement);
     Some(KineticTerms {
         mass: multiply(graph, &columns, &half),
         bias: columns

@@ -1,4 +1,5 @@
-//! The velocities that constraints B(x) ξ = 0 leave: ξ = C(x) ξₐ, and the model in ξₐ.
+//! The velocities that constraints B(x, t) ξ = 0 and the time leave: ξ = C ξₐ + c, and the model in ξₐ. Without time
+//! c = 0; with it c is what ξ⁰ = 1 puts in, so that a row B ξ = b ξ⁰ becomes affine.
 //!
 //! A row is solved for a velocity whose factor is constant at run time, so that nothing is divided
 //! by what may vanish on X; rows without such a factor are kept and get multipliers. With C the
@@ -14,12 +15,22 @@ use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::{evaluate, rank};
 use crate::diagnostics::Diagnostic;
-use crate::model::Model;
 use crate::model::pfaffian::{Kind, Pfaffian};
+use crate::model::{Model, Whole};
 use carrier::Carrier;
+use std::sync::Arc;
 
 /// Rows whose part across those before is smaller than this, relative to the largest, are redundant.
 const REDUNDANT: f64 = 1e-8;
+
+/// ξ = C ξₐ + c, in the graph of the full model.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// C, n rows of as many entries as ξₐ has.
+    pub complement: Vec<Vec<Edge>>,
+    /// c, n entries.
+    pub shift: Vec<Edge>,
+}
 
 /// The active velocities, and the model in them.
 #[derive(Clone, Debug)]
@@ -32,9 +43,9 @@ pub struct Reduction {
     pub solved: Vec<(usize, usize)>,
     /// Rows that are kept, by their places among the constraints.
     pub kept: Vec<usize>,
-    /// C, n rows of as many entries as ξₐ has, in the graph below.
-    pub complement: Vec<Vec<Edge>>,
-    /// The graph of the full model, with C.
+    /// ξ = C ξₐ + c, in the graph below.
+    pub section: Section,
+    /// The graph of the full model, with C and c.
     pub graph: Graph,
     /// What every symbol of the full model becomes, in the graph of the reduced one.
     pub images: Vec<Edge>,
@@ -43,14 +54,15 @@ pub struct Reduction {
 /// Solves the constraints of a model as far as constant factors allow.
 /// `None` where there are none.
 pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
-    if model.constraints.is_empty() {
+    if !model.is_constrained() {
         return Ok(None);
     }
     let mut full = model.clone();
     let (rows, solved) = eliminate(&mut full)?;
     let n = full.n();
     let active: Vec<usize> = (0..n)
-        .filter(|i| solved.iter().all(|(_, velocity)| velocity != i))
+        .filter(|&i| model.clock.is_none_or(|clock| clock.xi != i))
+        .filter(|&i| solved.iter().all(|&(_, velocity)| velocity != i))
         .collect();
     let (kept, rank) = keep(&full, &rows, &solved)?;
     if active.len() <= rank {
@@ -69,6 +81,10 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     for (place, &i) in active.iter().enumerate() {
         complement[i][place] = graph.one();
     }
+    let mut shift = vec![graph.zero(); n];
+    if let Some(clock) = model.clock {
+        shift[clock.xi] = graph.one();
+    }
     let mut pivots = Vec::new();
     for &(row, velocity) in &solved {
         let pivot = rows[row][velocity];
@@ -77,19 +93,39 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
                 .div(-rows[row][i], pivot)
                 .ok_or_else(|| Diagnostic::new(model.constraints[row].span, "division by zero"))?;
         }
+        if let Some(clock) = model.clock {
+            shift[velocity] = graph
+                .div(-rows[row][clock.xi], pivot)
+                .ok_or_else(|| Diagnostic::new(model.constraints[row].span, "division by zero"))?;
+        }
         if graph.as_rational(pivot).is_none() {
             pivots.push(graph.mul(pivot, pivot));
         }
     }
-    let rows: Vec<Vec<Edge>> = kept
+    let zero = graph.zero();
+    let rows: Vec<(Vec<Edge>, Edge)> = kept
         .iter()
-        .map(|&row| active.iter().map(|&i| rows[row][i]).collect())
+        .map(|&row| {
+            let shift = model.clock.map_or(zero, |clock| rows[row][clock.xi]);
+            (active.iter().map(|&i| rows[row][i]).collect(), shift)
+        })
         .collect();
     let graph = full.graph.clone();
-    let carrier = Carrier::new(full, &active, &complement);
+    // Whether ξ is ξₐ and what is given ahead, nothing else.
+    let given = kept.is_empty()
+        && model.clock.is_some()
+        && (0..n).all(|i| active.contains(&i) || complement[i].iter().all(|&entry| entry == zero));
+    let section = Section { complement, shift };
+    let before = full.clone();
+    let carrier = Carrier::new(full, &active, &section);
     let images = carrier.images.clone();
     let mut model = carrier.model(&rows, &kept, &pivots);
     model.overconstrained = kept.len() > rank;
+    model.whole = given.then(|| Whole {
+        full: Arc::new(before),
+        images: images.clone(),
+        active: active.clone(),
+    });
     Ok(Some(Reduction {
         model,
         graph,
@@ -97,7 +133,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         active,
         solved,
         kept,
-        complement,
+        section,
     }))
 }
 
@@ -111,6 +147,7 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     let zero = graph.zero();
     let mut rows: Vec<Vec<Edge>> = constraints.iter().map(|c| c.row.clone()).collect();
     let mut solved: Vec<(usize, usize)> = Vec::new();
+    let is_time = |velocity: usize| model.clock.is_some_and(|clock| clock.xi == velocity);
     loop {
         let mut best = None;
         for (i, constraint) in constraints.iter().enumerate() {
@@ -118,7 +155,7 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
                 continue;
             }
             for (j, &entry) in rows[i].iter().enumerate() {
-                if entry == zero || !graph.is_free(entry.node()) {
+                if entry == zero || is_time(j) || !graph.is_free(entry.node()) {
                     continue;
                 }
                 let effort = match graph.as_rational(entry) {
@@ -156,8 +193,20 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
         if row.iter().all(|&entry| entry == zero) {
             return Err(redundant(&constraints, i, ""));
         }
+        if (0..row.len()).all(|j| row[j] == zero || is_time(j)) {
+            return Err(contradicting(&constraints, i));
+        }
     }
     Ok((rows, solved))
+}
+
+fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
+    let message = "this row contradicts the others: it asks for another velocity than they leave";
+    let error = Diagnostic::new(constraints[row].span, message).help("remove one of them");
+    match constraints.iter().enumerate().find(|(i, _)| *i != row) {
+        Some((_, other)) => error.note(other.span, "one of the others"),
+        None => error,
+    }
 }
 
 fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
@@ -192,13 +241,21 @@ fn keep(
     rows: &[Vec<Edge>],
     solved: &[(usize, usize)],
 ) -> Result<(Vec<usize>, usize), Diagnostic> {
+    let time = model.clock.map(|clock| clock.xi);
+    // The entries of a row but that of ξ⁰.
+    let moving = |row: &[Edge]| {
+        let entries = row.to_vec().into_iter().enumerate();
+        entries
+            .filter(move |(j, _)| Some(*j) != time)
+            .map(|(_, entry)| entry)
+    };
     let mut open: Vec<usize> = Vec::new();
     let mut values: Vec<Vec<Fp>> = Vec::new();
     for i in 0..rows.len() {
         if solved.iter().any(|&(row, _)| row == i) {
             continue;
         }
-        let at_point = rows[i].iter().map(|&entry| model.graph.value(entry));
+        let at_point = moving(&rows[i]).map(|entry| model.graph.value(entry));
         values.push(at_point.collect());
         if model.constraints[i].kind == Kind::Loop && rank(values.clone()) < values.len() {
             values.pop();
@@ -206,9 +263,10 @@ fn keep(
             open.push(i);
         }
     }
-    let edges: Vec<Edge> = open.iter().flat_map(|&i| rows[i].iter().copied()).collect();
+    let edges: Vec<Edge> = open.iter().flat_map(|&i| moving(&rows[i])).collect();
     let values = evaluate(&model.graph, &edges, &start_numbers(model));
-    let mut left: Vec<Vec<f64>> = values.chunks(model.n()).map(<[f64]>::to_vec).collect();
+    let columns = moving(&model.xi).count();
+    let mut left: Vec<Vec<f64>> = values.chunks(columns).map(<[f64]>::to_vec).collect();
     let norm = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>().sqrt();
     let most = left.iter().map(|row| norm(row)).fold(0.0, f64::max);
     let mut independent = Vec::new();

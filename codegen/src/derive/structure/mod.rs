@@ -147,13 +147,23 @@ fn dependence(
     }
 }
 
-/// The constraints on velocities, in words.
+/// The constraints on velocities, in words, or the time.
 fn constrained(full: &Model) -> Option<Reason> {
     let count = |kind: Kind| full.constraints.iter().filter(|c| c.kind == kind).count();
     let words = [
         (Kind::Inactive, "inactive velocity", "inactive velocities"),
         (Kind::Nonholonomic, "nonholonomic row", "nonholonomic rows"),
         (Kind::Loop, "row of closed loops", "rows of closed loops"),
+        (
+            Kind::Drive { position: true },
+            "prescribed coordinate",
+            "prescribed coordinates",
+        ),
+        (
+            Kind::Drive { position: false },
+            "prescribed velocity",
+            "prescribed velocities",
+        ),
     ];
     let found: Vec<String> = words
         .iter()
@@ -163,7 +173,10 @@ fn constrained(full: &Model) -> Option<Reason> {
             number => Some(format!("{number} {many}")),
         })
         .collect();
-    (!found.is_empty()).then(|| Reason::Constrained {
-        by: found.join(" and "),
-    })
+    match found.as_slice() {
+        [] => full.clock.map(|_| Reason::Time),
+        found => Some(Reason::Constrained {
+            by: found.join(" and "),
+        }),
+    }
 }

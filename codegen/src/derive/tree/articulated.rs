@@ -6,7 +6,7 @@
 
 use super::inverse::{Wrench, carried};
 use super::mass::Mass;
-use super::{Link, Tree};
+use super::{Freedom, Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3, add3, cross, identity3, scale3, zero3};
 use crate::derive::accel::solve::Solution;
@@ -31,10 +31,12 @@ struct Pivot {
 }
 
 /// ξ̇ for forces that the joints have to bring up (load − bias at ξ̇ = 0 less the links' wrenches);
-/// `None` where a pivot vanishes identically. Every velocity has to be the rate of one freedom.
+/// `None` where a pivot vanishes identically. Every velocity has to be the rate of one freedom, but for those that
+/// are given ahead: their accelerations are in the wrenches, and they yield to no force (Featherstone 2008, 9.2).
 pub fn forward(
     graph: &mut Graph,
     tree: &Tree,
+    given: &[usize],
     wrenches: &[Wrench],
     load: &[Edge],
 ) -> Option<Solution> {
@@ -47,7 +49,7 @@ pub fn forward(
     let mut pivots: Vec<Vec<Pivot>> = tree.links.iter().map(|_| Vec::new()).collect();
     let mut guards = Vec::new();
     for (index, link) in tree.links.iter().enumerate().rev() {
-        for freedom in &link.freedoms {
+        for freedom in link.freedoms.iter().filter(|f| !f.is_given(given)) {
             let whole = inertia[index].wrench(graph, freedom.angular, freedom.linear);
             let &[(i, _)] = freedom.rate.as_slice() else {
                 return None;
@@ -83,7 +85,9 @@ pub fn forward(
         let swing = cross(graph, alpha, link.position);
         let a = add3(graph, a, swing);
         let mut motion = (link.back(graph, alpha), link.back(graph, a));
-        for (freedom, pivot) in link.freedoms.iter().zip(&pivots[index]).rev() {
+        let freedoms = link.freedoms.iter().filter(|f| !f.is_given(given));
+        let freedoms: Vec<&Freedom> = freedoms.collect();
+        for (freedom, pivot) in freedoms.into_iter().zip(&pivots[index]).rev() {
             let own = graph.mul(pivot.rest, pivot.inverse);
             let (t, f) = (
                 graph.dot(&pivot.share.torque, &motion.0),

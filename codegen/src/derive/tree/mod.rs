@@ -40,6 +40,11 @@ pub struct Freedom {
 }
 
 impl Freedom {
+    /// Whether its rate is known ahead.
+    pub fn is_given(&self, given: &[usize]) -> bool {
+        self.rate.iter().all(|(i, _)| given.contains(i))
+    }
+
     /// Σ k vⁱ.
     pub fn rate_of(&self, graph: &mut Graph, v: &[Edge]) -> Edge {
         let terms: Vec<Edge> = self.rate.iter().map(|&(i, k)| graph.mul(k, v[i])).collect();
@@ -124,11 +129,11 @@ impl Tree {
         })
     }
 
-    /// Whether every ξⁱ is the rate of one freedom of its own.
-    pub fn is_plain(&self, graph: &Graph, n: usize) -> bool {
+    /// Whether every ξⁱ is the rate of one freedom of its own, but for those that are given ahead.
+    pub fn is_plain(&self, graph: &Graph, n: usize, given: &[usize]) -> bool {
         let mut seen = vec![false; n];
         self.links.iter().flat_map(|link| &link.freedoms).all(|freedom| {
-            matches!(freedom.rate.as_slice(), &[(i, k)] if k == graph.one() && !std::mem::replace(&mut seen[i], true))
+            freedom.is_given(given) || matches!(freedom.rate.as_slice(), &[(i, k)] if k == graph.one() && !std::mem::replace(&mut seen[i], true))
         })
     }
 }

@@ -54,7 +54,7 @@ pub fn slopes(
             .flat_map(|f| f.angular.into_iter().chain(f.linear));
         entries.into_iter().all(|entry| graph.is_free(entry.node()))
     };
-    if !tree.is_plain(graph, n) || !tree.links.iter().all(steady) {
+    if !tree.is_plain(graph, n, &[]) || !tree.links.iter().all(steady) {
         return None;
     }
     let motions = motions(graph, tree, xi, xi_dot, gravity);

@@ -89,11 +89,11 @@ fn agree(mut model: Model, steady: bool) {
             assert_eq!(expected, graph.value(mass[i][j]), "M {i} {j}");
         }
     }
-    if tree.is_plain(&graph, n) {
+    if tree.is_plain(&graph, n, &[]) {
         let still = vec![zero; n];
         let forces = wrenches(&mut graph, &tree, &xi, &still, gravity);
         let bias = inverse(&mut graph, &tree, &xi, &still, gravity);
-        let found = articulated::forward(&mut graph, &tree, &forces, &still).expect("solves");
+        let found = articulated::forward(&mut graph, &tree, &[], &forces, &still).expect("solves");
         for i in 0..n {
             let inertial = graph.dot(&mass[i], &found.xi_dot);
             assert_eq!(graph.add(inertial, bias[i]), zero, "row {i} of M ξ̇ + h");

@@ -71,12 +71,9 @@ pub fn identities(model: &Model, program: &Program) -> Vec<Identity> {
 fn confidence(model: &Model, program: &Program) -> Confidence {
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
-    let mass = inertia::mass_matrix(&mut own, &mut calculus);
-    let energies = [
-        energy::kinetic(&mut own, &mass),
-        energy::potential(&mut own),
-    ];
-    let mut roots = mass.concat();
+    let energies = energies(&mut own, &mut calculus);
+    let energies = [energies.0, energies.1];
+    let mut roots = inertia::mass_matrix(&mut own, &mut calculus).concat();
     roots.extend(own.rate.iter().chain(&energies).copied());
     let accel = program
         .function(FunctionId::Accel)
@@ -86,15 +83,22 @@ fn confidence(model: &Model, program: &Program) -> Confidence {
     Confidence::new(model, &expressions, terms, POINTS, 9)
 }
 
+/// T and V.
+fn energies(model: &mut Model, calculus: &mut Calculus) -> (Edge, Edge) {
+    let kinetic = if model.is_affine() {
+        energy::traced(model, calculus)
+    } else {
+        let mass = inertia::mass_matrix(model, calculus);
+        energy::kinetic(model, &mass)
+    };
+    (kinetic, energy::potential(model))
+}
+
 /// How the claim fails, if it does: by the entry that changes.
 fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequal<usize>> {
     let mut own = model.clone();
     let mut calculus = Calculus::new(&own);
-    let mass = inertia::mass_matrix(&mut own, &mut calculus);
-    let energies = (
-        energy::kinetic(&mut own, &mass),
-        energy::potential(&mut own),
-    );
+    let energies = energies(&mut own, &mut calculus);
     let value = quantity::value(&mut own, &mut calculus, energies, &claim.quantity);
     let entries = value.entries();
     let compared = at_fresh_points(
@@ -121,14 +125,13 @@ fn slopes(
 ) -> Option<Vec<Fp>> {
     let graph = &model.graph;
     let velocities = places(graph, class::VELOCITY);
-    let rows: Vec<Edge> = model
-        .constraints
-        .iter()
-        .flat_map(|c| c.row.clone())
-        .collect();
+    let rows = model.constraints.iter().flat_map(|c| c.row.clone());
+    let rows: Vec<Edge> = rows.collect();
+    let shifts: Vec<Edge> = model.constraints.iter().map(|c| c.shift).collect();
     let rows = evaluate_at(graph, &rows, &mut lane.clone())?;
+    let shifts = evaluate_at(graph, &shifts, &mut lane.clone())?;
     let xi: Vec<Fp> = velocities.iter().map(|&place| lane.symbol(place)).collect();
-    for (&place, value) in velocities.iter().zip(in_kernel(&rows, &xi, seed)?) {
+    for (&place, value) in velocities.iter().zip(in_kernel(&rows, &shifts, &xi, seed)?) {
         lane.set_symbol(place, value);
     }
     let accel = program.function(FunctionId::Accel)?;

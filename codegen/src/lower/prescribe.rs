@@ -1,0 +1,304 @@
+//! Prescribed motion: `prescribe q = f(t, u);` for a coordinate, `prescribe v = w(t, u);` for a velocity.
+//!
+//! A coordinate that is given has the rate ḟ = ∂f/∂t + ∂f/∂u u̇, which is the row A_q ξ − ḟ ξ⁰ = 0; a velocity that is
+//! given is the row v − w ξ⁰ = 0. Their multipliers are the forces of the drives. The rate of an input `w` is the input
+//! `w_dot`, that of `w_dot` is `w_ddot`.
+
+use super::declare::{Declared, rate_name};
+use super::expression::Evaluator;
+use super::rate::{Kinematics, part, written};
+use super::scope::Scope;
+use super::time;
+use super::variety::{Origin, Variety};
+use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::pfaffian::{Kind, Pfaffian};
+use crate::model::value::Value;
+use crate::model::{Coordinate, class};
+use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
+use crate::syntax::written::written as shown;
+
+/// The rows, and the coordinates whose values are given.
+type Prescribed = (Vec<Pfaffian>, Vec<(usize, Edge)>);
+
+/// Reads all `prescribe` statements, in the order of the text.
+pub fn read(
+    system: &System,
+    graph: &mut Graph,
+    scope: &Scope,
+    declared: &Declared,
+    variety: &Variety,
+    kinematics: Option<&Kinematics>,
+    report: &mut Report,
+) -> Prescribed {
+    let mut all = (Vec::new(), Vec::new());
+    let mut targets: Vec<&Target> = Vec::new();
+    for item in &system.items {
+        let ItemKind::Prescribe { target, value } = &item.kind else {
+            continue;
+        };
+        let first = targets
+            .iter()
+            .find(|other| other.name.name == target.name.name);
+        if let Some(first) = first {
+            let message = format!("the motion of `{}` is prescribed twice", written(target));
+            let error = Diagnostic::new(target.span(), message).help("remove one of the two");
+            report.push(error.note(first.span(), "first prescribed here"));
+            continue;
+        }
+        targets.push(target);
+        let mut reader = Reader {
+            system,
+            evaluator: Evaluator::new(graph, scope, report),
+            declared,
+            variety,
+            kinematics,
+        };
+        reader.prescribe(target, value, &mut all);
+    }
+    all
+}
+
+struct Reader<'a> {
+    system: &'a System,
+    evaluator: Evaluator<'a>,
+    declared: &'a Declared,
+    variety: &'a Variety,
+    kinematics: Option<&'a Kinematics>,
+}
+
+impl Reader<'_> {
+    fn prescribe(&mut self, target: &Target, expr: &Expr, all: &mut Prescribed) -> Option<()> {
+        let value = self.evaluator.value(expr);
+        let name = &target.name.name;
+        let velocity = self.declared.velocities.iter().find(|g| g.name == *name);
+        let (place, wanted, coordinate) = match velocity {
+            Some(group) if target.field.is_none() => (group.offset, group.value.clone(), None),
+            _ => {
+                let (range, wanted) = part(target, &mut self.evaluator, self.declared)?;
+                let mut coordinates = self.declared.coordinates.iter();
+                let coordinate = coordinates.find(|c| c.name == *name)?;
+                (range.start, wanted, Some(coordinate))
+            }
+        };
+        let value = value?;
+        if time::name(self.system).is_none() {
+            let error = Diagnostic::new(target.span(), "a prescribed motion is a function of time");
+            return self
+                .evaluator
+                .error(error.help("declare the time: `time t;`"));
+        }
+        let clock = self.declared.clock?;
+        if coordinate.is_some_and(|c| c.offset == clock.x)
+            || velocity.is_some_and(|g| g.offset == clock.xi)
+        {
+            let error = Diagnostic::new(target.span(), "the time cannot be prescribed");
+            return self
+                .evaluator
+                .error(error.help("prescribe a coordinate or a velocity"));
+        }
+        let angle = coordinate.is_some_and(|c| c.kind == CoordKind::S1) && target.field.is_none();
+        let fits = match (angle, &value) {
+            (true, value) => matches!(value, Value::Scalar(_)),
+            (false, value) => value.same_shape(&wanted),
+        };
+        if let Some(coordinate) = coordinate {
+            self.can_be_given(target, coordinate)?;
+        }
+        if !fits {
+            let what = format!("the motion of `{}`", written(target));
+            let shape = if angle {
+                "an angle".into()
+            } else {
+                wanted.shape()
+            };
+            return self.evaluator.wrong_shape(expr.span, &what, &shape, &value);
+        }
+        self.known_ahead(name, expr.span, &value, coordinate.is_some())?;
+        match coordinate {
+            None => self.velocity(place, &value, expr, target, all),
+            Some(coordinate) => self.coordinate(place, coordinate, &value, expr, target, all),
+        }
+    }
+
+    /// Only plain coordinates and angles have values that an expression gives without a redundancy.
+    fn can_be_given(&mut self, target: &Target, coordinate: &Coordinate) -> Option<()> {
+        let error = Diagnostic::new(
+            target.span(),
+            format!("the value of `{}` cannot be prescribed", written(target)),
+        );
+        let plain = matches!(
+            coordinate.kind,
+            CoordKind::Real | CoordKind::Euclidean(_) | CoordKind::S1
+        );
+        if !plain || target.field.is_some() {
+            return self.evaluator.error(
+                error.help("prescribe its velocity, or let the pose of a frame depend on time"),
+            );
+        }
+        let mut statements = (self.variety.origins.iter().zip(&self.variety.phi)).filter_map(
+            |(origin, (row, _))| match origin {
+                Origin::Statement(item) => Some((*item, *row)),
+                Origin::Coordinate(_) => None,
+            },
+        );
+        let free = &self.variety.points.free;
+        let first = self.variety.points.first + coordinate.offset;
+        let tied = statements.find(|(_, row)| {
+            let reached = free.reachable(&[*row]);
+            reached
+                .iter()
+                .any(|&id| matches!(free.node(id), Node::Symbol(index) if index as usize == first))
+        });
+        match tied {
+            Some((item, _)) => {
+                let span = self.system.items[item].span;
+                self.evaluator.error(
+                    error
+                        .help("write the constraint as a `loop`, or prescribe a velocity")
+                        .note(span, "this constraint ties it to others"),
+                )
+            }
+            None => Some(()),
+        }
+    }
+
+    /// What is given depends on time and inputs alone, and the rates of these inputs are known.
+    fn known_ahead(&mut self, name: &str, span: Span, value: &Value, twice: bool) -> Option<()> {
+        let graph = &*self.evaluator.graph;
+        let clock = self.declared.clock?;
+        let time = self.declared.x[clock.x].node();
+        let symbols: Vec<u32> = graph
+            .reachable(&value.entries())
+            .into_iter()
+            .filter(|&id| matches!(graph.node(id), Node::Symbol(_)))
+            .collect();
+        let allowed = class::PARAM | class::INPUT;
+        if symbols
+            .iter()
+            .any(|&id| id != time && graph.class(id) & !allowed != 0)
+        {
+            let message = format!("the motion of `{name}` has to be known ahead");
+            return self.evaluator.error(Diagnostic::new(span, message).help(
+                "it is a function of time, inputs and parameters; what depends on the motion is a force or a constraint",
+            ));
+        }
+        let mut wanted = symbols;
+        for _ in 0..if twice { 2 } else { 1 } {
+            let mut rates = Vec::new();
+            for &id in wanted
+                .iter()
+                .filter(|&&id| self.evaluator.graph.class(id) & class::INPUT != 0)
+            {
+                let known = self
+                    .declared
+                    .input_rates
+                    .iter()
+                    .find(|(u, _)| u.node() == id);
+                if let Some((_, rate)) = known {
+                    rates.push(rate.node());
+                    continue;
+                }
+                let symbols = self.evaluator.graph.symbols().iter();
+                let input = symbols
+                    .clone()
+                    .find(|s| s.node == id)
+                    .map_or("", |s| s.name.as_str());
+                let input = input.split('[').next().unwrap_or(input).to_owned();
+                let message = format!("the rate of input `{input}` is not known");
+                let help = format!("declare it: `input {};`", rate_name(&input));
+                return self
+                    .evaluator
+                    .error(Diagnostic::new(span, message).help(help));
+            }
+            wanted = rates;
+        }
+        Some(())
+    }
+
+    fn velocity(
+        &mut self,
+        place: usize,
+        value: &Value,
+        expr: &Expr,
+        target: &Target,
+        all: &mut Prescribed,
+    ) -> Option<()> {
+        let clock = self.declared.clock?;
+        let graph = &mut *self.evaluator.graph;
+        for (i, given) in value.entries().into_iter().enumerate() {
+            let mut row = vec![graph.zero(); self.declared.xi.len()];
+            row[place + i] = graph.one();
+            row[clock.xi] = -given;
+            all.0.push(Pfaffian {
+                kind: Kind::Drive { position: false },
+                row,
+                shift: graph.zero(),
+                residual: graph.zero(),
+                stabilized: None,
+                written: format!("{} = {}", written(target), shown(expr)),
+                span: target.span(),
+            });
+        }
+        Some(())
+    }
+
+    fn coordinate(
+        &mut self,
+        place: usize,
+        coordinate: &Coordinate,
+        value: &Value,
+        expr: &Expr,
+        target: &Target,
+        all: &mut Prescribed,
+    ) -> Option<()> {
+        let clock = self.declared.clock?;
+        let a = &self.kinematics?.a;
+        let n = self.declared.xi.len();
+        let x = &self.declared.x;
+        let graph = &mut *self.evaluator.graph;
+        let one = graph.one();
+        let seeds = [(x[clock.x].node(), one)].into_iter();
+        let rates = self
+            .declared
+            .input_rates
+            .iter()
+            .map(|(u, rate)| (u.node(), *rate));
+        let mut along = Derivation::new(seeds.chain(rates));
+        for (i, given) in value.entries().into_iter().enumerate() {
+            let (mut row, residual): (Vec<Edge>, Edge) = match coordinate.kind {
+                CoordKind::S1 => {
+                    let (c, s) = (x[place], x[place + 1]);
+                    let cos = graph.apply(Function::Cos, given);
+                    let sin = graph.apply(Function::Sin, given);
+                    all.1.extend([(place, cos), (place + 1, sin)]);
+                    let row = (0..n).map(|j| {
+                        let (turned, back) =
+                            (graph.mul(c, a[place + 1][j]), graph.mul(s, a[place][j]));
+                        graph.sub(turned, back)
+                    });
+                    let row = row.collect();
+                    let (ahead, behind) = (graph.mul(s, cos), graph.mul(c, sin));
+                    (row, graph.sub(ahead, behind))
+                }
+                _ => {
+                    all.1.push((place + i, given));
+                    (a[place + i].clone(), graph.sub(x[place + i], given))
+                }
+            };
+            let rate = along.of(graph, given);
+            row[clock.xi] = graph.sub(row[clock.xi], rate);
+            all.0.push(Pfaffian {
+                kind: Kind::Drive { position: true },
+                row,
+                shift: graph.zero(),
+                residual,
+                stabilized: None,
+                written: format!("{} = {}", written(target), shown(expr)),
+                span: target.span(),
+            });
+        }
+        Some(())
+    }
+}
