@@ -12,13 +12,8 @@ use crate::algebra::linear::solve_symmetric;
 use crate::algebra::transplant::{map_symbols, rebuild};
 use crate::model::{Model, class};
 
-/// λ in the graph of the program, in order of the constraints; that of a redundant row is 0.
-pub fn multipliers(
-    full: &Model,
-    reduction: &Reduction,
-    chosen: &Acceleration,
-    graph: &mut Graph,
-) -> Option<Vec<Edge>> {
+/// M ξ̇ + h + ∂V − f of the velocities that were solved for, with ξ̇ₐ as symbols: bodies traced in the full frame.
+pub fn residuals(full: &Model, reduction: &Reduction) -> (Graph, Vec<Edge>) {
     let mut model = full.clone();
     model.graph = reduction.graph.clone();
     let mut calculus = Calculus::new(&model);
@@ -28,7 +23,6 @@ pub fn multipliers(
         shift: None,
     };
     let parts = parts(&mut model, &mut calculus, variant);
-    // M ξ̇ + h + ∂V − f of the solved velocities.
     let residuals: Vec<Edge> = reduction
         .solved
         .iter()
@@ -40,15 +34,29 @@ pub fn multipliers(
             inner.sub(inertial, sum)
         })
         .collect();
-    let rows: Vec<Edge> = model
+    let mut graph = reduction.model.graph.clone();
+    let residuals = map_symbols(&model.graph, &mut graph, &residuals, &reduction.images);
+    (graph, residuals)
+}
+
+/// λ in the graph of the program, in order of the constraints, given the residuals of the velocities that were solved
+/// for; that of a redundant row is 0.
+pub fn multipliers(
+    full: &Model,
+    reduction: &Reduction,
+    chosen: &Acceleration,
+    (from, residuals): (&Graph, &[Edge]),
+    graph: &mut Graph,
+) -> Option<Vec<Edge>> {
+    let rows: Vec<Edge> = full
         .constraints
         .iter()
         .flat_map(|c| c.row.clone())
         .collect();
     let images = rebuild(&reduction.model.graph, graph, &reduction.images);
-    let residuals = map_symbols(&model.graph, graph, &residuals, &images);
+    let residuals = rebuild(from, graph, residuals);
     let residuals = with_accelerations(graph, &residuals, &chosen.xi_dot);
-    let rows = map_symbols(&model.graph, graph, &rows, &images);
+    let rows = map_symbols(&full.graph, graph, &rows, &images);
     let n = full.n();
     let mut multipliers = vec![graph.zero(); full.constraints.len()];
     for (&row, &multiplier) in reduction.kept.iter().zip(&chosen.multipliers) {

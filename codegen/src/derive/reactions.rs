@@ -1,10 +1,12 @@
 //! Functions of systems with constraints: the multipliers, and what leads back to where they hold.
 
 use super::candidates::Candidates;
-use super::multipliers::multipliers;
+use super::accel::recursions;
+use super::accel::setting::Setting;
+use super::multipliers::{multipliers, residuals};
 use super::program::Builder;
 use super::reduction::Reduction;
-use crate::algebra::graph::Edge;
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
 use crate::model::Model;
 use crate::program::FunctionId;
@@ -23,13 +25,29 @@ impl Builder<'_> {
 
     /// λ of all constraints; an overconstrained mechanism has no unique ones.
     pub(super) fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
-        if self.model.overconstrained {
+        if self.model.overconstrained || full.constraints.is_empty() {
             return;
+        }
+        // Where the other velocities are given ahead, by the recursion over links.
+        let given = Setting::given(self.model);
+        let velocities = reduction.solved.iter().map(|&(_, velocity)| velocity);
+        let velocities: Vec<usize> = velocities.collect();
+        let recursions = recursions(&given, &self.care);
+        let mut traced: Vec<(Graph, Vec<Edge>)> = recursions
+            .iter()
+            .filter_map(|recursion| recursion.residuals(&velocities))
+            .collect();
+        if traced.is_empty() {
+            traced.push(residuals(full, reduction));
         }
         let mut candidates = Candidates::with(&self.care);
         let contexts = [self.shared.graph.clone(), self.graph.clone()];
-        for mut graph in contexts.into_iter().chain([self.chosen.graph.clone()]) {
-            let Some(outputs) = multipliers(full, reduction, &self.chosen, &mut graph) else {
+        let contexts = contexts.into_iter().chain([self.chosen.graph.clone()]);
+        let contexts = contexts.flat_map(|graph| traced.iter().map(move |of| (graph.clone(), of)));
+        for (mut graph, (from, residuals)) in contexts {
+            let residuals = (from, residuals.as_slice());
+            let found = multipliers(full, reduction, &self.chosen, residuals, &mut graph);
+            let Some(outputs) = found else {
                 return;
             };
             let pivots = self.chosen.pivots.iter().copied();

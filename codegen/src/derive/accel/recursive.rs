@@ -240,6 +240,19 @@ impl Recursion {
         Computation { graph, parts }
     }
 
+    /// M ξ̇ + Γ ξ ξ + ∂V − f of velocities that are given ahead, where there are some: the forces of their drives.
+    pub fn residuals(&self, velocities: &[usize]) -> Option<(Graph, Vec<Edge>)> {
+        self.free.as_ref()?;
+        let mut graph = self.model.graph.clone();
+        let (xi, xi_dot) = (&self.model.xi, &self.model.xi_dot);
+        let whole = inverse(&mut graph, &self.tree, xi, xi_dot, self.model.gravity);
+        let load = self.load(&mut graph);
+        let rows = velocities.iter().map(|&i| graph.sub(whole[i], load[i]));
+        let rows = rows.collect();
+        let (graph, [rows]) = self.leave(graph, [rows]);
+        Some((graph, rows))
+    }
+
     /// ṗ of (x, ξ, u), in a graph of its own; `None` where a joint varies with x.
     pub fn momentum_rate(&self) -> Option<(Graph, Vec<Edge>)> {
         if self.free.is_some() {
