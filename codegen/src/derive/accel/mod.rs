@@ -58,7 +58,7 @@ pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> 
     {
         search(&twist, &mut best);
     }
-    if model.n() <= SMALL && model.spans && !care.is_taken() {
+    if model.n() <= SMALL && (model.spans || model.is_affine()) && !care.is_taken() {
         let most = best.least();
         for candidate in polynomial::candidates(model, most) {
             best.keep(Family::Polynomial, candidate);
