@@ -45,7 +45,12 @@ where
     let mut moved = false;
     let singular = |cause| StepError::Singular { cause, time };
     if let Some(step) = system.project_position(&state.x).map_err(singular)? {
-        let chart = system.chart_rate(&state.x, &step);
+        // A alone: where the time is a coordinate, rates have terms without ξ.
+        let mut chart = system.chart_rate(&state.x, &step);
+        let still = system.chart_rate(&state.x, &system.zero_velocities());
+        for (entry, &drift) in chart.as_mut().iter_mut().zip(still.as_ref()) {
+            *entry = *entry - drift;
+        }
         manifold::retract(system.blocks(), state.x.as_mut(), chart.as_ref());
         moved = true;
     }

@@ -52,7 +52,8 @@ impl Block {
 /// mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414 (KR18). Units are those of the description.
 ///
 /// An implementation is pure: equal arguments give equal results, and no argument makes it panic.
-/// Time does not appear; what depends on time enters through u.
+/// Time is no argument: where a description declares it, it is a coordinate of x whose rate is 1, so that every method
+/// evaluates its stages at their own times; what else depends on time enters through u.
 pub trait System {
     /// The numbers computed with.
     type Scalar: Scalar;
@@ -84,7 +85,7 @@ pub trait System {
     /// The initial (x, ξ) of the description, with φ(x) = 0.
     fn start(&self) -> (Self::Coordinates, Self::Velocities);
 
-    /// ẋ = A(x) ξ, KR18 (5).
+    /// ẋ = A(x) ξ, KR18 (5); with the time among the coordinates ẋ = A(x) ξ + a(x).
     fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates;
 
     /// The same motion in the chart, per block: ẋ (flat), θ̇ (circle), angular velocity in body axes
@@ -138,7 +139,7 @@ pub trait System {
     /// max |φ(x)| over the constraints.
     fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar;
 
-    /// T = ½ ξᵀ M(x) ξ.
+    /// T = ½ ξᵀ M(x) ξ, and T₂ + T₁ + T₀ where ẋ has terms without ξ.
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar;
 
     /// V(x), up to a constant.

@@ -42,6 +42,8 @@ pub struct Interpreted {
     velocity_names: Vec<String>,
     constant_singular: bool,
     constrained: bool,
+    /// Whether the time is a coordinate.
+    timed: bool,
     /// What had no value last.
     failed: RefCell<Option<Failed>>,
 }
@@ -100,6 +102,7 @@ impl Interpreted {
             velocity_names: names::velocities(&generated.active),
             constant_singular: constant_singular(program, &state.params),
             constrained: generated.model.is_constrained(),
+            timed: generated.model.clock.is_some(),
             failed: RefCell::new(None),
         })
     }
@@ -122,6 +125,11 @@ impl Interpreted {
     /// Whether there are constraints on the velocities.
     pub fn is_constrained(&self) -> bool {
         self.constrained
+    }
+
+    /// Whether the time is a coordinate.
+    pub fn is_timed(&self) -> bool {
+        self.timed
     }
 
     /// What had no value last, where something had none.

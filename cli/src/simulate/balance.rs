@@ -22,6 +22,8 @@ pub struct Balance {
     work: f64,
     /// ∫ T dt, without what the run has made of nothing.
     moving: f64,
+    /// Whether T + V changes by the time alone: then it says nothing of the run.
+    timed: bool,
     /// T and the change of T + V at the last state.
     kinetic: f64,
     change: f64,
@@ -37,6 +39,7 @@ impl Balance {
             power: system.power(&state.x, &state.xi).abs(),
             work: 0.0,
             moving: 0.0,
+            timed: system.is_timed(),
             kinetic: system.kinetic_energy(&state.x, &state.xi),
             change: 0.0,
         }
@@ -59,6 +62,9 @@ impl Balance {
 
     /// The change of energy here, where no load accounts for it.
     pub fn lost(&self, tolerance: f64) -> Option<f64> {
+        if self.timed {
+            return None;
+        }
         let elapsed = (self.time - self.start).abs();
         let mean = if elapsed > 0.0 {
             self.moving / elapsed

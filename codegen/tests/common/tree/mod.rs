@@ -214,7 +214,7 @@ impl Link {
     }
 
     /// Its entries in x.
-    fn coordinates(&self) -> usize {
+    pub fn coordinates(&self) -> usize {
         match self.kind {
             _ if self.follows.is_some() => 0,
             Kind::Fixed => 0,
@@ -228,7 +228,7 @@ impl Link {
     }
 
     /// Its velocities.
-    fn freedoms(&self) -> usize {
+    pub fn freedoms(&self) -> usize {
         match self.kind {
             _ if self.follows.is_some() => 0,
             Kind::Fixed => 0,

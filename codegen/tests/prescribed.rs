@@ -1,0 +1,254 @@
+//! Random trees of bodies some of whose joints are prescribed, by time or by inputs: accelerations of the others and
+//! forces of the drives against Newton and Euler in numbers.
+
+mod common;
+#[path = "common/tree/mod.rs"]
+mod tree;
+
+use common::{Random, attack, difference, value};
+use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::model::Group;
+use hamel_codegen::render::render;
+use tree::{Kind, Link, Tree, text};
+
+/// Roundings of a few thousand operations, forces of the order of 100, times the condition of M.
+const CLOSE: f64 = 1e-9;
+/// States tried per tree.
+const STATES: usize = 3;
+
+const KINDS: [Kind; 11] = [
+    Kind::Revolute,
+    Kind::Revolute,
+    Kind::Revolute,
+    Kind::Continuous,
+    Kind::Prismatic,
+    Kind::Spherical,
+    Kind::Quaternion,
+    Kind::Cylindrical,
+    Kind::Universal,
+    Kind::Free,
+    Kind::Fixed,
+];
+
+/// How a velocity of a joint is given.
+enum Given {
+    /// By the inputs `r{joint}` and `r{joint}_dot`.
+    Input,
+    /// The coordinate is a + b t + c sin(d t).
+    Time([f64; 4]),
+}
+
+/// A velocity that is given.
+struct Drive {
+    joint: usize,
+    /// The name of the velocity.
+    velocity: String,
+    /// The number of its entries.
+    size: usize,
+    given: Given,
+}
+
+fn short(number: f64) -> f64 {
+    (number * 100.0).round() / 100.0
+}
+
+/// What is prescribed of a tree: something, but never all.
+fn drives(random: &mut Random, links: &[Link]) -> Vec<Drive> {
+    let mut drives = Vec::new();
+    let free: Vec<usize> = (0..links.len()).filter(|&i| links[i].freedoms() > 0).collect();
+    let spared = free[random.below(free.len())];
+    for &joint in free.iter().filter(|&&joint| joint != spared) {
+        if random.below(2) == 0 {
+            continue;
+        }
+        let (ending, size) = match links[joint].kind {
+            Kind::Spherical | Kind::Quaternion => ("_dot", 3),
+            Kind::Universal => ("_1_dot", 1),
+            Kind::Free => ("_w", 3),
+            _ => ("_dot", 1),
+        };
+        let plain = matches!(
+            links[joint].kind,
+            Kind::Revolute | Kind::Prismatic | Kind::Continuous
+        );
+        let given = match plain && random.below(2) == 0 {
+            true => Given::Time([(); 4].map(|()| short(random.number()))),
+            false => Given::Input,
+        };
+        let velocity = format!("q{joint}{ending}");
+        drives.push(Drive {
+            joint,
+            velocity,
+            size,
+            given,
+        });
+    }
+    drives
+}
+
+/// The description with what is prescribed, the time at a place of its own.
+fn description(links: &[Link], drives: &[Drive]) -> String {
+    let mut said = String::from("    time t;\n");
+    for drive in drives {
+        let joint = drive.joint;
+        said += &match drive.given {
+            Given::Input => {
+                let shape = if drive.size > 1 { ": vec3" } else { "" };
+                let velocity = &drive.velocity;
+                format!("    input r{joint}{shape}, r{joint}_dot{shape};\n    prescribe {velocity} = r{joint};\n")
+            }
+            Given::Time([a, b, c, d]) => {
+                format!("    prescribe q{joint} = {a} + {b} * t + {c} * sin({d} * t);\n")
+            }
+        };
+    }
+    let functions = "accel, inverse_dynamics, mass_matrix, energy, momentum, constraint_force";
+    let text = text(links, functions);
+    let end = text.find("    gravity").expect("gravity stands last");
+    format!("{}{said}{}", &text[..end], &text[end..])
+}
+
+fn places<'a>(groups: &'a [Group], name: &str) -> Option<std::ops::Range<usize>> {
+    let group: Option<&'a Group> = groups.iter().find(|group| group.name == name);
+    group.map(|group| group.offset..group.offset + group.len)
+}
+
+/// A state of the tree: x, ξ and ξ̇ of all joints, given those that are free.
+struct Whole {
+    x: Vec<f64>,
+    xi: Vec<f64>,
+    dot: Vec<f64>,
+    /// The places in ξ without ξ⁰ of the velocities that are free, and of those that are driven.
+    free: Vec<usize>,
+    driven: Vec<usize>,
+}
+
+fn whole(
+    of: &Generated,
+    (links, drives): (&[Link], &[Drive]),
+    [x, xi, u, dot]: [&[f64]; 4],
+) -> Whole {
+    let clock = of.model.clock.expect("the time is declared");
+    let t = x[clock.x];
+    let mut x = x.to_vec();
+    let (mut all, mut rates) = (Vec::new(), Vec::new());
+    let (mut free, mut places_of_drives) = (Vec::new(), vec![Vec::new(); drives.len()]);
+    let mut count = 0;
+    for group in of.model.velocities.iter().filter(|g| g.offset != clock.xi) {
+        let driven = drives.iter().position(|drive| drive.velocity == group.name);
+        match driven {
+            None => {
+                let range = places(&of.active.velocities, &group.name).expect("it is free");
+                free.extend(count..count + range.len());
+                all.extend(&xi[range.clone()]);
+                rates.extend(&dot[range]);
+            }
+            Some(index) => {
+                let drive = &drives[index];
+                places_of_drives[index].extend(count..count + drive.size);
+                match drive.given {
+                    Given::Input => {
+                        let name = format!("r{}", drive.joint);
+                        let input = |name: &str| {
+                            places(&of.active.inputs, name).expect("it is declared")
+                        };
+                        all.extend(&u[input(&name)]);
+                        rates.extend(&u[input(&format!("{name}_dot"))]);
+                    }
+                    Given::Time([a, b, c, d]) => {
+                        let value = a + b * t + c * (d * t).sin();
+                        let name = format!("q{}", drive.joint);
+                        let mut coordinates = of.model.coordinates.iter();
+                        let coordinate = coordinates.find(|c| c.name == name).expect("it is there");
+                        let place = coordinate.offset;
+                        match links[drive.joint].kind {
+                            Kind::Continuous => (x[place + 1], x[place]) = value.sin_cos(),
+                            _ => x[place] = value,
+                        }
+                        all.push(b + c * d * (d * t).cos());
+                        rates.push(-c * d * d * (d * t).sin());
+                    }
+                }
+            }
+        }
+        count += group.len;
+    }
+    x.remove(clock.x);
+    Whole {
+        x,
+        xi: all,
+        dot: rates,
+        free,
+        driven: places_of_drives.concat(),
+    }
+}
+
+/// What is wrong with one random tree.
+fn faults(seed: u64) -> Vec<String> {
+    let mut random = Random::new(0x9e5c ^ seed);
+    let mut links: Vec<Link> = Vec::new();
+    let count = 2 + random.below(5);
+    while links.len() < count || links.iter().all(|link| link.freedoms() == 0) {
+        links.push(Link::random(&mut random, &links, &KINDS));
+    }
+    let drives = drives(&mut random, &links);
+    let text = description(&links, &drives);
+    let system = match from_text(&text) {
+        Ok(system) => system,
+        Err(errors) => return vec![render(&errors, "tree", &text, false)],
+    };
+    let mut faults = Vec::new();
+    for _ in 0..STATES {
+        let program = &system.program;
+        let x = random.configuration(&program.blocks);
+        let (xi, u) = (random.numbers(program.n), random.numbers(program.m));
+        let dot = random.numbers(program.n);
+        let of = |name: &str, dot: &[f64]| value(&system, name, [&x, &xi, &u, dot]);
+        let accel = of("accel", &dot);
+        let pick = |list: &[f64], places: &[usize]| -> Vec<f64> {
+            places.iter().map(|&i| list[i]).collect()
+        };
+        let mut same = |what: &str, wanted: &[f64], found: &[f64]| {
+            let apart = difference(wanted, found);
+            if apart.is_nan() || apart > CLOSE {
+                faults.push(format!("seed {seed}: {what} {apart:.1e} of\n{text}"));
+            }
+        };
+        let parts = (links.as_slice(), drives.as_slice());
+        // With any accelerations of the free velocities: inverse dynamics, momenta, energy.
+        let at = whole(&system, parts, [&x, &xi, &u, &dot]);
+        let tree = Tree::new(&links, &at.x, &at.xi);
+        let needed = |dot: &[f64]| -> Vec<f64> {
+            let springs = tree.springs();
+            let rows = tree.needed(dot, 1.0);
+            rows.iter().zip(&springs).map(|(a, b)| a + b).collect()
+        };
+        let wanted = pick(&needed(&at.dot), &at.free);
+        same("inverse dynamics", &wanted, &of("inverse_dynamics", &dot));
+        same("energy", &[tree.energy()], &of("energy", &dot));
+        let still = vec![0.0; at.xi.len()];
+        let bias = tree.needed(&still, 0.0);
+        let moved = tree.needed(&at.xi, 0.0);
+        let momentum: Vec<f64> = moved.iter().zip(&bias).map(|(a, b)| a - b).collect();
+        same("momentum", &pick(&momentum, &at.free), &of("momentum", &dot));
+        // With the emitted ones: nothing is left for those that are free, the forces of the drives for the others.
+        let at = whole(&system, parts, [&x, &xi, &u, &accel]);
+        let forces = needed(&at.dot);
+        let applied = tree.applied(u[0]);
+        let left: Vec<f64> = forces.iter().zip(&applied).map(|(a, b)| a - b).collect();
+        let size = accel.iter().fold(1.0, |most: f64, a| most.max(a.abs()));
+        let scaled = |list: Vec<f64>| list.iter().map(|entry| entry / size).collect::<Vec<_>>();
+        let free = scaled(pick(&left, &at.free));
+        same("motion", &vec![0.0; free.len()], &free);
+        if !at.driven.is_empty() {
+            let found = scaled(of("constraint_force", &dot));
+            same("force of a drive", &scaled(pick(&left, &at.driven)), &found);
+        }
+    }
+    faults
+}
+
+#[test]
+fn trees_with_drives_obey_newton_and_euler() {
+    attack(60, 2000, faults);
+}
