@@ -32,8 +32,10 @@ const KINDS: [Kind; 11] = [
 
 /// How a velocity of a joint is given.
 enum Given {
-    /// By the inputs `r{joint}` and `r{joint}_dot`.
-    Input,
+    /// Its rate, by the input `r{joint}`.
+    Rate,
+    /// The velocity is a + b t + c sin(d t), every entry of it.
+    Velocity([f64; 4]),
     /// The coordinate is a + b t + c sin(d t).
     Time([f64; 4]),
 }
@@ -55,7 +57,9 @@ fn short(number: f64) -> f64 {
 /// What is prescribed of a tree: something, but never all.
 fn drives(random: &mut Random, links: &[Link]) -> Vec<Drive> {
     let mut drives = Vec::new();
-    let free: Vec<usize> = (0..links.len()).filter(|&i| links[i].freedoms() > 0).collect();
+    let free: Vec<usize> = (0..links.len())
+        .filter(|&i| links[i].freedoms() > 0)
+        .collect();
     let spared = free[random.below(free.len())];
     for &joint in free.iter().filter(|&&joint| joint != spared) {
         if random.below(2) == 0 {
@@ -71,9 +75,11 @@ fn drives(random: &mut Random, links: &[Link]) -> Vec<Drive> {
             links[joint].kind,
             Kind::Revolute | Kind::Prismatic | Kind::Continuous
         );
-        let given = match plain && random.below(2) == 0 {
-            true => Given::Time([(); 4].map(|()| short(random.number()))),
-            false => Given::Input,
+        let law = [(); 4].map(|()| short(random.number()));
+        let given = match random.below(3) {
+            0 if plain => Given::Time(law),
+            1 => Given::Velocity(law),
+            _ => Given::Rate,
         };
         let velocity = format!("q{joint}{ending}");
         drives.push(Drive {
@@ -92,10 +98,18 @@ fn description(links: &[Link], drives: &[Drive]) -> String {
     for drive in drives {
         let joint = drive.joint;
         said += &match drive.given {
-            Given::Input => {
+            Given::Rate => {
                 let shape = if drive.size > 1 { ": vec3" } else { "" };
                 let velocity = &drive.velocity;
-                format!("    input r{joint}{shape}, r{joint}_dot{shape};\n    prescribe {velocity} = r{joint};\n")
+                format!("    input r{joint}{shape};\n    prescribe rate({velocity}) = r{joint};\n")
+            }
+            Given::Velocity([a, b, c, d]) => {
+                let law = format!("{a} + {b} * t + {c} * sin({d} * t)");
+                let law = match drive.size {
+                    1 => law,
+                    _ => format!("[{law}, {law}, {law}]"),
+                };
+                format!("    prescribe {} = {law};\n", drive.velocity)
             }
             Given::Time([a, b, c, d]) => {
                 format!("    prescribe q{joint} = {a} + {b} * t + {c} * sin({d} * t);\n")
@@ -118,9 +132,12 @@ struct Whole {
     x: Vec<f64>,
     xi: Vec<f64>,
     dot: Vec<f64>,
-    /// The places in ξ without ξ⁰ of the velocities that are free, and of those that are driven.
+    /// The places in ξ without ξ⁰ of the velocities that are free, of those of the state, and of those that are driven.
     free: Vec<usize>,
+    state: Vec<usize>,
     driven: Vec<usize>,
+    /// The rates that are given, in the order of the velocities.
+    wanted: Vec<f64>,
 }
 
 fn whole(
@@ -132,28 +149,37 @@ fn whole(
     let t = x[clock.x];
     let mut x = x.to_vec();
     let (mut all, mut rates) = (Vec::new(), Vec::new());
-    let (mut free, mut places_of_drives) = (Vec::new(), vec![Vec::new(); drives.len()]);
+    let (mut free, mut state, mut wanted) = (Vec::new(), Vec::new(), Vec::new());
+    let mut driven = vec![Vec::new(); drives.len()];
     let mut count = 0;
     for group in of.model.velocities.iter().filter(|g| g.offset != clock.xi) {
-        let driven = drives.iter().position(|drive| drive.velocity == group.name);
-        match driven {
+        let drive = drives.iter().position(|drive| drive.velocity == group.name);
+        match drive {
             None => {
                 let range = places(&of.active.velocities, &group.name).expect("it is free");
                 free.extend(count..count + range.len());
+                state.extend(count..count + range.len());
                 all.extend(&xi[range.clone()]);
                 rates.extend(&dot[range]);
             }
             Some(index) => {
                 let drive = &drives[index];
-                places_of_drives[index].extend(count..count + drive.size);
+                driven[index].extend(count..count + drive.size);
                 match drive.given {
-                    Given::Input => {
+                    Given::Rate => {
+                        let range = places(&of.active.velocities, &group.name).expect("it stays");
+                        state.extend(count..count + range.len());
+                        all.extend(&xi[range.clone()]);
                         let name = format!("r{}", drive.joint);
-                        let input = |name: &str| {
-                            places(&of.active.inputs, name).expect("it is declared")
-                        };
-                        all.extend(&u[input(&name)]);
-                        rates.extend(&u[input(&format!("{name}_dot"))]);
+                        wanted
+                            .extend(&u[places(&of.active.inputs, &name).expect("it is declared")]);
+                        rates.extend(&dot[range]);
+                    }
+                    Given::Velocity([a, b, c, d]) => {
+                        for _ in 0..drive.size {
+                            all.push(a + b * t + c * (d * t).sin());
+                            rates.push(b + c * d * (d * t).cos());
+                        }
                     }
                     Given::Time([a, b, c, d]) => {
                         let value = a + b * t + c * (d * t).sin();
@@ -174,12 +200,21 @@ fn whole(
         count += group.len;
     }
     x.remove(clock.x);
+    // The forces of drives whose rates are given stand last.
+    let (of_rates, of_time): (Vec<_>, Vec<_>) =
+        (driven.into_iter().zip(drives)).partition(|(_, drive)| matches!(drive.given, Given::Rate));
+    let [of_time, of_rates] = [of_time, of_rates].map(|list| {
+        let places = list.into_iter().map(|(places, _)| places);
+        places.collect::<Vec<Vec<usize>>>()
+    });
     Whole {
         x,
         xi: all,
         dot: rates,
         free,
-        driven: places_of_drives.concat(),
+        state,
+        driven: [of_time, of_rates].concat().concat(),
+        wanted,
     }
 }
 
@@ -223,14 +258,18 @@ fn faults(seed: u64) -> Vec<String> {
             let rows = tree.needed(dot, 1.0);
             rows.iter().zip(&springs).map(|(a, b)| a + b).collect()
         };
-        let wanted = pick(&needed(&at.dot), &at.free);
+        let wanted = pick(&needed(&at.dot), &at.state);
         same("inverse dynamics", &wanted, &of("inverse_dynamics", &dot));
         same("energy", &[tree.energy()], &of("energy", &dot));
         let still = vec![0.0; at.xi.len()];
         let bias = tree.needed(&still, 0.0);
         let moved = tree.needed(&at.xi, 0.0);
         let momentum: Vec<f64> = moved.iter().zip(&bias).map(|(a, b)| a - b).collect();
-        same("momentum", &pick(&momentum, &at.free), &of("momentum", &dot));
+        same(
+            "momentum",
+            &pick(&momentum, &at.state),
+            &of("momentum", &dot),
+        );
         // With the emitted ones: nothing is left for those that are free, the forces of the drives for the others.
         let at = whole(&system, parts, [&x, &xi, &u, &accel]);
         let forces = needed(&at.dot);
@@ -238,6 +277,13 @@ fn faults(seed: u64) -> Vec<String> {
         let left: Vec<f64> = forces.iter().zip(&applied).map(|(a, b)| a - b).collect();
         let size = accel.iter().fold(1.0, |most: f64, a| most.max(a.abs()));
         let scaled = |list: Vec<f64>| list.iter().map(|entry| entry / size).collect::<Vec<_>>();
+        let rates: Vec<usize> = at
+            .state
+            .iter()
+            .copied()
+            .filter(|i| !at.free.contains(i))
+            .collect();
+        same("a given rate", &at.wanted, &pick(&at.dot, &rates));
         let free = scaled(pick(&left, &at.free));
         same("motion", &vec![0.0; free.len()], &free);
         if !at.driven.is_empty() {

@@ -57,6 +57,7 @@ system Everything {
     rate X.p = X.R * v;
     time t;
     prescribe u = 3 * t;
+    prescribe rate(v) = 2 * v;
     inactive u, v[2];
     nonholonomic u = m * v[1] stabilized 20;
     nonholonomic u = v[1];

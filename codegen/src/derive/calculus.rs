@@ -32,8 +32,7 @@ impl Calculus {
                     .x
                     .iter()
                     .zip(&model.rate)
-                    .chain(model.input_rates.iter().map(|(u, rate)| (u, rate)))
-                    .map(|(symbol, &rate)| (symbol.node(), rate)),
+                    .map(|(x, &rate)| (x.node(), rate)),
             ),
         }
     }

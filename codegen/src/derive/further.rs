@@ -119,8 +119,9 @@ impl Builder<'_> {
                 graph: &graph,
                 xi_dot: &motion.xi_dot,
                 nearby,
-                // With multipliers M F is not the right-hand side.
-                implicit: (self.model.constraints.is_empty()).then_some((&parts.mass, &right)),
+                // With multipliers or drives M F is not the right-hand side.
+                implicit: (self.model.constraints.is_empty() && self.model.accelerated.is_empty())
+                    .then_some((&parts.mass, &right)),
             };
             let linear = linearize(self.model, &nearby, &self.care);
             let weight = count(&linear.graph, &linear.rows.concat()).weight();

@@ -12,8 +12,8 @@ use crate::algebra::linear::solve_symmetric;
 use crate::algebra::transplant::{map_symbols, rebuild};
 use crate::model::{Model, class};
 
-/// M ξ̇ + h + ∂V − f of the velocities that were solved for, with ξ̇ₐ as symbols: bodies traced in the full frame.
-pub fn residuals(full: &Model, reduction: &Reduction) -> (Graph, Vec<Edge>) {
+/// M ξ̇ + h + ∂V − f of some velocities of the full frame, with ξ̇ₐ as symbols: bodies traced in the full frame.
+pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (Graph, Vec<Edge>) {
     let mut model = full.clone();
     model.graph = reduction.graph.clone();
     let mut calculus = Calculus::new(&model);
@@ -23,10 +23,9 @@ pub fn residuals(full: &Model, reduction: &Reduction) -> (Graph, Vec<Edge>) {
         shift: None,
     };
     let parts = parts(&mut model, &mut calculus, variant);
-    let residuals: Vec<Edge> = reduction
-        .solved
+    let residuals: Vec<Edge> = velocities
         .iter()
-        .map(|&(_, velocity)| {
+        .map(|&velocity| {
             let inner = &mut model.graph;
             let inertial = inner.dot(&parts.mass[velocity], &model.xi_dot);
             let column: Vec<Edge> = parts.groups.iter().map(|group| group[velocity]).collect();
@@ -39,8 +38,8 @@ pub fn residuals(full: &Model, reduction: &Reduction) -> (Graph, Vec<Edge>) {
     (graph, residuals)
 }
 
-/// λ in the graph of the program, in order of the constraints, given the residuals of the velocities that were solved
-/// for; that of a redundant row is 0.
+/// λ in the graph of the program, in order of the constraints, then the forces of drives whose rates are given; from the
+/// residuals of the velocities that were solved for and of those that are driven. That of a redundant row is 0.
 pub fn multipliers(
     full: &Model,
     reduction: &Reduction,
@@ -55,7 +54,8 @@ pub fn multipliers(
         .collect();
     let images = rebuild(&reduction.model.graph, graph, &reduction.images);
     let residuals = rebuild(from, graph, residuals);
-    let residuals = with_accelerations(graph, &residuals, &chosen.xi_dot);
+    let mut residuals = with_accelerations(graph, &residuals, &chosen.xi_dot);
+    let drives = residuals.split_off(reduction.solved.len());
     let rows = map_symbols(&full.graph, graph, &rows, &images);
     let n = full.n();
     let mut multipliers = vec![graph.zero(); full.constraints.len()];
@@ -86,6 +86,7 @@ pub fn multipliers(
     for (&(row, _), value) in reduction.solved.iter().zip(&solution) {
         multipliers[row] = value[0];
     }
+    multipliers.extend(drives);
     Some(multipliers)
 }
 

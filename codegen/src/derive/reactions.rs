@@ -1,8 +1,8 @@
 //! Functions of systems with constraints: the multipliers, and what leads back to where they hold.
 
-use super::candidates::Candidates;
 use super::accel::recursions;
 use super::accel::setting::Setting;
+use super::candidates::Candidates;
 use super::multipliers::{multipliers, residuals};
 use super::program::Builder;
 use super::reduction::Reduction;
@@ -23,22 +23,26 @@ impl Builder<'_> {
         rebuild(&self.model.graph, &mut self.graph, &residuals)
     }
 
-    /// λ of all constraints; an overconstrained mechanism has no unique ones.
+    /// λ of all constraints, then the forces of drives whose rates are given; an overconstrained mechanism has no unique
+    /// ones.
     pub(super) fn constraint_force(&mut self, full: &Model, reduction: &Reduction) {
-        if self.model.overconstrained || full.constraints.is_empty() {
+        let rows = full.constraints.len() + full.accelerated.len();
+        if self.model.overconstrained || rows == 0 {
             return;
         }
+        let solved = reduction.solved.iter().map(|&(_, velocity)| velocity);
+        let driven = full.accelerated.iter().map(|&(velocity, _)| velocity);
+        let velocities: Vec<usize> = solved.chain(driven).collect();
         // Where the other velocities are given ahead, by the recursion over links.
-        let given = Setting::given(self.model);
-        let velocities = reduction.solved.iter().map(|&(_, velocity)| velocity);
-        let velocities: Vec<usize> = velocities.collect();
-        let recursions = recursions(&given, &self.care);
-        let mut traced: Vec<(Graph, Vec<Edge>)> = recursions
-            .iter()
-            .filter_map(|recursion| recursion.residuals(&velocities))
-            .collect();
+        let whole = self.model.whole.is_some() || full.constraints.is_empty();
+        let mut traced: Vec<(Graph, Vec<Edge>)> = Vec::new();
+        if whole {
+            let given = Setting::given(self.model);
+            let recursions = recursions(&given, &self.care);
+            traced.extend(recursions.iter().map(|of| of.residuals(&velocities)));
+        }
         if traced.is_empty() {
-            traced.push(residuals(full, reduction));
+            traced.push(residuals(full, reduction, &velocities));
         }
         let mut candidates = Candidates::with(&self.care);
         let contexts = [self.shared.graph.clone(), self.graph.clone()];
@@ -56,7 +60,7 @@ impl Builder<'_> {
             candidates.offer_own(graph, roots);
         }
         let mut outputs = candidates.cheapest(&mut self.graph);
-        outputs.truncate(full.constraints.len());
+        outputs.truncate(rows);
         let guards = self.guards();
         self.push_guarded(FunctionId::ConstraintForce, outputs, guards);
     }

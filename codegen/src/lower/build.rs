@@ -171,7 +171,7 @@ impl<'a> Reading<'a> {
         let invariants = invariants::read(system, graph, scope, &frames, declared, report);
         let mut constraints =
             pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
-        let (drives, prescribed) = prescribe::read(
+        let (drives, prescribed, accelerated) = prescribe::read(
             system,
             graph,
             scope,
@@ -235,7 +235,7 @@ impl<'a> Reading<'a> {
             constraints,
             clock: declared.clock,
             prescribed,
-            input_rates: declared.input_rates,
+            accelerated,
             whole: None,
             spans: true,
             overconstrained: false,

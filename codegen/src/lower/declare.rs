@@ -29,8 +29,6 @@ pub struct Declared {
     pub momenta: Vec<Edge>,
     /// Where the time is, where it is declared.
     pub clock: Option<Clock>,
-    /// Inputs with the inputs that are their rates: `w` and `w_dot`, `w_dot` and `w_ddot`.
-    pub input_rates: Vec<(Edge, Edge)>,
     /// Whether a coordinate or velocity is missing here because its name was taken: there is no
     /// point in counting then.
     pub faulty: bool,
@@ -129,34 +127,7 @@ pub fn declare(
             .push(graph.symbol(&format!("p_{name}"), class::MOMENTUM, value));
     }
     declared.clock = time::clock(system, &declared);
-    if declared.clock.is_some() {
-        declared.input_rates = input_rates(&declared.inputs, &declared.u);
-    }
     declared
-}
-
-/// The rate of every input that has one: that of `w` is `w_dot`, that of `w_dot` is `w_ddot`.
-fn input_rates(inputs: &[Group], u: &[Edge]) -> Vec<(Edge, Edge)> {
-    let entries = |group: &Group| u[group.offset..group.offset + group.len].to_vec();
-    let mut rates = Vec::new();
-    for group in inputs {
-        let name = rate_name(&group.name);
-        let rate = inputs
-            .iter()
-            .find(|g| g.name == name && g.shape == group.shape);
-        if let Some(rate) = rate {
-            rates.extend(entries(group).into_iter().zip(entries(rate)));
-        }
-    }
-    rates
-}
-
-/// The name of the input that is the rate of another.
-pub fn rate_name(input: &str) -> String {
-    match input.strip_suffix("_dot") {
-        Some(of) => format!("{of}_ddot"),
-        None => format!("{input}_dot"),
-    }
 }
 
 struct Declarer<'a, 'b> {

@@ -1,10 +1,12 @@
-//! Prescribed motion: `prescribe q = f(t, u);` for a coordinate, `prescribe v = w(t, u);` for a velocity.
+//! Prescribed motion: `prescribe q = f(t);` for a coordinate, `prescribe v = w(t);` for a velocity, `prescribe
+//! rate(v) = a;` for the rate of one.
 //!
-//! A coordinate that is given has the rate ḟ = ∂f/∂t + ∂f/∂u u̇, which is the row A_q ξ − ḟ ξ⁰ = 0; a velocity that is
-//! given is the row v − w ξ⁰ = 0. Their multipliers are the forces of the drives. The rate of an input `w` is the input
-//! `w_dot`, that of `w_dot` is `w_ddot`.
+//! A coordinate that is given has the rate ḟ, which is the row A_q ξ − ḟ ξ⁰ = 0; a velocity that is given is the row
+//! v − w ξ⁰ = 0. Their multipliers are the forces of the drives. Where a rate is given, the velocity stays one of the
+//! state, and inverse dynamics takes the place of forward dynamics for it (Featherstone 2008, 9.2); the rate may be an
+//! input, or any expression of the state.
 
-use super::declare::{Declared, rate_name};
+use super::declare::Declared;
 use super::expression::Evaluator;
 use super::rate::{Kinematics, part, written};
 use super::scope::Scope;
@@ -19,8 +21,8 @@ use crate::model::{Coordinate, class};
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 use crate::syntax::written::written as shown;
 
-/// The rows, and the coordinates whose values are given.
-type Prescribed = (Vec<Pfaffian>, Vec<(usize, Edge)>);
+/// The rows, the coordinates whose values are given, and the velocities whose rates are.
+type Prescribed = (Vec<Pfaffian>, Vec<(usize, Edge)>, Vec<(usize, Edge)>);
 
 /// Reads all `prescribe` statements, in the order of the text.
 pub fn read(
@@ -32,10 +34,15 @@ pub fn read(
     kinematics: Option<&Kinematics>,
     report: &mut Report,
 ) -> Prescribed {
-    let mut all = (Vec::new(), Vec::new());
+    let mut all = (Vec::new(), Vec::new(), Vec::new());
     let mut targets: Vec<&Target> = Vec::new();
     for item in &system.items {
-        let ItemKind::Prescribe { target, value } = &item.kind else {
+        let ItemKind::Prescribe {
+            target,
+            rate,
+            value,
+        } = &item.kind
+        else {
             continue;
         };
         let first = targets
@@ -55,7 +62,10 @@ pub fn read(
             variety,
             kinematics,
         };
-        reader.prescribe(target, value, &mut all);
+        match rate {
+            true => reader.rate(target, value, &mut all),
+            false => reader.motion(target, value, &mut all),
+        };
     }
     all
 }
@@ -69,7 +79,47 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn prescribe(&mut self, target: &Target, expr: &Expr, all: &mut Prescribed) -> Option<()> {
+    /// The rate of a velocity.
+    fn rate(&mut self, target: &Target, expr: &Expr, all: &mut Prescribed) -> Option<()> {
+        let value = self.evaluator.value(expr);
+        let name = &target.name.name;
+        let velocity = self.declared.velocities.iter().find(|g| g.name == *name);
+        let Some(group) = velocity.filter(|_| target.field.is_none()) else {
+            let message = format!("`{}` is no velocity", written(target));
+            return self.evaluator.error(
+                Diagnostic::new(target.span(), message)
+                    .help("the rate of a velocity is given: `prescribe rate(v) = a;`"),
+            );
+        };
+        let value = value?;
+        if !value.same_shape(&group.value) {
+            let what = format!("the rate of `{name}`");
+            let shape = group.value.shape();
+            return self.evaluator.wrong_shape(expr.span, &what, &shape, &value);
+        }
+        let graph = &*self.evaluator.graph;
+        let entries = value.entries();
+        let class = entries
+            .iter()
+            .fold(0, |class, e| class | graph.class(e.node()));
+        if class & class::ACCEL != 0 {
+            let message = format!("the rate of `{name}` depends on rates of velocities");
+            return self.evaluator.error(
+                Diagnostic::new(expr.span, message)
+                    .help("it is a function of coordinates, velocities, time and inputs"),
+            );
+        }
+        all.2.extend(
+            entries
+                .into_iter()
+                .enumerate()
+                .map(|(i, e)| (group.offset + i, e)),
+        );
+        Some(())
+    }
+
+    /// The value of a coordinate or of a velocity.
+    fn motion(&mut self, target: &Target, expr: &Expr, all: &mut Prescribed) -> Option<()> {
         let value = self.evaluator.value(expr);
         let name = &target.name.name;
         let velocity = self.declared.velocities.iter().find(|g| g.name == *name);
@@ -115,7 +165,7 @@ impl Reader<'_> {
             };
             return self.evaluator.wrong_shape(expr.span, &what, &shape, &value);
         }
-        self.known_ahead(name, expr.span, &value, coordinate.is_some())?;
+        self.known_ahead(name, expr.span, &value)?;
         match coordinate {
             None => self.velocity(place, &value, expr, target, all),
             Some(coordinate) => self.coordinate(place, coordinate, &value, expr, target, all),
@@ -164,57 +214,26 @@ impl Reader<'_> {
         }
     }
 
-    /// What is given depends on time and inputs alone, and the rates of these inputs are known.
-    fn known_ahead(&mut self, name: &str, span: Span, value: &Value, twice: bool) -> Option<()> {
+    /// What is given depends on time and parameters alone.
+    fn known_ahead(&mut self, name: &str, span: Span, value: &Value) -> Option<()> {
         let graph = &*self.evaluator.graph;
         let clock = self.declared.clock?;
         let time = self.declared.x[clock.x].node();
-        let symbols: Vec<u32> = graph
-            .reachable(&value.entries())
-            .into_iter()
-            .filter(|&id| matches!(graph.node(id), Node::Symbol(_)))
-            .collect();
-        let allowed = class::PARAM | class::INPUT;
-        if symbols
-            .iter()
-            .any(|&id| id != time && graph.class(id) & !allowed != 0)
-        {
-            let message = format!("the motion of `{name}` has to be known ahead");
-            return self.evaluator.error(Diagnostic::new(span, message).help(
-                "it is a function of time, inputs and parameters; what depends on the motion is a force or a constraint",
-            ));
-        }
-        let mut wanted = symbols;
-        for _ in 0..if twice { 2 } else { 1 } {
-            let mut rates = Vec::new();
-            for &id in wanted
-                .iter()
-                .filter(|&&id| self.evaluator.graph.class(id) & class::INPUT != 0)
-            {
-                let known = self
-                    .declared
-                    .input_rates
-                    .iter()
-                    .find(|(u, _)| u.node() == id);
-                if let Some((_, rate)) = known {
-                    rates.push(rate.node());
-                    continue;
-                }
-                let symbols = self.evaluator.graph.symbols().iter();
-                let input = symbols
-                    .clone()
-                    .find(|s| s.node == id)
-                    .map_or("", |s| s.name.as_str());
-                let input = input.split('[').next().unwrap_or(input).to_owned();
-                let message = format!("the rate of input `{input}` is not known");
-                let help = format!("declare it: `input {};`", rate_name(&input));
-                return self
-                    .evaluator
-                    .error(Diagnostic::new(span, message).help(help));
+        let symbols = graph.reachable(&value.entries()).into_iter();
+        let symbols = symbols.filter(|&id| matches!(graph.node(id), Node::Symbol(_)) && id != time);
+        let found = symbols.fold(0, |found, id| found | graph.class(id)) & !class::PARAM;
+        let help = match found {
+            0 => return Some(()),
+            class::INPUT => {
+                "an input can give the rate of a velocity: `prescribe rate(v) = a;`, with the velocity's own start"
             }
-            wanted = rates;
-        }
-        Some(())
+            _ => {
+                "it is a function of time and parameters; what depends on the motion is a force or a constraint"
+            }
+        };
+        let message = format!("the motion of `{name}` has to be known ahead");
+        self.evaluator
+            .error(Diagnostic::new(span, message).help(help))
     }
 
     fn velocity(
@@ -259,13 +278,7 @@ impl Reader<'_> {
         let x = &self.declared.x;
         let graph = &mut *self.evaluator.graph;
         let one = graph.one();
-        let seeds = [(x[clock.x].node(), one)].into_iter();
-        let rates = self
-            .declared
-            .input_rates
-            .iter()
-            .map(|(u, rate)| (u.node(), *rate));
-        let mut along = Derivation::new(seeds.chain(rates));
+        let mut along = Derivation::new([(x[clock.x].node(), one)]);
         for (i, given) in value.entries().into_iter().enumerate() {
             let (mut row, residual): (Vec<Edge>, Edge) = match coordinate.kind {
                 CoordKind::S1 => {

@@ -3,7 +3,6 @@
 //! Such a description is correct, so these are warnings. What is looked at is the text as written, before joints
 //! are written out: a frame that a joint moves is used by the joint. Names that begin with `_` are left alone.
 
-use super::declare::rate_name;
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
     Acting, Components, Conserved, Declaration, End, Expr, ExprKind, Ident, Item, ItemKind, Load,
@@ -16,7 +15,6 @@ pub fn warnings(system: &System) -> Vec<Diagnostic> {
     let mut uses = Uses::default();
     system.items.iter().for_each(|item| uses.item(item));
     let mut warnings = Vec::new();
-    let rates = rates_of_prescribed(system);
     let mut placed = BTreeSet::new();
     for item in &system.items {
         let (list, kind) = match &item.kind {
@@ -40,26 +38,9 @@ pub fn warnings(system: &System) -> Vec<Diagnostic> {
             _ => continue,
         };
         let names = list.iter().map(|declaration| &declaration.name);
-        let names = names.filter(|name| kind != "input" || !rates.contains(&name.name));
         warnings.extend(names.filter_map(|name| uses.unused(name, kind)));
     }
     warnings
-}
-
-/// The inputs that are rates of others: a prescribed motion takes them by their names alone.
-fn rates_of_prescribed(system: &System) -> BTreeSet<String> {
-    let prescribes = |item: &Item| matches!(item.kind, ItemKind::Prescribe { .. });
-    if !system.items.iter().any(prescribes) {
-        return BTreeSet::new();
-    }
-    let inputs = system.items.iter().filter_map(|item| match &item.kind {
-        ItemKind::Input(list) => Some(list),
-        _ => None,
-    });
-    inputs
-        .flatten()
-        .map(|input| rate_name(&input.name.name))
-        .collect()
 }
 
 /// The name on the left of a `frame` statement.
@@ -155,7 +136,7 @@ impl<'a> Uses<'a> {
             | ItemKind::Velocity(list)
             | ItemKind::Input(list) => self.values(list),
             ItemKind::Coord(_) | ItemKind::Time(_) => {}
-            ItemKind::Prescribe { target, value } => {
+            ItemKind::Prescribe { target, value, .. } => {
                 self.name(&target.name);
                 self.expr(value);
             }

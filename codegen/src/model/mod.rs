@@ -210,8 +210,8 @@ pub struct Model {
     pub clock: Option<Clock>,
     /// Coordinates whose value is given, by their places in x.
     pub prescribed: Vec<(usize, Edge)>,
-    /// Inputs with their rates, which are inputs, too.
-    pub input_rates: Vec<(Edge, Edge)>,
+    /// Velocities whose rates ξ̇ⁱ are given, by their places in ξ.
+    pub accelerated: Vec<(usize, Edge)>,
     /// The full frame, where all that was solved for is given ahead.
     pub whole: Option<Whole>,
     /// Whether A spans the tangent space of X: not so where constraints have been solved.
@@ -273,9 +273,10 @@ impl Model {
         self.xi.len()
     }
 
-    /// Whether not all velocities of the full frame are free: constraints act on them, or one is that of time.
+    /// Whether not all velocities of the full frame are free: constraints or drives act on them, or one is that of
+    /// time.
     pub fn is_constrained(&self) -> bool {
-        !self.constraints.is_empty() || self.clock.is_some()
+        !self.constraints.is_empty() || !self.accelerated.is_empty() || self.clock.is_some()
     }
 
     /// Whether ẋ, and velocities of points with it, have terms without ξ: so it is where ξ⁰ = 1 was put in.

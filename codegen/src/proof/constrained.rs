@@ -27,7 +27,10 @@ const IDENTITIES: [(&str, &str); 8] = [
         "(30c)",
         "M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ for the emitted ξ̇ and λ",
     ),
-    ("B", "d/dt (B ξ) = −2 λ B ξ − λ² φ for the emitted ξ̇"),
+    (
+        "B",
+        "d/dt (B ξ) = −2 λ B ξ − λ² φ for the emitted ξ̇, and rates that are given",
+    ),
     ("M", "the emitted mass matrix is Cᵀ M C"),
     ("(30a)", "the emitted bias is Cᵀ (Γ ξ ξ + M Ċ ξ)"),
     ("(28)", "the emitted forces are Cᵀ f and Cᵀ ∂V"),
@@ -169,7 +172,7 @@ fn compare(
 fn is_there(label: &str, reduction: &Reduction, program: &Program) -> bool {
     match label {
         "C" => !reduction.solved.is_empty(),
-        "B" => !reduction.kept.is_empty(),
+        "B" => !reduction.kept.is_empty() || !reduction.model.accelerated.is_empty(),
         "nearby" => program.function(FunctionId::Linearize).is_some(),
         _ => true,
     }
@@ -281,9 +284,14 @@ fn at_point(
             // The row of ξ⁰ is no equation of motion.
             (0..n).filter(|&i| Some(i) != time).all(|i| {
                 let inertial = dot(&mass[i * n..][..n], &xi_dot);
-                let bond = (0..lambda.len())
-                    .fold(Fp::ZERO, |sum, row| sum + rows[row * n + i] * lambda[row]);
-                inertial + bias[i] + slope[i] == force[i] + bond
+                let bonds = lambda.iter().zip(rows.chunks(n));
+                let bond = bonds.fold(Fp::ZERO, |sum, (&lambda, row)| sum + row[i] * lambda);
+                // Beyond the rows of constraints stand the forces of drives whose rates are given.
+                let drives = full.reference.model.accelerated.iter();
+                let drives = drives.zip(lambda.get(rows.len() / n..).unwrap_or(&[]));
+                let drive = drives.filter(|((velocity, _), _)| *velocity == i);
+                let drive = drive.fold(Fp::ZERO, |sum, (_, &force)| sum + force);
+                inertial + bias[i] + slope[i] == force[i] + bond + drive
             })
         }
         _ => true,
@@ -314,10 +322,14 @@ fn at_point(
             let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - carried[k]).collect();
             saddle::solve_at(&reduced_mass, &project(&rest), &kept, &right)? == xi_dot
         }
-        Some(xi_dot) => right
-            .iter()
-            .zip(kept.chunks(na))
-            .all(|(&right, row)| dot(row, &xi_dot) == right),
+        Some(xi_dot) => {
+            let given: Vec<Edge> = full.reduced.accelerated.iter().map(|(_, e)| *e).collect();
+            let given = evaluate_at(inner_graph, &given, &mut inner.clone())?;
+            let driven = full.reduced.accelerated.iter().zip(&given);
+            let mut driven = driven.map(|((place, _), &rate)| xi_dot[*place] == rate);
+            let mut held = right.iter().zip(kept.chunks(na));
+            driven.all(|holds| holds) && held.all(|(&right, row)| dot(row, &xi_dot) == right)
+        }
     };
     let equal = |name: &str, expected: Vec<Fp>| -> Option<bool> {
         Some(emitted(name)?.is_none_or(|found| found == expected))
@@ -460,22 +472,28 @@ impl At<'_> {
         let momentum: Vec<Fp> = (0..n)
             .map(|i| dot(&values.mass[i * n..][..n], &values.xi))
             .collect();
+        let full = &self.full.reference.model;
         let mut power = dot(&values.force, &values.xi);
-        if let Some(clock) = self.full.reference.model.clock {
+        if full.clock.is_none() && full.accelerated.is_empty() {
+            return Some(values.change + dot(&momentum, &xi_dot) == power);
+        }
+        let lambda = match self.program.function(FunctionId::ConstraintForce) {
+            Some(force) => evaluate_at(&self.program.graph, &force.outputs, &mut inner.clone())?,
+            None if self.full.rows.is_empty() && full.accelerated.is_empty() => Vec::new(),
+            // Without the forces of the drives nothing is known of their power.
+            None => return Some(true),
+        };
+        let rows = evaluate_at(&full.graph, &self.full.rows, &mut point.clone())?;
+        let drives = lambda.get(rows.len() / n..).unwrap_or(&[]);
+        for ((velocity, _), &force) in full.accelerated.iter().zip(drives) {
+            power = power + force * values.xi[*velocity];
+        }
+        if let Some(clock) = full.clock {
             let i = clock.xi;
             let inertial = dot(&values.mass[i * n..][..n], &xi_dot);
-            let mut row = inertial + values.bias[i] + values.slope[i] - values.force[i];
-            if !self.full.rows.is_empty() {
-                let Some(force) = self.program.function(FunctionId::ConstraintForce) else {
-                    return Some(true);
-                };
-                let graph = &self.full.reference.model.graph;
-                let rows = evaluate_at(graph, &self.full.rows, &mut point.clone())?;
-                let lambda = evaluate_at(&self.program.graph, &force.outputs, &mut inner.clone())?;
-                row = (lambda.iter().enumerate())
-                    .fold(row, |sum, (row, &lambda)| sum - rows[row * n + i] * lambda);
-            }
-            power = power + row;
+            let row = inertial + values.bias[i] + values.slope[i] - values.force[i];
+            let bonds = lambda.iter().zip(rows.chunks(n));
+            power = bonds.fold(power + row, |sum, (&lambda, row)| sum - row[i] * lambda);
         }
         Some(values.change + dot(&momentum, &xi_dot) == power)
     }

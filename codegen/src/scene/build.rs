@@ -165,10 +165,20 @@ impl SceneBuilder {
         Expr::name(name)
     }
 
-    /// The motion of a coordinate or a velocity is given, as a function of time and inputs.
+    /// The motion of a coordinate or a velocity is given, as a function of time.
     pub fn prescribe(&mut self, of: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Prescribe {
             target: target(of),
+            rate: false,
+            value: value.into(),
+        });
+    }
+
+    /// The rate of a velocity is given, as a function of anything but rates of velocities.
+    pub fn prescribe_rate(&mut self, velocity: &str, value: impl Into<Expr>) {
+        self.add(ItemKind::Prescribe {
+            target: target(velocity),
+            rate: true,
             value: value.into(),
         });
     }

@@ -46,8 +46,16 @@ pub fn statement(item: &Item) -> String {
             format!("rate {} = {}", part(target), written(value))
         }
         ItemKind::Time(name) => format!("time {}", name.name),
-        ItemKind::Prescribe { target, value } => {
-            format!("prescribe {} = {}", part(target), written(value))
+        ItemKind::Prescribe {
+            target,
+            rate,
+            value,
+        } => {
+            let of = match rate {
+                true => format!("rate({})", part(target)),
+                false => part(target),
+            };
+            format!("prescribe {of} = {}", written(value))
         }
         ItemKind::Inactive(velocities) => format!("inactive {}", list(velocities)),
         ItemKind::Nonholonomic {

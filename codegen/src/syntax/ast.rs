@@ -371,11 +371,14 @@ pub enum ItemKind {
     },
     /// `time t;` the time, under a name of the user's.
     Time(Ident),
-    /// `prescribe q = 0.3 * sin(t);` the motion of a coordinate or of a velocity is given.
+    /// `prescribe q = 0.3 * sin(t);` the motion of a coordinate or of a velocity is given, or with `rate(v)` the rate of
+    /// a velocity.
     Prescribe {
         /// The coordinate or velocity.
         target: Target,
-        /// Its value, of time and inputs.
+        /// Whether it is the rate of the velocity that is given.
+        rate: bool,
+        /// What is given.
         value: Expr,
     },
     /// `inactive v, w[3];` velocities that stay zero.

@@ -9,6 +9,7 @@ use super::tokens::Kind;
 use super::words::statements;
 use super::{body, declaration, element, invariant, joint, load};
 use crate::diagnostics::Diagnostic;
+use proc_macro2::Delimiter;
 
 /// Parses one statement with its `;`: one item, or one for each part of a list.
 pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
@@ -45,10 +46,11 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         }
         "time" => ItemKind::Time(cursor.name("the time")?),
         "prescribe" => {
-            let target = target(cursor, "a coordinate or velocity")?;
+            let (target, rate) = prescribed(cursor)?;
             cursor.assign()?;
             ItemKind::Prescribe {
                 target,
+                rate,
                 value: expression(cursor)?,
             }
         }
@@ -193,6 +195,17 @@ fn target(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Target> {
         None
     };
     Ok(Target { name, field })
+}
+
+/// `q`, `v`, `rate(v)`
+fn prescribed(cursor: &mut Cursor<'_>) -> Parsed<(Target, bool)> {
+    if !cursor.is_call() || !cursor.eat_word("rate") {
+        return Ok((target(cursor, "a coordinate or velocity")?, false));
+    }
+    cursor.eat_open(Delimiter::Parenthesis);
+    let velocity = target(cursor, "a velocity")?;
+    cursor.expect_close(Delimiter::Parenthesis, false)?;
+    Ok((velocity, true))
 }
 
 /// `a = b [stabilized λ]`

@@ -125,8 +125,13 @@ fn told(kind: &ItemKind) -> String {
         }
         Constraint { left, right } => format!("constraint {} = {}", spelled(left), spelled(right)),
         Time(name) => format!("time {}", name.name),
-        Prescribe { target, value } => {
-            format!("prescribe {} = {}", aimed(target), spelled(value))
+        Prescribe {
+            target,
+            rate,
+            value,
+        } => {
+            let of = if *rate { "rate of " } else { "" };
+            format!("prescribe {of}{} = {}", aimed(target), spelled(value))
         }
         Inactive(list) => {
             let list: Vec<String> = list.iter().map(spelled).collect();

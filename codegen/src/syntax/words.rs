@@ -22,7 +22,7 @@ const STATEMENTS: [(&str, &str); 32] = [
     ("time", "the time is written `time t;`"),
     (
         "prescribe",
-        "a given motion is written `prescribe q = 0.3 * sin(t);`",
+        "a given motion is written `prescribe q = 0.3 * sin(t);`, `prescribe v = 2 * t;` or `prescribe rate(v) = a;`",
     ),
     (
         "inactive",

@@ -6,6 +6,7 @@
 
 mod best;
 pub mod cheapest;
+mod hybrid;
 pub mod parts;
 pub mod polynomial;
 pub mod recursive;
@@ -58,7 +59,8 @@ pub fn accel(model: &Model, care: &Care) -> Option<(Acceleration, Computation)> 
     {
         search(&twist, &mut best);
     }
-    if model.n() <= SMALL && (model.spans || model.is_affine()) && !care.is_taken() {
+    let expands = (model.spans || model.is_affine()) && model.accelerated.is_empty();
+    if model.n() <= SMALL && expands && !care.is_taken() {
         let most = best.least();
         for candidate in polynomial::candidates(model, most) {
             best.keep(Family::Polynomial, candidate);
@@ -197,8 +199,9 @@ fn search(setting: &Setting, best: &mut Best) -> Option<Vec<Computation>> {
     for variant in variants(&setting.model, small) {
         let (traced, parts) = trace(setting, variant);
         let before = chosen;
-        for plan in first_plans(&traced.graph, &parts, small) {
-            if let Some(candidate) = attempt(setting, &traced, &parts, &plan, &variant) {
+        let (traced, free) = hybrid::free(traced, &parts);
+        for plan in first_plans(&traced.graph, &free, small) {
+            if let Some(candidate) = attempt(setting, &traced, &free, &plan, &variant) {
                 let weight = candidate.count.weight();
                 if chosen.is_none_or(|(least, _)| weight < least) {
                     chosen = Some((weight, variant));
@@ -219,8 +222,9 @@ fn search(setting: &Setting, best: &mut Best) -> Option<Vec<Computation>> {
         for shift in [None, Some(0), Some(1), Some(2)] {
             let variant = Variant { shift, ..chosen };
             let (traced, parts) = trace(setting, variant);
-            for plan in all_plans(&traced.graph, &parts) {
-                if let Some(candidate) = attempt(setting, &traced, &parts, &plan, &variant) {
+            let (traced, free) = hybrid::free(traced, &parts);
+            for plan in all_plans(&traced.graph, &free) {
+                if let Some(candidate) = attempt(setting, &traced, &free, &plan, &variant) {
                     best.keep(family(&variant), candidate);
                 }
             }
@@ -264,7 +268,8 @@ fn attempt(
 ) -> Option<Acceleration> {
     let mut graph = traced.graph.clone();
     let solution = solve(&mut graph, parts, plan)?;
-    let xi_dot = setting.leave(&mut graph, solution.xi_dot);
+    let xi_dot = hybrid::whole(&setting.model, solution.xi_dot);
+    let xi_dot = setting.leave(&mut graph, xi_dot);
     let mut roots = xi_dot.clone();
     roots.extend(
         solution

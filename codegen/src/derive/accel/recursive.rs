@@ -94,7 +94,7 @@ impl Recursion {
         both.map(|(&a, &b)| graph.add(a, b)).collect()
     }
 
-    /// Places of the velocities that are free, and of those that are not.
+    /// Places of the velocities of the state, and of those that are given by the time.
     fn places(&self) -> (Vec<usize>, Vec<usize>) {
         let all = 0..self.model.n();
         match &self.free {
@@ -103,13 +103,20 @@ impl Recursion {
         }
     }
 
-    /// ξ̇ where what is free does not accelerate.
+    /// ξ̇ where the velocities of the state do not accelerate.
     fn rest(&self) -> Vec<Edge> {
         let mut rest = vec![self.model.graph.zero(); self.model.n()];
         for i in self.places().1 {
             rest[i] = self.model.xi_dot[i];
         }
         rest
+    }
+
+    /// ξ̇ of the state from that of the velocities whose rates are not given, by places in the full frame.
+    fn driven(&self, active: &[usize], free: impl Fn(usize) -> Edge) -> Vec<Edge> {
+        let given = |i: usize| self.model.accelerated.iter().find(|(place, _)| *place == i);
+        let rate = |&i: &usize| given(i).map_or_else(|| free(i), |(_, rate)| *rate);
+        active.iter().map(rate).collect()
     }
 
     /// Expressions of the full frame as those of the velocities that are free, with their graph.
@@ -129,8 +136,17 @@ impl Recursion {
     /// Counts articulated bodies, and M with elimination from the leaves and from the root.
     pub(super) fn search(&self, best: &mut Best) {
         let n = self.model.n();
-        let (active, given) = self.places();
-        let rest = self.rest();
+        let (active, mut given) = self.places();
+        let mut rest = self.rest();
+        for &(place, rate) in &self.model.accelerated {
+            rest[place] = rate;
+            given.push(place);
+        }
+        let solved: Vec<usize> = active
+            .iter()
+            .copied()
+            .filter(|i| !given.contains(i))
+            .collect();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
         if self.tree.is_plain(&self.model.graph, n, &given) {
             let mut graph = self.model.graph.clone();
@@ -139,7 +155,7 @@ impl Recursion {
             let solution = articulated::forward(&mut graph, &self.tree, &given, &forces, &load);
             if let Some(Solution { xi_dot, pivots }) = solution {
                 let route = "links traced, articulated bodies".to_string();
-                let xi_dot = active.iter().map(|&i| xi_dot[i]).collect();
+                let xi_dot = self.driven(&active, |i| xi_dot[i]);
                 let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
                 let candidate = candidate(graph, xi_dot, pivots, route);
                 best.keep(Family::Links, candidate);
@@ -149,15 +165,15 @@ impl Recursion {
         let load = self.load(&mut graph);
         let bias = inverse(&mut graph, &self.tree, xi, &rest, gravity);
         let mass = composite::mass_matrix(&mut graph, &self.tree, n);
-        let right = active.iter().map(|&i| graph.sub(load[i], bias[i]));
+        let right = solved.iter().map(|&i| graph.sub(load[i], bias[i]));
         let right = right.collect();
-        let of_free = |row: &Vec<Edge>| active.iter().map(|&j| row[j]).collect();
+        let of_free = |row: &Vec<Edge>| solved.iter().map(|&j| row[j]).collect();
         let of_parts = Parts {
-            mass: active.iter().map(|&i| of_free(&mass[i])).collect(),
+            mass: solved.iter().map(|&i| of_free(&mass[i])).collect(),
             groups: vec![right],
             ..Parts::default()
         };
-        let free = active.len();
+        let free = solved.len();
         for order in [(0..free).rev().collect::<Vec<_>>(), (0..free).collect()] {
             let way = if order.first() == Some(&0) {
                 "from the first velocity to the last"
@@ -173,6 +189,8 @@ impl Recursion {
             let mut graph = graph.clone();
             if let Some(Solution { xi_dot, pivots }) = solve(&mut graph, &of_parts, &plan) {
                 let route = format!("links traced, composite bodies, M eliminated {way}");
+                let place = |i: usize| solved.iter().position(|&place| place == i);
+                let xi_dot = self.driven(&active, |i| place(i).map_or(xi_dot[0], |at| xi_dot[at]));
                 let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
                 let candidate = candidate(graph, xi_dot, pivots, route);
                 best.keep(Family::Links, candidate);
@@ -240,9 +258,8 @@ impl Recursion {
         Computation { graph, parts }
     }
 
-    /// M ξ̇ + Γ ξ ξ + ∂V − f of velocities that are given ahead, where there are some: the forces of their drives.
-    pub fn residuals(&self, velocities: &[usize]) -> Option<(Graph, Vec<Edge>)> {
-        self.free.as_ref()?;
+    /// M ξ̇ + Γ ξ ξ + ∂V − f of velocities of the full frame: the forces of their drives.
+    pub fn residuals(&self, velocities: &[usize]) -> (Graph, Vec<Edge>) {
         let mut graph = self.model.graph.clone();
         let (xi, xi_dot) = (&self.model.xi, &self.model.xi_dot);
         let whole = inverse(&mut graph, &self.tree, xi, xi_dot, self.model.gravity);
@@ -250,7 +267,7 @@ impl Recursion {
         let rows = velocities.iter().map(|&i| graph.sub(whole[i], load[i]));
         let rows = rows.collect();
         let (graph, [rows]) = self.leave(graph, [rows]);
-        Some((graph, rows))
+        (graph, rows)
     }
 
     /// ṗ of (x, ξ, u), in a graph of its own; `None` where a joint varies with x.

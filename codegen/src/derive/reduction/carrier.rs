@@ -84,6 +84,9 @@ impl Carrier {
             .collect();
         model.start_xi = self.active.iter().map(|&i| full.start_xi[i]).collect();
         model.velocities = self.groups();
+        for (velocity, _) in &mut model.accelerated {
+            *velocity = self.active.iter().position(|i| i == velocity).unwrap_or(0);
+        }
         // What is derived anew, or of no use in ξₐ.
         model.a = Vec::new();
         model.observed = Vec::new();

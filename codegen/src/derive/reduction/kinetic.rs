@@ -23,9 +23,7 @@ pub fn drift(full: &mut Model, xi_active: &[Edge], section: &Section) -> Vec<Edg
     let graph = &mut full.graph;
     let xi = lifted(graph, xi_active, section);
     let rate: Vec<Edge> = full.a.iter().map(|row| graph.dot(row, &xi)).collect();
-    let moving = full.x.iter().zip(&rate);
-    let moving = moving.chain(full.input_rates.iter().map(|(u, rate)| (u, rate)));
-    let mut along = Derivation::new(moving.map(|(symbol, &rate)| (symbol.node(), rate)));
+    let mut along = Derivation::new(full.x.iter().zip(&rate).map(|(x, &rate)| (x.node(), rate)));
     xi.iter().map(|&xi| along.of(graph, xi)).collect()
 }
 

@@ -65,6 +65,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         .filter(|&i| solved.iter().all(|&(_, velocity)| velocity != i))
         .collect();
     let (kept, rank) = keep(&full, &rows, &solved)?;
+    accelerated(&full, &active, &kept)?;
     if active.len() <= rank {
         let span = model.constraints.last().map_or(model.span, |c| c.span);
         return Err(Diagnostic::new(
@@ -198,6 +199,33 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
         }
     }
     Ok((rows, solved))
+}
+
+/// Velocities whose rates are given have to stay, and constraints that are kept by multipliers would act on them.
+fn accelerated(full: &Model, active: &[usize], kept: &[usize]) -> Result<(), Diagnostic> {
+    for (velocity, _) in &full.accelerated {
+        let span = full.velocity_spans[*velocity];
+        if let Some(row) = full
+            .constraints
+            .get(kept.first().copied().unwrap_or(usize::MAX))
+        {
+            let error = Diagnostic::new(
+                row.span,
+                "this constraint is kept by a multiplier, and a rate is prescribed besides",
+            );
+            return Err(error
+                .help("prescribe a coordinate or a velocity as a function of time")
+                .note(span, "the velocity whose rate is prescribed"));
+        }
+        if !active.contains(velocity) {
+            let error = Diagnostic::new(
+                span,
+                "the rate of this velocity is prescribed, and the constraints give the velocity by others",
+            );
+            return Err(error.help("prescribe the rate of one that stays free"));
+        }
+    }
+    Ok(())
 }
 
 fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {

@@ -173,6 +173,12 @@ fn constrained(full: &Model) -> Option<Reason> {
             number => Some(format!("{number} {many}")),
         })
         .collect();
+    let mut found = found;
+    match full.accelerated.len() {
+        0 => {}
+        1 => found.push("1 prescribed rate".into()),
+        number => found.push(format!("{number} prescribed rates")),
+    }
     match found.as_slice() {
         [] => full.clock.map(|_| Reason::Time),
         found => Some(Reason::Constrained {
