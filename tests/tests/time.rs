@@ -1,0 +1,329 @@
+//! Time, prescribed motion and moving frames against closed forms, against the same mechanism described otherwise, and
+//! against inverse dynamics.
+
+use hamel::methods::General;
+use hamel::{State, System};
+use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::render::render;
+use hamel_tests::belt_sleigh::BeltSleigh;
+use hamel_tests::driven_hoop::DrivenHoop;
+use hamel_tests::kapitza::Kapitza;
+use hamel_tests::reference::run;
+use hamel_tests::turntable_ball::TurntableBall;
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+/// Rounding of a few hundred operations.
+const CLOSE: f64 = 1e-11;
+
+#[track_caller]
+fn assert_near(what: &str, found: f64, expected: f64, bound: f64) {
+    let apart = (found - expected).abs() / expected.abs().max(1.0);
+    assert!(apart <= bound, "{what}: {found}, expected {expected}");
+}
+
+fn text(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.eom"));
+    std::fs::read_to_string(path).expect("the model is in the repository")
+}
+
+fn generated(text: &str) -> Generated {
+    from_text(text).unwrap_or_else(|errors| panic!("{}", render(&errors, "time", text, false)))
+}
+
+fn value(of: &Generated, name: &str, [x, xi, u]: [&[f64]; 3]) -> Vec<f64> {
+    let function = of.program.function(name).expect("it is generated");
+    let compiled = Interpreter::new(&of.program, function, &of.program.defaults);
+    compiled
+        .call(x, xi, u, &vec![0.0; xi.len()])
+        .expect("no pivot vanishes")
+}
+
+/// States of a few numbers, the same on every machine.
+fn states<const N: usize>() -> impl Iterator<Item = [f64; N]> {
+    (1..8).map(|k| std::array::from_fn(|i| (1.7 * (k * (i + 2)) as f64).sin() * 1.3))
+}
+
+/// q̈ = −(g + ÿ) sin q / l with the pivot at y = a cos Ω t.
+#[test]
+fn kapitzas_pendulum() {
+    let (m, l, g, a, w) = (1.3, 0.8, 9.81, 0.1, 60.0);
+    let system = Kapitza::new(m, l, g, a, w).expect("a pendulum");
+    for [t, q, rate] in states() {
+        let [found] = system.accel(&[t, q], &[rate], &[]).expect("a value");
+        let lift = -a * w * w * (w * t).cos();
+        assert_near("ξ̇", found, -(g + lift) * q.sin() / l, CLOSE);
+        let (vx, vy) = (
+            l * q.cos() * rate,
+            l * q.sin() * rate - a * w * (w * t).sin(),
+        );
+        let kinetic = m * (vx * vx + vy * vy) / 2.0;
+        assert_near("T", system.kinetic_energy(&[t, q], &[rate]), kinetic, CLOSE);
+    }
+}
+
+/// Upside down it is stable where a² Ω² > 2 g l (Kapitza 1951, to first order in a/l), and falls where it is not.
+#[test]
+fn kapitzas_pendulum_stands_on_its_head() {
+    let (l, g, a) = (1.0, 9.81_f64, 0.05);
+    let limit = (2.0 * g * l).sqrt() / a;
+    for (factor, stands) in [(1.2, true), (0.8, false)] {
+        let system = Kapitza::new(1.0, l, g, a, factor * limit).expect("a pendulum");
+        let mut state = State {
+            t: 0.0,
+            x: [0.0, PI - 0.02],
+            xi: [0.0],
+        };
+        let mut farthest = 0.0_f64;
+        for k in 1..=200 {
+            state = run(&system, General::Rkmk8, state, 0.1 * f64::from(k), 40).expect("a run");
+            farthest = farthest.max((state.x[1] - PI).abs());
+        }
+        assert_eq!(farthest < 0.3, stands, "{factor}: {farthest} rad");
+    }
+}
+
+/// q̈ = φ̇² sin q cos q − (g/r) sin q, torque (J + m r² sin² q) φ̈ + 2 m r² sin q cos q φ̇ q̇.
+#[test]
+fn a_bead_on_a_driven_hoop() {
+    let (m, r, j, g, w, b) = (0.5, 1.2, 0.3, 9.81, 3.0, 0.2);
+    let system = DrivenHoop::new(m, r, j, g, w, b).expect("a hoop");
+    for [t, q, rate] in states() {
+        // The hoop is where it is prescribed to be, whatever x says.
+        let (x, xi) = ([t, 17.0, q], [rate]);
+        let spin = w + 2.0 * b * (2.0 * t).cos();
+        let spin_rate = -4.0 * b * (2.0 * t).sin();
+        let (s, c) = q.sin_cos();
+        let [found] = system.accel(&x, &xi, &[]).expect("a value");
+        assert_near("ξ̇", found, spin * spin * s * c - g / r * s, CLOSE);
+        let [torque] = system.constraint_force(&x, &xi, &[]).expect("a value");
+        let inertia = j + m * r * r * s * s;
+        let needed = inertia * spin_rate + 2.0 * m * r * r * s * c * spin * rate;
+        assert_near("torque", torque, needed, CLOSE);
+        let kinetic = (inertia * spin * spin + m * r * r * rate * rate) / 2.0;
+        assert_near("T", system.kinetic_energy(&x, &xi), kinetic, CLOSE);
+        assert_near("φ̇", system.rate(&x, &xi)[1], spin, CLOSE);
+    }
+}
+
+/// A homogeneous ball goes round at 2/7 Ω: its acceleration is 2/7 Ω e₃ × v (Milne 1948).
+#[test]
+fn a_ball_on_a_turntable() {
+    let omega = 2.0;
+    let system = TurntableBall::new(0.8, 0.1, omega).expect("a ball");
+    let (x, xi) = system.start();
+    let [vx, vy, vz] = system.run(&x, &xi, &[]);
+    let xi_dot = system.accel(&x, &xi, &[]).expect("a value");
+    let push = system.push(&x, &xi, &xi_dot, &[]);
+    let turn = 2.0 / 7.0 * omega;
+    for (found, expected) in push.into_iter().zip([-turn * vy, turn * vx, 0.0]) {
+        assert_near("acceleration", found, expected, CLOSE);
+    }
+    assert_near("vz", vz, 0.0, CLOSE);
+    let start = State { t: 0.0, x, xi };
+    let end = run(&system, General::Rkmk8, start, TAU / turn, 400).expect("a run");
+    assert_near("x after a turn", end.x[1], x[1], 1e-10);
+    assert_near("y after a turn", end.x[2], x[2], 1e-10);
+}
+
+/// As the belt sees it, the belt's acceleration c is a uniform field −c: v̇ = a w² − c cos θ,
+/// (J + m a²) ẇ = −m a v w + m a c sin θ.
+#[test]
+fn a_sleigh_on_a_belt() {
+    let (m, j, a, c) = (2.0, 0.5, 0.2, 0.3);
+    let system = BeltSleigh::new(m, j, a, c).expect("a sleigh");
+    for [t, angle, v, w] in states() {
+        let x = [t, 0.4, -0.7, angle];
+        let [dv, dw] = system.accel(&x, &[v, w], &[]).expect("a value");
+        assert_near("v̇", dv, a * w * w - c * angle.cos(), CLOSE);
+        let turned = m * a * (c * angle.sin() - v * w) / (j + m * a * a);
+        assert_near("ẇ", dw, turned, CLOSE);
+        let rate = system.rate(&x, &[v, w]);
+        assert_near("ẋ", rate[1], v * angle.cos() + c * t, CLOSE);
+    }
+}
+
+/// With p = ẋ and q = ẏ: m ṗ = −k (x − cos t) − d (p − 1), m q̇ = −k y, and u = p − c t, w = q + x sin t.
+#[test]
+fn energies_with_terms_of_all_degrees() {
+    let (m, k, d, c) = (1.5, 10.0, 0.7, 3.0);
+    let system = generated(&text("drifting_oscillator"));
+    for [t, a, b, u, w] in states() {
+        let (x, y) = (a, b);
+        let (p, q) = (u + c * t, w - t.sin() * x);
+        let du = (-k * (x - t.cos()) - d * (p - 1.0)) / m - c;
+        let dw = -k * y / m + t.cos() * x + t.sin() * p;
+        let state: [&[f64]; 3] = [&[t, x, y], &[u, w], &[]];
+        let found = value(&system, "accel", state);
+        assert_near("u̇", found[0], du, CLOSE);
+        assert_near("ẇ", found[1], dw, CLOSE);
+        let kinetic = m * (p * p + q * q) / 2.0;
+        assert_near(
+            "T",
+            value(&system, "kinetic_energy", state)[0],
+            kinetic,
+            CLOSE,
+        );
+        let momentum = value(&system, "momentum", state);
+        assert_near("∂T/∂u", momentum[0], m * p, CLOSE);
+        assert_near("∂T/∂w", momentum[1], m * q, CLOSE);
+        let dissipation = d * (p - 1.0) * (p - 1.0) / 2.0;
+        assert_near(
+            "D",
+            value(&system, "dissipation", state)[0],
+            dissipation,
+            CLOSE,
+        );
+    }
+}
+
+/// A frame that depends on time, and joints that are prescribed to move alike.
+#[test]
+fn a_moving_frame_is_a_prescribed_joint() {
+    let (frame, joints) = (
+        generated(&text("ship_arm")),
+        generated(&text("ship_arm_joints")),
+    );
+    for [t, pan, lift, v, w, a] in states() {
+        let (xi, u) = ([v, w], [a, 2.0 * a]);
+        // Where the joints of the ship stand in x is of no matter: they are prescribed.
+        let on_frame: [&[f64]; 3] = [&[t, pan, lift], &xi, &u];
+        let on_joints: [&[f64]; 3] = [&[t, 5.0, 6.0, 7.0, pan, lift], &xi, &u];
+        for name in ["accel", "mass_matrix", "bias", "energy", "momentum"] {
+            let (found, expected) = (
+                value(&joints, name, on_joints),
+                value(&frame, name, on_frame),
+            );
+            assert_eq!(found.len(), expected.len());
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert_near(name, found, expected, 1e-10);
+            }
+        }
+    }
+}
+
+/// What a drive is prescribed to do is what its force does to the mechanism without the drive.
+#[test]
+fn prescribed_motion_is_that_of_the_force_of_the_drive() {
+    for (name, statement, velocity) in [
+        (
+            "driven_hoop",
+            "prescribe phi = W * t + b * sin(2 * t);",
+            "spin",
+        ),
+        (
+            "crank_drive",
+            "prescribe crank = W * t + 0.1 * sin(3 * t);",
+            "crank_dot",
+        ),
+        (
+            "tracking_arm",
+            "prescribe rate(shoulder_dot) = push;",
+            "shoulder_dot",
+        ),
+        (
+            "ship_arm_joints",
+            "prescribe sway = roll * sin(s * t);",
+            "sway_dot",
+        ),
+    ] {
+        let driven = generated(&text(name));
+        let load = format!("input drive; generalized force {velocity} = drive;");
+        let undriven = text(name).replace(statement, &load);
+        assert_ne!(undriven, text(name), "{name} has this statement");
+        let undriven = generated(&undriven);
+        let target = statement.split(' ').nth(1).expect("a target");
+        let rows = driven.model.constraints.iter();
+        let mut rows = rows.map(|row| row.written.split(' ').next() == Some(target));
+        let place = rows.position(|found| found).unwrap_or(0);
+        let (x, mut xi) = (&driven.model.start_x, driven.active.start_xi.clone());
+        xi.iter_mut()
+            .enumerate()
+            .for_each(|(i, v)| *v += 0.3 * (i as f64 + 1.0).sin());
+        let keeps = driven.active.constraints.is_empty();
+        if !keeps {
+            xi.clone_from(&driven.active.start_xi);
+        }
+        let u = vec![0.4; driven.program.m];
+        let force = value(&driven, "constraint_force", [x, &xi, &u])[place];
+        let expected = value(&driven, "accel", [x, &xi, &u]);
+        // The velocity of the drive stands among the others now.
+        let rate = value(&driven, "rate", [x, &xi, &u]);
+        let group = |of: &Generated, name: &str| {
+            let mut groups = of.active.velocities.iter();
+            groups
+                .find(|group| group.name == name)
+                .map(|group| group.offset)
+        };
+        let place = group(&undriven, velocity).expect("it is free");
+        let mut all = xi.clone();
+        if group(&driven, velocity).is_none() {
+            let coordinate = velocity.strip_suffix("_dot").unwrap_or("phi");
+            let mut coordinates = driven.model.coordinates.iter();
+            let coordinate = coordinates
+                .find(|c| c.name == coordinate)
+                .expect("it has one");
+            all.insert(place, rate[coordinate.offset]);
+        }
+        // The inputs of the driven description keep their values by their names.
+        let before = |name: &str| driven.model.inputs.iter().find(|group| group.name == name);
+        let mut inputs = Vec::new();
+        for group in &undriven.model.inputs {
+            match before(&group.name) {
+                Some(known) => inputs.extend(&u[known.offset..known.offset + known.len]),
+                None => inputs.push(force),
+            }
+        }
+        let found = value(&undriven, "accel", [x, &all, &inputs]);
+        let mut found = found;
+        if all.len() > xi.len() {
+            found.remove(place);
+        }
+        for (found, expected) in found.iter().zip(&expected) {
+            assert_near(name, *found, *expected, 1e-9);
+        }
+    }
+}
+
+/// Every general method keeps its order where the right-hand side depends on time: stages are at their own times.
+#[test]
+fn methods_keep_their_orders() {
+    let system = Kapitza::<f64>::new(1.0, 1.0, 9.81, 0.3, 4.0).expect("a pendulum");
+    let start = State {
+        t: 0.0,
+        x: [0.0, 0.4],
+        xi: [0.3],
+    };
+    let end = |method: General, steps: u32| {
+        let end = run(&system, method, start.clone(), 2.0, steps).expect("a run");
+        assert!(
+            (end.x[0] - 2.0).abs() < 1e-12,
+            "{}: t = {}",
+            method.name(),
+            end.x[0]
+        );
+        end
+    };
+    let exact = end(General::Rkmk8, 4000);
+    for &method in General::ALL {
+        let order = hamel::Method::<Kapitza<f64>>::order(&method);
+        let coarse = if order >= 8 { 8 } else { 40 };
+        let errors = [1, 2, 4].map(|k| {
+            let end = end(method, coarse * k);
+            (end.x[1] - exact.x[1])
+                .abs()
+                .max((end.xi[0] - exact.xi[0]).abs())
+        });
+        let slope = (errors[0] / errors[2]).log2() / 2.0;
+        println!(
+            "{}: order {order}, errors {errors:?}, slope {slope:.2}",
+            method.name()
+        );
+        assert!(
+            slope > f64::from(order) - 0.5,
+            "{}: {errors:?}",
+            method.name()
+        );
+    }
+}
