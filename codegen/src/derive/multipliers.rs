@@ -86,6 +86,16 @@ pub fn multipliers(
     for (&(row, _), value) in reduction.solved.iter().zip(&solution) {
         multipliers[row] = value[0];
     }
+    // What the constraints do not bring up, the drives do.
+    let drives = full.accelerated.iter().zip(drives);
+    let drives: Vec<Edge> = drives
+        .map(|(&(velocity, _), residual)| {
+            (multipliers.iter().enumerate()).fold(residual, |sum, (row, &multiplier)| {
+                let product = graph.mul(rows[row * n + velocity], multiplier);
+                graph.sub(sum, product)
+            })
+        })
+        .collect();
     multipliers.extend(drives);
     Some(multipliers)
 }

@@ -127,7 +127,10 @@ impl Reader<'_, '_> {
                     expr.span,
                     "this kinetic energy is not quadratic in the velocities",
                 )
-                .help("T = ½ ξᵀ M(x) ξ: every term has exactly two velocities as factors"),
+                .help(match self.declared.clock {
+                    None => "T = ½ ξᵀ M(x) ξ: every term has exactly two velocities as factors; with the time declared, `time t;`, it may have terms with fewer",
+                    Some(_) => "T = T₂ + T₁ + T₀: no term has more than two velocities as factors",
+                }),
             );
         }
         Some(energy)

@@ -145,9 +145,16 @@ impl Reader<'_> {
                 } else {
                     "this nonholonomic constraint is not linear in the velocities"
                 };
-                return self.evaluator.error(Diagnostic::new(span, message).help(
-                    "it is B(x) ξ = 0: every term has exactly one velocity as a factor, times coordinates and parameters",
-                ));
+                let help = "it is B(x) ξ = 0: every term has exactly one velocity as a factor, times coordinates and parameters";
+                let help = match without {
+                    true => format!(
+                        "{help}; with the time declared, `time t;`, it may have terms without one"
+                    ),
+                    false => help.to_string(),
+                };
+                return self
+                    .evaluator
+                    .error(Diagnostic::new(span, message).help(help));
             }
             if row.iter().all(|&entry| entry == graph.zero()) {
                 return self.evaluator.error(

@@ -64,11 +64,11 @@ pub fn linear_part(
         };
         let error = if (class | rest) & class::INPUT != 0 {
             Diagnostic::new(span, "a rate cannot depend on inputs").help(
-                "inputs act by `force`, `torque`, `wrench` or `generalized force`; a prescribed motion is no part of this version",
+                "inputs act by `force`, `torque`, `wrench` or `generalized force`; one that gives the rate of a velocity is written `prescribe rate(v) = a;`",
             )
         } else if class & class::VELOCITY == 0 && rest & class::VELOCITY == 0 {
             Diagnostic::new(span, "this rate has a term without a velocity").help(
-                "a rate is A(x) ξ: every term has exactly one velocity as a factor, times coordinates and parameters",
+                "a rate is A(x) ξ: every term has exactly one velocity as a factor, times coordinates and parameters; with the time declared, `time t;`, it may have terms without one",
             )
         } else {
             Diagnostic::new(span, "this rate is not linear in the velocities").help(

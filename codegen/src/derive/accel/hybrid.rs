@@ -50,3 +50,21 @@ pub fn whole(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
         .filter_map(|i| given(i).map(|(_, rate)| *rate).or_else(|| free.next()))
         .collect()
 }
+
+/// Rows of B ξ̇ = b, one for each rate that is given.
+pub fn rows(model: &Model) -> impl Iterator<Item = Vec<Edge>> {
+    let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());
+    model.accelerated.iter().map(move |(place, _)| {
+        let mut row = vec![zero; n];
+        row[*place] = one;
+        row
+    })
+}
+
+/// ξ̇ with the rates that are given as they are given.
+pub fn exact(model: &Model, mut xi_dot: Vec<Edge>) -> Vec<Edge> {
+    for &(place, rate) in &model.accelerated {
+        xi_dot[place] = rate;
+    }
+    xi_dot
+}

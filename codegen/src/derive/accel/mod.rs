@@ -118,16 +118,15 @@ fn is_long(given: &Setting, recursions: &[Recursion]) -> bool {
 /// The cheapest computation with multipliers.
 fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computation)> {
     let n = setting.model.n();
-    let rows: Vec<Vec<Edge>> = setting
-        .model
-        .constraints
-        .iter()
-        .map(|constraint| constraint.row.clone())
-        .collect();
+    let rows = setting.model.constraints.iter();
+    let mut rows: Vec<Vec<Edge>> = rows.map(|constraint| constraint.row.clone()).collect();
+    // A rate that is given is a row of its own.
+    rows.extend(hybrid::rows(&setting.model));
     let mut best: Option<(Acceleration, Parts)> = None;
     for variant in variants(&setting.model, n <= SMALL) {
         let (mut traced, parts) = trace(setting, variant);
-        let right = saddle::right_side(&mut traced, &mut setting.calculus.clone());
+        let mut right = saddle::right_side(&mut traced, &mut setting.calculus.clone());
+        right.extend(traced.accelerated.iter().map(|(_, rate)| *rate));
         let orders = [
             (0..n).collect(),
             (0..n).rev().collect(),
@@ -169,7 +168,7 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
             let acceleration = Acceleration {
                 other: None,
                 graph,
-                xi_dot: solution.xi_dot,
+                xi_dot: hybrid::exact(&setting.model, solution.xi_dot),
                 pivots,
                 multipliers: solution.multipliers,
                 projections: Some(projections),

@@ -172,7 +172,7 @@ impl Factored {
 /// What leads back to the constraints.
 #[derive(Clone, Debug)]
 pub struct Projections {
-    /// −M⁻¹ Bᵀ S⁻¹ φ(x): the step along A that closes the loops, to first order.
+    /// −M⁻¹ Bᵀ S⁻¹ φ(x), with what has a given rate held: the step along A that closes the loops, to first order.
     pub position: Vec<Edge>,
     /// ξ − M⁻¹ Bᵀ S⁻¹ B ξ: the velocities nearest in kinetic energy that satisfy B ξ = 0.
     pub velocity: Vec<Edge>,
@@ -181,12 +181,15 @@ pub struct Projections {
 /// The projections of a model; its constraints are those that are kept.
 pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Projections {
     let rest = vec![graph.zero(); model.n()];
-    let residuals: Vec<Edge> = model.constraints.iter().map(|c| -c.residual).collect();
+    let held = vec![graph.zero(); model.accelerated.len()];
+    let residuals = model.constraints.iter().map(|c| -c.residual);
+    let residuals: Vec<Edge> = residuals.chain(held.iter().copied()).collect();
     let position = factored.solve(graph, &rest, &residuals).xi_dot;
     let speeds: Vec<Edge> = model
         .constraints
         .iter()
         .map(|c| -c.speed(graph, &model.xi))
+        .chain(held)
         .collect();
     let change = factored.solve(graph, &rest, &speeds).xi_dot;
     let velocity = model

@@ -65,9 +65,16 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         .filter(|&i| solved.iter().all(|&(_, velocity)| velocity != i))
         .collect();
     let (kept, rank) = keep(&full, &rows, &solved)?;
-    accelerated(&full, &active, &kept)?;
+    accelerated(&full, &active)?;
     if active.len() <= rank {
         let span = model.constraints.last().map_or(model.span, |c| c.span);
+        let drives = |c: &Pfaffian| matches!(c.kind, Kind::Drive { .. });
+        if model.constraints.iter().any(drives) {
+            let error = Diagnostic::new(span, "nothing is left to move by itself");
+            return Err(error.help(
+                "leave one motion free: where all is prescribed, `inverse_dynamics` of the description without `prescribe` gives the forces of the drives",
+            ));
+        }
         return Err(Diagnostic::new(
             span,
             format!(
@@ -201,31 +208,17 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     Ok((rows, solved))
 }
 
-/// Velocities whose rates are given have to stay, and constraints that are kept by multipliers would act on them.
-fn accelerated(full: &Model, active: &[usize], kept: &[usize]) -> Result<(), Diagnostic> {
-    for (velocity, _) in &full.accelerated {
-        let span = full.velocity_spans[*velocity];
-        if let Some(row) = full
-            .constraints
-            .get(kept.first().copied().unwrap_or(usize::MAX))
-        {
-            let error = Diagnostic::new(
-                row.span,
-                "this constraint is kept by a multiplier, and a rate is prescribed besides",
-            );
-            return Err(error
-                .help("prescribe a coordinate or a velocity as a function of time")
-                .note(span, "the velocity whose rate is prescribed"));
-        }
-        if !active.contains(velocity) {
-            let error = Diagnostic::new(
-                span,
-                "the rate of this velocity is prescribed, and the constraints give the velocity by others",
-            );
-            return Err(error.help("prescribe the rate of one that stays free"));
-        }
-    }
-    Ok(())
+/// Velocities whose rates are given have to stay.
+fn accelerated(full: &Model, active: &[usize]) -> Result<(), Diagnostic> {
+    let mut velocities = full.accelerated.iter().map(|(velocity, _)| velocity);
+    let Some(&velocity) = velocities.find(|velocity| !active.contains(velocity)) else {
+        return Ok(());
+    };
+    let error = Diagnostic::new(
+        full.velocity_spans[velocity],
+        "the rate of this velocity is prescribed, and the constraints give the velocity by others",
+    );
+    Err(error.help("prescribe the rate of one that stays free"))
 }
 
 fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {

@@ -12,7 +12,7 @@ use crate::lower::scope::{NameKind, Scope};
 use crate::model::class;
 use crate::model::closure::Closure;
 use crate::model::layout::{blocks, identity};
-use crate::model::pfaffian::Pfaffian;
+use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 
@@ -75,6 +75,14 @@ impl Start {
         }
         let given: Vec<bool> = self.given_x.iter().map(Option::is_some).collect();
         closure.close_loops(&mut self.x, &given).map_err(|open| {
+            let row = &constraints[open.constraint];
+            if matches!(row.kind, Kind::Drive { .. }) {
+                let error = Diagnostic::new(
+                    row.span,
+                    format!("the start contradicts this motion by {:.3e}", open.residual),
+                );
+                return error.help("leave out the `start` of what is prescribed: it follows");
+            }
             let error = Diagnostic::new(
                 constraints[open.constraint].span,
                 format!(

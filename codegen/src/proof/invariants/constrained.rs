@@ -37,7 +37,9 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
                 claim.name
             ),
         };
-        errors.push(Diagnostic::new(claim.span, message).help(if loops {
+        errors.push(Diagnostic::new(claim.span, message).help(if model.clock.is_some() {
+            "what depends on time, and what drives do work on, is not constant: T + V changes by −∂L/∂t and by their power"
+        } else if loops {
             "claim what is constant for every position of the tree: the loops are not closed where claims are checked"
         } else {
             "claim what is constant, or say for which inputs and parameters it is: `when F = 0`"
