@@ -265,7 +265,7 @@ fn coupled(case: &mut Case, rotor: &str, other: &str) -> bool {
 
 #[test]
 fn what_stands_in_the_way_is_there() {
-    let mut kinds = [0; 5];
+    let mut kinds = [0; 6];
     for mut case in cases() {
         let structure = case.generated.program.structure.clone();
         let Err(reasons) = &structure.split else {
@@ -274,7 +274,8 @@ fn what_stands_in_the_way_is_there() {
         assert!(!reasons.is_empty(), "{}: no reason", case.name);
         for reason in reasons {
             let (kind, holds) = match reason {
-                Reason::Constrained { .. } => (0, !case.generated.model.constraints.is_empty()),
+                Reason::Constrained { .. } => (0, case.generated.model.is_constrained()),
+                Reason::Time => (5, case.generated.model.clock.is_some()),
                 Reason::Tied {
                     directions,
                     velocities,

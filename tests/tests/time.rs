@@ -203,6 +203,39 @@ fn a_moving_frame_is_a_prescribed_joint() {
     }
 }
 
+/// φ(x, t) = 0 with a velocity by rates, and the same by an angle.
+#[test]
+fn a_moving_constraint() {
+    let (rows, angle) = (
+        generated(&text("growing_rod")),
+        generated(&text("growing_rod_angle")),
+    );
+    for [t, q, w] in states() {
+        let length = 1.0 + 0.1 * (2.0 * t).sin();
+        let growth = 0.2 * (2.0 * t).cos();
+        let (s, c) = q.sin_cos();
+        let on_rows: [&[f64]; 3] = [&[t, length * c, length * s], &[w], &[]];
+        let on_angle: [&[f64]; 3] = [&[t, q], &[w], &[]];
+        for name in [
+            "accel",
+            "energy",
+            "potential_force",
+            "bias",
+            "mass_matrix",
+            "momentum",
+        ] {
+            let [found, expected] = [value(&rows, name, on_rows), value(&angle, name, on_angle)];
+            assert_near(name, found[0], expected[0], CLOSE);
+        }
+        let rate = value(&rows, "rate", on_rows);
+        assert_near("ẋ", rate[1], growth * c - length * s * w, CLOSE);
+        assert_near("ż", rate[2], growth * s + length * c * w, CLOSE);
+        // l² q̈ + 2 l l̇ q̇ + g l cos q = 0.
+        let expected = -(2.0 * growth * w + 9.81 * c) / length;
+        assert_near("ξ̇", value(&rows, "accel", on_rows)[0], expected, CLOSE);
+    }
+}
+
 /// What a drive is prescribed to do is what its force does to the mechanism without the drive.
 #[test]
 fn prescribed_motion_is_that_of_the_force_of_the_drive() {

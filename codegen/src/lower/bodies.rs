@@ -114,7 +114,7 @@ impl Reader<'_, '_> {
     pub fn kinetic(&mut self, expr: &Expr) -> Option<Edge> {
         let energy = self.evaluator.scalar(expr, "a kinetic energy")?;
         let class = self.evaluator.graph.class(energy.node());
-        if class & !(class::PARAM | class::COORD | class::VELOCITY) != 0 {
+        if class & !(class::PARAM | class::CONFIGURATION | class::VELOCITY) != 0 {
             return self.evaluator.error(
                 Diagnostic::new(expr.span, "a kinetic energy cannot depend on inputs")
                     .help("it is a function of coordinates, velocities and parameters"),

@@ -60,6 +60,7 @@ pub fn declare(
         }
     }
     let mut declarer = Declarer {
+        time: time::name(system).map(|time| time.name.as_str()),
         graph,
         next,
         scope,
@@ -131,6 +132,7 @@ pub fn declare(
 }
 
 struct Declarer<'a, 'b> {
+    time: Option<&'a str>,
     graph: &'a mut Graph,
     next: &'a mut NextValue<'b>,
     scope: &'a mut Scope,
@@ -181,11 +183,15 @@ impl Declarer<'_, '_> {
             }
             let offset = declared.x.len();
             let names = entry_names(&name.name, *kind);
+            let class = match self.time == Some(&name.name) {
+                true => class::TIME,
+                false => class::COORD,
+            };
             let entries: Vec<Edge> = names
                 .iter()
                 .map(|entry| {
                     let value = (self.next)(self.graph);
-                    self.graph.symbol(entry, class::COORD, value)
+                    self.graph.symbol(entry, class, value)
                 })
                 .collect();
             self.scope

@@ -154,7 +154,7 @@ fn define(
             .iter()
             .chain([&rest])
             .fold(0, |found, edge| found | graph.class(edge.node()));
-        if rest.abs() != graph.zero() || found & !(class::PARAM | class::COORD) != 0 {
+        if rest.abs() != graph.zero() || found & !(class::PARAM | class::CONFIGURATION) != 0 {
             return evaluator.error(not_linear(name, expr, found));
         }
         rows.push(row);
@@ -174,7 +174,7 @@ fn not_linear(name: &str, expr: &Expr, found: u8) -> Diagnostic {
     } else {
         format!("the definition of velocity `{name}` is not linear in the rates")
     };
-    let help = match found & !(class::PARAM | class::COORD) {
+    let help = match found & !(class::PARAM | class::CONFIGURATION) {
         0 => format!("{HELP}; an initial value is written `start {name} = …;`"),
         _ => HELP.into(),
     };

@@ -229,7 +229,7 @@ impl Reader<'_, '_> {
     ) -> Option<Edge> {
         let rate = self.evaluator.scalar(expr, "what a damper acts on")?;
         let graph = &mut *self.evaluator.graph;
-        let known = class::PARAM | class::COORD | class::VELOCITY;
+        let known = class::PARAM | class::CONFIGURATION | class::VELOCITY;
         let square = graph.mul(rate, rate);
         let linear = graph.class(rate.node()) & !known == 0
             && is_quadratic(graph.clone(), square, &self.declared.xi);

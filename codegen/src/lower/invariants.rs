@@ -136,7 +136,7 @@ impl Reader<'_, '_> {
                         "inputs are free functions of time; set them after `when`: `when F = 0`",
                     ));
                 }
-                if class & (class::COORD | class::VELOCITY) == 0 {
+                if class & (class::CONFIGURATION | class::VELOCITY) == 0 {
                     let message = "this is constant whatever moves: there is nothing to prove";
                     return self.evaluator.error(
                         Diagnostic::new(expr.span, message)

@@ -49,7 +49,7 @@ impl Evaluator<'_> {
         for (value, expr) in values.iter().zip(arguments) {
             let class = |class, edge: &Edge| class | self.graph.class(edge.node());
             let class = value.entries().iter().fold(0, class);
-            if class & !(class::PARAM | class::COORD) != 0 {
+            if class & !(class::PARAM | class::CONFIGURATION) != 0 {
                 let message = format!("an argument of `{name}` depends on velocities or inputs");
                 return self.error(
                     Diagnostic::new(expr.span, message).help(

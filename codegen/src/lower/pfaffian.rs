@@ -134,7 +134,7 @@ impl Reader<'_> {
             let class = row
                 .iter()
                 .fold(0, |class, entry| class | graph.class(entry.node()));
-            if whole != edge || class & !(class::PARAM | class::COORD) != 0 {
+            if whole != edge || class & !(class::PARAM | class::CONFIGURATION) != 0 {
                 let rest = graph.sub(edge, whole);
                 let without =
                     class & class::VELOCITY == 0 && graph.class(rest.node()) & class::VELOCITY == 0;
@@ -186,7 +186,7 @@ impl Reader<'_> {
         let class = entries
             .iter()
             .fold(0, |class, edge| class | graph.class(edge.node()));
-        if class & !(class::PARAM | class::COORD) != 0 {
+        if class & !(class::PARAM | class::CONFIGURATION) != 0 {
             return self.evaluator.error(
                 Diagnostic::new(
                     span,

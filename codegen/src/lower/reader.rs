@@ -92,7 +92,7 @@ impl Reader<'_, '_> {
         what: &str,
         help: &str,
     ) -> Option<()> {
-        if self.class_of(value) & !(class::PARAM | class::COORD) == 0 {
+        if self.class_of(value) & !(class::PARAM | class::CONFIGURATION) == 0 {
             return Some(());
         }
         let message = format!("{what} may depend on coordinates and parameters alone");

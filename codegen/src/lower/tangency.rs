@@ -51,7 +51,7 @@ pub fn linear_part(
         let class = row
             .iter()
             .fold(0, |class, edge| class | graph.class(edge.node()));
-        if (whole == rate.edge && class & !(class::PARAM | class::COORD) == 0)
+        if (whole == rate.edge && class & !(class::PARAM | class::CONFIGURATION) == 0)
             || bad.contains(&rate.item)
         {
             continue;

@@ -107,7 +107,7 @@ pub fn clock(system: &System, declared: &Declared) -> Option<Clock> {
 /// e₀ ξ⁰. `None` where there is no time, or the rest is of another kind.
 pub fn carried(graph: &mut Graph, declared: &Declared, rest: Edge) -> Option<(usize, Edge)> {
     let clock = declared.clock?;
-    let found = graph.class(rest.node()) & !(class::PARAM | class::COORD);
+    let found = graph.class(rest.node()) & !(class::PARAM | class::CONFIGURATION);
     (found == 0).then_some((clock.xi, rest))
 }
 

@@ -226,7 +226,7 @@ fn check(graph: &Graph, difference: &Value, span: Span) -> Result<Vec<Edge>, Dia
     for &edge in &rows {
         let class = graph.class(edge.node());
         let error = |message: &str, help: &str| Err(Diagnostic::new(span, message).help(help));
-        if class & !(class::PARAM | class::COORD) != 0 {
+        if class & !(class::PARAM | class::CONFIGURATION) != 0 {
             return error(
                 "a constraint is about coordinates, not velocities or inputs",
                 "velocities are constrained by the choice of `velocity` and `rate`",

@@ -46,6 +46,10 @@ pub mod class {
     pub const ACCEL: u8 = 16;
     /// Momenta p, the argument of what is a function of them.
     pub const MOMENTUM: u8 = 32;
+    /// The time, which is a coordinate, too.
+    pub const TIME: u8 = 64;
+    /// What a configuration is given by: coordinates and time.
+    pub const CONFIGURATION: u8 = COORD | TIME;
     /// Rates ẋ, while definitions of velocities are read; never in a model's graph.
     pub const RATE: u8 = 128;
 }

@@ -522,19 +522,18 @@ impl At<'_> {
         let a = evaluate_at(&full.graph, &a_edges, &mut point.clone())?;
         let rate = evaluate_at(&reduced.graph, &reduced.rate, &mut inner.clone())?;
         let symbols = |class| places(&reduced.graph, class);
-        let (x, mut others) = (symbols(class::COORD), symbols(class::VELOCITY));
+        let first = full.points.first;
+        let (x, mut others) = (first..first + nu, symbols(class::VELOCITY));
         others.extend(symbols(class::INPUT));
         let size = reduced.graph.symbols().len();
         // How the columns of A change along the motion.
         let mut moving = vec![Fp::ZERO; full.graph.symbols().len()];
-        for (&place, &slope) in places(&full.graph, class::COORD).iter().zip(&rate) {
-            moving[place] = slope;
-        }
+        moving[x.clone()].copy_from_slice(&rate);
         let swept = tangent_at(&full.graph, &a_edges, &mut point.clone(), &moving)?;
         for column in 0..width {
             let mut direction = vec![Fp::ZERO; size];
             if column < n {
-                for (alpha, &place) in x.iter().enumerate() {
+                for (alpha, place) in x.clone().enumerate() {
                     direction[place] = a[alpha * all + places_of[column]];
                 }
             } else {

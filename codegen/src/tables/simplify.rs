@@ -60,7 +60,7 @@ impl Simplifier {
     pub fn whole(&mut self, graph: &Graph, node: NodeId) -> Option<Poly<BigRational>> {
         let plain = self.expander.expand(graph, Edge::of(node))?;
         let mut best = plain.clone();
-        if graph.class(node) & class::COORD != 0
+        if graph.class(node) & class::CONFIGURATION != 0
             && let Some(forms) = &mut self.forms
         {
             let reduced = forms.reduce(graph, &plain);

@@ -136,7 +136,7 @@ fn candidates(model: &mut Model) -> Vec<Candidate> {
     let (mut first, plain) = coordinates(model);
     let moving = |edge: Edge, graph: &Graph| {
         let class = graph.class(edge.node());
-        class & class::COORD != 0 && class & !(class::COORD | class::PARAM) == 0
+        class & class::CONFIGURATION != 0 && class & !(class::CONFIGURATION | class::PARAM) == 0
     };
     for (name, value) in &model.lets {
         let entries = value.entries();

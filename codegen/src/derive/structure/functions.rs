@@ -142,7 +142,7 @@ impl Functions {
                 inertia: form(graph, inertia),
                 steered: kick[part.rates()]
                     .iter()
-                    .any(|edge| graph.class(edge.node()) & class::COORD != 0),
+                    .any(|edge| graph.class(edge.node()) & class::CONFIGURATION != 0),
             })
             .collect();
         let inertia = forms

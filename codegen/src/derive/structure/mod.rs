@@ -140,7 +140,7 @@ fn dependence(
                 entries.iter().any(|x| reached.contains(&x.node()))
                     && mass
                         .iter()
-                        .any(|edge| graph.class(edge.node()) & class::COORD != 0)
+                        .any(|edge| graph.class(edge.node()) & class::CONFIGURATION != 0)
             });
             written.map(|part| part.name.clone()).collect()
         }
