@@ -140,9 +140,9 @@ fn motion(
             Json::Null
         }
     };
-    // λ of constraints on the velocities; none where there are no such constraints.
+    // λ of constraints on the velocities and forces of drives; none where there are none.
     let constraint_force = match generated.program.function("constraint_force") {
-        _ if generated.model.constraints.is_empty() => None,
+        _ if !generated.model.has_multipliers() => None,
         Some(_) => Some(vector("constraint_force")?),
         None => Some(Json::vector(&[])),
     };

@@ -1,17 +1,14 @@
 //! Bodies, particles and kinetic energies.
 
+use super::quadratic::is_quadratic;
 use super::reader::Reader;
 use super::time;
-use crate::algebra::derivation::Derivation;
-use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3, add3, apply3, zero3};
 use crate::diagnostics::Diagnostic;
 use crate::model::value::Value;
 use crate::model::{Body, Particle, class};
 use crate::syntax::ast::{self, About, Expr, Ident, Span};
-use num_bigint::BigInt;
-use num_rational::BigRational;
 
 impl Reader<'_, '_> {
     pub fn body(&mut self, body: &ast::Body, span: Span) -> Option<Body> {
@@ -161,21 +158,4 @@ fn shifted(graph: &mut Graph, inertia: &Mat3, mass: Edge, com: Vec3, back: bool)
     std::array::from_fn(|i| {
         std::array::from_fn(|j| graph.add(inertia[i][j], steiner[i][j].signed(back)))
     })
-}
-
-/// Whether a function of ξ is homogeneous of degree two, ξ · ∂T/∂ξ = 2 T, and has no third
-/// derivative: none along a random direction. In a graph of its own, to leave no trace.
-pub fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
-    let graph = &mut graph;
-    let twice = Derivation::new(xi.iter().map(|xi| (xi.node(), *xi))).of(graph, energy);
-    let double = graph.add(energy, energy);
-    let mut random = Random::new(0x71);
-    let mut direction = Vec::new();
-    for xi in xi {
-        let component = BigRational::from_integer(BigInt::from(random.bits() >> 3));
-        direction.push((xi.node(), graph.rational(&component)));
-    }
-    let mut along = Derivation::new(direction);
-    let third = (0..3).fold(energy, |function, _| along.of(graph, function));
-    twice == double && third == graph.zero()
 }

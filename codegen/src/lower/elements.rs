@@ -5,8 +5,8 @@
 //! as wrenches on the frames of the two points. On a scalar e: V = ½ k (e − l)², D = ½ c e². What is
 //! left of D acts by Rayleigh's fᵢ = −∂D/∂ξⁱ (W; N, N m).
 
-use super::bodies::is_quadratic;
 use super::line::{Line, is_root};
+use super::quadratic::is_quadratic;
 use super::reader::{Dynamics, Reader};
 use super::time;
 use crate::algebra::graph::Edge;

@@ -29,6 +29,7 @@ mod names;
 mod observe;
 mod pfaffian;
 mod prescribe;
+mod quadratic;
 mod rate;
 mod rates;
 mod reader;

@@ -5,8 +5,8 @@
 //! linear or quadratic as it is without time, and γ, M and Γ of the extended frame follow from KR18 (12), (20) and
 //! (23). ξ⁰ = 1 is put in when the system is reduced to the velocities that are free.
 
-use super::bodies::is_quadratic;
 use super::declare::Declared;
+use super::quadratic::is_quadratic;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::substitute;

@@ -280,7 +280,12 @@ impl Model {
     /// Whether not all velocities of the full frame are free: constraints or drives act on them, or one is that of
     /// time.
     pub fn is_constrained(&self) -> bool {
-        !self.constraints.is_empty() || !self.accelerated.is_empty() || self.clock.is_some()
+        self.has_multipliers() || self.clock.is_some()
+    }
+
+    /// Whether constraints act on the velocities, or drives.
+    pub fn has_multipliers(&self) -> bool {
+        !self.constraints.is_empty() || !self.accelerated.is_empty()
     }
 
     /// Whether ẋ, and velocities of points with it, have terms without ξ: so it is where ξ⁰ = 1 was put in.
