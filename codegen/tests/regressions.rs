@@ -95,3 +95,25 @@ fn spins_in_axes_of_the_world() {
     ));
     assert!(of.program.function("momentum_rate").is_some());
 }
+
+/// Numbers of inverse functions are compared as real numbers, too: sin² + cos² of such an angle is 1.
+#[test]
+fn mounts_turn_by_angles_of_inverse_functions() {
+    for angle in [
+        "acos(0.8)",
+        "asin(-3/5)",
+        "atan2(3, -4)",
+        "log(2)",
+        "2 * acos(1/3) - asin(sqrt(2) / 3)",
+    ] {
+        let of = generated(&format!(
+            "system A {{ joint j: revolute [0, 0, 1] at pose(rpy({angle}, 0, {angle}), [0, 0, 0]) moves f;
+                body on f {{ mass 1; com [1, 0, 0]; inertia diag(1, 1, 1) about com; }}
+                output c = cos(acos(0.8)); output s = sin(asin(0.3) + asin(0.3)); }}"
+        ));
+        let output = |name: &str| value(&of, name, [&[0.3], &[0.0], &[], &[]])[0];
+        assert!((output("c") - 0.8).abs() < 1e-15, "{angle}");
+        let twice = 2.0 * 0.3 * (1.0_f64 - 0.09).sqrt();
+        assert!((output("s") - twice).abs() < 1e-15, "{angle}");
+    }
+}
