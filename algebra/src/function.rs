@@ -39,6 +39,13 @@ pub enum Law {
     Free,
 }
 
+impl Law {
+    /// Whether values follow from those of the parts of a sum.
+    pub fn is_additive(self) -> bool {
+        matches!(self, Angle | Power | Hyperbola)
+    }
+}
+
 /// f′(a).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slope {

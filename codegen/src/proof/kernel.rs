@@ -1,17 +1,34 @@
 //! Points of a system with constraints on its velocities: ξ moved to where B ξ = 0.
 
-use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::Graph;
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::lane::Lane;
+use crate::algebra::numeric::evaluate_at;
+use crate::model::points::Moved;
+use crate::model::{Model, class};
 
-/// A vector near `random` on which all rows vanish: by elimination, dependent entries replaced.
-pub(super) fn in_kernel(rows: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>> {
-    let n = random.len();
+/// The velocities of a point moved to where all rows vanish, with the symbols that they are.
+pub(super) fn at_rest(model: &Model, mut lane: Lane) -> Option<Moved> {
+    let places = places(&model.graph, class::VELOCITY);
+    let rows = model.constraints.iter().flat_map(|c| c.row.clone());
+    let rows: Vec<Edge> = rows.collect();
+    let xi: Vec<Fp> = places.iter().map(|&place| lane.symbol(place)).collect();
+    let rows = evaluate_at(&model.graph, &rows, &mut lane)?;
+    let moved = in_kernel(&rows, &xi)?;
+    Some(places.into_iter().zip(moved).collect())
+}
+
+/// A vector on which all rows vanish: by elimination, dependent entries replaced.
+fn in_kernel(rows: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
+    let n = xi.len();
     let mut rows: Vec<Vec<Fp>> = rows.chunks(n).map(<[Fp]>::to_vec).collect();
-    let mut stream = Random::new(seed);
-    let mut xi: Vec<Fp> = random.iter().map(|&v| v + stream.element()).collect();
-    let mut pivots: Vec<usize> = Vec::new();
+    let mut xi = xi.to_vec();
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
     for i in 0..rows.len() {
-        let pivot = (0..n).find(|&j| !rows[i][j].is_zero())?;
+        // What is left of a row that follows from others vanishes anyway.
+        let Some(pivot) = (0..n).find(|&j| !rows[i][j].is_zero()) else {
+            continue;
+        };
         let inverse = rows[i][pivot].inv()?;
         let row: Vec<Fp> = rows[i].iter().map(|&entry| entry * inverse).collect();
         for (k, other) in rows.iter_mut().enumerate() {
@@ -23,12 +40,12 @@ pub(super) fn in_kernel(rows: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>
             }
         }
         rows[i] = row;
-        pivots.push(pivot);
+        pivots.push((i, pivot));
     }
-    for (row, &pivot) in rows.iter().zip(&pivots) {
+    for &(row, pivot) in &pivots {
         xi[pivot] = (0..n)
-            .filter(|j| !pivots.contains(j))
-            .fold(Fp::ZERO, |sum, j| sum - row[j] * xi[j]);
+            .filter(|j| pivots.iter().all(|(_, pivot)| pivot != j))
+            .fold(Fp::ZERO, |sum, j| sum - rows[row][j] * xi[j]);
     }
     Some(xi)
 }
