@@ -8,6 +8,7 @@ mod applied;
 mod arithmetic;
 mod axes;
 mod bodies;
+mod branch;
 mod build;
 mod completion;
 mod declare;
@@ -38,4 +39,4 @@ mod tangency;
 mod unused;
 mod variety;
 
-pub use build::build;
+pub use build::{build, build_at};
