@@ -146,7 +146,7 @@ impl Graph {
     /// the argument is a number that is not rational and positive.
     pub fn form(&self, function: Function, argument: Edge) -> Vec<(NodeId, BigRational)> {
         match function.row().law {
-            Law::Angle | Law::Power | Law::Hyperbola => self.linear_form(argument),
+            law if law.is_additive() => self.linear_form(argument),
             Law::Radical => {
                 let number = self.as_rational(argument);
                 let is_number = self.class(argument.node()) == 0;
@@ -155,7 +155,7 @@ impl Graph {
                 }
                 vec![(argument.node(), self.noted_content(argument))]
             }
-            Law::Free => Vec::new(),
+            _ => Vec::new(),
         }
     }
 

@@ -39,6 +39,13 @@ pub enum Law {
     Free,
 }
 
+impl Law {
+    /// Whether values follow from those of the parts of a sum.
+    pub fn is_additive(self) -> bool {
+        matches!(self, Angle | Power | Hyperbola)
+    }
+}
+
 /// f′(a).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slope {
@@ -153,7 +160,7 @@ table! {
     Exp "exponential" "exp" "exp()" r"\exp" Other Plain Power [Some([0, 1])] [Itself]
         f64::exp, Double::exp, Real::exp, Interval::exp;
     Log "natural logarithm" "log" "ln()" r"\ln" Other Plain Free [Some([1, 0])] [Inverse]
-        f64::ln, Double::log, Real::log, |_| None;
+        f64::ln, Double::log, Real::log, Interval::log;
     Sqrt "square root" "sqrt" "sqrt()" r"\sqrt" Root Plain Radical [None] [HalfInverse]
         f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
     Atan2 "angle of (x, y), arguments (y, x): a node of its own, without values of one argument"

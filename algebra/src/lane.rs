@@ -13,6 +13,7 @@ use super::roots;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
+use rustc_hash::FxHashMap;
 
 /// Σ coefficient · atom, the argument of a function with a group law; atoms by their values. Of a
 /// square root: the rational factor of its argument (`Graph::form`).
@@ -46,6 +47,8 @@ pub struct Lane {
     stuck: [bool; 2],
     /// Which roots have values.
     pub roots: Roots,
+    /// Symbols that stand for linear forms, by their values.
+    written: FxHashMap<Fp, LinearForm>,
 }
 
 impl Lane {
@@ -56,6 +59,7 @@ impl Lane {
             symbols: Vec::new(),
             stuck: [false; 2],
             roots: Roots::default(),
+            written: FxHashMap::default(),
         }
     }
 
@@ -79,6 +83,25 @@ impl Lane {
         }
     }
 
+    /// From now on, functions take a symbol of this value for the linear form that another graph has in its
+    /// place: sin(a + b) and sin(c) are equal where c = a + b.
+    pub fn write_out(&mut self, value: Fp, form: LinearForm) {
+        self.written.insert(value, form);
+    }
+
+    fn written_out(&self, form: &LinearForm) -> LinearForm {
+        let mut all = LinearForm::new();
+        for (atom, coefficient) in form {
+            match self.written.get(atom) {
+                None => all.push((*atom, coefficient.clone())),
+                Some(form) => {
+                    all.extend(form.iter().map(|(atom, own)| (*atom, own * coefficient)));
+                }
+            }
+        }
+        all
+    }
+
     /// The value of a symbol.
     pub fn symbol(&self, index: usize) -> Fp {
         self.symbols[index]
@@ -96,6 +119,14 @@ impl Lane {
 
     /// Value of a function of one argument; `form` is `Graph::form` of the argument.
     pub fn function(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
+        if !self.written.is_empty() && function.row().law.is_additive() {
+            let form = self.written_out(form);
+            return self.value(function, argument, &form);
+        }
+        self.value(function, argument, form)
+    }
+
+    fn value(&mut self, function: Function, argument: Fp, form: &LinearForm) -> Fp {
         match function {
             Function::Sin => Fp(self.angle(form, &first).1, self.angle(form, &second).1),
             Function::Cos => Fp(self.angle(form, &first).0, self.angle(form, &second).0),

@@ -212,7 +212,7 @@ impl Numbers for Bounds {
             Step::Mul(a, b) => Some(a.times(b)),
             Step::Div(a, b) => Some(a.times(&b.inverse()?)),
             Step::Apply(function, a, _) => (function.row().interval)(a),
-            Step::Atan2(..) => None,
+            Step::Atan2(y, x) => y.atan2(x),
         }
     }
 }

@@ -16,16 +16,32 @@ const SHIFTS: [f64; 6] = [0.0, 1.0, -1.0, 0.37, 2.3, -5.1];
 /// What counts as zero, in units of rounding; looser where no shift leads to an end.
 const LOOSER: [f64; 4] = [1.0, 8.0, 64.0, 512.0];
 
+/// How the QR algorithm is tried until it ends.
+struct Tries<'a> {
+    /// What counts as zero, in units of rounding.
+    looser: &'a [f64],
+    /// Shifts in units of the largest entry.
+    shifts: &'a [f64],
+}
+
 /// Real and imaginary parts, the fastest growing first; `None` where the QR algorithm does not
 /// converge. The entries have to be finite.
 pub fn eigenvalues(rows: &[Vec<f64>]) -> Option<Vec<(f64, f64)>> {
+    let tries = Tries {
+        looser: &LOOSER,
+        shifts: &SHIFTS,
+    };
+    eigenvalues_by(rows, &tries)
+}
+
+fn eigenvalues_by(rows: &[Vec<f64>], tries: &Tries) -> Option<Vec<(f64, f64)>> {
     let mut values = Vec::with_capacity(rows.len());
     for class in classes(rows) {
         if let [only] = class.as_slice() {
             values.push((rows[*only][*only], 0.0));
         } else {
             let block = DMatrix::from_fn(class.len(), class.len(), |i, j| rows[class[i]][class[j]]);
-            values.extend(of_block(block)?);
+            values.extend(of_block(block, tries)?);
         }
     }
     values.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
@@ -57,14 +73,14 @@ fn classes(rows: &[Vec<f64>]) -> Vec<Vec<usize>> {
     classes
 }
 
-fn of_block(mut block: DMatrix<f64>) -> Option<Vec<(f64, f64)>> {
+fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
     balance_parlett_reinsch(&mut block);
     let n = block.nrows();
     let size = block.amax();
-    let attempts = LOOSER
-        .iter()
-        .flat_map(|&looser| SHIFTS.map(|part| (looser, part)));
-    attempts.into_iter().find_map(|(looser, part)| {
+    let looser = tries.looser.iter();
+    let mut attempts =
+        looser.flat_map(|&looser| tries.shifts.iter().map(move |&part| (looser, part)));
+    attempts.find_map(|(looser, part)| {
         let shift = part * size;
         let shifted = &block + DMatrix::identity(n, n) * shift;
         let schur = Schur::try_new(shifted, looser * f64::EPSILON, ROUNDS * n)?;
@@ -80,7 +96,7 @@ fn of_block(mut block: DMatrix<f64>) -> Option<Vec<(f64, f64)>> {
 
 #[cfg(test)]
 mod tests {
-    use super::eigenvalues;
+    use super::{SHIFTS, Tries, eigenvalues, eigenvalues_by};
 
     /// Sum and sum of squares of the eigenvalues are the traces of A and A².
     fn assert_traces(rows: &[Vec<f64>]) {
@@ -176,6 +192,42 @@ mod tests {
                 assert!(
                     largest < 1e-6 * trace.abs().sqrt(),
                     "{n}: grows by {largest}"
+                );
+            }
+        }
+    }
+
+    /// A try that never ends is followed by the next one, and one that follows gives the right numbers; where
+    /// none ends there are no eigenvalues. With a tolerance below 0 nothing ever counts as zero.
+    #[test]
+    fn what_stalls_is_tried_again() {
+        let (n, tilt) = (5, 0.3);
+        // A companion matrix of (x − 1)(x − 2) … (x − 5) in other axes.
+        let entry = |i: usize, j: usize| match (i + 1 == j, i == j) {
+            (true, _) => tilt,
+            (_, true) => 1.0 + i as f64,
+            _ => 0.0,
+        };
+        // Similar to that by I + e₅ e₁ᵀ, so that all states drive one another.
+        let rows: Vec<Vec<f64>> = (0..n)
+            .map(|i| {
+                let row =
+                    |i: usize, j: usize| entry(i, j) - if j == 0 { entry(i, n - 1) } else { 0.0 };
+                let first = |j: usize| if i == n - 1 { row(0, j) } else { 0.0 };
+                (0..n).map(|j| row(i, j) + first(j)).collect()
+            })
+            .collect();
+        let by = |looser: &[f64], shifts: &[f64]| eigenvalues_by(&rows, &Tries { looser, shifts });
+        assert_eq!(by(&[-1.0, -2.0], &SHIFTS), None);
+        for (looser, shifts) in [
+            (&[-1.0, 1.0][..], &[0.0][..]),
+            (&[-1.0, 512.0], &[0.0, 0.37]),
+        ] {
+            let values = by(looser, shifts).expect("the last try ends");
+            for (value, expected) in values.iter().zip([5.0, 4.0, 3.0, 2.0, 1.0]) {
+                assert!(
+                    (value.0 - expected).abs() < 1e-9 && value.1 == 0.0,
+                    "{values:?}"
                 );
             }
         }

@@ -122,6 +122,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Text => text(&linear),
         Format::Json => json(&linear).pretty(),
     })?;
+    complete(&linear)
+}
+
+/// The failure that ends the command where eigenvalues are missing; A and B are printed before.
+fn complete(linear: &Linear) -> Result<(), Failure> {
     match linear.eigenvalues {
         Some(_) => Ok(()),
         None => Err(Failure::failed(
@@ -154,11 +159,10 @@ fn text(linear: &Linear) -> String {
             value
         }
     };
-    let Some(eigenvalues) = &linear.eigenvalues else {
+    if linear.eigenvalues.is_none() {
         text.push_str("  not found\n");
-        return text;
-    };
-    for &(re, im) in eigenvalues {
+    }
+    for &(re, im) in linear.eigenvalues.iter().flatten() {
         let re = clean(re);
         // A pair of conjugates on one line.
         if im > 0.0 {
@@ -205,4 +209,38 @@ fn json(linear: &Linear) -> Json {
         ),
         ("xi_dot", Json::vector(&linear.xi_dot)),
     ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is known is printed where the eigenvalues are not, in both formats, and the command fails with the
+    /// reason.
+    #[test]
+    fn matrices_stand_without_their_eigenvalues() {
+        let mut linear = Linear {
+            system: "Stalled".into(),
+            states: vec!["h(v)".into(), "d(v)".into()],
+            inputs: vec!["u".into()],
+            a: vec![vec![0.0, 1.0], vec![-2.5, 0.0]],
+            b: vec![vec![0.0], vec![0.75]],
+            eigenvalues: None,
+            xi_dot: vec![3.0],
+        };
+        let text = text(&linear);
+        for part in ["-2.5", "0.75", "not found", "the velocities change here"] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+        let json = json(&linear).pretty();
+        for part in ["-2.5", "0.75", "\"eigenvalues\": null"] {
+            assert!(json.contains(part), "{part}: {json}");
+        }
+        match complete(&linear) {
+            Err(Failure::Failed(message)) => assert!(message.contains("QR algorithm")),
+            other => panic!("{other:?}"),
+        }
+        linear.eigenvalues = Some(Vec::new());
+        assert!(complete(&linear).is_ok());
+    }
 }

@@ -5,7 +5,7 @@ use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::functions::{Asked, FunctionId};
-use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::generate::{Generated, at_some_point, from_text};
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
@@ -121,11 +121,26 @@ impl Source {
         self.available(Asked::only(functions))
     }
 
+    /// What is derived of the model, with its warnings.
+    fn derived<T>(
+        &self,
+        derive: impl Fn(Model) -> Result<T, Vec<Diagnostic>>,
+    ) -> Result<T, Failure> {
+        let system = syntax::parse_text(&self.text).map_err(|errors| self.refused(&errors))?;
+        let derived = progress::during(DERIVING, || {
+            at_some_point(&system, |model| {
+                self.warn(&model);
+                derive(model)
+            })
+        });
+        derived.map_err(|errors| self.refused(&errors))
+    }
+
     fn available(&self, asked: Asked) -> Result<Generated, Failure> {
-        let mut model = self.model()?;
-        model.asked = asked;
-        let derived = progress::during(DERIVING, || Generated::available(model, 0));
-        let (generated, singular) = derived.map_err(|errors| self.refused(&errors))?;
+        let (generated, singular) = self.derived(|mut model| {
+            model.asked = asked.clone();
+            Generated::available(model, 0)
+        })?;
         if let Some(Diagnostic { message, .. }) = singular {
             failure::warn(&format!(
                 "warning: {}: {message}; what needs its inverse is left out\n",
@@ -145,10 +160,10 @@ impl Source {
 
     /// Derives all functions, whatever the description's `generate` says.
     pub fn derive_all(&self) -> Result<Generated, Failure> {
-        let mut model = self.model()?;
-        model.asked = Asked::everything();
-        let derived = progress::during(DERIVING, || Generated::of(model, 0));
-        derived.map_err(|errors| self.refused(&errors))
+        self.derived(|mut model| {
+            model.asked = Asked::everything();
+            Generated::of(model, 0)
+        })
     }
 
     /// Derives all functions that exist: those with M⁻¹ in them are left out, with a warning, where M is
@@ -159,9 +174,7 @@ impl Source {
 
     /// Derives all functions and the linearisation, whatever the description's `generate` says.
     pub fn derive_linearized(&self) -> Result<Generated, Failure> {
-        let model = self.model()?;
-        let derived = progress::during(DERIVING, || Generated::all(model, 0));
-        derived.map_err(|errors| self.refused(&errors))
+        self.derived(|model| Generated::all(model, 0))
     }
 
     /// Shows the warnings on standard error, once. The text of a robot is the importer's, not the user's.

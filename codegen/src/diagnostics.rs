@@ -15,6 +15,8 @@ pub struct Diagnostic {
     pub notes: Vec<(Span, String)>,
     /// Whether only functions with M⁻¹ in them are in the way: all else can be derived.
     pub inverse: bool,
+    /// Whether a proof failed: a fault of the generator, or of the point that was read at.
+    pub unproved: bool,
 }
 
 impl Diagnostic {
@@ -26,7 +28,14 @@ impl Diagnostic {
             help: None,
             notes: Vec::new(),
             inverse: false,
+            unproved: false,
         }
+    }
+
+    /// It is about a proof that failed.
+    pub fn about_proof(mut self) -> Self {
+        self.unproved = true;
+        self
     }
 
     /// Says that only functions with M⁻¹ in them are in the way.

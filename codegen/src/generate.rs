@@ -1,5 +1,6 @@
 //! From a description to its program: what all front ends call.
 
+use crate::algebra::graph::{Function, Graph, Node};
 use crate::derive::assemble::assemble;
 use crate::derive::reduction::reduce;
 use crate::diagnostics::Diagnostic;
@@ -25,6 +26,9 @@ pub struct Generated {
     pub hash: u64,
 }
 
+/// Points that are tried after the first.
+const READINGS: u64 = 6;
+
 /// Derives the description in a stream of tokens; errors are at places of these.
 pub fn from_tokens(tokens: TokenStream) -> (Places, Result<Generated, Vec<Diagnostic>>) {
     let hash = fingerprint(&syntax::canonical(&tokens));
@@ -49,8 +53,38 @@ pub(crate) fn of_system(system: &ast::System, text: &str) -> Result<Generated, V
 }
 
 fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>> {
-    let model = lower::build(system)?;
-    Generated::of(model, hash)
+    at_some_point(system, |model| Generated::of(model, hash))
+}
+
+/// Reads a description, and derives something of its model.
+///
+/// Where √(e²) happens to have the value of e in both fields, and e is positive at real points, the two are one
+/// node, which is right; but at other points the root is −e, and the proof fails. Such a description is read
+/// anew at another point.
+pub fn at_some_point<T>(
+    system: &ast::System,
+    derive: impl Fn(Model) -> Result<T, Vec<Diagnostic>>,
+) -> Result<T, Vec<Diagnostic>> {
+    let mut reading = 0;
+    loop {
+        let model = lower::build_at(system, reading)?;
+        let rooted = has_roots(&model.graph);
+        match derive(model) {
+            Err(errors) if rooted && reading < READINGS && errors.iter().any(|e| e.unproved) => {
+                reading += 1;
+            }
+            derived => return derived,
+        }
+    }
+}
+
+/// Whether there are square roots of what is no number.
+fn has_roots(graph: &Graph) -> bool {
+    let is_root = |id: u32| match graph.node(id) {
+        Node::Apply(Function::Sqrt, square) => graph.class(square.node()) != 0,
+        _ => false,
+    };
+    (0..graph.len() as u32).any(is_root)
 }
 
 impl Generated {

@@ -125,7 +125,7 @@ impl Expr {
 
 fn number(random: &mut Random) -> Expr {
     let exact = |text: String, value: Precise| Expr::Number(text, value);
-    match random.below(8) {
+    match random.below(9) {
         0 => {
             let power = 1 + random.below(70);
             exact(format!("2^{power}"), Precise::power_of_two(power as i32))
@@ -158,6 +158,25 @@ fn number(random: &mut Random) -> Expr {
                 1 if k == 12 => exact(format!("sin({k} * pi / 12)"), Precise::of(0.0)),
                 0 => exact(format!("cos({k} * pi / 12)"), angle.cos()),
                 _ => exact(format!("sin({k} * pi / 12)"), angle.sin()),
+            }
+        }
+        6 => {
+            let n = 2 + random.below(8);
+            let value = Precise::of(n as f64);
+            match random.below(4) {
+                0 => exact(format!("log({n})"), value.log()),
+                1 => exact(
+                    format!("atan2({n}, 3)"),
+                    (&value / &Precise::of(3.0)).atan(),
+                ),
+                2 => exact(
+                    format!("acos({n} / 10)"),
+                    (&value / &Precise::of(10.0)).acos(),
+                ),
+                _ => exact(
+                    format!("asin({n} / 10)"),
+                    (&value / &Precise::of(10.0)).asin(),
+                ),
             }
         }
         5 => exact(

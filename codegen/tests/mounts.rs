@@ -38,9 +38,24 @@ fn number(random: &mut Random) -> Number {
     }
 }
 
-/// An angle: a multiple of π/12, that of a triangle of sides 3, 4, 5, or any.
+/// An angle whose sine, cosine or tangent is known, or one of another function.
+fn inverse(random: &mut Random) -> Number {
+    let (n, d) = (1 + random.below(11), 12 + random.below(4));
+    let part = &Precise::of(n as f64) / &Precise::of(d as f64);
+    match random.below(6) {
+        0 => (format!("acos({n} / {d})"), part.acos()),
+        1 => (format!("acos(-{n} / {d})"), (-&part).acos()),
+        2 => (format!("asin({n} / {d})"), part.asin()),
+        3 => (format!("atan2({n}, {d})"), part.atan()),
+        4 => (format!("atan2({n}, -{d})"), &Precise::pi() - &part.atan()),
+        _ => (format!("log({n} / {d})"), part.log()),
+    }
+}
+
+/// An angle: a multiple of π/12, that of a triangle of sides 3, 4, 5, one of an inverse function, or any.
 fn angle(random: &mut Random) -> Number {
-    match random.below(8) {
+    match random.below(9) {
+        8 => inverse(random),
         0 => decimal(&format!("{:.2}", 3.0 * random.number())),
         1 => decimal(&format!("{:.15}", 3.0 * random.number())),
         2 => decimal("0.643501108793284386802809228717322638"),

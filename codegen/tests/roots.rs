@@ -271,12 +271,74 @@ fn branches_of_constraints_are_told_apart() {
     let of = generated(&text("start x = 0.6; start y = 0.8;"));
     let mass = value(&of, "mass_matrix", [&[0.6, 0.8], &[0.0], &[], &[]]);
     assert!((mass[0] - 6.76).abs() < 1e-14, "{mass:?}");
-    // On the other branch: the same description is right, or refused for this reason.
-    match hamel_codegen::generate::from_text(&text("start x = 3; start y = 1;")) {
-        Ok(of) => {
-            let mass = value(&of, "mass_matrix", [&[3.0, 1.0], &[0.0], &[], &[]]);
-            assert!((mass[0] - 1.0).abs() < 1e-14, "{mass:?}");
-        }
-        Err(errors) => assert!(errors[0].message.contains("several branches")),
+    // On the other branch.
+    let of = generated(&text("start x = 3; start y = 1;"));
+    let mass = value(&of, "mass_matrix", [&[3.0, 1.0], &[0.0], &[], &[]]);
+    assert!((mass[0] - 1.0).abs() < 1e-14, "{mass:?}");
+    let rate = value(&of, "rate", [&[3.0, 1.0], &[0.7], &[], &[]]);
+    assert!(
+        rate[0].abs() < 1e-14 && (rate[1] - 0.7).abs() < 1e-14,
+        "{rate:?}"
+    );
+}
+
+/// Of a product the factor that vanishes at the start says which points there are; with factors of parameters,
+/// several rows and powers of what does not vanish.
+#[test]
+fn products_mean_the_factor_of_the_start() {
+    let text = |constraint: &str, start: &str| {
+        format!(
+            "system Branches {{
+                param c = 2; coord x, y, z; velocity v = rate(z); constraint {constraint};
+                kinetic (1 + x^2 + y^2) * v^2 / 2; {start}
+            }}"
+        )
+    };
+    for (constraint, start, at, rate) in [
+        // The plane and the curve x = z², y = z.
+        (
+            "[c * x * (x - y^2), y - z] = [0, 0]",
+            "start x = 0, y = 0.5, z = 0.5;",
+            [0.0, 0.5, 0.5],
+            [0.0, 1.0],
+        ),
+        (
+            "[c * x * (x - y^2), y - z] = [0, 0]",
+            "start x = 0.25, y = 0.5, z = 0.5;",
+            [0.25, 0.5, 0.5],
+            [1.0, 1.0],
+        ),
+        (
+            "[(x - 1)^2 * (x + z), (y + 3) * (y - z) / c] = [0, 0]",
+            "start x = -0.5; start y = 0.5; start z = 0.5;",
+            [-0.5, 0.5, 0.5],
+            [-1.0, 1.0],
+        ),
+        (
+            "[(x - 1)^2 * (x + z), (y + 3) * (y - z) / c] = [0, 0]",
+            "start x = -0.5; start y = -3; start z = 0.5;",
+            [-0.5, -3.0, 0.5],
+            [-1.0, 0.0],
+        ),
+    ] {
+        let of = generated(&text(constraint, start));
+        let found = value(&of, "rate", [&at, &[1.0], &[], &[]]);
+        assert!(
+            (found[0] - rate[0]).abs() < 1e-13 && (found[1] - rate[1]).abs() < 1e-13,
+            "{constraint} {start}: {found:?}"
+        );
+        let mass = value(&of, "mass_matrix", [&at, &[0.0], &[], &[]])[0];
+        let expected = 1.0 + at[0] * at[0] + at[1] * at[1];
+        assert!(
+            (mass - expected).abs() < 1e-13,
+            "{constraint} {start}: {mass}"
+        );
     }
+    // Where two branches meet there is no motion that the constraint determines.
+    let errors = hamel_codegen::generate::from_text(&text(
+        "[x * (x - y^2), y - z] = [0, 0]",
+        "start x = 0; start y = 0; start z = 0;",
+    ));
+    let errors = errors.expect_err("a crossing");
+    assert!(!errors[0].message.contains("internal"), "{errors:?}");
 }

@@ -214,6 +214,29 @@ fn trees_with_particles() {
     }
 }
 
+/// A hinge that carries sliders and hinges: its axes are turned for the hinges, and the sliders keep theirs.
+/// Two hundred of them with `HAMEL_ATTACK=full`.
+#[test]
+fn sliders_beside_hinges() {
+    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|tier| tier == "full");
+    for seed in 0x1000..if full { 0x10c8 } else { 0x100c } {
+        let mut random = Random::new(seed);
+        let mut links: Vec<Link> = Vec::new();
+        let on = |random: &mut Random, links: &mut Vec<Link>, kind, parent| {
+            let link = Link::on(random, links, kind, parent);
+            links.push(link);
+        };
+        on(&mut random, &mut links, Kind::Revolute, None);
+        on(&mut random, &mut links, Kind::Revolute, Some(0));
+        let first = random.below(2);
+        for k in 0..3 {
+            let kind = [Kind::Prismatic, Kind::Revolute][(first + k) % 2];
+            on(&mut random, &mut links, kind, Some(1));
+        }
+        obeys_newton(&links, seed, CLOSE);
+    }
+}
+
 /// 32 links in a row.
 #[test]
 fn a_long_chain() {

@@ -282,3 +282,6 @@ fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
     }
     names
 }
+
+#[cfg(test)]
+mod tests;

@@ -16,7 +16,6 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::graft;
 use crate::model::Model;
 use crate::model::invariants::Quantity;
-use crate::program::count::count;
 use crate::program::{Argument, Function, FunctionId, Shape};
 use Argument::{Coordinates, Velocities};
 
@@ -109,33 +108,34 @@ impl Builder<'_> {
             motions.push((chosen, apart(chosen)));
         }
         motions.extend(chosen.other.as_deref().map(|other| (other, apart(other))));
-        let mut best: Option<(usize, Linear, &Acceleration)> = None;
+        let mut best: Option<((usize, usize), Linear)> = None;
         for (motion, Computation { mut graph, parts }) in motions {
             let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
                 return;
             };
             let right = parts.right(&mut graph);
+            let varying = |edge: &Edge| !graph.is_free(edge.node());
+            let guards: Vec<Edge> = motion.pivots.iter().copied().filter(varying).collect();
             let nearby = Motion {
                 graph: &graph,
                 xi_dot: &motion.xi_dot,
+                guards: &guards,
                 nearby,
                 // With multipliers or drives M F is not the right-hand side.
                 implicit: (self.model.constraints.is_empty() && self.model.accelerated.is_empty())
                     .then_some((&parts.mass, &right)),
             };
             let linear = linearize(self.model, &nearby, &self.care);
-            let weight = count(&linear.graph, &linear.rows.concat()).weight();
-            if best.as_ref().is_none_or(|(least, ..)| weight < *least) {
-                best = Some((weight, linear, motion));
+            let cost = linear.cost();
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, linear));
             }
         }
-        let Some((_, linear, motion)) = best else {
+        let Some((_, linear)) = best else {
             return;
         };
-        let outputs = graft(&linear.graph, &mut self.graph, &linear.rows.concat());
-        let pivots = graft(&motion.graph, &mut self.graph, &motion.pivots);
-        let varying = |edge: &Edge| !self.graph.is_free(edge.node());
-        let guards = pivots.into_iter().filter(varying).collect();
+        let mut outputs = graft(&linear.graph, &mut self.graph, &linear.roots());
+        let guards = outputs.split_off(outputs.len() - linear.guards.len());
         self.push_guarded(FunctionId::Linearize, outputs, guards);
     }
 

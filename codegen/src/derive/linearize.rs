@@ -5,6 +5,7 @@
 //! Where constraints leave ξ = C(x) ξₐ, the n displacements h stay, of ξ only ξₐ varies, and the
 //! matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ.
 
+use super::accel::best::NEAR;
 use super::accel::recursive::Recursion;
 use super::accel::setting::Setting;
 use super::accel::solve::solve_columns;
@@ -34,6 +35,8 @@ pub struct Motion<'a> {
     pub graph: &'a Graph,
     /// F, one entry for each active velocity.
     pub xi_dot: &'a [Edge],
+    /// Pivots that have to be positive where there is F, those that vary.
+    pub guards: &'a [Edge],
     /// The displacements.
     pub nearby: Displacements,
     /// M and f − Γ ξ ξ − ∂V of the active velocities, where M F = right-hand side holds.
@@ -46,6 +49,21 @@ pub struct Linear {
     pub graph: Graph,
     /// The rows.
     pub rows: Vec<Vec<Edge>>,
+    /// The pivots of F in this graph.
+    pub guards: Vec<Edge>,
+}
+
+impl Linear {
+    /// All that is computed.
+    pub fn roots(&self) -> Vec<Edge> {
+        [self.rows.concat(), self.guards.clone()].concat()
+    }
+
+    /// Its operations: weight and number.
+    pub fn cost(&self) -> (usize, usize) {
+        let count = count(&self.graph, &self.roots());
+        (count.weight(), count.flops())
+    }
 }
 
 /// The frame that displacements are measured in, as edges of the graph of F.
@@ -111,35 +129,42 @@ pub fn linearize(model: &Model, motion: &Motion, care: &Care) -> Linear {
     if candidates.is_empty() || !(long || model.n() > MOST_EXPANDED) {
         let explicit = explicit(model, motion, &upper);
         if model.n() <= MOST_EXPANDED && !care.is_taken() {
-            candidates.extend(expanded(model, &explicit, motion.graph));
+            candidates.extend(expanded(model, &explicit, motion));
         }
         candidates.extend(implicit(model, motion, &upper));
         candidates.push(explicit);
     }
     let cost = |linear: &Linear| {
-        let rows = linear.rows.concat();
-        let loss = care.loss(&linear.graph, &rows, &[]);
-        (loss, count(&linear.graph, &rows).weight())
+        let loss = care.loss(&linear.graph, &linear.rows.concat(), &[]);
+        let (weight, number) = linear.cost();
+        (loss, weight, number)
     };
-    // The first of equals; there is always one.
-    let cheapest = (1..candidates.len()).fold(0, |best, i| {
-        if cost(&candidates[i]) < cost(&candidates[best]) {
-            i
-        } else {
-            best
-        }
+    let costs: Vec<_> = candidates.iter().map(cost).collect();
+    let (loss, weight, _) = costs.iter().min().copied().unwrap_or_default();
+    // What is far behind before it is polished is behind afterwards.
+    let most = (loss, weight * NEAR.0 / NEAR.1, usize::MAX);
+    let near = candidates.into_iter().zip(costs);
+    let near = near.filter(|(_, cost)| *cost <= most);
+    let polished = near.map(|(linear, before)| match polished(&linear, motion) {
+        Some(linear) if cost(&linear) < before => (cost(&linear), linear),
+        _ => (before, linear),
     });
-    let mut best = candidates.swap_remove(cheapest);
-    let roots = best.rows.concat();
-    if let Some((graph, edges)) = resubstitute(&best.graph, &roots, motion.graph) {
-        let columns = best.rows.first().map_or(1, |row| row.len().max(1));
-        let rows: Vec<Vec<Edge>> = edges.chunks(columns).map(<[Edge]>::to_vec).collect();
-        let polished = Linear { graph, rows };
-        if cost(&polished) < cost(&best) {
-            best = polished;
-        }
-    }
-    best
+    // The first of equals; there is always one.
+    let best = polished.min_by_key(|(cost, _)| *cost);
+    best.map_or_else(|| explicit(model, motion, &upper), |(_, linear)| linear)
+}
+
+/// After resubstitution, where that finds something.
+fn polished(linear: &Linear, motion: &Motion) -> Option<Linear> {
+    let (graph, mut edges) = resubstitute(&linear.graph, &linear.roots(), motion.graph)?;
+    let columns = linear.rows.first().map_or(1, |row| row.len().max(1));
+    let guards = edges.split_off(edges.len() - linear.guards.len());
+    let rows = edges.chunks(columns).map(<[Edge]>::to_vec).collect();
+    Some(Linear {
+        graph,
+        rows,
+        guards,
+    })
 }
 
 /// The rows of ḣ.
@@ -162,7 +187,12 @@ fn upper(model: &Model, motion: &Motion) -> Linear {
             row
         })
         .collect();
-    Linear { graph, rows }
+    let guards = motion.guards.to_vec();
+    Linear {
+        graph,
+        rows,
+        guards,
+    }
 }
 
 /// The derivations of all columns: ∂ⱼ, ∂/∂ξₐ, ∂/∂u.
@@ -189,7 +219,12 @@ fn explicit(model: &Model, motion: &Motion, upper: &Linear) -> Linear {
         let entries = columns.iter_mut().map(|column| column.of(&mut graph, rate));
         entries.collect::<Vec<Edge>>()
     }));
-    Linear { graph, rows }
+    let guards = motion.guards.to_vec();
+    Linear {
+        graph,
+        rows,
+        guards,
+    }
 }
 
 /// M δξ̇ = ∂(M F) − (∂M) F, all columns with one factorisation.
@@ -215,7 +250,12 @@ fn implicit(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
     let solved = solve_symmetric(&mut graph, mass, &changes)?;
     let mut rows = carried(upper, &mut graph);
     rows.extend(solved);
-    Some(Linear { graph, rows })
+    let guards = motion.guards.to_vec();
+    Some(Linear {
+        graph,
+        rows,
+        guards,
+    })
 }
 
 /// The same for a tree of links, by recursion; M factored from the leaves to the root.
@@ -234,11 +274,16 @@ fn recursive(
     let solved = solve_columns(&mut graph, mass, &changes)?;
     let mut rows = carried(upper, &mut graph);
     rows.extend(solved);
-    Some(Linear { graph, rows })
+    let guards = motion.guards.to_vec();
+    Some(Linear {
+        graph,
+        rows,
+        guards,
+    })
 }
 
 /// Every entry as a sum of monomials with coefficients of parameters alone, where all are short.
-fn expanded(model: &Model, explicit: &Linear, base: &Graph) -> Option<Linear> {
+fn expanded(model: &Model, explicit: &Linear, motion: &Motion) -> Option<Linear> {
     let mut forms = NormalForms::within(&model.points, MOST_WORK);
     let mut source = explicit.graph.clone();
     let mut polynomials = Vec::new();
@@ -259,12 +304,13 @@ fn expanded(model: &Model, explicit: &Linear, base: &Graph) -> Option<Linear> {
         .iter()
         .map(|polynomial| build(&mut source, polynomial))
         .collect();
-    let mut graph = base.clone();
+    let mut graph = motion.graph.clone();
     let entries = rebuild(&source, &mut graph, &built);
     let columns = explicit.rows.first().map_or(1, |row| row.len().max(1));
     Some(Linear {
         graph,
         rows: entries.chunks(columns).map(<[Edge]>::to_vec).collect(),
+        guards: motion.guards.to_vec(),
     })
 }
 

@@ -24,14 +24,20 @@ const SEED: u64 = 0x4a6d_656c;
 
 /// Reads a description; all its independent errors are reported together.
 pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
+    build_at(system, 0)
+}
+
+/// The same at other points of the variety, by their number.
+pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
+    let own = SEED + number * ATTEMPTS;
     let mut first = Report::new();
     let warnings = unused::warnings(system);
     let system = &joints::expand(system, &mut first);
     let system = &time::expand(system, &mut first);
-    let mut variety = Variety::read(system, SEED, &mut first);
+    let mut variety = Variety::read(system, own, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     let mut branches = false;
-    for seed in SEED..SEED + ATTEMPTS {
+    for seed in own..own + ATTEMPTS {
         let mut choice = Report::new();
         let point = variety.choose(system, seed, &mut choice);
         errors.extend(choice.finish().err().unwrap_or_default());

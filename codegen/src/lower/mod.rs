@@ -8,6 +8,7 @@ mod applied;
 mod arithmetic;
 mod axes;
 mod bodies;
+mod branch;
 mod build;
 mod completion;
 mod declare;
@@ -41,4 +42,4 @@ mod time;
 mod unused;
 mod variety;
 
-pub use build::build;
+pub use build::{build, build_at};

@@ -4,7 +4,7 @@ use super::declare::{Declared, declare, size};
 use super::expression::Evaluator;
 use super::names::Names;
 use super::scope::Scope;
-use super::{defaults, start};
+use super::{branch, defaults, start};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::topoly::is_polynomial;
@@ -96,6 +96,14 @@ impl Variety {
             declared.numbers(&defaults, start.as_ref())
         });
         let near = near.filter(|near| near.iter().all(|number| number.is_finite()));
+        let constraints = match &near {
+            Some(near) => {
+                let branch = constraints.into_iter();
+                let branch = branch.map(|edge| branch::at_start(&graph, edge, near));
+                branch.collect()
+            }
+            None => constraints,
+        };
         let mut variety = Variety {
             points: Points::new(graph, constraints, blocks, first),
             phi: Vec::new(),

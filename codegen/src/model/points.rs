@@ -68,24 +68,24 @@ impl Points {
     /// Values of all symbols at a random point of X, where functions have the values of the lane
     /// with this seed; `None` where no point was found.
     pub fn choose(&self, random: &mut Random, seed: u64) -> Option<Vec<Fp>> {
-        self.choose_where(random, seed, TRIES, &|_| Some(()))
+        self.choose_where(random, seed, TRIES, &[&|_| Some(()); 2])
     }
 
-    /// The same where `set` has changed values of parameters and inputs before the coordinates were
-    /// solved for; it may find a point unfit.
+    /// The same where values are changed before the coordinates are solved for, and after that; either may
+    /// find a point unfit.
     fn choose_where(
         &self,
         random: &mut Random,
         seed: u64,
         tries: usize,
-        set: &dyn Fn(&mut Vec<Fp>) -> Option<()>,
+        [before, after]: &[&dyn Fn(&mut Vec<Fp>) -> Option<()>; 2],
     ) -> Option<Vec<Fp>> {
         let mut failures = 0;
         // The parts of a point in the two fields are found apart: each root halves the chance of both.
         let mut found: [Option<Vec<Fp>>; 2] = [None, None];
         for _ in 0..tries {
             let mut values = self.unconstrained(random);
-            if set(&mut values).is_none() {
+            if before(&mut values).is_none() {
                 continue;
             }
             if !self.constraints.is_empty() {
@@ -103,6 +103,9 @@ impl Points {
                 for (var, value) in solution {
                     values[var as usize] = value;
                 }
+            }
+            if after(&mut values).is_none() {
+                continue;
             }
             let stuck = self.stuck(&values, seed);
             for (place, stuck) in found.iter_mut().zip(stuck) {
@@ -172,7 +175,7 @@ impl Points {
             self.roots = roots;
             let mut found = |seed| {
                 let anything = |_: &mut Vec<Fp>| Some(());
-                self.choose_where(&mut random, seed, STRICT_TRIES, &anything)
+                self.choose_where(&mut random, seed, STRICT_TRIES, &[&anything; 2])
                     .is_some()
             };
             if found(1) && found(2) {
@@ -277,15 +280,33 @@ impl Points {
     /// A lane at a fresh point where symbols have the values of expressions of `graph`; `None` where
     /// no point was found.
     pub fn lane_where(&self, seed: u64, graph: &Graph, set: &[(usize, Edge)]) -> Option<Lane> {
-        let edges: Vec<Edge> = set.iter().map(|(_, edge)| *edge).collect();
-        let impose = |values: &mut Vec<Fp>| {
-            let imposed = evaluate_at(graph, &edges, &mut self.lane_of(values, seed))?;
-            for ((symbol, _), value) in set.iter().zip(imposed) {
-                *values.get_mut(*symbol)? = value;
+        self.lane_moved(seed, graph, set, &|_| Some(Vec::new()))
+    }
+
+    /// The same where, once the coordinates are those of a point of X, symbols get values that follow.
+    pub fn lane_moved(
+        &self,
+        seed: u64,
+        graph: &Graph,
+        set: &[(usize, Edge)],
+        moved: &dyn Fn(Lane) -> Option<Moved>,
+    ) -> Option<Lane> {
+        let move_in = |values: &mut Vec<Fp>, moved: Moved| {
+            for (symbol, value) in moved {
+                *values.get_mut(symbol)? = value;
             }
             Some(())
         };
-        let values = self.choose_where(&mut Random::new(seed ^ 0x0b5e), seed, TRIES, &impose)?;
+        let before = |values: &mut Vec<Fp>| {
+            let imposed = imposed(self.lane_of(values, seed), graph, set)?;
+            move_in(values, imposed)
+        };
+        let after = |values: &mut Vec<Fp>| {
+            let moved = moved(self.lane_of(values, seed))?;
+            move_in(values, moved)
+        };
+        let random = &mut Random::new(seed ^ 0x0b5e);
+        let values = self.choose_where(random, seed, TRIES, &[&before, &after])?;
         Some(self.lane_of(&values, seed))
     }
 
@@ -303,6 +324,17 @@ impl Points {
         }
         lane
     }
+}
+
+/// Symbols with the values that they get.
+pub type Moved = Vec<(usize, Fp)>;
+
+/// The symbols that get the values of expressions.
+pub fn imposed(mut lane: Lane, graph: &Graph, set: &[(usize, Edge)]) -> Option<Moved> {
+    let edges: Vec<Edge> = set.iter().map(|(_, edge)| *edge).collect();
+    let values = evaluate_at(graph, &edges, &mut lane)?;
+    let symbols = set.iter().map(|(symbol, _)| *symbol);
+    Some(symbols.zip(values).collect())
 }
 
 /// The polynomials in one of the fields.

@@ -1,21 +1,54 @@
 //! Points of a system with constraints on its velocities: ξ moved to where B ξ + b = 0.
 
-use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::Graph;
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::lane::Lane;
+use crate::algebra::numeric::evaluate_at;
+use crate::model::points::Moved;
+use crate::model::{Model, class};
 
-/// A vector ξ near `random` with B ξ + b = 0: by elimination, dependent entries replaced. B by rows.
-pub(super) fn in_kernel(rows: &[Fp], shift: &[Fp], random: &[Fp], seed: u64) -> Option<Vec<Fp>> {
-    let n = random.len();
+/// The velocities of a point moved to where all rows of a model's constraints vanish, with the symbols that they are.
+pub(super) fn at_rest(model: &Model, lane: Lane) -> Option<Moved> {
+    let rows = model.constraints.iter().flat_map(|c| c.row.clone());
+    let rows: Vec<Edge> = rows.collect();
+    rows_at_rest(model, &rows, lane)
+}
+
+/// The same with the rows of B written otherwise; in the full frame with time ξ⁰ is 1.
+pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut lane: Lane) -> Option<Moved> {
+    let places = places(&model.graph, class::VELOCITY);
+    let shifts: Vec<Edge> = model.constraints.iter().map(|c| c.shift).collect();
+    let mut xi: Vec<Fp> = places.iter().map(|&place| lane.symbol(place)).collect();
+    let time = model.clock.filter(|_| model.spans).map(|clock| clock.xi);
+    if let Some(time) = time {
+        xi[time] = Fp::ONE;
+    }
+    let mut rows = evaluate_at(&model.graph, rows, &mut lane)?;
+    let mut shifts = evaluate_at(&model.graph, &shifts, &mut lane)?;
+    if let Some(time) = time {
+        for (row, shift) in rows.chunks_mut(xi.len()).zip(&mut shifts) {
+            *shift = *shift + std::mem::replace(&mut row[time], Fp::ZERO);
+        }
+    }
+    let moved = in_kernel(&rows, &shifts, &xi)?;
+    Some(places.into_iter().zip(moved).collect())
+}
+
+/// A vector with B ξ + b = 0: by elimination, dependent entries replaced.
+fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
+    let n = xi.len();
     let mut rows: Vec<Vec<Fp>> = rows
         .chunks(n)
-        .zip(shift)
+        .zip(shifts)
         .map(|(row, &shift)| [row, &[shift]].concat())
         .collect();
-    let mut stream = Random::new(seed);
-    let mut xi: Vec<Fp> = random.iter().map(|&v| v + stream.element()).collect();
-    let mut pivots: Vec<usize> = Vec::new();
+    let mut xi = xi.to_vec();
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
     for i in 0..rows.len() {
-        let pivot = (0..n).find(|&j| !rows[i][j].is_zero())?;
+        // What is left of a row that follows from others vanishes anyway.
+        let Some(pivot) = (0..n).find(|&j| !rows[i][j].is_zero()) else {
+            continue;
+        };
         let inverse = rows[i][pivot].inv()?;
         let row: Vec<Fp> = rows[i].iter().map(|&entry| entry * inverse).collect();
         for (k, other) in rows.iter_mut().enumerate() {
@@ -27,12 +60,12 @@ pub(super) fn in_kernel(rows: &[Fp], shift: &[Fp], random: &[Fp], seed: u64) -> 
             }
         }
         rows[i] = row;
-        pivots.push(pivot);
+        pivots.push((i, pivot));
     }
-    for (row, &pivot) in rows.iter().zip(&pivots) {
+    for &(row, pivot) in &pivots {
         xi[pivot] = (0..n)
-            .filter(|j| !pivots.contains(j))
-            .fold(-row[n], |sum, j| sum - row[j] * xi[j]);
+            .filter(|j| pivots.iter().all(|(_, pivot)| pivot != j))
+            .fold(-rows[row][n], |sum, j| sum - rows[row][j] * xi[j]);
     }
     Some(xi)
 }

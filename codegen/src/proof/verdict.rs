@@ -54,4 +54,5 @@ pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
         ),
     )
     .help("this is a fault of the generator, nothing was emitted; please report the description")
+    .about_proof()
 }

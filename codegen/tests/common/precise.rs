@@ -62,6 +62,26 @@ impl Precise {
         Precise(CONSTANTS.with_borrow_mut(|constants| self.0.exp(BITS, ROUND, constants)))
     }
 
+    /// Natural logarithm.
+    pub fn log(&self) -> Self {
+        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.ln(BITS, ROUND, constants)))
+    }
+
+    /// Arc cosine.
+    pub fn acos(&self) -> Self {
+        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.acos(BITS, ROUND, constants)))
+    }
+
+    /// Arc sine.
+    pub fn asin(&self) -> Self {
+        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.asin(BITS, ROUND, constants)))
+    }
+
+    /// Arc tangent.
+    pub fn atan(&self) -> Self {
+        Precise(CONSTANTS.with_borrow_mut(|constants| self.0.atan(BITS, ROUND, constants)))
+    }
+
     /// Square root.
     pub fn sqrt(&self) -> Self {
         Precise(self.0.sqrt(BITS, ROUND))

@@ -58,7 +58,7 @@ impl Acceleration {
 
 /// Families are polished whose best keeps as many digits as the cheapest and takes at most this part of its
 /// operations.
-const NEAR: (usize, usize) = (4, 3);
+pub(in crate::derive) const NEAR: (usize, usize) = (4, 3);
 
 /// Candidates that are alike: of each family the best is polished before they are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 //! Γ ξ ξ) and in how they solve. Every candidate is built in a graph of its own and counted
 //! exactly; the cheapest is kept.
 
-mod best;
+pub(super) mod best;
 pub mod cheapest;
 mod hybrid;
 pub mod parts;

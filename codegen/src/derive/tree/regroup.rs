@@ -6,6 +6,7 @@
 
 use super::draft::{Draft, Motion};
 use super::mass::Mass;
+use super::turn::Turn;
 use crate::algebra::graph::Graph;
 use crate::algebra::linear::zero3;
 
@@ -41,7 +42,8 @@ pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
         let varies = links[j].position.iter().any(|p| !graph.is_free(p.node()));
         let turns = match &links[j].motion {
             Motion::Hinge { turns, .. } => turns.clone(),
-            Motion::Other(..) => Vec::new(),
+            // What slides keeps the axes that the link before had, before those were turned.
+            Motion::Other(..) => vec![Turn::By(links[j].base)],
         };
         links[j].mass = left;
         if let Some(parent) = links[j].parent {

@@ -9,11 +9,11 @@ use crate::algebra::tangent::tangent_at;
 use crate::derive::calculus::Calculus;
 use crate::derive::{energy, inertia, quantity};
 use crate::diagnostics::Diagnostic;
+use crate::model::Model;
 use crate::model::invariants::Invariant;
-use crate::model::{Model, class};
 use crate::program::{FunctionId, Program};
 use crate::proof::confidence::Confidence;
-use crate::proof::kernel::{in_kernel, places};
+use crate::proof::kernel::at_rest;
 use crate::proof::points::{POINTS, Unequal, at_fresh_points};
 use crate::proof::verdict::{Identity, Verdict};
 
@@ -105,11 +105,12 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequa
     let entries = value.entries();
     let compared = at_fresh_points(
         |number| {
-            let points = &own.points;
-            points.lane_where(0x1a7f + number, &own.graph, &claim.set)
+            let moved = |lane| at_rest(&own, lane);
+            own.points
+                .lane_moved(0x1a7f + number, &own.graph, &claim.set, &moved)
         },
-        |lane, number| {
-            let slopes = slopes(&own, program, &entries, lane.clone(), number)?;
+        |lane, _| {
+            let slopes = slopes(&own, program, &entries, lane)?;
             let changes = slopes.iter().position(|slope| !slope.is_zero());
             Some(changes.map_or(Ok(()), Err))
         },
@@ -117,25 +118,9 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequa
     compared.err()
 }
 
-/// d/dt of the entries at a point, moved to where B ξ = 0.
-fn slopes(
-    model: &Model,
-    program: &Program,
-    entries: &[Edge],
-    mut lane: Lane,
-    seed: u64,
-) -> Option<Vec<Fp>> {
+/// d/dt of the entries at a point with B ξ = 0.
+fn slopes(model: &Model, program: &Program, entries: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
     let graph = &model.graph;
-    let velocities = places(graph, class::VELOCITY);
-    let rows = model.constraints.iter().flat_map(|c| c.row.clone());
-    let rows: Vec<Edge> = rows.collect();
-    let shifts: Vec<Edge> = model.constraints.iter().map(|c| c.shift).collect();
-    let rows = evaluate_at(graph, &rows, &mut lane.clone())?;
-    let shifts = evaluate_at(graph, &shifts, &mut lane.clone())?;
-    let xi: Vec<Fp> = velocities.iter().map(|&place| lane.symbol(place)).collect();
-    for (&place, value) in velocities.iter().zip(in_kernel(&rows, &shifts, &xi, seed)?) {
-        lane.set_symbol(place, value);
-    }
     let accel = program.function(FunctionId::Accel)?;
     let xi_dot = evaluate_at(&program.graph, &accel.outputs, &mut lane.clone())?;
     let rate = evaluate_at(graph, &model.rate, &mut lane.clone())?;
