@@ -107,7 +107,7 @@ impl Derivation {
                         let slope = graph.sub(graph.one(), square);
                         graph.mul(slope, da)
                     }
-                    Slope::Two => zero,
+                    Slope::Nothing | Slope::Two => zero,
                 }
             }
             Node::Atan2(y, x) => {

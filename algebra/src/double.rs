@@ -82,6 +82,14 @@ impl Double {
         self.signed(self.high < 0.0)
     }
 
+    /// 1 with the sign of a, 0 of 0.
+    pub fn sign(self) -> Self {
+        match self.high == 0.0 {
+            true => self,
+            false => Double::new(self.high.signum()),
+        }
+    }
+
     /// −a where asked.
     pub fn signed(self, negative: bool) -> Self {
         if negative { -self } else { self }

@@ -155,7 +155,7 @@ impl Graph {
                 }
                 vec![(argument.node(), self.noted_content(argument))]
             }
-            Law::Free => Vec::new(),
+            Law::Side | Law::Free => Vec::new(),
         }
     }
 

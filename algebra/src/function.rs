@@ -3,10 +3,10 @@
 //! A new function is a row here, with its values in numbers of every kind, and its values modulo p
 //! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
 
-use Cost::{Other, Root, Turn};
-use Law::{Angle, Free, Hyperbola, Power, Radical};
+use Cost::{Choice, Other, Root, Turn};
+use Law::{Angle, Free, Hyperbola, Power, Radical, Side};
 use Parity::{Even, Odd, Plain};
-use Slope::{HalfInverse, Inverse, Is, IsMinus, Itself, OneMinusSquare, Two};
+use Slope::{HalfInverse, Inverse, Is, IsMinus, Itself, Nothing, OneMinusSquare, Two};
 
 use super::double::Double;
 use super::interval::Interval;
@@ -35,6 +35,8 @@ pub enum Law {
     Hyperbola,
     /// √(a b) = √a √b of what is positive.
     Radical,
+    /// Of the side of 0 on which an argument is (`Lane::positive`), by which f(a) is a multiple of f(1).
+    Side,
     /// Of nothing: any value will do.
     Free,
 }
@@ -54,6 +56,8 @@ pub enum Slope {
     HalfInverse,
     /// 1 − f(a)².
     OneMinusSquare,
+    /// 0.
+    Nothing,
     /// It has two arguments, and rules of its own.
     Two,
 }
@@ -65,6 +69,8 @@ pub enum Cost {
     Root,
     /// Half of a pair of sine and cosine.
     Turn,
+    /// A comparison, as dear as a sum.
+    Choice,
     /// Any other function.
     Other,
 }
@@ -134,6 +140,12 @@ macro_rules! table {
                 }
             }
 
+            /// The function of one argument with this name in descriptions.
+            pub fn named(name: &str) -> Option<Function> {
+                let of_one = |function: &&Function| function.row().slope != Two;
+                Function::ALL.iter().filter(of_one).copied().find(|function| function.name() == name)
+            }
+
             /// Its name in descriptions.
             pub fn name(self) -> &'static str {
                 self.row().name
@@ -165,6 +177,9 @@ table! {
         f64::cosh, Double::cosh, Real::cosh, Interval::cosh;
     Tanh "hyperbolic tangent" "tanh" "tanh()" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquare]
         f64::tanh, Double::tanh, Real::tanh, Interval::tanh;
+    Sign "1 with the sign of its argument, 0 of 0" "sign" "sign()" r"\operatorname{sign}" Choice Odd Side
+        [Some([0, 0])] [Nothing]
+        |a| if a == 0.0 { a } else { a.signum() }, Double::sign, Real::sign, Interval::sign;
 }
 
 impl Interval {

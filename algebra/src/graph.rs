@@ -21,6 +21,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use rustc_hash::FxHashMap;
+use std::cmp::Ordering;
 
 /// The graph.
 #[derive(Clone, Debug)]
@@ -369,6 +370,11 @@ impl Graph {
             && argument == Edge::of(a)
         {
             return Edge::of(value);
+        }
+        if row.law == Law::Side
+            && let Some(side) = self.side(argument)
+        {
+            return self.one().signed((side == Ordering::Less) ^ negative);
         }
         if row.law == Law::Radical {
             let exact = self.exact_root(argument);

@@ -100,6 +100,7 @@ pub trait Numbers {
                 );
                 self.make(Step::Sub(&one, &square))
             }
+            Slope::Nothing => self.make(Step::Whole(0)),
             Slope::Two => None,
         }
     }

@@ -118,7 +118,7 @@ impl Shadow {
     }
 
     /// The bounds of a node that depends on no symbol but π.
-    fn number(
+    pub(super) fn number(
         &mut self,
         nodes: &[Node],
         constants: &[BigRational],

@@ -77,6 +77,13 @@ pub trait Scalar:
     /// Absolute value.
     fn abs(self) -> Self;
 
+    /// 1 with the sign of the number; 0 of 0, NaN of NaN.
+    #[inline]
+    fn sign(self) -> Self {
+        let (zero, one) = (Self::default(), Self::from_f64(1.0));
+        zero.select_lt(self, one, self.select_lt(zero, -one, self))
+    }
+
     /// `self · a + b`: rounded once where the target has a fused instruction, twice elsewhere.
     /// A software routine that rounds once on every target is many times slower.
     fn mul_add(self, a: Self, b: Self) -> Self;

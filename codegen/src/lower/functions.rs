@@ -3,7 +3,7 @@
 use super::axes;
 use super::expression::Evaluator;
 use super::motion::FUNCTIONS;
-use super::scope::{NameKind, RESERVED};
+use super::scope::{NameKind, reserved};
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{apply3, cross, multiply3, transpose, transpose3};
 use crate::diagnostics::Diagnostic;
@@ -12,6 +12,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
 use crate::syntax::suggest::closest;
 use num_traits::Signed;
+use std::borrow::Cow;
 
 /// Largest number of rows that a function makes.
 const MOST_ROWS: usize = 64;
@@ -68,10 +69,8 @@ impl Evaluator<'_> {
         let name = &function.name;
         let error = Diagnostic::new(function.span, format!("no function is called `{name}`"));
         let known = || {
-            RESERVED
-                .iter()
-                .chain(&FUNCTIONS)
-                .copied()
+            reserved()
+                .chain(FUNCTIONS)
                 .filter(|name| usage(name).is_some())
         };
         if self.scope.get(name).is_some() {
@@ -79,7 +78,9 @@ impl Evaluator<'_> {
         }
         let scope = self.scope;
         let own = scope.functions.keys().map(String::as_str);
-        match closest(name, known().chain(own)) {
+        let all: Vec<&str> = known().collect();
+        let all = all.into_iter().chain(own);
+        match closest(name, all) {
             Some(known) => self.error(error.help(format!("did you mean `{known}`?"))),
             None => {
                 let all: Vec<&str> = known().collect();
@@ -130,17 +131,11 @@ const ZERO_DIVISOR: Fault = Fault::Why(
 );
 
 /// How a function is called.
-fn usage(name: &str) -> Option<&'static str> {
-    Some(match name {
+fn usage(name: &str) -> Option<Cow<'static, str>> {
+    let text = match name {
         "sin" => "`sin(angle)` of a scalar",
         "cos" => "`cos(angle)` of a scalar",
         "tan" => "`tan(angle)` of a scalar",
-        "sqrt" => "`sqrt(a)` of a scalar",
-        "exp" => "`exp(a)` of a scalar",
-        "log" => "`log(a)` of a scalar",
-        "sinh" => "`sinh(a)` of a scalar",
-        "cosh" => "`cosh(a)` of a scalar",
-        "tanh" => "`tanh(a)` of a scalar",
         "asin" => "`asin(a)` of a scalar",
         "acos" => "`acos(a)` of a scalar",
         "atan2" => "`atan2(y, x)` of scalars",
@@ -170,16 +165,18 @@ fn usage(name: &str) -> Option<&'static str> {
         "acceleration" => "`acceleration(f, p)` of a frame and a point of it",
         "angular_velocity" => "`angular_velocity(f)` of a frame",
         "angular_acceleration" => "`angular_acceleration(f)` of a frame",
-        _ => return None,
-    })
+        name => {
+            let name = Function::named(name)?.name();
+            return Some(format!("`{name}(a)` of a scalar").into());
+        }
+    };
+    Some(text.into())
 }
 
 /// The value of a call; `free` where points are off the variety.
 fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Result<Value, Fault> {
     use Value::{Matrix, Pose, Scalar, Vector};
     let value = match (name, values) {
-        ("sin", [Scalar(a)]) => Scalar(graph.apply(Function::Sin, *a)),
-        ("cos", [Scalar(a)]) => Scalar(graph.apply(Function::Cos, *a)),
         ("tan", [Scalar(a)]) => {
             let (s, c) = (
                 graph.apply(Function::Sin, *a),
@@ -187,10 +184,6 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             );
             Scalar(graph.div(s, c).ok_or(ZERO_DIVISOR)?)
         }
-        ("exp", [Scalar(a)]) => Scalar(graph.apply(Function::Exp, *a)),
-        ("sinh", [Scalar(a)]) => Scalar(graph.apply(Function::Sinh, *a)),
-        ("cosh", [Scalar(a)]) => Scalar(graph.apply(Function::Cosh, *a)),
-        ("tanh", [Scalar(a)]) => Scalar(graph.apply(Function::Tanh, *a)),
         ("asin" | "acos", [Scalar(a)]) => {
             // The angle of (√(1 − a²), a) or (a, √(1 − a²)); (1 − a)(1 + a) keeps its digits near ±1.
             let one = graph.one();
@@ -326,6 +319,10 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
                     .collect(),
             )
         }
+        (name, [Scalar(a)]) => match Function::named(name) {
+            Some(function) => Scalar(graph.apply(function, *a)),
+            None => return Err(Fault::Usage),
+        },
         _ => return Err(Fault::Usage),
     };
     Ok(value)

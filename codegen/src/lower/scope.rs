@@ -1,10 +1,11 @@
 //! Names and what they stand for.
 
 use super::motion::Motion;
+use crate::algebra::function::Function;
 use crate::algebra::graph::{Edge, NodeId};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, Function, Ident, ItemKind, Span, System};
+use crate::syntax::ast::{CoordKind, Function as Defined, Ident, ItemKind, Span, System};
 use crate::syntax::suggest::closest;
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -62,7 +63,7 @@ pub struct Entry {
 }
 
 /// Names of functions and constants of the language, which cannot be redefined.
-pub const RESERVED: &[&str] = &[
+const RESERVED: &[&str] = &[
     "transpose",
     "dot",
     "cross",
@@ -99,6 +100,14 @@ pub const RESERVED: &[&str] = &[
     "world",
 ];
 
+/// Names of functions and constants of the language: those of the table of functions without a place of their own
+/// come last.
+pub fn reserved() -> impl Iterator<Item = &'static str> {
+    let table = Function::ALL.iter().map(|function| function.name());
+    let further = table.filter(|name| !RESERVED.contains(name));
+    RESERVED.iter().copied().chain(further)
+}
+
 /// Names listed where none is close to a misspelt one.
 const LISTED: usize = 12;
 
@@ -124,7 +133,7 @@ pub struct Scope {
     /// What `rate(…)` stands for, in definitions of velocities.
     pub rates: Option<Rates>,
     /// The functions of the description.
-    pub functions: BTreeMap<String, Function>,
+    pub functions: BTreeMap<String, Defined>,
     /// How many calls of them have been written out.
     pub calls: Cell<usize>,
 }
@@ -202,7 +211,7 @@ impl Scope {
             span: name.span,
         };
         self.names.insert(name.name.clone(), entry);
-        let reserved = RESERVED.contains(&name.name.as_str());
+        let reserved = reserved().any(|word| word == name.name);
         if reserved {
             report.push(
                 Diagnostic::new(

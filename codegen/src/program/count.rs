@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 /// Operations of a function at run time; negation is free, parameters are hoisted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Count {
-    /// Additions and subtractions.
+    /// Additions and subtractions, and what is as dear: absolute values, signs, choices.
     pub add: usize,
     /// Multiplications.
     pub mul: usize,
@@ -52,6 +52,7 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
             Node::Apply(function, a) => match function.row().cost {
                 Cost::Root => count.sqrt += 1,
                 Cost::Turn => angles.push(a.abs()),
+                Cost::Choice => count.add += 1,
                 Cost::Other => count.other += 1,
             },
             Node::Atan2(..) => count.other += 1,
