@@ -180,6 +180,8 @@ table! {
     Sign "1 with the sign of its argument, 0 of 0" "sign" "sign()" r"\operatorname{sign}" Choice Odd Side
         [Some([0, 0])] [Nothing]
         |a| if a == 0.0 { a } else { a.signum() }, Double::sign, Real::sign, Interval::sign;
+    Abs "absolute value" "abs" "abs()" r"\operatorname{abs}" Choice Even Side [Some([0, 0])] [Is(Function::Sign)]
+        f64::abs, Double::abs, Real::abs, Interval::abs;
 }
 
 impl Interval {

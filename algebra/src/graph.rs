@@ -374,7 +374,11 @@ impl Graph {
         if row.law == Law::Side
             && let Some(side) = self.side(argument)
         {
-            return self.one().signed((side == Ordering::Less) ^ negative);
+            let unsigned = match function {
+                Function::Abs => argument,
+                _ => self.one(),
+            };
+            return unsigned.signed((side == Ordering::Less) ^ negative);
         }
         if row.law == Law::Radical {
             let exact = self.exact_root(argument);

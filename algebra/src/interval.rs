@@ -275,6 +275,10 @@ impl Interval {
         }
     }
 
+    pub(super) fn abs(&self) -> Option<Self> {
+        Some(self.signed(self.side()? == Ordering::Less))
+    }
+
     pub(super) fn sign(&self) -> Option<Self> {
         let sign = BigInt::from(self.side()? as i8);
         Some(Interval::new(sign.clone(), sign, 0))

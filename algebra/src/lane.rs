@@ -120,6 +120,7 @@ impl Lane {
                 let other = self.opaque(function, argument, Fp::ZERO);
                 Fp(roots.0.unwrap_or(other.0), roots.1.unwrap_or(other.1))
             }
+            Function::Abs => self.sign(argument) * argument,
             Function::Sign => self.sign(argument),
             Function::Log | Function::Atan2 => self.opaque(function, argument, Fp::ZERO),
         }

@@ -156,6 +156,13 @@ impl Real {
         }
     }
 
+    pub(super) fn abs(self) -> Self {
+        Real {
+            value: self.value.abs(),
+            error: self.error,
+        }
+    }
+
     /// Unknown where it may be on either side.
     pub(super) fn sign(self) -> Self {
         match self.side() {

@@ -139,6 +139,42 @@ fn functions_obey_their_group_laws() {
     assert_eq!(g.mul(twice, inverse), g.one());
 }
 
+/// What holds on both sides of 0 is found; what holds on one of them is not, nor what fails at 0 alone.
+#[test]
+fn absolute_values_are_what_they_are_on_both_sides() {
+    let (mut g, [p, _, a, b, c, s]) = graph();
+    let abs = |g: &mut Graph, e| g.apply(Function::Abs, e);
+    let sign = |g: &mut Graph, e| g.apply(Function::Sign, e);
+    let (x, y) = (abs(&mut g, a), abs(&mut g, b));
+    assert_eq!((abs(&mut g, -a), sign(&mut g, -a)), (x, -sign(&mut g, a)));
+    let (sx, sy) = (sign(&mut g, a), sign(&mut g, b));
+    assert_eq!(g.mul(sx, a), x);
+    let (ab, xy, ss) = (g.mul(a, b), g.mul(x, y), g.mul(sx, sy));
+    let (of_product, sign_of_product) = (abs(&mut g, ab), sign(&mut g, ab));
+    // Of what is not equal, and of what is, but is not found, no two are one.
+    let squares = [g.mul(x, x), g.mul(a, a), g.mul(sx, sx), g.one()];
+    let mut all = vec![x, a, y, b, xy, ab, of_product, ss, sign_of_product];
+    all.extend(squares);
+    for e in [p, c, s, ab] {
+        let less = g.sub(e, g.one());
+        all.extend([abs(&mut g, less), less, sign(&mut g, less)]);
+    }
+    let some: std::collections::BTreeSet<_> = all.iter().map(|edge| edge.abs()).collect();
+    assert_eq!(some.len(), all.len());
+    // A number is on one side: 3 − π, and 1/4 of c² + s² − 3/4.
+    let (cc, ss, number) = (g.mul(c, c), g.mul(s, s), g.ratio(-3, 4));
+    let quarter = g.sum(&[cc, ss, number]);
+    assert_eq!(
+        (abs(&mut g, -quarter), sign(&mut g, quarter)),
+        (quarter, g.one())
+    );
+    let (two, three) = (g.ratio(2, 1), g.ratio(3, 1));
+    let root = [two, three].map(|number| g.apply(Function::Sqrt, number));
+    let less = g.sub(root[0], root[1]);
+    assert_eq!((abs(&mut g, less), sign(&mut g, less)), (-less, -g.one()));
+    assert_eq!(sign(&mut g, three), g.one());
+}
+
 #[test]
 fn division_by_zero_on_the_variety_is_refused() {
     let (mut g, [_, _, a, _, c, s]) = graph();
