@@ -110,6 +110,10 @@ impl Derivation {
                     Slope::Nothing | Slope::Two => zero,
                 }
             }
+            Node::Select(c, a, b) => {
+                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                graph.select(c, da, db)
+            }
             Node::Atan2(y, x) => {
                 // (x y' − y x')/(x² + y²)
                 let (dy, dx) = (self.seen(graph, y), self.seen(graph, x));

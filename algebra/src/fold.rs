@@ -173,7 +173,9 @@ impl Graph {
                     let (a, b) = (of(a), of(b));
                     BigRational::new(a.numer().gcd(b.numer()), a.denom().lcm(b.denom()))
                 }
-                Node::Symbol(_) | Node::Apply(..) | Node::Atan2(..) => continue,
+                Node::Symbol(_) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => {
+                    continue;
+                }
             };
             contents.insert(id, content);
         }

@@ -182,6 +182,9 @@ table! {
         |a| if a == 0.0 { a } else { a.signum() }, Double::sign, Real::sign, Interval::sign;
     Abs "absolute value" "abs" "abs()" r"\operatorname{abs}" Choice Even Side [Some([0, 0])] [Is(Function::Sign)]
         f64::abs, Double::abs, Real::abs, Interval::abs;
+    Select "a where c > 0, else b, arguments (c, a, b): a node of its own, without values of one argument"
+        "if" "select_positive" r"\operatorname{if}" Choice Plain Free [None] [Two]
+        |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
 }
 
 impl Interval {

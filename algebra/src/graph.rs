@@ -8,6 +8,7 @@
 //! Children stand before parents.
 
 mod merge;
+mod side;
 pub(crate) use merge::canonical;
 
 use super::fp::Fp;

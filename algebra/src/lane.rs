@@ -122,7 +122,9 @@ impl Lane {
             }
             Function::Abs => self.sign(argument) * argument,
             Function::Sign => self.sign(argument),
-            Function::Log | Function::Atan2 => self.opaque(function, argument, Fp::ZERO),
+            Function::Log | Function::Atan2 | Function::Select => {
+                self.opaque(function, argument, Fp::ZERO)
+            }
         }
     }
 
@@ -244,6 +246,7 @@ impl Numbers for Lane {
             Step::Div(a, b) => *a * b.inv()?,
             Step::Apply(function, a, form) => self.function(function, *a, &form()),
             Step::Atan2(y, x) => self.opaque(Function::Atan2, *y, *x),
+            Step::Select(c, a, b) => *b + self.positive(*c) * (*a - *b),
         })
     }
 

@@ -66,19 +66,22 @@ pub enum Node {
     Apply(Function, Edge),
     /// atan2(y, x).
     Atan2(Edge, Edge),
+    /// (c, a, b): a where c > 0, else b.
+    Select(Edge, Edge, Edge),
 }
 
 impl Node {
     /// The children, in order.
     pub fn children(self) -> impl DoubleEndedIterator<Item = Edge> {
-        let (a, b) = match self {
-            Node::Constant(_) | Node::Symbol(_) => (None, None),
-            Node::Apply(_, a) => (Some(a), None),
+        let list = match self {
+            Node::Constant(_) | Node::Symbol(_) => [None; 3],
+            Node::Apply(_, a) => [Some(a), None, None],
             Node::Add(a, b) | Node::Mul(a, b) | Node::Div(a, b) | Node::Atan2(a, b) => {
-                (Some(a), Some(b))
+                [Some(a), Some(b), None]
             }
+            Node::Select(c, a, b) => [Some(c), Some(a), Some(b)],
         };
-        a.into_iter().chain(b)
+        list.into_iter().flatten()
     }
 
     /// The same of other children.
@@ -90,6 +93,7 @@ impl Node {
             Node::Mul(a, b) => Node::Mul(child(a), child(b)),
             Node::Div(a, b) => Node::Div(child(a), child(b)),
             Node::Atan2(a, b) => Node::Atan2(child(a), child(b)),
+            Node::Select(c, a, b) => Node::Select(child(c), child(a), child(b)),
         }
     }
 }

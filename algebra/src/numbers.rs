@@ -44,6 +44,8 @@ pub enum Step<'a, N> {
     Apply(Function, &'a N, Former<'a, N>),
     /// The angle of (x, y), arguments (y, x).
     Atan2(&'a N, &'a N),
+    /// (c, a, b): a where c > 0, else b.
+    Select(&'a N, &'a N, &'a N),
 }
 
 /// Arithmetic at a point.
@@ -57,6 +59,11 @@ pub trait Numbers {
     /// Whether it is 0 for certain.
     fn is_zero(&self, _: &Self::Number) -> bool {
         false
+    }
+
+    /// Whether it is positive; `None` where that is not known.
+    fn is_positive(&self, _: &Self::Number) -> Option<bool> {
+        None
     }
 
     /// a/b and its derivatives by a and b: 1/b and −(a/b)/b.
@@ -160,6 +167,10 @@ pub trait Numbers {
             Node::Atan2(y, x) => {
                 let (y, x) = (read(y)?, read(x)?);
                 self.make(Step::Atan2(&y, &x))
+            }
+            Node::Select(c, a, b) => {
+                let (c, a, b) = (read(c)?, read(a)?, read(b)?);
+                self.make(Step::Select(&c, &a, &b))
             }
         }
     }

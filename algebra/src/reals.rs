@@ -171,6 +171,16 @@ impl Real {
         }
     }
 
+    /// a where this is positive, else b; unknown where it may be either.
+    pub(super) fn select(self, a: Real, b: Real) -> Self {
+        match self.side() {
+            Some(Ordering::Greater) => a,
+            Some(_) => b,
+            None if self.is_known() => Real::UNKNOWN,
+            None => self.without(self),
+        }
+    }
+
     /// On which side of 0 it is; `None` where that is not certain.
     pub(super) fn side(self) -> Option<Ordering> {
         let certain = self.value.abs() > self.error || self.error == 0.0;

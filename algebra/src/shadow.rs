@@ -9,6 +9,7 @@ use super::reals::{Real, Reals, SAMPLES, contradict};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use rustc_hash::FxHashMap;
+use std::cmp::Ordering;
 
 /// Real values of nodes, found when they are first asked for.
 #[derive(Clone, Debug, Default)]
@@ -189,6 +190,9 @@ impl Numbers for Samples<'_> {
             Step::Div(a, b) => pair(a, b, Real::over),
             Step::Apply(function, a, _) => a.map(|a| a.apply(function)),
             Step::Atan2(y, x) => pair(y, x, Real::atan2),
+            Step::Select(c, a, b) => {
+                std::array::from_fn(|sample| c[sample].select(a[sample], b[sample]))
+            }
         })
     }
 }
@@ -213,6 +217,10 @@ impl Numbers for Bounds {
             Step::Div(a, b) => Some(a.times(&b.inverse()?)),
             Step::Apply(function, a, _) => (function.row().interval)(a),
             Step::Atan2(..) => None,
+            Step::Select(c, a, b) => Some(match c.side()? {
+                Ordering::Greater => a.clone(),
+                _ => b.clone(),
+            }),
         }
     }
 }

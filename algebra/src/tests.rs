@@ -175,6 +175,45 @@ fn absolute_values_are_what_they_are_on_both_sides() {
     assert_eq!(sign(&mut g, three), g.one());
 }
 
+/// Choices obey what holds for both branches, and nothing else.
+#[test]
+fn choices_are_equal_where_both_branches_are() {
+    let (mut g, [p, _, a, b, c, s]) = graph();
+    let (zero, one) = (g.zero(), g.one());
+    let choose = |g: &mut Graph, c, a, b| g.select(c, a, b);
+    let e = choose(&mut g, a, b, p);
+    assert_eq!(choose(&mut g, a, b, b), b);
+    assert_eq!(choose(&mut g, a, -b, -p), -e);
+    let (cb, cp) = (g.mul(c, b), g.mul(c, p));
+    assert_eq!(choose(&mut g, a, cb, cp), g.mul(c, e));
+    let [step, other] = [(one, zero), (zero, one)].map(|(x, y)| g.select(a, x, y));
+    assert_eq!(g.add(step, other), one);
+    assert_eq!(g.dot(&[step, other], &[b, p]), e);
+    // The sign is the difference of both sides.
+    let back = g.select(-a, one, zero);
+    assert_eq!(g.sub(step, back), g.apply(Function::Sign, a));
+    let less = g.sub(a, one);
+    let later = g.select(less, one, zero);
+    // [a > 1][a > 0] = [a > 1] and [a > 0]² = [a > 0] are true and not found; [a > 0] + [−a > 0] = 1 is wrong at 0,
+    // and that the greater of two is one of them, or the same of both orders, is wrong, or not found.
+    let both = g.mul(later, step);
+    let (difference, reverse) = (g.sub(a, b), g.sub(b, a));
+    let greater = [g.select(difference, a, b), g.select(reverse, b, a)];
+    let all = [
+        step, other, back, later, both, e, one, a, b, greater[0], greater[1],
+    ];
+    let sum = g.add(step, back);
+    let square = g.mul(step, step);
+    let all: Vec<Edge> = all.into_iter().chain([sum, square]).collect();
+    let some: std::collections::BTreeSet<_> = all.iter().map(|edge| edge.abs()).collect();
+    assert_eq!(some.len(), all.len());
+    // A number is on one side.
+    let (cc, ss) = (g.mul(c, c), g.mul(s, s));
+    let unit = g.add(cc, ss);
+    assert_eq!((g.select(unit, a, b), g.select(-unit, a, b)), (a, b));
+    assert_eq!(g.select(zero, a, b), b);
+}
+
 #[test]
 fn division_by_zero_on_the_variety_is_refused() {
     let (mut g, [_, _, a, _, c, s]) = graph();
@@ -194,7 +233,7 @@ fn expression(g: &mut Graph, leaves: &[Edge], random: &mut Random, depth: usize)
     let y = expression(g, leaves, random, depth - 1);
     let (xx, two) = (g.mul(x, x), g.ratio(2, 1));
     let positive = g.add(xx, two);
-    match random.bits() % 8 {
+    match random.bits() % 10 {
         0 => g.add(x, y),
         1 => g.sub(x, y),
         2 => g.mul(x, y),
@@ -202,6 +241,8 @@ fn expression(g: &mut Graph, leaves: &[Edge], random: &mut Random, depth: usize)
         4 => g.apply(Function::Sin, x),
         5 => g.apply(Function::Sqrt, positive),
         6 => g.apply(Function::Log, positive),
+        7 => g.apply(Function::Abs, x),
+        8 => g.select(x, y, positive),
         _ => g.atan2(y, positive),
     }
 }

@@ -94,6 +94,17 @@ pub trait Scalar:
     /// `then` in the lanes with `self < limit`, `otherwise` elsewhere (also where either is NaN).
     fn select_lt(self, limit: Self, then: Self, otherwise: Self) -> Self;
 
+    /// `then` in the lanes that are positive, `otherwise` in those that are not; NaN where the lane itself is.
+    #[inline]
+    fn select_positive(self, then: Self, otherwise: Self) -> Self {
+        let zero = Self::default();
+        zero.select_lt(
+            self,
+            then,
+            self.select_lt(Self::from_f64(1.0), otherwise, self),
+        )
+    }
+
     /// Whether all lanes are positive and finite: a pivot that can be divided by.
     fn is_positive(self) -> bool;
 

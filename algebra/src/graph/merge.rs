@@ -3,9 +3,6 @@
 use super::{Edge, Function, Graph, Node, NodeId};
 use crate::fp::Fp;
 use crate::shadow::Shadow;
-use num_rational::BigRational;
-use num_traits::Zero;
-use std::cmp::Ordering;
 
 impl Graph {
     /// A node with the value of another one, or the small rational that it is; an expression that is
@@ -68,18 +65,6 @@ impl Graph {
             }
         }
         None
-    }
-
-    /// On which side of 0 a number is, as far as that is certain.
-    pub(super) fn side(&mut self, edge: Edge) -> Option<Ordering> {
-        if let Some(number) = self.as_rational(edge) {
-            return Some(number.cmp(&BigRational::zero()));
-        }
-        if self.class(edge.node()) != 0 {
-            return None;
-        }
-        let bounds = self.shadow.number(&self.nodes, &self.constants, edge)?;
-        bounds.side()
     }
 
     /// A node that later expressions do not merge with.

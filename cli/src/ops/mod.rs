@@ -139,7 +139,7 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Written {
             .fold(NONE, |cost, child| sum(cost, costs[child.node() as usize]));
         let kind = match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => None,
-            Node::Add(..) => Some(0),
+            Node::Add(..) | Node::Select(..) => Some(0),
             Node::Mul(..) => Some(1),
             Node::Div(..) => Some(2),
             Node::Apply(function, _) => Some(match function.row().cost {

@@ -100,6 +100,7 @@ impl<'a> Evaluator<'a> {
                 let (a, b) = (self.value(left), self.value(right));
                 self.binary(*op, a?, b?, left, right, expr.span)
             }
+            ExprKind::If(choice) => self.choice(choice),
             ExprKind::Array(items) => self.array(items, expr.span),
         }
     }

@@ -1,6 +1,7 @@
 //! The functions of the language.
 
 use super::axes;
+use super::choice::{greater, lesser};
 use super::expression::Evaluator;
 use super::motion::FUNCTIONS;
 use super::scope::{NameKind, reserved};
@@ -139,6 +140,10 @@ fn usage(name: &str) -> Option<Cow<'static, str>> {
         "asin" => "`asin(a)` of a scalar",
         "acos" => "`acos(a)` of a scalar",
         "atan2" => "`atan2(y, x)` of scalars",
+        "min" => "`min(a, b)` of scalars",
+        "max" => "`max(a, b)` of scalars",
+        "clamp" => "`clamp(a, low, high)` of scalars",
+        "hypot" => "`hypot(a, b)` of scalars",
         "dot" => "`dot(a, b)` of vectors of equal length",
         "cross" => "`cross(a, b)` of vectors of 3",
         "outer" => "`outer(a, b)` of vectors",
@@ -213,6 +218,24 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             ));
         }
         ("atan2", [Scalar(y), Scalar(x)]) => Scalar(graph.atan2(*y, *x)),
+        ("min", [Scalar(a), Scalar(b)]) => Scalar(lesser(graph, *a, *b)),
+        ("max", [Scalar(a), Scalar(b)]) => Scalar(greater(graph, *a, *b)),
+        ("clamp", [Scalar(a), Scalar(low), Scalar(high)]) => {
+            if let (Some(low), Some(high)) = (graph.as_rational(*low), graph.as_rational(*high))
+                && low > high
+            {
+                return Err(Fault::Why(
+                    "the bounds of `clamp` are in the wrong order",
+                    "write the lower one first: `clamp(a, low, high)`",
+                ));
+            }
+            let above = greater(graph, *a, *low);
+            Scalar(lesser(graph, above, *high))
+        }
+        ("hypot", [Scalar(a), Scalar(b)]) => {
+            let square = graph.dot(&[*a, *b], &[*a, *b]);
+            Scalar(real_root(graph, square)?)
+        }
         ("dot", [Vector(a), Vector(b)]) if a.len() == b.len() => Scalar(graph.dot(a, b)),
         ("outer", [Vector(a), Vector(b)]) => Matrix(
             a.iter()

@@ -9,6 +9,7 @@ mod arithmetic;
 mod axes;
 mod bodies;
 mod build;
+mod choice;
 mod completion;
 mod declare;
 mod defaults;

@@ -81,22 +81,11 @@ impl<'a> Uses<'a> {
 
     fn expr(&mut self, expr: &'a Expr) {
         match &expr.kind {
-            ExprKind::Number(_) => {}
-            ExprKind::Name(name) => {
-                self.names.insert(name);
-            }
-            ExprKind::Field(base, _) | ExprKind::Neg(base) => self.expr(base),
-            ExprKind::Index(base, list) => {
-                self.expr(base);
-                self.all(list);
-            }
-            ExprKind::Call(function, list) => {
-                self.name(function);
-                self.all(list);
-            }
-            ExprKind::Array(list) => self.all(list),
-            ExprKind::Binary(_, left, right) => self.all([&**left, &**right]),
+            ExprKind::Name(name) => _ = self.names.insert(name),
+            ExprKind::Call(function, _) => self.name(function),
+            _ => {}
         }
+        self.all(expr.parts());
     }
 
     fn values(&mut self, list: &'a [Declaration]) {

@@ -46,7 +46,7 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
     for &id in nodes {
         match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => {}
-            Node::Add(..) => count.add += 1,
+            Node::Add(..) | Node::Select(..) => count.add += 1,
             Node::Mul(..) => count.mul += 1,
             Node::Div(..) => count.div += 1,
             Node::Apply(function, a) => match function.row().cost {

@@ -1,10 +1,11 @@
 //! The description as written: every node carries its span, nothing is resolved.
 
+mod expression;
 mod joint;
 
+pub use expression::{BinaryOp, Choice, Comparison, Expr, ExprKind};
 pub use joint::{Joint, JointField, JointKind};
 
-use num_rational::BigRational;
 use std::ops::Range;
 
 /// A region of the source: bytes of a text, or the numbers of tokens in the input of a macro.
@@ -84,51 +85,6 @@ pub struct System {
     pub name: Ident,
     /// The statements, in source order.
     pub items: Vec<Item>,
-}
-
-/// An expression with its region.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Expr {
-    /// What it is.
-    pub kind: ExprKind,
-    /// Where it stands.
-    pub span: Span,
-}
-
-/// The forms of an expression.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ExprKind {
-    /// A decimal literal, exact.
-    Number(BigRational),
-    /// A name.
-    Name(String),
-    /// `q.c`, `X.R`, `M.T`.
-    Field(Box<Expr>, Ident),
-    /// `v[i]`, `M[i, j]`; indices start at 1, as in the paper.
-    Index(Box<Expr>, Vec<Expr>),
-    /// `f(a, b)`.
-    Call(Ident, Vec<Expr>),
-    /// `-a`.
-    Neg(Box<Expr>),
-    /// `a op b`.
-    Binary(BinaryOp, Box<Expr>, Box<Expr>),
-    /// `[a, b, c]`; an array of arrays is a matrix by rows.
-    Array(Vec<Expr>),
-}
-
-/// Binary operators.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BinaryOp {
-    /// `+`
-    Add,
-    /// `-`
-    Sub,
-    /// `*`
-    Mul,
-    /// `/`
-    Div,
-    /// `^`, integer or rational exponent
-    Pow,
 }
 
 /// A shape annotation: `vec3`, `mat3`, `sym3`, or nothing for a scalar.

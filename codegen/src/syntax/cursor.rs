@@ -291,7 +291,9 @@ impl<'a> Cursor<'a> {
             match token.kind {
                 Kind::Open(delimiter, close) => {
                     at = close + 1;
-                    let next = self.tokens.get(at).map(|token| token.kind);
+                    // A choice goes on behind its first braces.
+                    let next = self.tokens.get(at).filter(|token| token.text != "else");
+                    let next = next.map(|token| token.kind);
                     if delimiter == Delimiter::Brace && next == Some(Kind::Punct(';')) {
                         at += 1;
                         break;
@@ -325,7 +327,10 @@ fn operator_help(found: &Token) -> Option<&'static str> {
             Some("a product is written with `*`; a statement ends with `;`")
         }
         Kind::Punct('\'') => Some(TRANSPOSE),
-        Kind::Punct('%' | '&' | '|' | '<' | '>' | '!' | '~' | '@') => {
+        Kind::Punct('<' | '>') => {
+            Some("numbers are compared in a choice: `if a < b { c } else { d }`")
+        }
+        Kind::Punct('%' | '&' | '|' | '!' | '~' | '@') => {
             Some("the operators are `+`, `-`, `*`, `/` and `^`")
         }
         _ => None,

@@ -46,6 +46,14 @@ fn spelled(expr: &Expr) -> String {
             };
             format!("({} {sign} {})", spelled(left), spelled(right))
         }
+        ExprKind::If(choice) => {
+            let parts: Vec<String> = expr.parts().into_iter().map(spelled).collect();
+            let sign = choice.comparison.sign();
+            let [left, right, then, otherwise] = &parts[..] else {
+                panic!("four parts");
+            };
+            format!("(if {left} {sign} {right} {{{then}}} else {{{otherwise}}})")
+        }
         ExprKind::Array(entries) => format!("[{}]", list(entries)),
     }
 }
