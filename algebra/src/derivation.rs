@@ -102,6 +102,16 @@ impl Derivation {
                         let numerator = graph.mul(half, da);
                         graph.div(numerator, Edge::of(id)).unwrap_or(zero)
                     }
+                    Slope::Half(other) => {
+                        let half = graph.ratio(1, 2);
+                        let numerator = graph.mul(half, da);
+                        let inverse = graph.apply(other, Edge::of(id));
+                        graph.mul(numerator, inverse)
+                    }
+                    Slope::MinusSquare => {
+                        let square = graph.mul(Edge::of(id), Edge::of(id));
+                        -graph.mul(square, da)
+                    }
                     Slope::OneMinusSquare => {
                         let square = graph.mul(Edge::of(id), Edge::of(id));
                         let slope = graph.sub(graph.one(), square);

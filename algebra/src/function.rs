@@ -3,10 +3,12 @@
 //! A new function is a row here, with its values in numbers of every kind, and its values modulo p
 //! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
 
-use Cost::{Choice, Other, Root, Turn};
+use Cost::{Choice, Other, Quotient, Root, Turn};
 use Law::{Angle, Free, Hyperbola, Power, Radical, Side};
 use Parity::{Even, Odd, Plain};
-use Slope::{HalfInverse, Inverse, Is, IsMinus, Itself, Nothing, OneMinusSquare, Two};
+use Slope::{
+    Half, HalfInverse, Inverse, Is, IsMinus, Itself, MinusSquare, Nothing, OneMinusSquare, Two,
+};
 
 use super::double::Double;
 use super::interval::Interval;
@@ -54,6 +56,10 @@ pub enum Slope {
     Inverse,
     /// 1/(2 f(a)).
     HalfInverse,
+    /// ½ g(f(a)).
+    Half(Function),
+    /// −f(a)².
+    MinusSquare,
     /// 1 − f(a)².
     OneMinusSquare,
     /// 0.
@@ -69,6 +75,8 @@ pub enum Cost {
     Root,
     /// Half of a pair of sine and cosine.
     Turn,
+    /// A division.
+    Quotient,
     /// A comparison, as dear as a sum.
     Choice,
     /// Any other function.
@@ -185,7 +193,17 @@ table! {
     Select "a where c > 0, else b, arguments (c, a, b): a node of its own, without values of one argument"
         "if" "select_positive" r"\operatorname{if}" Choice Plain Free [None] [Two]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
+    Norm "length, the root of a sum of squares: where that is 0, its derivative is 0"
+        "sqrt" "sqrt()" r"\sqrt" Root Plain Radical [None] [Half(Function::Inverse)]
+        f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
+    Inverse "1/a, but a large number where a is nearly 0: times a sum of products that are 0 there it is 0"
+        "1/" "inverse_of_length()" r"1/" Quotient Odd Free [None] [MinusSquare]
+        |a| if a.abs() < SHORTEST { SHORTEST.recip() } else { a.recip() }, Double::inverse_of_length,
+        |a| Real::new(1.0, 0.0).over(a), Interval::inverse;
 }
+
+/// Lengths below this are divided by as if they were this long.
+pub(super) const SHORTEST: f64 = 1e-100;
 
 impl Interval {
     /// A function of one argument; `None` where it has no value, or none is known.

@@ -109,7 +109,7 @@ impl Graph {
     /// Finds the rational factor of what is put under a square root, once for all points.
     fn note_content(&mut self, function: Function, argument: Edge) {
         let id = argument.node();
-        if function == Function::Sqrt && !self.contents.contains_key(&id) {
+        if function.row().law == Law::Radical && !self.contents.contains_key(&id) {
             let content = self.content(argument);
             self.contents.insert(id, content);
         }

@@ -110,18 +110,23 @@ impl Lane {
                 hyperbolic(function, self.exp(form, &first)),
                 hyperbolic(function, self.exp(form, &second)),
             ),
-            Function::Sqrt => {
+            Function::Sqrt | Function::Norm => {
                 let roots = (
                     self.root(argument.0, form, &first),
                     self.root(argument.1, form, &second),
                 );
                 self.stuck[0] |= roots.0.is_none();
                 self.stuck[1] |= roots.1.is_none();
-                let other = self.opaque(function, argument, Fp::ZERO);
+                let other = self.opaque(Function::Sqrt, argument, Fp::ZERO);
                 Fp(roots.0.unwrap_or(other.0), roots.1.unwrap_or(other.1))
             }
             Function::Abs => self.sign(argument) * argument,
             Function::Sign => self.sign(argument),
+            // It is odd.
+            Function::Inverse => {
+                let of = |a| self.opaque(function, a, Fp::ZERO);
+                of(argument) - of(-argument)
+            }
             Function::Log | Function::Atan2 | Function::Select => {
                 self.opaque(function, argument, Fp::ZERO)
             }

@@ -1,6 +1,7 @@
 //! Edges, nodes and symbols of the expression graph.
 
 pub use super::function::Function;
+use super::function::Law;
 
 /// Index of a node.
 pub type NodeId = u32;
@@ -82,6 +83,11 @@ impl Node {
             Node::Select(c, a, b) => [Some(c), Some(a), Some(b)],
         };
         list.into_iter().flatten()
+    }
+
+    /// Whether it is a square root.
+    pub fn is_root(self) -> bool {
+        matches!(self, Node::Apply(function, _) if function.row().law == Law::Radical)
     }
 
     /// The same of other children.

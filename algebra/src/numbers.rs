@@ -100,6 +100,15 @@ pub trait Numbers {
                 );
                 self.make(Step::Div(&one, &twice))
             }
+            Slope::Half(other) => {
+                let twice = self.make(Step::Whole(2))?;
+                let inverse = self.make(Step::Apply(other, value, form))?;
+                self.make(Step::Div(&inverse, &twice))
+            }
+            Slope::MinusSquare => {
+                let square = self.make(Step::Mul(value, value))?;
+                self.make(Step::Neg(&square))
+            }
             Slope::OneMinusSquare => {
                 let (one, square) = (
                     self.make(Step::Whole(1))?,

@@ -1,7 +1,6 @@
 //! The real values of a graph's nodes, found where they are needed to tell expressions apart: those of
 //! numbers with certainty, those of what has a square root below it at samples.
 
-use super::function::Function;
 use super::interval::Interval;
 use super::node::{Edge, Node, NodeId};
 use super::numbers::{Form, Numbers, Step};
@@ -48,7 +47,7 @@ impl Shadow {
 
     fn has_root(&self, node: Node) -> bool {
         let below = |edge: Edge| self.rooted[edge.node() as usize];
-        matches!(node, Node::Apply(Function::Sqrt, _)) || node.children().any(below)
+        node.is_root() || node.children().any(below)
     }
 
     /// Whether a node with square roots below it, or what it is said to equal, is another number.

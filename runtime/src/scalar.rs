@@ -105,6 +105,15 @@ pub trait Scalar:
         )
     }
 
+    /// 1/self, where that is no shorter than 1e-100 (1e-12 for `f32`), else 1 over this: a large number, which times
+    /// 0 is 0. So lengths at rest have the slope 0.
+    #[inline]
+    fn inverse_of_length(self) -> Self {
+        let shortest = Self::from_f64(if Self::EPSILON < 1e-10 { 1e-100 } else { 1e-12 });
+        let one = Self::from_f64(1.0);
+        one / self.abs().select_lt(shortest, shortest, self)
+    }
+
     /// Whether all lanes are positive and finite: a pivot that can be divided by.
     fn is_positive(self) -> bool;
 

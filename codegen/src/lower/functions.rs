@@ -8,6 +8,7 @@ use super::scope::{NameKind, reserved};
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{apply3, cross, multiply3, transpose, transpose3};
 use crate::diagnostics::Diagnostic;
+use crate::model::class;
 use crate::model::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
@@ -232,20 +233,14 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             let above = greater(graph, *a, *low);
             Scalar(lesser(graph, above, *high))
         }
-        ("hypot", [Scalar(a), Scalar(b)]) => {
-            let square = graph.dot(&[*a, *b], &[*a, *b]);
-            Scalar(real_root(graph, square)?)
-        }
+        ("hypot", [Scalar(a), Scalar(b)]) => Scalar(length(graph, &[*a, *b])),
         ("dot", [Vector(a), Vector(b)]) if a.len() == b.len() => Scalar(graph.dot(a, b)),
         ("outer", [Vector(a), Vector(b)]) => Matrix(
             a.iter()
                 .map(|&x| b.iter().map(|&y| graph.mul(x, y)).collect())
                 .collect(),
         ),
-        ("norm", [Vector(a)]) => {
-            let square = graph.dot(a, a);
-            Scalar(real_root(graph, square)?)
-        }
+        ("norm", [Vector(a)]) => Scalar(length(graph, a)),
         ("transpose", [Matrix(m)]) => Matrix(transpose(m)),
         ("trace", [Matrix(m)]) if m.len() == m.first().map_or(0, Vec::len) => {
             let diagonal: Vec<Edge> = (0..m.len()).map(|i| m[i][i]).collect();
@@ -362,6 +357,21 @@ fn cosine_sine(graph: &mut Graph, values: &[Value]) -> Option<(Edge, Edge)> {
         [Value::Vector(v)] if v.len() == 2 => Some((v[0], v[1])),
         _ => None,
     }
+}
+
+/// The length of a vector. At rest that of a velocity has slopes of both signs and counts as level: so drag
+/// |v| v has the derivative 0 there.
+fn length(graph: &mut Graph, a: &[Edge]) -> Edge {
+    let square = graph.dot(a, a);
+    let moves = graph.class(square.node()) & class::VELOCITY != 0;
+    graph.apply(
+        if moves {
+            Function::Norm
+        } else {
+            Function::Sqrt
+        },
+        square,
+    )
 }
 
 fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {

@@ -3,7 +3,7 @@
 use super::class;
 use super::layout::{Block, sample};
 use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::lane::{Lane, Roots};
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::poly;
@@ -149,7 +149,7 @@ impl Points {
 
     /// From now on, chooses points at which the square roots of another graph have values.
     pub fn require_roots(&mut self, graph: &Graph) {
-        let is_root = |&id: &u32| matches!(graph.node(id), Node::Apply(Function::Sqrt, _));
+        let is_root = |&id: &u32| graph.node(id).is_root();
         let roots: Vec<Edge> = (0..graph.len() as u32)
             .filter(is_root)
             .map(Edge::of)

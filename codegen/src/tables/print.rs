@@ -86,7 +86,7 @@ impl Notation {
                     power,
                 )
             }
-            (Notation::Latex, Atom::Call(Function::Sqrt, arguments), _) => {
+            (Notation::Latex, Atom::Call(Function::Sqrt | Function::Norm, arguments), _) => {
                 let root = format!(r"\sqrt{{{}}}", self.arguments(arguments));
                 raised(
                     self,
