@@ -5,7 +5,7 @@ use crate::algebra::function::Function;
 use crate::algebra::graph::{Edge, NodeId};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, Function as Defined, Ident, ItemKind, Span, System};
+use crate::syntax::ast::{CoordKind, Function as Defined, Ident, Item, ItemKind, Span, System};
 use crate::syntax::suggest::closest;
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -128,6 +128,8 @@ pub struct Scope {
     names: BTreeMap<String, Entry>,
     /// What the description defines anywhere, for names that are used too early.
     written: BTreeMap<String, (NameKind, Span)>,
+    /// Whether the user wrote constraints, so that no coordinate moves alone.
+    constrained: bool,
     /// Whether values are those at points off the variety: what holds on it alone is not checked.
     pub free: bool,
     /// How x and ξ move, once the rates are known.
@@ -182,9 +184,11 @@ impl Scope {
                 note(name, NameKind::Output);
             }
         }
+        let constraint = |item: &Item| matches!(item.kind, ItemKind::Constraint { .. });
         Scope {
             names: BTreeMap::new(),
             written,
+            constrained: system.items.iter().any(constraint),
             free,
             motion: None,
             unmoved: false,
@@ -192,6 +196,20 @@ impl Scope {
             functions: BTreeMap::new(),
             calls: Cell::new(0),
         }
+    }
+
+    /// The coordinates that are a chart by themselves: plain numbers, where no constraint was written.
+    pub fn plain(&self) -> Vec<NodeId> {
+        let coordinates = self.names.values().filter(|entry| {
+            let plain = matches!(
+                entry.kind,
+                NameKind::Coord(CoordKind::Real | CoordKind::Euclidean(_))
+            );
+            plain && !self.constrained
+        });
+        let values = coordinates.filter_map(|entry| entry.value.as_ref());
+        let entries = values.flat_map(Value::entries);
+        entries.map(Edge::node).collect()
     }
 
     /// Takes a name, its value to follow; a second definition is an error. Whether it was free.
