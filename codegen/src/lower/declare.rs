@@ -1,6 +1,7 @@
 //! Declarations: every symbol of the description, with values at points of X.
 
 use super::applied;
+use super::curves;
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
 use crate::algebra::fp::Fp;
@@ -51,6 +52,7 @@ pub fn declare(
             }
         }
     }
+    curves::declare(system, graph, scope, report);
     let functions = applied::functions(system);
     for item in &system.items {
         if let ItemKind::Function(function) = &item.kind {
@@ -107,6 +109,7 @@ pub fn declare(
             applied::claim(function, scope, report);
         }
     }
+    curves::claim(system, scope, report);
     let velocities = graph
         .symbols()
         .iter()

@@ -26,6 +26,9 @@ impl Evaluator<'_> {
         if let Some(own) = scope.functions.get(&function.name) {
             return self.applied(own, arguments, span);
         }
+        if let Some(curve) = scope.tables.get(&function.name) {
+            return self.table(&function.name, curve.as_ref(), arguments, span);
+        }
         if function.name == "rate" {
             return self.rate(arguments, span);
         }
@@ -79,7 +82,8 @@ impl Evaluator<'_> {
             return self.error(error.help("a product is written with `*`"));
         }
         let scope = self.scope;
-        let own = scope.functions.keys().map(String::as_str);
+        let own = scope.functions.keys().chain(scope.tables.keys());
+        let own = own.map(String::as_str);
         let all: Vec<&str> = known().collect();
         let all = all.into_iter().chain(own);
         match closest(name, all) {

@@ -1,5 +1,6 @@
 //! Names and what they stand for.
 
+use super::curves::Curve;
 use super::motion::Motion;
 use crate::algebra::function::Function;
 use crate::algebra::graph::{Edge, NodeId};
@@ -140,6 +141,8 @@ pub struct Scope {
     pub rates: Option<Rates>,
     /// The functions of the description.
     pub functions: BTreeMap<String, Defined>,
+    /// The tables of the description; `None` where they are in error.
+    pub tables: BTreeMap<String, Option<Curve>>,
     /// How many calls of them have been written out.
     pub calls: Cell<usize>,
 }
@@ -173,6 +176,10 @@ impl Scope {
                     note(&function.name, NameKind::Function);
                     continue;
                 }
+                ItemKind::Table(table) => {
+                    note(&table.name, NameKind::Function);
+                    continue;
+                }
                 _ => continue,
             };
             list.iter()
@@ -194,6 +201,7 @@ impl Scope {
             unmoved: false,
             rates: None,
             functions: BTreeMap::new(),
+            tables: BTreeMap::new(),
             calls: Cell::new(0),
         }
     }

@@ -2,9 +2,11 @@
 
 mod expression;
 mod joint;
+mod table;
 
 pub use expression::{BinaryOp, Choice, Comparison, Expr, ExprKind};
 pub use joint::{Joint, JointField, JointKind};
+pub use table::{Between, Beyond, Source, Table};
 
 use std::ops::Range;
 
@@ -307,6 +309,8 @@ pub enum ItemKind {
     Let(Vec<Declaration>),
     /// `fn drag(v: vec3, c) = -c * norm(v) * v;` a function of expressions.
     Function(Function),
+    /// `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;` a function by its values.
+    Table(Table),
     /// `coord r: R3, R: SO3, q;`
     Coord(Vec<(Ident, CoordKind)>),
     /// `velocity v: vec3, w: vec3, u;`, or with rows of Y: `velocity v: vec3 = R.T * rate(r);`
