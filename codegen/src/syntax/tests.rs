@@ -119,6 +119,17 @@ fn told(kind: &ItemKind) -> String {
             let value = spelled(&function.value);
             format!("fn {}({parameters}) = {value}", function.name.name)
         }
+        Table(table) => {
+            let source = match &table.source {
+                super::ast::Source::Points(points, _) => {
+                    let one = |(a, b): &(Expr, Expr)| format!("{}: {}", spelled(a), spelled(b));
+                    points.iter().map(one).collect::<Vec<_>>().join("; ")
+                }
+                super::ast::Source::File(name, _) => format!("file {name}"),
+            };
+            let (name, between, beyond) = (&table.name.name, table.between, table.beyond);
+            format!("table {name} = {source}, {between:?}, beyond {beyond:?}")
+        }
         Param(all) => format!("param {}", declared(all)),
         Const(all) => format!("const {}", declared(all)),
         Let(all) => format!("let {}", declared(all)),
