@@ -150,8 +150,9 @@ macro_rules! table {
 
             /// The function of one argument with this name in descriptions.
             pub fn named(name: &str) -> Option<Function> {
-                let of_one = |function: &&Function| function.row().slope != Two;
-                Function::ALL.iter().filter(of_one).copied().find(|function| function.name() == name)
+                let named = |function: &&Function| function.name() == name && function.row().slope != Two;
+                let word = name.starts_with(|first: char| first.is_ascii_alphabetic());
+                Function::ALL.iter().find(named).copied().filter(|_| word)
             }
 
             /// Its name in descriptions.

@@ -11,6 +11,7 @@ mod bodies;
 mod build;
 mod choice;
 mod completion;
+mod curve;
 mod curves;
 mod declare;
 mod defaults;

@@ -1,6 +1,6 @@
 //! Names and what they stand for.
 
-use super::curves::Curve;
+use super::curve::Curve;
 use super::motion::Motion;
 use crate::algebra::function::Function;
 use crate::algebra::graph::{Edge, NodeId};
@@ -109,7 +109,7 @@ const RESERVED: &[&str] = &[
 /// come last.
 pub fn reserved() -> impl Iterator<Item = &'static str> {
     let table = Function::ALL.iter().map(|function| function.name());
-    let further = table.filter(|name| !RESERVED.contains(name));
+    let further = table.filter(|name| !RESERVED.contains(name) && Function::named(name).is_some());
     RESERVED.iter().copied().chain(further)
 }
 
