@@ -21,6 +21,8 @@ pub(super) struct Cursor<'a> {
     at: usize,
     /// Where the next statement starts, if the current one turned out to lack its `;`.
     resume: Option<usize>,
+    /// How many choices the next token is in: their conditions have no brackets that would bound them.
+    pub choices: usize,
     /// The errors of the statements that were given up.
     pub errors: Vec<Diagnostic>,
 }
@@ -32,6 +34,7 @@ impl<'a> Cursor<'a> {
             tokens,
             at: 0,
             resume: None,
+            choices: 0,
             errors: Vec::new(),
         }
     }

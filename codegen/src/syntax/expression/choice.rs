@@ -6,6 +6,7 @@ use super::{Node, check_operands, node, sum};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{Choice, Comparison, Expr, ExprKind, Span};
 use crate::syntax::cursor::{Cursor, Parsed};
+use crate::syntax::tokens::MAX_NESTING;
 use proc_macro2::Delimiter;
 
 /// How a choice is written.
@@ -23,6 +24,18 @@ struct Case {
 
 /// A choice, at its `if`.
 pub(super) fn choice(cursor: &mut Cursor<'_>) -> Parsed<Node> {
+    if cursor.choices >= MAX_NESTING {
+        let message = format!("choices are nested more than {MAX_NESTING} deep");
+        let error = Diagnostic::new(cursor.here(), message);
+        return Err(error.help("name a part of it with `let`"));
+    }
+    cursor.choices += 1;
+    let choice = cases(cursor);
+    cursor.choices -= 1;
+    choice
+}
+
+fn cases(cursor: &mut Cursor<'_>) -> Parsed<Node> {
     let mut cases = Vec::new();
     let last = loop {
         check_operands(cursor, cases.len() + 2)?;
