@@ -13,6 +13,8 @@
 //! | coordinates of a circle, a sphere, a rotation | 2; 1 for 1 + t² and its kind |
 //! | sin, cos of Σ c a/12 | 2 Σ \|c\|; \|c\| for the circle of a |
 //! | sinh, cosh, tanh of Σ c a/12 | the same for the powers of a |
+//! | a where c > 0, else b | 1 more than that of a + b |
+//! | what depends on the side of 0, of a | Nᵃ + 1 |
 //! | √a | ⌈(Nᵃ + Σ m deg d)/2⌉; the bound of the whole is taken four times |
 //!
 //! A root is a number r with r² = a: a polynomial in r vanishes only where its product with that of −r
@@ -105,6 +107,14 @@ impl Degrees<'_> {
                 quotient
             }
             Node::Apply(function, a) => self.apply(function, a),
+            Node::Select(_, a, b) => {
+                let side = Fraction {
+                    degree: 1.0,
+                    ..Fraction::default()
+                };
+                let [a, b] = [a, b].map(|edge| product(self.read(edge), &side, 1.0));
+                self.sum(&a, &b)
+            }
             Node::Atan2(..) => Fraction {
                 degree: 1.0,
                 ..Fraction::default()
@@ -146,6 +156,12 @@ impl Degrees<'_> {
                     degree: (self.whole(&below) / 2.0).ceil(),
                     ..Fraction::default()
                 }
+            }
+            // A random number that belongs to the value of a, and may be a factor of a.
+            Law::Side => {
+                let mut fraction = self.read(argument);
+                fraction.degree += 1.0;
+                fraction
             }
             Law::Free => Fraction {
                 degree: 1.0,

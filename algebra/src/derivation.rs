@@ -102,13 +102,27 @@ impl Derivation {
                         let numerator = graph.mul(half, da);
                         graph.div(numerator, Edge::of(id)).unwrap_or(zero)
                     }
+                    Slope::Half(other) => {
+                        let half = graph.ratio(1, 2);
+                        let numerator = graph.mul(half, da);
+                        let inverse = graph.apply(other, Edge::of(id));
+                        graph.mul(numerator, inverse)
+                    }
+                    Slope::MinusSquare => {
+                        let square = graph.mul(Edge::of(id), Edge::of(id));
+                        -graph.mul(square, da)
+                    }
                     Slope::OneMinusSquare => {
                         let square = graph.mul(Edge::of(id), Edge::of(id));
                         let slope = graph.sub(graph.one(), square);
                         graph.mul(slope, da)
                     }
-                    Slope::Two => zero,
+                    Slope::Nothing | Slope::Two => zero,
                 }
+            }
+            Node::Select(c, a, b) => {
+                let (da, db) = (self.seen(graph, a), self.seen(graph, b));
+                graph.select(c, da, db)
             }
             Node::Atan2(y, x) => {
                 // (x y' − y x')/(x² + y²)

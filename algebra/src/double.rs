@@ -13,6 +13,7 @@
 //! | log a | y + a exp(−y) − 1 |
 //! | atan2(y, x) | θ + (y cos θ − x sin θ) / √(x² + y²) |
 
+use super::function::SHORTEST;
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -80,6 +81,20 @@ impl Double {
     /// |a|.
     pub fn abs(self) -> Self {
         self.signed(self.high < 0.0)
+    }
+
+    /// 1 with the sign of a, 0 of 0.
+    pub fn sign(self) -> Self {
+        match self.high == 0.0 {
+            true => self,
+            false => Double::new(self.high.signum()),
+        }
+    }
+
+    /// 1/a, where a is not nearly 0.
+    pub fn inverse_of_length(self) -> Self {
+        let short = self.high.abs() < SHORTEST;
+        Double::ONE / if short { Double::new(SHORTEST) } else { self }
     }
 
     /// −a where asked.

@@ -130,6 +130,22 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
                 let factor = numbers.slope(function, (&a.0, &value), &form)?;
                 self.with(value, &[(Partial::By(factor), &a.1)])
             }
+            // Each branch moves by itself: where it is not known which one is taken, by its share.
+            Step::Select(c, a, b) => match numbers.is_positive(&c.0) {
+                Some(true) => Some(a.clone()),
+                Some(false) => Some(b.clone()),
+                None => {
+                    let value = numbers.make(Step::Select(&c.0, &a.0, &b.0))?;
+                    let (zero, one) =
+                        (numbers.make(Step::Whole(0))?, numbers.make(Step::Whole(1))?);
+                    let by_a = numbers.make(Step::Select(&c.0, &one, &zero))?;
+                    let by_b = numbers.make(Step::Select(&c.0, &zero, &one))?;
+                    self.with(
+                        value,
+                        &[(Partial::By(by_a), &a.1), (Partial::By(by_b), &b.1)],
+                    )
+                }
+            },
             // (x y′ − y x′)/(x² + y²).
             Step::Atan2(y, x) => {
                 let value = numbers.make(Step::Atan2(&y.0, &x.0))?;
@@ -152,6 +168,10 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
 
     fn is_zero(&self, a: &Self::Number) -> bool {
         self.numbers.is_zero(&a.0) && !self.slopes.moves(&self.numbers, &a.1)
+    }
+
+    fn is_positive(&self, a: &Self::Number) -> Option<bool> {
+        self.numbers.is_positive(&a.0)
     }
 
     /// With one inverse.

@@ -24,8 +24,7 @@ impl Graph {
     /// A node e with e² = `square` on X that is no square root itself; of either sign.
     pub fn known_root(&self, square: Edge) -> Option<Edge> {
         let root = self.value(square).sqrt()?;
-        let is_root =
-            |edge: &Edge| matches!(self.node(edge.node()), Node::Apply(Function::Sqrt, _));
+        let is_root = |edge: &Edge| self.node(edge.node()).is_root();
         [root, root.flipped()]
             .into_iter()
             .filter_map(|value| self.lookup(value))
@@ -36,7 +35,8 @@ impl Graph {
     /// |e| is neither e nor −e, unless e is itself a root or a number.
     pub(super) fn apart_from_root(&self, square: Edge, root: Fp) -> Fp {
         match self.lookup(root).map(|known| self.node(known.node())) {
-            None | Some(Node::Constant(_) | Node::Apply(Function::Sqrt, _)) => root,
+            None | Some(Node::Constant(_)) => root,
+            Some(node) if node.is_root() => root,
             Some(_) if self.value(square) == root * root => root.flipped(),
             Some(_) => root,
         }
@@ -173,7 +173,9 @@ impl Graph {
                     let (a, b) = (of(a), of(b));
                     BigRational::new(a.numer().gcd(b.numer()), a.denom().lcm(b.denom()))
                 }
-                Node::Symbol(_) | Node::Apply(..) | Node::Atan2(..) => continue,
+                Node::Symbol(_) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => {
+                    continue;
+                }
             };
             contents.insert(id, content);
         }

@@ -3,10 +3,12 @@
 //! A new function is a row here, with its values in numbers of every kind, and its values modulo p
 //! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
 
-use Cost::{Other, Root, Turn};
-use Law::{Angle, Free, Hyperbola, Power, Radical};
+use Cost::{Choice, Other, Quotient, Root, Turn};
+use Law::{Angle, Free, Hyperbola, Power, Radical, Side};
 use Parity::{Even, Odd, Plain};
-use Slope::{HalfInverse, Inverse, Is, IsMinus, Itself, OneMinusSquare, Two};
+use Slope::{
+    Half, HalfInverse, Inverse, Is, IsMinus, Itself, MinusSquare, Nothing, OneMinusSquare, Two,
+};
 
 use super::double::Double;
 use super::interval::Interval;
@@ -35,6 +37,8 @@ pub enum Law {
     Hyperbola,
     /// √(a b) = √a √b of what is positive.
     Radical,
+    /// Of the side of 0 on which an argument is (`Lane::positive`), by which f(a) is a multiple of f(1).
+    Side,
     /// Of nothing: any value will do.
     Free,
 }
@@ -59,8 +63,14 @@ pub enum Slope {
     Inverse,
     /// 1/(2 f(a)).
     HalfInverse,
+    /// ½ g(f(a)).
+    Half(Function),
+    /// −f(a)².
+    MinusSquare,
     /// 1 − f(a)².
     OneMinusSquare,
+    /// 0.
+    Nothing,
     /// It has two arguments, and rules of its own.
     Two,
 }
@@ -72,6 +82,10 @@ pub enum Cost {
     Root,
     /// Half of a pair of sine and cosine.
     Turn,
+    /// A division.
+    Quotient,
+    /// A comparison, as dear as a sum.
+    Choice,
     /// Any other function.
     Other,
 }
@@ -141,6 +155,13 @@ macro_rules! table {
                 }
             }
 
+            /// The function of one argument with this name in descriptions.
+            pub fn named(name: &str) -> Option<Function> {
+                let named = |function: &&Function| function.name() == name && function.row().slope != Two;
+                let word = name.starts_with(|first: char| first.is_ascii_alphabetic());
+                Function::ALL.iter().find(named).copied().filter(|_| word)
+            }
+
             /// Its name in descriptions.
             pub fn name(self) -> &'static str {
                 self.row().name
@@ -172,7 +193,25 @@ table! {
         f64::cosh, Double::cosh, Real::cosh, Interval::cosh;
     Tanh "hyperbolic tangent" "tanh" "tanh()" r"\tanh" Other Odd Hyperbola [Some([0, 0])] [OneMinusSquare]
         f64::tanh, Double::tanh, Real::tanh, Interval::tanh;
+    Sign "1 with the sign of its argument, 0 of 0" "sign" "sign()" r"\operatorname{sign}" Choice Odd Side
+        [Some([0, 0])] [Nothing]
+        |a| if a == 0.0 { a } else { a.signum() }, Double::sign, Real::sign, Interval::sign;
+    Abs "absolute value" "abs" "abs()" r"\operatorname{abs}" Choice Even Side [Some([0, 0])] [Is(Function::Sign)]
+        f64::abs, Double::abs, Real::abs, Interval::abs;
+    Select "a where c > 0, else b, arguments (c, a, b): a node of its own, without values of one argument"
+        "if" "select_positive" r"\operatorname{if}" Choice Plain Free [None] [Two]
+        |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
+    Norm "length, the root of a sum of squares: where that is 0, its derivative is 0"
+        "sqrt" "sqrt()" r"\sqrt" Root Plain Radical [None] [Half(Function::Inverse)]
+        f64::sqrt, Double::sqrt, Real::sqrt, Interval::sqrt;
+    Inverse "1/a, but a large number where a is nearly 0: times a sum of products that are 0 there it is 0"
+        "1/" "inverse_of_length()" r"1/" Quotient Odd Free [None] [MinusSquare]
+        |a| if a.abs() < SHORTEST { SHORTEST.recip() } else { a.recip() }, Double::inverse_of_length,
+        |a| Real::new(1.0, 0.0).over(a), Interval::inverse;
 }
+
+/// Lengths below this are divided by as if they were this long.
+pub(super) const SHORTEST: f64 = 1e-100;
 
 impl Interval {
     /// A function of one argument; `None` where it has no value, or none is known.

@@ -8,6 +8,7 @@
 //! Children stand before parents.
 
 mod merge;
+mod side;
 pub(crate) use merge::canonical;
 
 use super::fp::Fp;
@@ -21,6 +22,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use rustc_hash::FxHashMap;
+use std::cmp::Ordering;
 
 /// The graph.
 #[derive(Clone, Debug)]
@@ -107,7 +109,7 @@ impl Graph {
     /// Finds the rational factor of what is put under a square root, once for all points.
     fn note_content(&mut self, function: Function, argument: Edge) {
         let id = argument.node();
-        if function == Function::Sqrt && !self.contents.contains_key(&id) {
+        if function.row().law == Law::Radical && !self.contents.contains_key(&id) {
             let content = self.content(argument);
             self.contents.insert(id, content);
         }
@@ -369,6 +371,15 @@ impl Graph {
             && argument == Edge::of(a)
         {
             return Edge::of(value);
+        }
+        if row.law == Law::Side
+            && let Some(side) = self.side(argument)
+        {
+            let unsigned = match function {
+                Function::Abs => argument,
+                _ => self.one(),
+            };
+            return unsigned.signed((side == Ordering::Less) ^ negative);
         }
         if row.law == Law::Radical {
             let exact = self.exact_root(argument);

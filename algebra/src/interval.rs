@@ -10,6 +10,7 @@ use num_bigint::{BigInt, Sign};
 use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
+use std::cmp::Ordering;
 
 /// Bits that are kept.
 const BITS: u64 = 320;
@@ -264,6 +265,25 @@ impl Interval {
         let half = Interval::new(BigInt::one(), BigInt::one(), -1);
         let (sum, difference) = (power.plus(&inverse), power.plus(&inverse.signed(true)));
         Some((difference.times(&half), sum.times(&half)))
+    }
+
+    /// On which side of 0 it is; `None` where that is not certain.
+    pub fn side(&self) -> Option<Ordering> {
+        match (self.lo.sign(), self.hi.sign()) {
+            (Sign::Plus, _) => Some(Ordering::Greater),
+            (_, Sign::Minus) => Some(Ordering::Less),
+            (Sign::NoSign, Sign::NoSign) => Some(Ordering::Equal),
+            _ => None,
+        }
+    }
+
+    pub(super) fn abs(&self) -> Option<Self> {
+        Some(self.signed(self.side()? == Ordering::Less))
+    }
+
+    pub(super) fn sign(&self) -> Option<Self> {
+        let sign = BigInt::from(self.side()? as i8);
+        Some(Interval::new(sign.clone(), sign, 0))
     }
 
     fn contains_zero(&self) -> bool {

@@ -23,6 +23,12 @@ pub type LinearForm = Form<Fp>;
 /// atom are then whole multiples of it.
 const PARTS: i64 = 12;
 
+/// The tag of the random numbers that stand for sides of 0.
+const POSITIVE: u64 = 128;
+
+/// Numerators and denominators with so many bits are recognised as rational.
+const PLAIN_BITS: u32 = 29;
+
 /// Which square roots have values at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Roots {
@@ -135,17 +141,26 @@ impl Lane {
                 hyperbolic(function, self.exp(form, &first)),
                 hyperbolic(function, self.exp(form, &second)),
             ),
-            Function::Sqrt => {
+            Function::Sqrt | Function::Norm => {
                 let roots = (
                     self.root(argument.0, form, &first),
                     self.root(argument.1, form, &second),
                 );
                 self.stuck[0] |= roots.0.is_none();
                 self.stuck[1] |= roots.1.is_none();
-                let other = self.opaque(function, argument, Fp::ZERO);
+                let other = self.opaque(Function::Sqrt, argument, Fp::ZERO);
                 Fp(roots.0.unwrap_or(other.0), roots.1.unwrap_or(other.1))
             }
-            Function::Log | Function::Atan2 => self.opaque(function, argument, Fp::ZERO),
+            Function::Abs => self.sign(argument) * argument,
+            Function::Sign => self.sign(argument),
+            // It is odd.
+            Function::Inverse => {
+                let of = |a| self.opaque(function, a, Fp::ZERO);
+                of(argument) - of(-argument)
+            }
+            Function::Log | Function::Atan2 | Function::Select => {
+                self.opaque(function, argument, Fp::ZERO)
+            }
         }
     }
 
@@ -179,6 +194,27 @@ impl Lane {
             self.draw(tag, a.0, b.0).residue(),
             self.draw(tag, a.1, b.1).residue(),
         )
+    }
+
+    /// 1 where a > 0 and 0 elsewhere, for numbers a; for anything else a random number s that belongs to the
+    /// value of a.
+    ///
+    /// Whatever holds for a random s holds for 1 and for 0, and so on both sides. What holds on each of the sides
+    /// only because s is 1 or 0 there, such as s² = s, is not found. That s(−a) = 1 − s(a) is not true where
+    /// a = 0; so the two are chosen apart.
+    pub fn positive(&self, a: Fp) -> Fp {
+        if let Some((n, _)) = a.to_small_rational(PLAIN_BITS) {
+            return if n > 0 { Fp::ONE } else { Fp::ZERO };
+        }
+        Fp(
+            self.draw(POSITIVE, a.0, Residue::ONE).residue(),
+            self.draw(POSITIVE, a.1, Residue::ONE).residue(),
+        )
+    }
+
+    /// The sign of a as the difference of a > 0 and −a > 0: 0 where a is 0.
+    fn sign(&self, a: Fp) -> Fp {
+        self.positive(a) - self.positive(-a)
     }
 
     /// A random stream that belongs to a tag and two values.
@@ -246,6 +282,7 @@ impl Numbers for Lane {
             Step::Div(a, b) => *a * b.inv()?,
             Step::Apply(function, a, form) => self.function(function, *a, &form()),
             Step::Atan2(y, x) => self.opaque(Function::Atan2, *y, *x),
+            Step::Select(c, a, b) => *b + self.positive(*c) * (*a - *b),
         })
     }
 

@@ -33,6 +33,7 @@ pub mod function;
 pub mod graph;
 pub mod interval;
 pub mod jets;
+mod jumps;
 pub mod lane;
 pub mod linear;
 pub mod node;

@@ -1,6 +1,7 @@
 //! Edges, nodes and symbols of the expression graph.
 
 pub use super::function::Function;
+use super::function::Law;
 
 /// Index of a node.
 pub type NodeId = u32;
@@ -66,19 +67,27 @@ pub enum Node {
     Apply(Function, Edge),
     /// atan2(y, x).
     Atan2(Edge, Edge),
+    /// (c, a, b): a where c > 0, else b.
+    Select(Edge, Edge, Edge),
 }
 
 impl Node {
     /// The children, in order.
     pub fn children(self) -> impl DoubleEndedIterator<Item = Edge> {
-        let (a, b) = match self {
-            Node::Constant(_) | Node::Symbol(_) => (None, None),
-            Node::Apply(_, a) => (Some(a), None),
+        let list = match self {
+            Node::Constant(_) | Node::Symbol(_) => [None; 3],
+            Node::Apply(_, a) => [Some(a), None, None],
             Node::Add(a, b) | Node::Mul(a, b) | Node::Div(a, b) | Node::Atan2(a, b) => {
-                (Some(a), Some(b))
+                [Some(a), Some(b), None]
             }
+            Node::Select(c, a, b) => [Some(c), Some(a), Some(b)],
         };
-        a.into_iter().chain(b)
+        list.into_iter().flatten()
+    }
+
+    /// Whether it is a square root.
+    pub fn is_root(self) -> bool {
+        matches!(self, Node::Apply(function, _) if function.row().law == Law::Radical)
     }
 
     /// The same of other children.
@@ -90,6 +99,7 @@ impl Node {
             Node::Mul(a, b) => Node::Mul(child(a), child(b)),
             Node::Div(a, b) => Node::Div(child(a), child(b)),
             Node::Atan2(a, b) => Node::Atan2(child(a), child(b)),
+            Node::Select(c, a, b) => Node::Select(child(c), child(a), child(b)),
         }
     }
 }

@@ -44,6 +44,8 @@ pub enum Step<'a, N> {
     Apply(Function, &'a N, Former<'a, N>),
     /// The angle of (x, y), arguments (y, x).
     Atan2(&'a N, &'a N),
+    /// (c, a, b): a where c > 0, else b.
+    Select(&'a N, &'a N, &'a N),
 }
 
 /// Arithmetic at a point.
@@ -57,6 +59,11 @@ pub trait Numbers {
     /// Whether it is 0 for certain.
     fn is_zero(&self, _: &Self::Number) -> bool {
         false
+    }
+
+    /// Whether it is positive; `None` where that is not known.
+    fn is_positive(&self, _: &Self::Number) -> Option<bool> {
+        None
     }
 
     /// a/b and its derivatives by a and b: 1/b and −(a/b)/b.
@@ -93,6 +100,15 @@ pub trait Numbers {
                 );
                 self.make(Step::Div(&one, &twice))
             }
+            Slope::Half(other) => {
+                let twice = self.make(Step::Whole(2))?;
+                let inverse = self.make(Step::Apply(other, value, form))?;
+                self.make(Step::Div(&inverse, &twice))
+            }
+            Slope::MinusSquare => {
+                let square = self.make(Step::Mul(value, value))?;
+                self.make(Step::Neg(&square))
+            }
             Slope::OneMinusSquare => {
                 let (one, square) = (
                     self.make(Step::Whole(1))?,
@@ -100,6 +116,7 @@ pub trait Numbers {
                 );
                 self.make(Step::Sub(&one, &square))
             }
+            Slope::Nothing => self.make(Step::Whole(0)),
             Slope::Two => None,
         }
     }
@@ -159,6 +176,10 @@ pub trait Numbers {
             Node::Atan2(y, x) => {
                 let (y, x) = (read(y)?, read(x)?);
                 self.make(Step::Atan2(&y, &x))
+            }
+            Node::Select(c, a, b) => {
+                let (c, a, b) = (read(c)?, read(a)?, read(b)?);
+                self.make(Step::Select(&c, &a, &b))
             }
         }
     }

@@ -27,7 +27,17 @@ impl Numbers for Floats<'_> {
             Step::Div(a, b) => a / b,
             Step::Apply(function, a, _) => (function.row().value)(*a),
             Step::Atan2(y, x) => y.atan2(*x),
+            // Where c is no number, neither is the choice.
+            Step::Select(c, a, b) => match self.is_positive(c) {
+                Some(true) => *a,
+                Some(false) => *b,
+                None => f64::NAN,
+            },
         })
+    }
+
+    fn is_positive(&self, a: &f64) -> Option<bool> {
+        (!a.is_nan()).then_some(*a > 0.0)
     }
 
     fn is_zero(&self, a: &f64) -> bool {

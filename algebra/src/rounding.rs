@@ -9,6 +9,7 @@
 //! | a b | \|a\| e_b + \|b\| e_a + u \|a b\| |
 //! | a / b | (e_a + \|a/b\| e_b) / \|b\| + u \|a/b\| |
 //! | f(a) | \|f'(a)\| e_a + u \|f(a)\| |
+//! | a where c > 0, else b | e_a or e_b |
 //!
 //! but for terms of second order.
 
@@ -16,6 +17,7 @@ use super::double::Double;
 use super::dual::{Duals, Partial, Slopes};
 use super::graph::{Edge, Graph};
 use super::numbers::{Numbers, Step};
+use super::numeric::Floats;
 use super::walk::evaluate;
 
 /// Unit roundoff of `f64`.
@@ -56,7 +58,17 @@ impl Numbers for Doubles<'_> {
             Step::Div(a, b) => *a / *b,
             Step::Apply(function, a, _) => (function.row().double)(*a),
             Step::Atan2(y, x) => y.atan2(*x),
+            Step::Select(c, a, b) => match self.is_positive(c) {
+                Some(true) => *a,
+                Some(false) => *b,
+                None => *c,
+            },
         })
+    }
+
+    fn is_positive(&self, a: &Double) -> Option<bool> {
+        let value = a.to_f64();
+        (!value.is_nan()).then_some(value > 0.0)
     }
 }
 
@@ -84,6 +96,11 @@ impl Numbers for Both<'_> {
                 (of(long(a)).to_f64(), of(a.exact))
             }
             Step::Atan2(y, x) => (long(y).atan2(long(x)).to_f64(), y.exact.atan2(x.exact)),
+            Step::Select(c, a, b) => {
+                let rounded = Step::Select(&c.rounded, &a.rounded, &b.rounded);
+                let exact = Step::Select(&c.exact, &a.exact, &b.exact);
+                (Floats(&[]).make(rounded)?, self.0.make(exact)?)
+            }
         };
         Some(Rounded { rounded, exact })
     }

@@ -1,7 +1,6 @@
 //! The real values of a graph's nodes, found where they are needed to tell expressions apart: those of
 //! numbers with certainty, those of what has a square root below it at samples.
 
-use super::function::Function;
 use super::interval::Interval;
 use super::node::{Edge, Node, NodeId};
 use super::numbers::{Form, Numbers, Step};
@@ -9,6 +8,7 @@ use super::reals::{Real, Reals, SAMPLES, contradict};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use rustc_hash::FxHashMap;
+use std::cmp::Ordering;
 
 /// Real values of nodes, found when they are first asked for.
 #[derive(Clone, Debug, Default)]
@@ -47,7 +47,7 @@ impl Shadow {
 
     fn has_root(&self, node: Node) -> bool {
         let below = |edge: Edge| self.rooted[edge.node() as usize];
-        matches!(node, Node::Apply(Function::Sqrt, _)) || node.children().any(below)
+        node.is_root() || node.children().any(below)
     }
 
     /// Whether a node with square roots below it, or what it is said to equal, is another number.
@@ -118,7 +118,7 @@ impl Shadow {
     }
 
     /// The bounds of a node that depends on no symbol but π.
-    fn number(
+    pub(super) fn number(
         &mut self,
         nodes: &[Node],
         constants: &[BigRational],
@@ -189,6 +189,9 @@ impl Numbers for Samples<'_> {
             Step::Div(a, b) => pair(a, b, Real::over),
             Step::Apply(function, a, _) => a.map(|a| a.apply(function)),
             Step::Atan2(y, x) => pair(y, x, Real::atan2),
+            Step::Select(c, a, b) => {
+                std::array::from_fn(|sample| c[sample].select(a[sample], b[sample]))
+            }
         })
     }
 }
@@ -213,6 +216,10 @@ impl Numbers for Bounds {
             Step::Div(a, b) => Some(a.times(&b.inverse()?)),
             Step::Apply(function, a, _) => (function.row().interval)(a),
             Step::Atan2(y, x) => y.atan2(x),
+            Step::Select(c, a, b) => Some(match c.side()? {
+                Ordering::Greater => a.clone(),
+                _ => b.clone(),
+            }),
         }
     }
 }

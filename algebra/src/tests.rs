@@ -139,6 +139,81 @@ fn functions_obey_their_group_laws() {
     assert_eq!(g.mul(twice, inverse), g.one());
 }
 
+/// What holds on both sides of 0 is found; what holds on one of them is not, nor what fails at 0 alone.
+#[test]
+fn absolute_values_are_what_they_are_on_both_sides() {
+    let (mut g, [p, _, a, b, c, s]) = graph();
+    let abs = |g: &mut Graph, e| g.apply(Function::Abs, e);
+    let sign = |g: &mut Graph, e| g.apply(Function::Sign, e);
+    let (x, y) = (abs(&mut g, a), abs(&mut g, b));
+    assert_eq!((abs(&mut g, -a), sign(&mut g, -a)), (x, -sign(&mut g, a)));
+    let (sx, sy) = (sign(&mut g, a), sign(&mut g, b));
+    assert_eq!(g.mul(sx, a), x);
+    let (ab, xy, ss) = (g.mul(a, b), g.mul(x, y), g.mul(sx, sy));
+    let (of_product, sign_of_product) = (abs(&mut g, ab), sign(&mut g, ab));
+    // Of what is not equal, and of what is, but is not found, no two are one.
+    let squares = [g.mul(x, x), g.mul(a, a), g.mul(sx, sx), g.one()];
+    let mut all = vec![x, a, y, b, xy, ab, of_product, ss, sign_of_product];
+    all.extend(squares);
+    for e in [p, c, s, ab] {
+        let less = g.sub(e, g.one());
+        all.extend([abs(&mut g, less), less, sign(&mut g, less)]);
+    }
+    let some: std::collections::BTreeSet<_> = all.iter().map(|edge| edge.abs()).collect();
+    assert_eq!(some.len(), all.len());
+    // A number is on one side: 3 − π, and 1/4 of c² + s² − 3/4.
+    let (cc, ss, number) = (g.mul(c, c), g.mul(s, s), g.ratio(-3, 4));
+    let quarter = g.sum(&[cc, ss, number]);
+    assert_eq!(
+        (abs(&mut g, -quarter), sign(&mut g, quarter)),
+        (quarter, g.one())
+    );
+    let (two, three) = (g.ratio(2, 1), g.ratio(3, 1));
+    let root = [two, three].map(|number| g.apply(Function::Sqrt, number));
+    let less = g.sub(root[0], root[1]);
+    assert_eq!((abs(&mut g, less), sign(&mut g, less)), (-less, -g.one()));
+    assert_eq!(sign(&mut g, three), g.one());
+}
+
+/// Choices obey what holds for both branches, and nothing else.
+#[test]
+fn choices_are_equal_where_both_branches_are() {
+    let (mut g, [p, _, a, b, c, s]) = graph();
+    let (zero, one) = (g.zero(), g.one());
+    let choose = |g: &mut Graph, c, a, b| g.select(c, a, b);
+    let e = choose(&mut g, a, b, p);
+    assert_eq!(choose(&mut g, a, b, b), b);
+    assert_eq!(choose(&mut g, a, -b, -p), -e);
+    let (cb, cp) = (g.mul(c, b), g.mul(c, p));
+    assert_eq!(choose(&mut g, a, cb, cp), g.mul(c, e));
+    let [step, other] = [(one, zero), (zero, one)].map(|(x, y)| g.select(a, x, y));
+    assert_eq!(g.add(step, other), one);
+    assert_eq!(g.dot(&[step, other], &[b, p]), e);
+    // The sign is the difference of both sides.
+    let back = g.select(-a, one, zero);
+    assert_eq!(g.sub(step, back), g.apply(Function::Sign, a));
+    let less = g.sub(a, one);
+    let later = g.select(less, one, zero);
+    // [a > 1][a > 0] = [a > 1] and [a > 0]² = [a > 0] are true and not found; [a > 0] + [−a > 0] = 1 is wrong at 0,
+    // and that the greater of two is one of them, or the same of both orders, is wrong, or not found.
+    let both = g.mul(later, step);
+    let (difference, reverse) = (g.sub(a, b), g.sub(b, a));
+    let greater = [g.select(difference, a, b), g.select(reverse, b, a)];
+    let all = [
+        step, other, back, later, both, e, one, a, b, greater[0], greater[1],
+    ];
+    let sum = g.add(step, back);
+    let square = g.mul(step, step);
+    let all: Vec<Edge> = all.into_iter().chain([sum, square]).collect();
+    let some: std::collections::BTreeSet<_> = all.iter().map(|edge| edge.abs()).collect();
+    assert_eq!(some.len(), all.len());
+    // A number is on one side.
+    let (cc, ss) = (g.mul(c, c), g.mul(s, s));
+    let unit = g.add(cc, ss);
+    assert_eq!((g.select(unit, a, b), g.select(-unit, a, b)), (a, b));
+    assert_eq!(g.select(zero, a, b), b);
+}
+
 #[test]
 fn division_by_zero_on_the_variety_is_refused() {
     let (mut g, [_, _, a, _, c, s]) = graph();
@@ -158,7 +233,7 @@ fn expression(g: &mut Graph, leaves: &[Edge], random: &mut Random, depth: usize)
     let y = expression(g, leaves, random, depth - 1);
     let (xx, two) = (g.mul(x, x), g.ratio(2, 1));
     let positive = g.add(xx, two);
-    match random.bits() % 8 {
+    match random.bits() % 10 {
         0 => g.add(x, y),
         1 => g.sub(x, y),
         2 => g.mul(x, y),
@@ -166,6 +241,8 @@ fn expression(g: &mut Graph, leaves: &[Edge], random: &mut Random, depth: usize)
         4 => g.apply(Function::Sin, x),
         5 => g.apply(Function::Sqrt, positive),
         6 => g.apply(Function::Log, positive),
+        7 => g.apply(Function::Abs, x),
+        8 => g.select(x, y, positive),
         _ => g.atan2(y, positive),
     }
 }

@@ -65,6 +65,13 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
             let x = within(graph, x, Binding::Sum, most, depth)?;
             (format!("atan2({y}, {x})"), Binding::Whole)
         }
+        Node::Select(c, a, b) => {
+            let [c, a, b] = [c, a, b].map(|edge| within(graph, edge, Binding::Sum, most, depth));
+            (
+                format!("(if {} > 0 {{ {} }} else {{ {} }})", c?, a?, b?),
+                Binding::Whole,
+            )
+        }
     };
     (text.chars().count() <= most).then_some((text, binding))
 }

@@ -97,7 +97,9 @@ impl Expander {
                 (sum.terms().len() <= MOST_TERMS).then_some(sum)
             }
             Node::Mul(a, b) => product(&self.signed(a)?, &self.signed(b)?),
-            Node::Div(..) | Node::Apply(..) | Node::Atan2(..) => Some(Poly::var(OPAQUE + id)),
+            Node::Div(..) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => {
+                Some(Poly::var(OPAQUE + id))
+            }
         }
     }
 }
@@ -108,7 +110,7 @@ pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
         .reachable(&[edge])
         .into_iter()
         .all(|id| match graph.node(id) {
-            Node::Apply(..) | Node::Atan2(..) => graph.class(id) & classes == 0,
+            Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => graph.class(id) & classes == 0,
             Node::Div(_, b) => graph.class(b.node()) & classes == 0,
             _ => true,
         })
@@ -143,7 +145,7 @@ pub fn polynomial_at(
                 read(&memo, a)?.scale(&divisor)
             }
             // Functions of parameters: any fixed value serves, the same in both graphs by its law.
-            Node::Apply(..) | Node::Atan2(..) => return None,
+            Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => return None,
         };
         memo.insert(id, polynomial);
     }

@@ -30,6 +30,7 @@ pub(crate) fn merged(into: &mut Graph, node: Node) -> Edge {
         Node::Div(a, b) => into.div(a, b).unwrap_or(into.zero()),
         Node::Apply(function, a) => into.apply(function, a),
         Node::Atan2(y, x) => into.atan2(y, x),
+        Node::Select(c, a, b) => into.select(c, a, b),
         Node::Constant(_) | Node::Symbol(_) => into.zero(),
     }
 }
@@ -78,7 +79,7 @@ pub fn graft(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
                 -into.push_apart(Node::Add(-a, -b))
             }
             (Node::Add(a, b), _) if a.is_negative() => into.push_apart(Node::Add(b, a)),
-            (Node::Apply(..) | Node::Atan2(..), _) => merged(into, node),
+            (Node::Apply(..) | Node::Atan2(..) | Node::Select(..), _) => merged(into, node),
             (other, negative) => into.push_apart(other).signed(negative),
         }
     })

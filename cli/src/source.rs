@@ -5,7 +5,7 @@ use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::functions::{Asked, FunctionId};
-use hamel_codegen::generate::{Generated, at_some_point, from_text};
+use hamel_codegen::generate::{Generated, at_some_point, from_file};
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
@@ -107,9 +107,18 @@ impl Source {
         })
     }
 
+    /// The text of a table that stands in a file, by its path from the description.
+    fn table(&self, name: &str) -> std::io::Result<String> {
+        let folder = Path::new(&self.path).parent();
+        std::fs::read_to_string(folder.unwrap_or(Path::new("")).join(name))
+    }
+
     /// What the description says, not derived yet.
     pub fn model(&self) -> Result<Model, Failure> {
-        let model = syntax::parse_text(&self.text).and_then(|system| lower::build(&system));
+        let model = syntax::parse_text(&self.text).and_then(|mut system| {
+            syntax::read_tables(&mut system, &mut |table| self.table(table))?;
+            lower::build(&system)
+        });
         let model = model.map_err(|errors| self.refused(&errors))?;
         self.warn(&model);
         Ok(model)
@@ -152,7 +161,9 @@ impl Source {
 
     /// Derives the functions that the description asks for.
     pub fn derive(&self) -> Result<Generated, Failure> {
-        let derived = progress::during(DERIVING, || from_text(&self.text));
+        let derived = progress::during(DERIVING, || {
+            from_file(&self.text, &mut |table| self.table(table))
+        });
         let derived = derived.map_err(|errors| self.refused(&errors))?;
         self.warn(&derived.model);
         Ok(derived)

@@ -11,7 +11,7 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::emit;
-use crate::generate::{Generated, from_text};
+use crate::generate::{Generated, from_file, from_text};
 use crate::render::{render, warnings};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -143,7 +143,13 @@ fn generate_file(path: &Path, kind: &Kind, target: &Path) -> Result<(), String> 
     let code = match kind {
         Kind::Description => {
             let refused = |errors: Vec<Diagnostic>| render(&errors, &shown, &text, false);
-            let generated = from_text(&text).map_err(refused)?;
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let open = &mut |table: &str| {
+                let table = folder.join(table);
+                println!("cargo:rerun-if-changed={}", table.display());
+                std::fs::read_to_string(table)
+            };
+            let generated = from_file(&text, open).map_err(refused)?;
             warn(&warnings(&generated.model.warnings, &shown, &text, false));
             written(&generated, &name(path)).map_err(refused)
         }

@@ -5,13 +5,27 @@ use crate::emit;
 use crate::generate::from_tokens;
 use crate::render::to_compile_errors;
 use proc_macro2::TokenStream;
+use std::path::PathBuf;
 
 /// The macro refuses larger programs: rustc handles their text better as a file, in chunks.
 pub const MACRO_STATEMENTS: usize = 10_000;
 
-/// The expansion of `rigid_eom! { … }`.
+/// The expansion of `rigid_eom! { … }`. The paths of tables start at the folder of the package; what was read is
+/// included once more, so that the compiler knows of it.
 pub fn expand(input: TokenStream) -> TokenStream {
-    let (places, generated) = from_tokens(input);
+    let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+    let folder = folder.unwrap_or_default();
+    let mut read = TokenStream::new();
+    let open = &mut |table: &str| {
+        let path = folder.join(table);
+        let text = std::fs::read_to_string(&path)?;
+        let path = path.to_string_lossy();
+        read.extend(quote::quote!(
+            const _: &[u8] = ::core::include_bytes!(#path);
+        ));
+        Ok(text)
+    };
+    let (places, generated) = from_tokens(input, open);
     let generated = match generated {
         Ok(generated) => generated,
         Err(errors) => return to_compile_errors(&errors, &places),
@@ -26,7 +40,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
         return to_compile_errors(&[error], &places);
     }
     match emit::tokens(&generated.program, &emit::Options::default()) {
-        Ok(tokens) => tokens,
+        Ok(tokens) => tokens.into_iter().chain(read).collect(),
         Err(error) => to_compile_errors(&[generated.fault(&error)], &places),
     }
 }

@@ -29,11 +29,30 @@ pub struct Generated {
 /// Points that are tried after the first.
 const READINGS: u64 = 6;
 
-/// Derives the description in a stream of tokens; errors are at places of these.
-pub fn from_tokens(tokens: TokenStream) -> (Places, Result<Generated, Vec<Diagnostic>>) {
-    let hash = fingerprint(&syntax::canonical(&tokens));
+/// Derives the description in a stream of tokens; errors are at places of these. Tables in files are opened as
+/// `open` says.
+pub fn from_tokens(
+    tokens: TokenStream,
+    open: &mut Open<'_>,
+) -> (Places, Result<Generated, Vec<Diagnostic>>) {
+    let canonical = syntax::canonical(&tokens);
     let (places, system) = syntax::parse_tokens(tokens);
-    (places, system.and_then(|system| derive(&system, hash)))
+    let generated = system.and_then(|mut system| {
+        let tables = syntax::read_tables(&mut system, open)?;
+        derive(&system, fingerprint(&(canonical + &tables.concat())))
+    });
+    (places, generated)
+}
+
+/// Gives the text of a file by the name that a description has for it.
+pub type Open<'a> = dyn FnMut(&str) -> std::io::Result<String> + 'a;
+
+/// Derives the description in a text whose tables are opened as `open` says.
+#[cfg(feature = "files")]
+pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagnostic>> {
+    let mut system = syntax::parse_text(text)?;
+    let tables = syntax::read_tables(&mut system, open)?;
+    derive(&system, fingerprint(&(canonical(text) + &tables.concat())))
 }
 
 /// Derives the description in a text.
@@ -45,11 +64,13 @@ pub fn from_text(text: &str) -> Result<Generated, Vec<Diagnostic>> {
 /// Derives a description that was parsed from a text.
 #[cfg(feature = "files")]
 pub(crate) fn of_system(system: &ast::System, text: &str) -> Result<Generated, Vec<Diagnostic>> {
-    let canonical = text
-        .parse::<TokenStream>()
-        .map(|tokens| syntax::canonical(&tokens))
-        .unwrap_or_default();
-    derive(system, fingerprint(&canonical))
+    derive(system, fingerprint(&canonical(text)))
+}
+
+#[cfg(feature = "files")]
+fn canonical(text: &str) -> String {
+    let tokens = text.parse::<TokenStream>();
+    tokens.map_or_else(|_| String::new(), |tokens| syntax::canonical(&tokens))
 }
 
 fn derive(system: &ast::System, hash: u64) -> Result<Generated, Vec<Diagnostic>> {

@@ -2,8 +2,8 @@
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::scene::{
-    Body, CoordKind, Element, Expr, Joint, Load, Point, Scene, SceneError, ShapeKind, WORLD, call,
-    cos, diagonal, pose, shifted, sin,
+    Body, CoordKind, Element, Expr, Extrapolation, Interpolation, Joint, Load, Point, Scene,
+    SceneError, ShapeKind, WORLD, call, cos, diagonal, if_less, pose, shifted, sin,
 };
 use std::path::Path;
 
@@ -49,6 +49,8 @@ system Everything {
     const c = 3 / 2;
     let e: vec3 = [0, 0, 0.000000000000000001];
     fn drag(a: vec3, b) = -b * norm(a) * a;
+    table lift = [(-0.5, -1), (0, c), (2e-3, 1 - (2 - 3))] pchip extrapolate error;
+    table polar from \"polar.csv\" linear extrapolate linear;
     coord q, r: R3, a: S1, b: S3, R: SO3, X: SE3;
     velocity u, v: vec3, w = a.c * rate(a.s) - a.s * rate(a.c);
     input F: vec3, t;
@@ -85,6 +87,7 @@ system Everything {
     generalized force v = -m * v;
     start X.p = [0, 0, 1], q = 2;
     output speed = norm(v) - (1 - (2 - 3)) / (4 / 5) * (6 * 7);
+    output branch = 2 * (if q < 1 { r[1] } else if q >= 2 { -r[2] } else { min(q, 1) })^2;
     invariant energy when F = 0, k[1] = 2;
     invariant e_0 = energy;
     invariant linear_momentum of f along [0, 0, 1];
@@ -200,6 +203,30 @@ fn what_is_built_is_what_the_text_says() {
 }
 
 /// A disk that rolls, in coordinates of one's own: rates, a nonholonomic constraint, a circle.
+/// Choices and tables, built and as text.
+#[test]
+fn branches_are_built() {
+    let mut scene = Scene::builder("Contact");
+    let z = scene.coordinate("z", CoordKind::Real);
+    let w = scene.velocity("w", ShapeKind::Scalar);
+    scene.rate("z", &w);
+    scene.table(
+        "stiff",
+        &[(0.0, 0.0), (0.1, 25.5)],
+        Interpolation::Pchip,
+        Extrapolation::Linear,
+    );
+    scene.kinetic(w.pow(2));
+    let push = if_less(&z, 0.0, call("stiff", [-&z]), 0.0);
+    scene.generalized_force("w", push);
+    let built = scene.build().expect("a scene");
+    let text = "pub system Contact { coord z; velocity w; rate z = w; \
+        table stiff = [(0, 0), (0.1, 25.5)] pchip extrapolate linear; kinetic w^2; \
+        generalized force w = if z < 0 { stiff(-z) } else { 0 }; }";
+    assert_eq!(built, Scene::parse(text).expect("a description"));
+    assert!(built.generate().is_ok());
+}
+
 #[test]
 fn coordinates_rates_and_constraints_are_built() {
     let mut sleigh = Scene::builder("Sleigh");

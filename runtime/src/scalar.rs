@@ -77,6 +77,13 @@ pub trait Scalar:
     /// Absolute value.
     fn abs(self) -> Self;
 
+    /// 1 with the sign of the number; 0 of 0, NaN of NaN.
+    #[inline]
+    fn sign(self) -> Self {
+        let (zero, one) = (Self::default(), Self::from_f64(1.0));
+        zero.select_lt(self, one, self.select_lt(zero, -one, self))
+    }
+
     /// `self · a + b`: rounded once where the target has a fused instruction, twice elsewhere.
     /// A software routine that rounds once on every target is many times slower.
     fn mul_add(self, a: Self, b: Self) -> Self;
@@ -86,6 +93,26 @@ pub trait Scalar:
 
     /// `then` in the lanes with `self < limit`, `otherwise` elsewhere (also where either is NaN).
     fn select_lt(self, limit: Self, then: Self, otherwise: Self) -> Self;
+
+    /// `then` in the lanes that are positive, `otherwise` in those that are not; NaN where the lane itself is.
+    #[inline]
+    fn select_positive(self, then: Self, otherwise: Self) -> Self {
+        let zero = Self::default();
+        zero.select_lt(
+            self,
+            then,
+            self.select_lt(Self::from_f64(1.0), otherwise, self),
+        )
+    }
+
+    /// 1/self, where that is no shorter than 1e-100 (1e-12 for `f32`), else 1 over this: a large number, which times
+    /// 0 is 0. So lengths at rest have the slope 0.
+    #[inline]
+    fn inverse_of_length(self) -> Self {
+        let shortest = Self::from_f64(if Self::EPSILON < 1e-10 { 1e-100 } else { 1e-12 });
+        let one = Self::from_f64(1.0);
+        one / self.abs().select_lt(shortest, shortest, self)
+    }
 
     /// Whether all lanes are positive and finite: a pivot that can be divided by.
     fn is_positive(self) -> bool;

@@ -66,3 +66,32 @@ fn a_large_model_is_refused_by_the_macro_with_the_way_out() {
         assert!(expanded.contains(part), "{expanded}");
     }
 }
+
+/// A table in a file stands where the description says, for every front end: the macro starts at the folder of the
+/// package, and notes the file for the compiler.
+#[test]
+fn a_table_in_a_file_is_the_same_through_every_front_end() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/tabled");
+    let text = std::fs::read_to_string(folder.join("wing.eom")).expect("readable");
+    let open = &mut |name: &str| std::fs::read_to_string(folder.join(name));
+    let generated = hamel_codegen::generate::from_file(&text, open).expect("correct");
+    let built = hamel_codegen::builder::written(&generated, "wing.eom").expect("Rust");
+    assert_eq!(
+        include_str!(concat!(env!("OUT_DIR"), "/wing.rs")),
+        built,
+        "the build script"
+    );
+    let here = text.replace("polar.csv", "models/tabled/polar.csv");
+    let expanded = hamel_codegen::expand(here.parse().expect("tokens"));
+    let mut file: syn::File = syn::parse2(expanded).expect("items");
+    let noted = file.items.pop().expect("items");
+    assert!(matches!(noted, syn::Item::Const(_)));
+    assert_eq!(prettyplease::unparse(&file).trim(), items(&built).trim());
+    // What is in the file is part of the hash.
+    let more = &mut |name: &str| Ok(std::fs::read_to_string(folder.join(name))? + "0.9, 0.1\n");
+    let other = hamel_codegen::generate::from_file(&text, more).expect("correct");
+    assert_ne!(other.hash, generated.hash);
+    // Without a folder there is no file.
+    let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
+    assert!(errors[0].message.contains("in which folder"));
+}

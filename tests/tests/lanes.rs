@@ -7,11 +7,13 @@ use hamel::ensemble::{self, Failure, Group, Outcome, Progress, quietly};
 use hamel::methods::{Gauss4, Rkmk4};
 use hamel::wide::{f32x8, f64x4, f64x8};
 use hamel::{Lanes, Method, Scalar, State, StepError, System, integrate};
+use hamel_tests::bouncing_ball::BouncingBall;
 use hamel_tests::cart_pole::CartPole;
 use hamel_tests::double_pendulum_angles::DoublePendulum;
 use hamel_tests::free_body::FreeBody;
 use hamel_tests::heavy_top_quaternion::QuaternionTop;
 use hamel_tests::pendulum::Pendulum;
+use hamel_tests::torque_curve::TorqueCurve;
 use hamel_tests::two_bodies::TwoBodies;
 
 /// Rounding of sin and cos, which differ by a unit in the last place, carried through 100 steps: of
@@ -268,4 +270,72 @@ fn progress_ends_at_the_total_and_may_cancel() {
             .iter()
             .all(|state| state.t < UNTIL && state.is_finite())
     );
+}
+
+/// Branches are selected lane by lane, as one number takes them: to the bit, on both sides at once.
+#[test]
+fn branches_are_selected_in_every_lane() {
+    let (one, four) = (
+        TorqueCurve::<f64>::default(),
+        TorqueCurve::<f64x4>::default(),
+    );
+    let (ball, balls) = (
+        BouncingBall::<f64>::default(),
+        BouncingBall::<f64x4>::default(),
+    );
+    let spread = |at: f64| -> [f64; 4] { std::array::from_fn(|lane| at + 0.9 * lane as f64) };
+    for k in 0..40 {
+        let (q, w) = (
+            spread(-1.5 + 0.05 * k as f64),
+            spread(-1.0 + 0.125 * k as f64),
+        );
+        let pack = |values: [f64; 4]| f64x4::from_lanes(|lane| values[lane]);
+        let force = four.generalized_force(&[pack(q)], &[pack(w)], &[f64x4::from_f64(1.5)]);
+        let energy = four.potential_energy(&[pack(q)]);
+        let zone = balls.zone(&[pack(w), pack(q)], &[f64x4::default(); 2], &[]);
+        for lane in 0..4 {
+            let expected = one.generalized_force(&[q[lane]], &[w[lane]], &[1.5]);
+            assert_eq!(force[0].lanes()[lane], expected[0]);
+            assert_eq!(energy.lanes()[lane], one.potential_energy(&[q[lane]]));
+            let alone = ball.zone(&[w[lane], q[lane]], &[0.0; 2], &[]);
+            assert_eq!(zone.map(|entry| entry.lanes()[lane]), alone);
+        }
+    }
+}
+
+/// What is compared decides where it is a number; where it is none, neither is the choice.
+#[test]
+fn choices_of_numbers_and_lanes() {
+    let cases = [
+        -2.0,
+        -0.0,
+        0.0,
+        1e-30,
+        3.0,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ];
+    for value in cases {
+        let chosen = value.select_positive(1.0, 2.0);
+        let lanes =
+            f64x4::from_f64(value).select_positive(f64x4::from_f64(1.0), f64x4::from_f64(2.0));
+        let sign = Scalar::sign(value);
+        if value.is_nan() {
+            assert!(chosen.is_nan() && sign.is_nan() && lanes.lanes()[2].is_nan());
+            continue;
+        }
+        assert_eq!(chosen, if value > 0.0 { 1.0 } else { 2.0 });
+        assert_eq!(lanes.lanes(), [chosen; 4]);
+        assert_eq!(sign, if value == 0.0 { 0.0 } else { value.signum() });
+        assert_eq!(Scalar::sign(f64x4::from_f64(value)).lanes(), [sign; 4]);
+        assert_eq!(Scalar::sign(value as f32), sign as f32);
+    }
+    assert_eq!([2.0, -4.0].map(Scalar::inverse_of_length), [0.5, -0.25]);
+    assert_eq!(
+        [0.0, 1e-120].map(|a| 0.0 * Scalar::inverse_of_length(a)),
+        [0.0; 2]
+    );
+    assert_eq!(0.0f32 * Scalar::inverse_of_length(0.0f32), 0.0);
+    assert!(Scalar::inverse_of_length(f64::NAN).is_nan());
 }

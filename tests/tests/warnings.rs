@@ -3,12 +3,14 @@
 use hamel_codegen::lower::build;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::warnings;
-use hamel_codegen::syntax::parse_text;
+use hamel_codegen::syntax::{parse_text, read_tables};
 use hamel_codegen::urdf::{Options, import};
 use std::path::{Path, PathBuf};
 
-fn read(text: &str) -> Model {
-    let system = parse_text(text).expect("a description");
+fn read(text: &str, folder: &Path) -> Model {
+    let mut system = parse_text(text).expect("a description");
+    let open = &mut |name: &str| std::fs::read_to_string(folder.join(name));
+    read_tables(&mut system, open).expect("tables");
     build(&system).expect("a correct description")
 }
 
@@ -34,7 +36,7 @@ fn models_and_examples_use_what_they_declare() {
     for folder in ["models", "../examples"] {
         for path in below(folder, "eom") {
             let text = std::fs::read_to_string(&path).expect("readable");
-            let list = read(&text).warnings;
+            let list = read(&text, path.parent().expect("a folder")).warnings;
             said += &warnings(&list, &path.display().to_string(), &text, false);
         }
     }
@@ -53,7 +55,7 @@ fn imports_use_what_they_declare() {
                     ..Options::default()
                 };
                 let imported = import(&text, &options, "robot.urdf", false).expect("a robot");
-                let list = read(&imported.text).warnings;
+                let list = read(&imported.text, Path::new("")).warnings;
                 let said = warnings(&list, "robot.eom", &imported.text, false);
                 assert!(said.is_empty(), "{said}");
             }
@@ -64,7 +66,7 @@ fn imports_use_what_they_declare() {
 #[test]
 fn warnings_are_underlined() {
     let text = "system A {\n    param m = 1, k = 2;\n    coord q;\n    velocity w;\n    rate q = w;\n    kinetic m * w^2 / 2;\n}\n";
-    insta::assert_snapshot!(warnings(&read(text).warnings, "a.eom", text, false), @r"
+    insta::assert_snapshot!(warnings(&read(text, Path::new("")).warnings, "a.eom", text, false), @r"
     warning: the parameter `k` is never used
      --> a.eom:2:18
       |

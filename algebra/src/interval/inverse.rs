@@ -5,6 +5,7 @@ use super::{Interval, power_of_two};
 use num_bigint::{BigInt, Sign};
 use num_rational::BigRational;
 use num_traits::One;
+use std::cmp::Ordering;
 
 /// How often an argument is brought nearer.
 const ROOTS: u32 = 10;
@@ -41,18 +42,17 @@ impl Interval {
     /// The angle of (x, y), in (−π, π]; `None` where it is not certain on which side of the cut it is.
     pub(crate) fn atan2(&self, x: &Interval) -> Option<Self> {
         let half = Interval::pi().scaled(-1);
-        let is_zero = self.lo.sign() == Sign::NoSign && self.hi.sign() == Sign::NoSign;
-        match (self.sign(), x.sign()) {
-            (_, Some(Sign::Plus)) => self.times(&x.inverse()?).arctan(),
-            (Some(Sign::Plus), _) => {
+        match (self.side(), x.side()) {
+            (_, Some(Ordering::Greater)) => self.times(&x.inverse()?).arctan(),
+            (Some(Ordering::Greater), _) => {
                 let rest = x.times(&self.inverse()?).arctan()?;
                 Some(half.plus(&rest.signed(true)))
             }
-            (Some(Sign::Minus), _) => {
+            (Some(Ordering::Less), _) => {
                 let rest = x.times(&self.inverse()?).arctan()?;
                 Some(half.plus(&rest).signed(true))
             }
-            (None, Some(Sign::Minus)) if is_zero => Some(Interval::pi()),
+            (Some(Ordering::Equal), Some(Ordering::Less)) => Some(Interval::pi()),
             _ => None,
         }
     }
@@ -88,11 +88,6 @@ impl Interval {
             power = power.times(&square);
         }
         Some(sum)
-    }
-
-    /// The sign of what is certainly not 0.
-    fn sign(&self) -> Option<Sign> {
-        (!self.contains_zero()).then(|| self.lo.sign())
     }
 
     fn whole(value: i64) -> Self {
@@ -182,7 +177,7 @@ mod tests {
                 "{k}"
             );
             let along = c.times(&x).plus(&s.times(&y));
-            assert_eq!(along.sign(), Some(Sign::Plus), "{k}");
+            assert_eq!(along.side(), Some(Ordering::Greater), "{k}");
         }
         let (fifth, last) = (number(1, 5).atan2(&one), number(1, 239).atan2(&one));
         let sum = fifth.map(|a| a.scaled(4)).zip(last.map(|a| a.scaled(2)));

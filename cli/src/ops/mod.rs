@@ -8,7 +8,8 @@ use crate::json::Json;
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
-use hamel_codegen::algebra::graph::{Edge, Function as Elementary, Graph, Node};
+use hamel_codegen::algebra::function::Cost;
+use hamel_codegen::algebra::graph::{Edge, Graph, Node};
 use hamel_codegen::functions::Asked;
 use hamel_codegen::program::Program;
 use hamel_codegen::program::count::{Count, count_nodes};
@@ -138,12 +139,17 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Written {
             .fold(NONE, |cost, child| sum(cost, costs[child.node() as usize]));
         let kind = match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => None,
-            Node::Add(..) => Some(0),
+            Node::Add(..) | Node::Select(..) => Some(0),
             Node::Mul(..) => Some(1),
             Node::Div(..) => Some(2),
-            Node::Apply(Elementary::Sqrt, _) => Some(3),
-            Node::Apply(Elementary::Sin | Elementary::Cos, _) => Some(4),
-            Node::Apply(..) | Node::Atan2(..) => Some(5),
+            Node::Apply(function, _) => Some(match function.row().cost {
+                Cost::Choice => 0,
+                Cost::Quotient => 2,
+                Cost::Root => 3,
+                Cost::Turn => 4,
+                Cost::Other => 5,
+            }),
+            Node::Atan2(..) => Some(5),
         };
         if let Some(kind) = kind {
             cost[kind] = cost[kind].and_then(|count| count.checked_add(1));

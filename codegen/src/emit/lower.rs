@@ -26,6 +26,8 @@ pub enum Operation {
     Apply(Function, Edge),
     /// atan2(y, x)
     Atan2(Edge, Edge),
+    /// a where c > 0, else b
+    Select(Edge, Edge, Edge),
     /// Leaves the function unless a pivot is positive.
     Check(usize, Edge),
 }
@@ -38,7 +40,7 @@ impl Operation {
             | Operation::Multiply(a, b)
             | Operation::Divide(a, b)
             | Operation::Atan2(a, b) => [Some(a), Some(b), None],
-            Operation::Fused(a, b, c) => [Some(a), Some(b), Some(c)],
+            Operation::Fused(a, b, c) | Operation::Select(a, b, c) => [Some(a), Some(b), Some(c)],
             Operation::SinCos(a) | Operation::Apply(_, a) | Operation::Check(_, a) => {
                 [Some(a), None, None]
             }
@@ -56,6 +58,7 @@ impl Operation {
             Operation::SinCos(a) => Operation::SinCos(to(a)),
             Operation::Apply(function, a) => Operation::Apply(function, to(a)),
             Operation::Atan2(y, x) => Operation::Atan2(to(y), to(x)),
+            Operation::Select(c, a, b) => Operation::Select(to(c), to(a), to(b)),
             Operation::Check(pivot, a) => Operation::Check(pivot, to(a)),
         }
     }
@@ -154,6 +157,7 @@ pub fn lower(
             }
             Node::Apply(function, a) => Some(Operation::Apply(function, a)),
             Node::Atan2(y, x) => Some(Operation::Atan2(y, x)),
+            Node::Select(c, a, b) => Some(Operation::Select(c, a, b)),
         };
         if let Some(operation) = operation {
             push(Statement { operation, results });

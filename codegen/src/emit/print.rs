@@ -5,7 +5,7 @@ use super::lower::{Operation, Statement};
 use super::names;
 use super::number;
 use super::places::{Place, Places, Time};
-use crate::algebra::graph::{Edge, NodeId};
+use crate::algebra::graph::{Edge, Function, NodeId};
 use crate::program::{Argument, Program};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
@@ -157,6 +157,10 @@ impl Printer<'_> {
             Operation::Divide(a, b) => format!("{} / {}", self.signed(a), self.signed(b)),
             Operation::SinCos(a) => format!("{}.sin_cos()", self.receiver(a)),
             Operation::Atan2(y, x) => format!("{}.atan2({})", self.receiver(y), self.signed(x)),
+            Operation::Select(c, a, b) => {
+                let (c, a, b) = (self.receiver(c), self.signed(a), self.signed(b));
+                format!("{c}.{}({a}, {b})", Function::Select.row().rust)
+            }
             Operation::Apply(function, a) => {
                 format!("{}.{}", self.receiver(a), function.row().rust)
             }

@@ -96,23 +96,11 @@ fn reaches(all: &BTreeMap<&str, &Function>, function: &Function, wanted: &str) -
 
 /// The functions that an expression calls.
 fn called<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
-    match &expr.kind {
-        ExprKind::Number(_) | ExprKind::Name(_) => {}
-        ExprKind::Field(base, _) | ExprKind::Neg(base) => called(base, names),
-        ExprKind::Index(base, list) => {
-            called(base, names);
-            list.iter().for_each(|entry| called(entry, names));
-        }
-        ExprKind::Call(function, list) => {
-            names.insert(&function.name);
-            list.iter().for_each(|entry| called(entry, names));
-        }
-        ExprKind::Array(list) => list.iter().for_each(|entry| called(entry, names)),
-        ExprKind::Binary(_, left, right) => {
-            called(left, names);
-            called(right, names);
-        }
+    if let ExprKind::Call(function, _) = &expr.kind {
+        names.insert(&function.name);
     }
+    let parts = expr.parts().into_iter();
+    parts.for_each(|part| called(part, names));
 }
 
 impl Evaluator<'_> {

@@ -91,7 +91,9 @@ impl Reader<'_, '_> {
         let mass = self.constant_scalar(mass, "a mass");
         let position = self.evaluator.vec3(at, WHAT).and_then(|position| {
             let help = "a particle moves by the coordinates in its position";
-            self.configuration(&Value::Vector(position.to_vec()), at.span, WHAT, help)?;
+            let value = Value::Vector(position.to_vec());
+            self.configuration(&value, at.span, WHAT, help)?;
+            self.evaluator.continuous(&value, at.span, WHAT)?;
             Some(position)
         });
         let frame = match on {
@@ -130,13 +132,19 @@ impl Reader<'_, '_> {
                 }),
             );
         }
+        let value = Value::Scalar(energy);
+        self.evaluator
+            .continuous(&value, expr.span, "a kinetic energy")?;
         Some(energy)
     }
 
     pub fn potential(&mut self, expr: &Expr) -> Option<Edge> {
         let edge = self.evaluator.scalar(expr, "a potential")?;
         let help = "what depends on velocities or inputs is a load: `generalized force`, `force`, `torque` or `wrench`";
-        self.configuration(&Value::Scalar(edge), expr.span, "a potential", help)?;
+        let value = Value::Scalar(edge);
+        self.configuration(&value, expr.span, "a potential", help)?;
+        self.evaluator
+            .continuous(&value, expr.span, "a potential")?;
         Some(edge)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
-use super::{applied, time};
+use super::{applied, curves, time};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
@@ -53,6 +53,7 @@ pub fn declare(
             }
         }
     }
+    curves::declare(system, graph, scope, report);
     let functions = applied::functions(system);
     for item in &system.items {
         if let ItemKind::Function(function) = &item.kind {
@@ -110,6 +111,7 @@ pub fn declare(
             applied::claim(function, scope, report);
         }
     }
+    curves::claim(system, scope, report);
     let velocities = graph
         .symbols()
         .iter()

@@ -150,6 +150,8 @@ impl Reader<'_, '_> {
         let scalar = self.evaluator.scalar(expr, WHAT)?;
         let help = "it is a length or an angle; on a rate acts a `damper`";
         self.configuration(&Value::Scalar(scalar), expr.span, WHAT, help)?;
+        self.evaluator
+            .continuous(&Value::Scalar(scalar), expr.span, WHAT)?;
         if self.rate(scalar)? == self.evaluator.graph.zero() {
             let message = "this spring does nothing: what it acts on never changes";
             return self.evaluator.error(

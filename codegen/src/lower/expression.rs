@@ -1,7 +1,7 @@
 //! Expressions become shaped values of the graph.
 
 use super::motion::FUNCTIONS;
-use super::scope::{NameKind, RESERVED, Scope};
+use super::scope::{NameKind, Scope, reserved};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{identity3, transpose};
 use crate::diagnostics::{Diagnostic, Report};
@@ -100,6 +100,7 @@ impl<'a> Evaluator<'a> {
                 let (a, b) = (self.value(left), self.value(right));
                 self.binary(*op, a?, b?, left, right, expr.span)
             }
+            ExprKind::If(choice) => self.choice(choice),
             ExprKind::Array(items) => self.array(items, expr.span),
         }
     }
@@ -176,7 +177,7 @@ impl<'a> Evaluator<'a> {
                     .map(|s| s.node);
                 known.map(|node| Value::Scalar(Edge::of(node)))
             }
-            None if RESERVED.contains(&name) || FUNCTIONS.contains(&name) => self.error(
+            None if reserved().any(|word| word == name) || FUNCTIONS.contains(&name) => self.error(
                 Diagnostic::new(span, format!("`{name}` is a function"))
                     .help(format!("write its arguments in parentheses: `{name}(…)`")),
             ),

@@ -95,6 +95,10 @@ pub fn relative_pose(
         let error = Diagnostic::new(pose.span, message);
         return evaluator.error(error.help("a frame is a function of coordinates and parameters"));
     }
+    if !scope.free {
+        let pose_entries = Value::Pose(rotation, position);
+        evaluator.continuous(&pose_entries, pose.span, "a frame")?;
+    }
     let graph = &mut *evaluator.graph;
     let gram = multiply3(graph, &transpose3(&rotation), &rotation);
     let identity = identity3(graph);

@@ -1,17 +1,20 @@
 //! The functions of the language.
 
 use super::axes;
+use super::choice::{greater, lesser};
 use super::expression::Evaluator;
 use super::motion::FUNCTIONS;
-use super::scope::{NameKind, RESERVED};
+use super::scope::{NameKind, reserved};
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{apply3, cross, multiply3, transpose, transpose3};
 use crate::diagnostics::Diagnostic;
+use crate::model::class;
 use crate::model::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
 use crate::syntax::suggest::closest;
 use num_traits::Signed;
+use std::borrow::Cow;
 
 /// Largest number of rows that a function makes.
 const MOST_ROWS: usize = 64;
@@ -22,6 +25,9 @@ impl Evaluator<'_> {
         let scope = self.scope;
         if let Some(own) = scope.functions.get(&function.name) {
             return self.applied(own, arguments, span);
+        }
+        if let Some(curve) = scope.tables.get(&function.name) {
+            return self.table(&function.name, curve.as_ref(), arguments, span);
         }
         if function.name == "rate" {
             return self.rate(arguments, span);
@@ -68,18 +74,19 @@ impl Evaluator<'_> {
         let name = &function.name;
         let error = Diagnostic::new(function.span, format!("no function is called `{name}`"));
         let known = || {
-            RESERVED
-                .iter()
-                .chain(&FUNCTIONS)
-                .copied()
+            reserved()
+                .chain(FUNCTIONS)
                 .filter(|name| usage(name).is_some())
         };
         if self.scope.get(name).is_some() {
             return self.error(error.help("a product is written with `*`"));
         }
         let scope = self.scope;
-        let own = scope.functions.keys().map(String::as_str);
-        match closest(name, known().chain(own)) {
+        let own = scope.functions.keys().chain(scope.tables.keys());
+        let own = own.map(String::as_str);
+        let all: Vec<&str> = known().collect();
+        let all = all.into_iter().chain(own);
+        match closest(name, all) {
             Some(known) => self.error(error.help(format!("did you mean `{known}`?"))),
             None => {
                 let all: Vec<&str> = known().collect();
@@ -130,20 +137,18 @@ const ZERO_DIVISOR: Fault = Fault::Why(
 );
 
 /// How a function is called.
-fn usage(name: &str) -> Option<&'static str> {
-    Some(match name {
+fn usage(name: &str) -> Option<Cow<'static, str>> {
+    let text = match name {
         "sin" => "`sin(angle)` of a scalar",
         "cos" => "`cos(angle)` of a scalar",
         "tan" => "`tan(angle)` of a scalar",
-        "sqrt" => "`sqrt(a)` of a scalar",
-        "exp" => "`exp(a)` of a scalar",
-        "log" => "`log(a)` of a scalar",
-        "sinh" => "`sinh(a)` of a scalar",
-        "cosh" => "`cosh(a)` of a scalar",
-        "tanh" => "`tanh(a)` of a scalar",
         "asin" => "`asin(a)` of a scalar",
         "acos" => "`acos(a)` of a scalar",
         "atan2" => "`atan2(y, x)` of scalars",
+        "min" => "`min(a, b)` of scalars",
+        "max" => "`max(a, b)` of scalars",
+        "clamp" => "`clamp(a, low, high)` of scalars",
+        "hypot" => "`hypot(a, b)` of scalars",
         "dot" => "`dot(a, b)` of vectors of equal length",
         "cross" => "`cross(a, b)` of vectors of 3",
         "outer" => "`outer(a, b)` of vectors",
@@ -170,16 +175,18 @@ fn usage(name: &str) -> Option<&'static str> {
         "acceleration" => "`acceleration(f, p)` of a frame and a point of it",
         "angular_velocity" => "`angular_velocity(f)` of a frame",
         "angular_acceleration" => "`angular_acceleration(f)` of a frame",
-        _ => return None,
-    })
+        name => {
+            let name = Function::named(name)?.name();
+            return Some(format!("`{name}(a)` of a scalar").into());
+        }
+    };
+    Some(text.into())
 }
 
 /// The value of a call; `free` where points are off the variety.
 fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Result<Value, Fault> {
     use Value::{Matrix, Pose, Scalar, Vector};
     let value = match (name, values) {
-        ("sin", [Scalar(a)]) => Scalar(graph.apply(Function::Sin, *a)),
-        ("cos", [Scalar(a)]) => Scalar(graph.apply(Function::Cos, *a)),
         ("tan", [Scalar(a)]) => {
             let (s, c) = (
                 graph.apply(Function::Sin, *a),
@@ -187,10 +194,6 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             );
             Scalar(graph.div(s, c).ok_or(ZERO_DIVISOR)?)
         }
-        ("exp", [Scalar(a)]) => Scalar(graph.apply(Function::Exp, *a)),
-        ("sinh", [Scalar(a)]) => Scalar(graph.apply(Function::Sinh, *a)),
-        ("cosh", [Scalar(a)]) => Scalar(graph.apply(Function::Cosh, *a)),
-        ("tanh", [Scalar(a)]) => Scalar(graph.apply(Function::Tanh, *a)),
         ("asin" | "acos", [Scalar(a)]) => {
             // The angle of (√(1 − a²), a) or (a, √(1 − a²)); (1 − a)(1 + a) keeps its digits near ±1.
             let one = graph.one();
@@ -220,16 +223,28 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             ));
         }
         ("atan2", [Scalar(y), Scalar(x)]) => Scalar(graph.atan2(*y, *x)),
+        ("min", [Scalar(a), Scalar(b)]) => Scalar(lesser(graph, *a, *b)),
+        ("max", [Scalar(a), Scalar(b)]) => Scalar(greater(graph, *a, *b)),
+        ("clamp", [Scalar(a), Scalar(low), Scalar(high)]) => {
+            if let (Some(low), Some(high)) = (graph.as_rational(*low), graph.as_rational(*high))
+                && low > high
+            {
+                return Err(Fault::Why(
+                    "the bounds of `clamp` are in the wrong order",
+                    "write the lower one first: `clamp(a, low, high)`",
+                ));
+            }
+            let above = greater(graph, *a, *low);
+            Scalar(lesser(graph, above, *high))
+        }
+        ("hypot", [Scalar(a), Scalar(b)]) => Scalar(length(graph, &[*a, *b])),
         ("dot", [Vector(a), Vector(b)]) if a.len() == b.len() => Scalar(graph.dot(a, b)),
         ("outer", [Vector(a), Vector(b)]) => Matrix(
             a.iter()
                 .map(|&x| b.iter().map(|&y| graph.mul(x, y)).collect())
                 .collect(),
         ),
-        ("norm", [Vector(a)]) => {
-            let square = graph.dot(a, a);
-            Scalar(real_root(graph, square)?)
-        }
+        ("norm", [Vector(a)]) => Scalar(length(graph, a)),
         ("transpose", [Matrix(m)]) => Matrix(transpose(m)),
         ("trace", [Matrix(m)]) if m.len() == m.first().map_or(0, Vec::len) => {
             let diagonal: Vec<Edge> = (0..m.len()).map(|i| m[i][i]).collect();
@@ -326,6 +341,10 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
                     .collect(),
             )
         }
+        (name, [Scalar(a)]) => match Function::named(name) {
+            Some(function) => Scalar(graph.apply(function, *a)),
+            None => return Err(Fault::Usage),
+        },
         _ => return Err(Fault::Usage),
     };
     Ok(value)
@@ -342,6 +361,21 @@ fn cosine_sine(graph: &mut Graph, values: &[Value]) -> Option<(Edge, Edge)> {
         [Value::Vector(v)] if v.len() == 2 => Some((v[0], v[1])),
         _ => None,
     }
+}
+
+/// The length of a vector. At rest that of a velocity has slopes of both signs and counts as level: so drag
+/// |v| v has the derivative 0 there.
+fn length(graph: &mut Graph, a: &[Edge]) -> Edge {
+    let square = graph.dot(a, a);
+    let moves = graph.class(square.node()) & class::VELOCITY != 0;
+    graph.apply(
+        if moves {
+            Function::Norm
+        } else {
+            Function::Sqrt
+        },
+        square,
+    )
 }
 
 fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {

@@ -136,6 +136,11 @@ impl Reader<'_, '_> {
                         "inputs are free functions of time; set them after `when`: `when F = 0`",
                     ));
                 }
+                self.evaluator.continuous(
+                    &value,
+                    expr.span,
+                    "what is constant along the motion",
+                )?;
                 if class & (class::CONFIGURATION | class::VELOCITY) == 0 {
                     let message = "this is constant whatever moves: there is nothing to prove";
                     return self.evaluator.error(

@@ -63,29 +63,18 @@ impl<'a> Task<'a> {
 
 fn mentioned<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
     match &expr.kind {
-        ExprKind::Number(_) => {}
-        ExprKind::Name(name) => {
-            names.insert(name);
-        }
-        ExprKind::Field(base, _) | ExprKind::Neg(base) => mentioned(base, names),
-        ExprKind::Index(base, list) => {
-            mentioned(base, names);
-            list.iter().for_each(|entry| mentioned(entry, names));
-        }
-        ExprKind::Call(function, list) => {
+        ExprKind::Name(name) => _ = names.insert(name),
+        ExprKind::Call(function, _) => {
             // Where it is a function of the description, what that mentions follows.
             names.insert(&function.name);
             if motion::needs_rates(&function.name) {
                 names.insert(RATES);
             }
-            list.iter().for_each(|entry| mentioned(entry, names));
         }
-        ExprKind::Array(list) => list.iter().for_each(|entry| mentioned(entry, names)),
-        ExprKind::Binary(_, left, right) => {
-            mentioned(left, names);
-            mentioned(right, names);
-        }
+        _ => {}
     }
+    let parts = expr.parts().into_iter();
+    parts.for_each(|part| mentioned(part, names));
 }
 
 impl<'a> Names<'a> {

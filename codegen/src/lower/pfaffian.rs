@@ -195,7 +195,10 @@ impl Reader<'_> {
                 .help("a constraint on velocities is written `nonholonomic … = …;`"),
             );
         }
+        let value = Value::Vector(entries.clone());
+        self.evaluator.continuous(&value, span, "a loop")?;
         let kinematics = self.kinematics?;
+        let graph = &mut *self.evaluator.graph;
         let mut rows = Vec::new();
         for edge in entries {
             if edge.abs() == graph.zero() {

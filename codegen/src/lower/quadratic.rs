@@ -2,12 +2,13 @@
 
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Random;
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::graph::{Edge, Graph, NodeId};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
 /// Whether a function of ξ is homogeneous of degree two, ξ · ∂T/∂ξ = 2 T, and has no third
-/// derivative: none along a random direction. In a graph of its own, to leave no trace.
+/// derivative: none along a random direction, and no branch in the second one that ξ chooses, as |v| v has it.
+/// In a graph of its own, to leave no trace.
 pub fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
     let graph = &mut graph;
     let twice = Derivation::new(xi.iter().map(|xi| (xi.node(), *xi))).of(graph, energy);
@@ -19,6 +20,14 @@ pub fn is_quadratic(mut graph: Graph, energy: Edge, xi: &[Edge]) -> bool {
         direction.push((xi.node(), graph.rational(&component)));
     }
     let mut along = Derivation::new(direction);
-    let third = (0..3).fold(energy, |function, _| along.of(graph, function));
-    twice == double && third == graph.zero()
+    let second = (0..2).fold(energy, |function, _| along.of(graph, function));
+    let third = along.of(graph, second);
+    let moving = xi
+        .iter()
+        .fold(0, |class, xi| class | graph.class(xi.node()));
+    let chosen = |id: NodeId| {
+        let by = graph.chosen_by(id);
+        by.is_some_and(|by| graph.class(by.node()) & moving != 0)
+    };
+    twice == double && third == graph.zero() && !graph.reachable(&[second]).into_iter().any(chosen)
 }

@@ -155,17 +155,9 @@ pub fn velocity_for(coordinate: &Coordinate, rate: Option<&Expr>, declared: &Dec
 }
 
 fn names_in<'a>(expr: &'a Expr, names: &mut Vec<&'a str>) {
-    match &expr.kind {
-        ExprKind::Number(_) => {}
-        ExprKind::Name(name) => names.push(name),
-        ExprKind::Field(base, _) | ExprKind::Neg(base) => names_in(base, names),
-        ExprKind::Index(base, _) => names_in(base, names),
-        ExprKind::Call(_, list) | ExprKind::Array(list) => {
-            list.iter().for_each(|entry| names_in(entry, names));
-        }
-        ExprKind::Binary(_, left, right) => {
-            names_in(left, names);
-            names_in(right, names);
-        }
+    if let ExprKind::Name(name) = &expr.kind {
+        names.push(name);
     }
+    let parts = expr.parts().into_iter();
+    parts.for_each(|part| names_in(part, names));
 }

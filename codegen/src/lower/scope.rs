@@ -1,10 +1,12 @@
 //! Names and what they stand for.
 
+use super::curve::Curve;
 use super::motion::Motion;
+use crate::algebra::function::Function;
 use crate::algebra::graph::{Edge, NodeId};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, Function, Ident, ItemKind, Span, System};
+use crate::syntax::ast::{CoordKind, Function as Defined, Ident, Item, ItemKind, Span, System};
 use crate::syntax::suggest::closest;
 use rustc_hash::FxHashMap;
 use std::cell::Cell;
@@ -62,7 +64,7 @@ pub struct Entry {
 }
 
 /// Names of functions and constants of the language, which cannot be redefined.
-pub const RESERVED: &[&str] = &[
+const RESERVED: &[&str] = &[
     "transpose",
     "dot",
     "cross",
@@ -85,6 +87,10 @@ pub const RESERVED: &[&str] = &[
     "tanh",
     "asin",
     "acos",
+    "min",
+    "max",
+    "clamp",
+    "hypot",
     "rotx",
     "roty",
     "rotz",
@@ -98,6 +104,14 @@ pub const RESERVED: &[&str] = &[
     "pi",
     "world",
 ];
+
+/// Names of functions and constants of the language: those of the table of functions without a place of their own
+/// come last.
+pub fn reserved() -> impl Iterator<Item = &'static str> {
+    let table = Function::ALL.iter().map(|function| function.name());
+    let further = table.filter(|name| !RESERVED.contains(name) && Function::named(name).is_some());
+    RESERVED.iter().copied().chain(further)
+}
 
 /// Names listed where none is close to a misspelt one.
 const LISTED: usize = 12;
@@ -115,6 +129,8 @@ pub struct Scope {
     names: BTreeMap<String, Entry>,
     /// What the description defines anywhere, for names that are used too early.
     written: BTreeMap<String, (NameKind, Span)>,
+    /// Whether the user wrote constraints, so that no coordinate moves alone.
+    constrained: bool,
     /// Whether values are those at points off the variety: what holds on it alone is not checked.
     pub free: bool,
     /// How x and ξ move, once the rates are known.
@@ -124,7 +140,9 @@ pub struct Scope {
     /// What `rate(…)` stands for, in definitions of velocities.
     pub rates: Option<Rates>,
     /// The functions of the description.
-    pub functions: BTreeMap<String, Function>,
+    pub functions: BTreeMap<String, Defined>,
+    /// The tables of the description; `None` where they are in error.
+    pub tables: BTreeMap<String, Option<Curve>>,
     /// How many calls of them have been written out.
     pub calls: Cell<usize>,
 }
@@ -158,6 +176,10 @@ impl Scope {
                     note(&function.name, NameKind::Function);
                     continue;
                 }
+                ItemKind::Table(table) => {
+                    note(&table.name, NameKind::Function);
+                    continue;
+                }
                 _ => continue,
             };
             list.iter()
@@ -169,16 +191,33 @@ impl Scope {
                 note(name, NameKind::Output);
             }
         }
+        let constraint = |item: &Item| matches!(item.kind, ItemKind::Constraint { .. });
         Scope {
             names: BTreeMap::new(),
             written,
+            constrained: system.items.iter().any(constraint),
             free,
             motion: None,
             unmoved: false,
             rates: None,
             functions: BTreeMap::new(),
+            tables: BTreeMap::new(),
             calls: Cell::new(0),
         }
+    }
+
+    /// The coordinates that are a chart by themselves: plain numbers, where no constraint was written.
+    pub fn plain(&self) -> Vec<NodeId> {
+        let coordinates = self.names.values().filter(|entry| {
+            let plain = matches!(
+                entry.kind,
+                NameKind::Coord(CoordKind::Real | CoordKind::Euclidean(_))
+            );
+            plain && !self.constrained
+        });
+        let values = coordinates.filter_map(|entry| entry.value.as_ref());
+        let entries = values.flat_map(Value::entries);
+        entries.map(Edge::node).collect()
     }
 
     /// Takes a name, its value to follow; a second definition is an error. Whether it was free.
@@ -202,7 +241,7 @@ impl Scope {
             span: name.span,
         };
         self.names.insert(name.name.clone(), entry);
-        let reserved = RESERVED.contains(&name.name.as_str());
+        let reserved = reserved().any(|word| word == name.name);
         if reserved {
             report.push(
                 Diagnostic::new(

@@ -6,7 +6,7 @@
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
     Acting, Components, Conserved, Declaration, End, Expr, ExprKind, Ident, Item, ItemKind, Load,
-    System,
+    Source, System, Table,
 };
 use std::collections::BTreeSet;
 
@@ -29,6 +29,10 @@ pub fn warnings(system: &System) -> Vec<Diagnostic> {
                 if statements == 1 && placed.insert(&name.name) {
                     warnings.extend(uses.unused(name, "frame"));
                 }
+                continue;
+            }
+            ItemKind::Table(table) => {
+                warnings.extend(uses.unused(&table.name, "table"));
                 continue;
             }
             ItemKind::Function(function) => {
@@ -81,22 +85,11 @@ impl<'a> Uses<'a> {
 
     fn expr(&mut self, expr: &'a Expr) {
         match &expr.kind {
-            ExprKind::Number(_) => {}
-            ExprKind::Name(name) => {
-                self.names.insert(name);
-            }
-            ExprKind::Field(base, _) | ExprKind::Neg(base) => self.expr(base),
-            ExprKind::Index(base, list) => {
-                self.expr(base);
-                self.all(list);
-            }
-            ExprKind::Call(function, list) => {
-                self.name(function);
-                self.all(list);
-            }
-            ExprKind::Array(list) => self.all(list),
-            ExprKind::Binary(_, left, right) => self.all([&**left, &**right]),
+            ExprKind::Name(name) => _ = self.names.insert(name),
+            ExprKind::Call(function, _) => self.name(function),
+            _ => {}
         }
+        self.all(expr.parts());
     }
 
     fn values(&mut self, list: &'a [Declaration]) {
@@ -148,6 +141,11 @@ impl<'a> Uses<'a> {
                 }
                 self.names.extend(inner.names);
             }
+            ItemKind::Table(Table {
+                source: Source::Points(points, _),
+                ..
+            }) => points.iter().for_each(|(a, b)| self.all([a, b])),
+            ItemKind::Table(_) => {}
             ItemKind::Constraint { left, right } => self.all([left, right]),
             ItemKind::Rate { value, .. }
             | ItemKind::Generalized { value, .. }

@@ -270,12 +270,16 @@ fn polynomial_help(graph: &Graph, edge: Edge) -> &'static str {
         .find_map(|&id| match graph.node(id) {
             Node::Apply(function, _) => Some(function),
             Node::Atan2(..) => Some(Function::Atan2),
+            Node::Select(..) => Some(Function::Select),
             _ => None,
         });
     match found {
         Some(Function::Sqrt) => "square both sides: `dot(r, r) = l^2` for `norm(r) = l`",
         Some(Function::Sin | Function::Cos | Function::Atan2) => {
             "use an S1 coordinate for an angle, its parts `.c` and `.s` for cos and sin"
+        }
+        Some(Function::Sign | Function::Abs | Function::Select) => {
+            "a constraint has no branches: choose one of them"
         }
         Some(_) => "take the expression itself as a coordinate",
         None => "multiply both sides by the denominator",
@@ -292,7 +296,7 @@ fn degree(graph: &Graph, edge: Edge) -> u32 {
             Node::Add(a, b) => of(a).max(of(b)),
             Node::Mul(a, b) => of(a).saturating_add(of(b)),
             Node::Div(a, _) => of(a),
-            Node::Constant(_) | Node::Apply(..) | Node::Atan2(..) => 0,
+            Node::Constant(_) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => 0,
         };
     }
     degrees[edge.node() as usize]

@@ -3,7 +3,7 @@
 use super::class;
 use super::layout::{Block, sample};
 use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::lane::{Lane, Roots};
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::poly;
@@ -152,7 +152,7 @@ impl Points {
 
     /// From now on, chooses points at which the square roots of another graph have values.
     pub fn require_roots(&mut self, graph: &Graph) {
-        let is_root = |&id: &u32| matches!(graph.node(id), Node::Apply(Function::Sqrt, _));
+        let is_root = |&id: &u32| graph.node(id).is_root();
         let roots: Vec<Edge> = (0..graph.len() as u32)
             .filter(is_root)
             .map(Edge::of)
@@ -265,7 +265,9 @@ impl Points {
                 Node::Add(a, b) => read(a)?.add(&read(b)?),
                 Node::Mul(a, b) => read(a)?.mul_limited(&read(b)?, MOST_TERMS)?,
                 Node::Div(a, b) => read(a)?.scale(&read(b)?.as_constant()?.inv()?),
-                Node::Constant(_) | Node::Apply(..) | Node::Atan2(..) => return None,
+                Node::Constant(_) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => {
+                    return None;
+                }
             };
             memo.insert(id, polynomial);
         }

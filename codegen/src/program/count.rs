@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 /// Operations of a function at run time; negation is free, parameters are hoisted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Count {
-    /// Additions and subtractions.
+    /// Additions and subtractions, and what is as dear: absolute values, signs, choices.
     pub add: usize,
     /// Multiplications.
     pub mul: usize,
@@ -46,12 +46,14 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
     for &id in nodes {
         match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => {}
-            Node::Add(..) => count.add += 1,
+            Node::Add(..) | Node::Select(..) => count.add += 1,
             Node::Mul(..) => count.mul += 1,
             Node::Div(..) => count.div += 1,
             Node::Apply(function, a) => match function.row().cost {
                 Cost::Root => count.sqrt += 1,
                 Cost::Turn => angles.push(a.abs()),
+                Cost::Quotient => count.div += 1,
+                Cost::Choice => count.add += 1,
                 Cost::Other => count.other += 1,
             },
             Node::Atan2(..) => count.other += 1,

@@ -5,8 +5,8 @@ use super::parts::{Body, Element, Frame, Joint, Load};
 use super::{Scene, SceneError, print};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
-    Condition, Conserved, CoordKind, Declaration, Expr, Function, Item, ItemKind, Shape, ShapeKind,
-    Span, System, Target,
+    Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, Function, Item, ItemKind,
+    Shape, ShapeKind, Source, Span, System, Table, Target,
 };
 use crate::syntax::parse_text;
 
@@ -110,6 +110,17 @@ impl SceneBuilder {
             name: ident(name),
             parameters: parameters.collect(),
             value: value.into(),
+        }));
+    }
+
+    /// A function by its values at increasing arguments, called by [`call`](super::call).
+    pub fn table(&mut self, name: &str, points: &[(f64, f64)], between: Between, beyond: Beyond) {
+        let points = points.iter().map(|&(a, b)| (a.into(), b.into()));
+        self.add(ItemKind::Table(Table {
+            name: ident(name),
+            source: Source::Points(points.collect(), Span::NOWHERE),
+            between,
+            beyond,
         }));
     }
 

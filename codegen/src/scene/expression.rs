@@ -1,6 +1,6 @@
 //! Expressions written in Rust: numbers, arrays, operators and the functions of the language.
 
-use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Ident, Span};
+use crate::syntax::ast::{BinaryOp, Choice, Comparison, Expr, ExprKind, Ident, Span};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Signed;
@@ -35,6 +35,29 @@ fn number(number: BigRational) -> Expr {
 /// ```
 pub fn call<const N: usize>(function: &str, arguments: [Expr; N]) -> Expr {
     expr(ExprKind::Call(ident(function), arguments.into()))
+}
+
+/// `if a < b { then } else { otherwise }`: of two values of one shape the first where a < b.
+///
+/// ```
+/// use hamel_codegen::scene::{Expr, if_less};
+/// let z = Expr::name("z");
+/// let push = if_less(&z, 0.0, -&z, 0.0);
+/// assert_eq!(push.to_string(), "if z < 0 { -z } else { 0 }");
+/// ```
+pub fn if_less(
+    a: impl Into<Expr>,
+    b: impl Into<Expr>,
+    then: impl Into<Expr>,
+    otherwise: impl Into<Expr>,
+) -> Expr {
+    expr(ExprKind::If(Box::new(Choice {
+        left: a.into(),
+        comparison: Comparison::Less,
+        right: b.into(),
+        then: then.into(),
+        otherwise: otherwise.into(),
+    })))
 }
 
 /// sin a, a in rad.

@@ -47,9 +47,11 @@ use crate::syntax::ast::System;
 use crate::syntax::parse_text;
 use std::fmt;
 
-pub use crate::syntax::ast::{CoordKind, Expr, ShapeKind};
+pub use crate::syntax::ast::{
+    Between as Interpolation, Beyond as Extrapolation, CoordKind, Expr, ShapeKind,
+};
 pub use build::SceneBuilder;
-pub use expression::{call, cos, diagonal, pose, shifted, sin, sqrt};
+pub use expression::{call, cos, diagonal, if_less, pose, shifted, sin, sqrt};
 pub use parts::{Between, Body, Element, Frame, Joint, Load, Point, WORLD};
 
 /// A description of a mechanical system.

@@ -4,8 +4,8 @@
 //! an equal scene.
 
 use crate::syntax::ast::{
-    About, Acting, Body, Components, Conserved, CoordKind, Declaration, End, Ident, Item, ItemKind,
-    Joint, JointKind, Load, ShapeKind, System, Target,
+    About, Acting, Body, Components, Conserved, CoordKind, Declaration, End, Expr, Ident, Item,
+    ItemKind, Joint, JointKind, Load, ShapeKind, Source, System, Table, Target,
 };
 use crate::syntax::written::{conditions, equation, list, written};
 use crate::syntax::{joint_field, joint_kind};
@@ -39,6 +39,7 @@ pub fn statement(item: &Item) -> String {
             let (name, value) = (&function.name.name, written(&function.value));
             format!("fn {name}({parameters}) = {value}")
         }
+        ItemKind::Table(values) => table(values),
         ItemKind::Coord(list) => format!("coord {}", each(list, coordinate)),
         ItemKind::Velocity(list) => format!("velocity {}", declarations(list)),
         ItemKind::Constraint { left, right } => format!("constraint {}", equation(left, right)),
@@ -146,6 +147,18 @@ pub fn statement(item: &Item) -> String {
         }
     };
     line + ";"
+}
+
+fn table(table: &Table) -> String {
+    let points = match &table.source {
+        Source::Points(points, _) => {
+            let point = |(a, b): &(Expr, Expr)| format!("({}, {})", written(a), written(b));
+            format!("= [{}]", each(points, point))
+        }
+        Source::File(name, _) => format!("from {name:?}"),
+    };
+    let (name, between, beyond) = (&table.name.name, table.between.word(), table.beyond.word());
+    format!("table {name} {points} {between} extrapolate {beyond}")
 }
 
 /// A shape after a name: `: vec3`, nothing for a scalar.

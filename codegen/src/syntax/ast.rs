@@ -1,12 +1,14 @@
 //! The description as written: every node carries its span, nothing is resolved.
 
+mod expression;
 mod joint;
 mod span;
+mod table;
 
+pub use expression::{BinaryOp, Choice, Comparison, Expr, ExprKind};
 pub use joint::{Joint, JointField, JointKind};
 pub use span::Span;
-
-use num_rational::BigRational;
+pub use table::{Between, Beyond, Source, Table};
 
 /// A name with its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,51 +30,6 @@ pub struct System {
     pub name: Ident,
     /// The statements, in source order.
     pub items: Vec<Item>,
-}
-
-/// An expression with its region.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Expr {
-    /// What it is.
-    pub kind: ExprKind,
-    /// Where it stands.
-    pub span: Span,
-}
-
-/// The forms of an expression.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ExprKind {
-    /// A decimal literal, exact.
-    Number(BigRational),
-    /// A name.
-    Name(String),
-    /// `q.c`, `X.R`, `M.T`.
-    Field(Box<Expr>, Ident),
-    /// `v[i]`, `M[i, j]`; indices start at 1, as in the paper.
-    Index(Box<Expr>, Vec<Expr>),
-    /// `f(a, b)`.
-    Call(Ident, Vec<Expr>),
-    /// `-a`.
-    Neg(Box<Expr>),
-    /// `a op b`.
-    Binary(BinaryOp, Box<Expr>, Box<Expr>),
-    /// `[a, b, c]`; an array of arrays is a matrix by rows.
-    Array(Vec<Expr>),
-}
-
-/// Binary operators.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BinaryOp {
-    /// `+`
-    Add,
-    /// `-`
-    Sub,
-    /// `*`
-    Mul,
-    /// `/`
-    Div,
-    /// `^`, integer or rational exponent
-    Pow,
 }
 
 /// A shape annotation: `vec3`, `mat3`, `sym3`, or nothing for a scalar.
@@ -295,6 +252,8 @@ pub enum ItemKind {
     Let(Vec<Declaration>),
     /// `fn drag(v: vec3, c) = -c * norm(v) * v;` a function of expressions.
     Function(Function),
+    /// `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;` a function by its values.
+    Table(Table),
     /// `coord r: R3, R: SO3, q;`
     Coord(Vec<(Ident, CoordKind)>),
     /// `velocity v: vec3, w: vec3, u;`, or with rows of Y: `velocity v: vec3 = R.T * rate(r);`

@@ -21,6 +21,8 @@ pub(super) struct Cursor<'a> {
     at: usize,
     /// Where the next statement starts, if the current one turned out to lack its `;`.
     resume: Option<usize>,
+    /// How many choices the next token is in: their conditions have no brackets that would bound them.
+    pub choices: usize,
     /// The errors of the statements that were given up.
     pub errors: Vec<Diagnostic>,
 }
@@ -32,6 +34,7 @@ impl<'a> Cursor<'a> {
             tokens,
             at: 0,
             resume: None,
+            choices: 0,
             errors: Vec::new(),
         }
     }
@@ -291,7 +294,9 @@ impl<'a> Cursor<'a> {
             match token.kind {
                 Kind::Open(delimiter, close) => {
                     at = close + 1;
-                    let next = self.tokens.get(at).map(|token| token.kind);
+                    // A choice goes on behind its first braces.
+                    let next = self.tokens.get(at).filter(|token| token.text != "else");
+                    let next = next.map(|token| token.kind);
                     if delimiter == Delimiter::Brace && next == Some(Kind::Punct(';')) {
                         at += 1;
                         break;
@@ -325,7 +330,10 @@ fn operator_help(found: &Token) -> Option<&'static str> {
             Some("a product is written with `*`; a statement ends with `;`")
         }
         Kind::Punct('\'') => Some(TRANSPOSE),
-        Kind::Punct('%' | '&' | '|' | '<' | '>' | '!' | '~' | '@') => {
+        Kind::Punct('<' | '>') => {
+            Some("numbers are compared in a choice: `if a < b { c } else { d }`")
+        }
+        Kind::Punct('%' | '&' | '|' | '!' | '~' | '@') => {
             Some("the operators are `+`, `-`, `*`, `/` and `^`")
         }
         _ => None,

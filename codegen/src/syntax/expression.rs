@@ -6,11 +6,14 @@
 //! sign     = "-"* power
 //! power    = postfix ("^" "-"* postfix)*              to the right: a^b^c = a^(b^c), and -a^b = -(a^b)
 //! postfix  = primary ("." name | "[" sum ("," sum)* "]")*
-//! primary  = number | name | name "(" list ")" | "(" sum ")" | "[" list "]"
+//! primary  = number | name | name "(" list ")" | "(" sum ")" | "[" list "]" | choice
+//! choice   = "if" sum ("<" | "<=" | ">" | ">=") sum "{" sum "}" "else" (choice | "{" sum "}")
 //! ```
 //!
 //! Only brackets recurse, and those are bounded before parsing starts; chains are loops, and bounded because the tree
 //! they build is walked by recursion later.
+
+mod choice;
 
 use proc_macro2::Delimiter;
 
@@ -199,6 +202,7 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             cursor.bump();
             node(ExprKind::Number(number), span, 0)
         }
+        Kind::Word if token.text == "if" => choice::choice(cursor),
         Kind::Word if cursor.is_call() && !cursor.is_connective() => {
             let function = cursor.name("a function")?;
             cursor.bump();

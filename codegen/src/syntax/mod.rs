@@ -13,7 +13,7 @@
 //! | `cursor` | the place in that list, and how an unexpected token is reported |
 //! | `blocks` | what stands between braces, doc comments |
 //! | `parse` | the system, statement after statement, and recovery |
-//! | `statement`, `declaration`, `body`, `joint`, `load` | the statements |
+//! | `statement`, `declaration`, `table`, `body`, `joint`, `load` | the statements |
 //! | `expression`, `number` | values |
 //! | `words` | the words of the language |
 //! | `suggest` | the word that was probably meant |
@@ -38,6 +38,7 @@ mod parse;
 mod scan;
 mod statement;
 pub mod suggest;
+mod table;
 mod tokens;
 mod words;
 pub mod written;
@@ -78,6 +79,41 @@ pub fn parse_text(text: &str) -> Result<ast::System, Vec<Diagnostic>> {
     }
     errors.truncate(cursor::MAX_ERRORS);
     Err(errors)
+}
+
+/// Reads the tables that stand in files, in the place of their names: `open` gives the text of a file by its name in
+/// the description. The texts are returned in the order of the tables.
+pub fn read_tables(
+    system: &mut ast::System,
+    open: &mut dyn FnMut(&str) -> std::io::Result<String>,
+) -> Result<Vec<String>, Vec<Diagnostic>> {
+    let (mut texts, mut errors) = (Vec::new(), Vec::new());
+    for item in &mut system.items {
+        let ast::ItemKind::Table(found) = &mut item.kind else {
+            continue;
+        };
+        let ast::Source::File(name, span) = &found.source else {
+            continue;
+        };
+        let (name, span) = (name.clone(), *span);
+        let read = open(&name).map_err(|error| {
+            Diagnostic::new(span, format!("cannot read `{name}`: {error}"))
+                .help("the path of a table starts at the folder of its description")
+        });
+        let points = read.and_then(|text| {
+            let points = table::read(&text, &name, span)?;
+            texts.push(text);
+            Ok(points)
+        });
+        match points {
+            Ok(points) => found.source = ast::Source::Points(points, span),
+            Err(error) => errors.push(error),
+        }
+    }
+    match errors.is_empty() {
+        true => Ok(texts),
+        false => Err(errors),
+    }
 }
 
 /// One spelling for all sources of the same tokens, to be hashed: the tokens joined by single spaces.

@@ -7,7 +7,7 @@ use super::expression::expression;
 use super::suggest::closest;
 use super::tokens::Kind;
 use super::words::statements;
-use super::{body, declaration, element, invariant, joint, load};
+use super::{body, declaration, element, invariant, joint, load, table};
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -25,6 +25,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         "const" => ItemKind::Const(declaration::values(cursor, "a constant")?),
         "let" => ItemKind::Let(declaration::values(cursor, "an expression")?),
         "fn" => ItemKind::Function(declaration::function(cursor)?),
+        "table" => ItemKind::Table(table::table(cursor)?),
         "coord" => ItemKind::Coord(declaration::coordinates(cursor)?),
         "velocity" => ItemKind::Velocity(declaration::velocities(cursor)?),
         "input" => ItemKind::Input(declaration::inputs(cursor)?),

@@ -46,6 +46,14 @@ fn spelled(expr: &Expr) -> String {
             };
             format!("({} {sign} {})", spelled(left), spelled(right))
         }
+        ExprKind::If(choice) => {
+            let parts: Vec<String> = expr.parts().into_iter().map(spelled).collect();
+            let sign = choice.comparison.sign();
+            let [left, right, then, otherwise] = &parts[..] else {
+                panic!("four parts");
+            };
+            format!("(if {left} {sign} {right} {{{then}}} else {{{otherwise}}})")
+        }
         ExprKind::Array(entries) => format!("[{}]", list(entries)),
     }
 }
@@ -110,6 +118,17 @@ fn told(kind: &ItemKind) -> String {
             let parameters = parameters.collect::<Vec<_>>().join(", ");
             let value = spelled(&function.value);
             format!("fn {}({parameters}) = {value}", function.name.name)
+        }
+        Table(table) => {
+            let source = match &table.source {
+                super::ast::Source::Points(points, _) => {
+                    let one = |(a, b): &(Expr, Expr)| format!("{}: {}", spelled(a), spelled(b));
+                    points.iter().map(one).collect::<Vec<_>>().join("; ")
+                }
+                super::ast::Source::File(name, _) => format!("file {name}"),
+            };
+            let (name, between, beyond) = (&table.name.name, table.between, table.beyond);
+            format!("table {name} = {source}, {between:?}, beyond {beyond:?}")
         }
         Param(all) => format!("param {}", declared(all)),
         Const(all) => format!("const {}", declared(all)),

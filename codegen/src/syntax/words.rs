@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 32] = [
+const STATEMENTS: [(&str, &str); 33] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -11,6 +11,10 @@ const STATEMENTS: [(&str, &str); 32] = [
     (
         "fn",
         "a function is written `fn drag(v: vec3, c) = -c * norm(v) * v;`",
+    ),
+    (
+        "table",
+        "a table is written `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;`, or `from \"file.csv\"` for its points",
     ),
     ("coord", "coordinates are written `coord r: R3, R: SO3, q;`"),
     (

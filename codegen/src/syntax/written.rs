@@ -19,6 +19,16 @@ pub fn written(expr: &Expr) -> String {
         ExprKind::Index(base, indices) => format!("{}[{}]", tight(base, 5), list(indices)),
         ExprKind::Call(function, arguments) => format!("{}({})", function.name, list(arguments)),
         ExprKind::Neg(inner) => format!("-{}", tight(inner, 3)),
+        ExprKind::If(choice) => {
+            let (sign, then) = (choice.comparison.sign(), written(&choice.then));
+            let (left, right) = (tight(&choice.left, 1), tight(&choice.right, 1));
+            let otherwise = written(&choice.otherwise);
+            let otherwise = match choice.otherwise.kind {
+                ExprKind::If(_) => otherwise,
+                _ => format!("{{ {otherwise} }}"),
+            };
+            format!("if {left} {sign} {right} {{ {then} }} else {otherwise}")
+        }
         ExprKind::Array(items) => format!("[{}]", list(items)),
         ExprKind::Binary(op, left, right) => {
             let (sign, own) = match op {
@@ -55,6 +65,7 @@ pub fn list(items: &[Expr]) -> String {
 /// An expression in parentheses where it binds less than is wanted.
 fn tight(expr: &Expr, wanted: u8) -> String {
     let binds = match &expr.kind {
+        ExprKind::If(_) => 0,
         ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => 1,
         ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => 2,
         ExprKind::Neg(_) => 3,
@@ -108,6 +119,9 @@ mod tests {
             "(a^2)^3",
             "-(a + b)",
             "-0.05 * a",
+            "if a < b + 1 { [a, 2] } else { -v }",
+            "2 * (if a <= -b { a } else if c >= d { b } else { if_1 })^2 - x",
+            "if (if a > b { a } else { b }) > c { if a > 0 { 1 } else { 2 } } else { (if a > b { a } else { b })[1] }",
         ] {
             let system = format!("system S {{ invariant e = {text} when F[2] = 0, k = {text}; }}");
             let parsed = crate::syntax::parse_text(&system).expect("correct");

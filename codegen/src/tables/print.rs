@@ -75,6 +75,9 @@ impl Notation {
             (_, Atom::Sum(terms), _) => raised(self, self.group(&self.sum(terms)), power),
             (Notation::Text, Atom::Name(name), _) => raised(self, name.clone(), power),
             (Notation::Latex, Atom::Name(name), _) => raised(self, latex_name(name), power),
+            (_, Atom::Call(Function::Select, arguments), _) => {
+                raised(self, self.choice(arguments), power)
+            }
             (Notation::Text, Atom::Call(function, arguments), _) => {
                 let name = function.name();
                 raised(
@@ -83,7 +86,7 @@ impl Notation {
                     power,
                 )
             }
-            (Notation::Latex, Atom::Call(Function::Sqrt, arguments), _) => {
+            (Notation::Latex, Atom::Call(Function::Sqrt | Function::Norm, arguments), _) => {
                 let root = format!(r"\sqrt{{{}}}", self.arguments(arguments));
                 raised(
                     self,
@@ -94,6 +97,20 @@ impl Notation {
             (Notation::Latex, Atom::Call(function, arguments), _) => {
                 let name = raised(self, function.row().latex.into(), power);
                 format!("{name}{}", self.group(&self.arguments(arguments)))
+            }
+        }
+    }
+
+    /// a where c > 0, else b.
+    fn choice(self, arguments: &[Term]) -> String {
+        let [c, a, b] = arguments else {
+            return self.arguments(arguments);
+        };
+        let [c, a, b] = [c, a, b].map(|argument| self.term(argument));
+        match self {
+            Notation::Text => format!("(if {c} > 0 {{ {a} }} else {{ {b} }})"),
+            Notation::Latex => {
+                format!(r"\begin{{cases}} {a} & {c} > 0 \\ {b} & \text{{else}} \end{{cases}}")
             }
         }
     }

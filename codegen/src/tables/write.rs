@@ -137,7 +137,7 @@ impl<'a> Writer<'a> {
     fn choose(&mut self, id: NodeId, whole: bool) -> Plan {
         let polynomial = match (self.graph.node(id), self.style) {
             (Node::Constant(_) | Node::Symbol(_), _) => return Plan::Leaf,
-            (Node::Div(..) | Node::Apply(..) | Node::Atan2(..), _) => None,
+            (Node::Div(..) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..), _) => None,
             (_, Style::Table) if whole => self.simplifier.whole(self.graph, id),
             (_, Style::Table) => self.simplifier.part(self.graph, id),
             (_, Style::Route) if !self.graph.is_free(id) => None,
@@ -194,6 +194,10 @@ impl<'a> Writer<'a> {
             Node::Div(a, b) => self.value(a).divided(&self.value(b)),
             Node::Apply(function, a) => call(function, vec![self.value(a)]),
             Node::Atan2(y, x) => call(Function::Atan2, vec![self.value(y), self.value(x)]),
+            Node::Select(c, a, b) => {
+                let list = [c, a, b].map(|edge| self.value(edge));
+                call(Function::Select, list.into())
+            }
         }
     }
 

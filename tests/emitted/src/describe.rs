@@ -318,7 +318,7 @@ impl Draft<'_> {
             0 => format!("sin({a})"),
             1 => format!("cos({a} / 3)"),
             2 => format!("sqrt(2 + ({a})^2)"),
-            3 => format!("-({a})"),
+            3 => format!("-abs({a})"),
             4 => format!("({a}) * {}", self.constant()),
             n => {
                 let b = self.expression(depth - 1);
@@ -366,6 +366,16 @@ impl Draft<'_> {
                     let rows: Vec<String> = (0..rows).map(|_| self.row(columns)).collect();
                     format!("[{}]", rows.join(", "))
                 }
+            };
+            // With a branch that is continuous, so that numbers of half the length take the same one, or one next to it.
+            let value = match self.random.below(3) {
+                0 => {
+                    let (a, b, c) = (self.expression(1), self.expression(1), self.expression(1));
+                    format!(
+                        "[max({a}, {b}), clamp({c}, -0.5, 1), hypot({a}, {c}) + (if {a} < {b} {{ {b} - ({a}) }} else {{ 0 }})]"
+                    )
+                }
+                _ => value,
             };
             self.line(&format!("    output {name} = {value};"));
         }

@@ -66,7 +66,7 @@ fn expression(graph: &Graph, edge: Edge, depth: usize) -> Option<String> {
             };
             format!("{} {}", factor(a)?, factor(b)?)
         }
-        Node::Div(..) | Node::Atan2(..) => return None,
+        Node::Div(..) | Node::Atan2(..) | Node::Select(..) => return None,
         Node::Apply(function, a) => {
             let name = function.name();
             format!("{name}({})", of(a)?)

@@ -30,6 +30,9 @@ fn deep_nesting_is_refused() {
         ("a[", "]"),
         ("-(", ")"),
         ("a^(", ")"),
+        ("if a < b {", "} else { 2 }"),
+        ("if 1 < 2 { 1 } else {", "}"),
+        ("if (", ") < 2 { 1 } else { 2 }"),
     ] {
         let nested = |depth: usize| format!("{}1{}", open.repeat(depth), close.repeat(depth));
         assert_eq!(message(&nested(63)), "accepted", "{open}");
@@ -48,6 +51,13 @@ fn deep_nesting_is_refused() {
             "brackets are nested more than 64 deep",
             "{open}"
         );
+    }
+    let chain = |length: usize| format!("{}{{ 1 }}", "if a < b { 1 } else ".repeat(length));
+    assert_eq!(message(&chain(400)), "accepted");
+    assert_eq!(message(&chain(100_000)), "more than 500 operands in a row");
+    for start in ["if ", "if - if 2 * ", "if a < if "] {
+        let text = start.repeat(100_000);
+        assert_eq!(message(&text), "choices are nested more than 64 deep");
     }
     let depth = 3_000;
     let text = format!(

@@ -33,6 +33,13 @@ fn expressions() {
         r#"let x = "a";"#,
         r#"let x = 1e999;"#,
         r#"let x = #a;"#,
+        r#"let x = if a < b { c };"#,
+        r#"let x = if a < b < c { 1 } else { 2 };"#,
+        r#"let x = if a = b { 1 } else { 2 };"#,
+        r#"let x = if { 1 } else { 2 };"#,
+        r#"let x = if a < { 1 } else { 2 };"#,
+        r#"let x = if a < b { 1 } else if { 2 };"#,
+        r#"let x = if"#,
         r#"let x = yyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyy zzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzz;"#,
     ];
     insta::assert_snapshot!(cases.map(line).join("\n"), @r#"
@@ -91,6 +98,20 @@ fn expressions() {
     2:9 the exponent of `1e999` is beyond 400 <1e999>
       choose other units, or check the exponent
     2:9 expected an expression, found `#` <#>
+      a named expression is written `let e = m * s;`
+    2:9 this `if` has no `else` <if a < b { c }>
+      an expression has a value everywhere: `if a < b { c } else { d }`
+    2:18 more than one comparison <<>
+      write one choice within another: `if a < b { if b < c { d } else { e } } else { e }`
+    2:14 numbers are not compared for equality <=>
+      rounding decides that: compare with `<`, `<=`, `>` or `>=`, such as `abs(a - b) < 1e-6`
+    2:12 expected an expression, found `{` <{>
+      parts of an expression are grouped with `(` and `)`
+    2:16 expected an expression, found `{` <{>
+      parts of an expression are grouped with `(` and `)`
+    2:32 expected an expression, found `{` <{>
+      parts of an expression are grouped with `(` and `)`
+    3:1 expected an expression, found `}` <}>
       a named expression is written `let e = m * s;`
     2:70 expected `;` after `yyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyyy…`, found `zzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzz…` <zzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzz>
       a product is written with `*`; a statement ends with `;`

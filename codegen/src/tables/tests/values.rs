@@ -35,6 +35,13 @@ fn atom(values: &Values, atom: &Atom) -> f64 {
         Atom::Call(function, terms) => match (function, arguments(terms).as_slice()) {
             (function, [a]) => (function.row().value)(*a),
             (Function::Atan2, [y, x]) => y.atan2(*x),
+            (Function::Select, [c, a, b]) => {
+                if *c > 0.0 {
+                    *a
+                } else {
+                    *b
+                }
+            }
             _ => f64::NAN,
         },
     }

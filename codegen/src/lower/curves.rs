@@ -1,0 +1,154 @@
+//! Tables of values: `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;`.
+
+use super::curve::Curve;
+use super::expression::Evaluator;
+use super::functions::is_function;
+use super::scope::{NameKind, Scope};
+use crate::algebra::graph::Graph;
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::value::Value;
+use crate::syntax::ast::{Expr, ItemKind, Source, Span, System, Table};
+use num_rational::BigRational;
+
+/// The most points of a table.
+const MOST_POINTS: usize = 200;
+
+/// Reads all tables of a description; the values of those in error are `None`.
+pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &mut Report) {
+    for item in &system.items {
+        if let ItemKind::Table(table) = &item.kind
+            && !scope.tables.contains_key(&table.name.name)
+        {
+            let curve = Evaluator::new(graph, scope, report).curve(table);
+            scope.tables.insert(table.name.name.clone(), curve);
+        }
+    }
+}
+
+/// Takes the names of tables, after all others are taken.
+pub fn claim(system: &System, scope: &mut Scope, report: &mut Report) {
+    for item in &system.items {
+        let ItemKind::Table(table) = &item.kind else {
+            continue;
+        };
+        let name = &table.name;
+        if is_function(&name.name) {
+            let message = format!("`{}` is a function of the language", name.name);
+            let help = format!("choose another name, such as `{}_1`", name.name);
+            report.push(Diagnostic::new(name.span, message).help(help));
+        } else {
+            scope.claim(name, NameKind::Function, report);
+        }
+    }
+}
+
+impl Evaluator<'_> {
+    fn curve(&mut self, table: &Table) -> Option<Curve> {
+        let (points, span) =
+            match &table.source {
+                Source::Points(points, span) => (points, *span),
+                Source::File(name, span) => {
+                    let message = format!("nothing says in which folder `{name}` is");
+                    return self.error(Diagnostic::new(*span, message).help(
+                        "generate from a file, or write the points here: `= [(0, 0), (1, 2)]`",
+                    ));
+                }
+            };
+        let mut all = Vec::new();
+        for (argument, value) in points {
+            let pair = (self.number_of(argument), self.number_of(value));
+            all.push(pair.0.zip(pair.1));
+        }
+        let all = all.into_iter().collect::<Option<Vec<_>>>()?;
+        if !(2..=MOST_POINTS).contains(&all.len()) {
+            let count = all.len();
+            let plural = if count == 1 { "" } else { "s" };
+            return self.error(
+                Diagnostic::new(span, format!("a table of {count} point{plural}"))
+                    .help(format!("a table has from 2 to {MOST_POINTS} points")),
+            );
+        }
+        let mut increasing = Some(());
+        for (k, pair) in all.windows(2).enumerate() {
+            if let ([(a, _), (b, _)], [(before, _), (here, _)]) = (pair, &points[k..k + 2])
+                && a >= b
+            {
+                increasing = None;
+                let message = format!(
+                    "the arguments of a table have to increase: point {} is not beyond point {}",
+                    k + 2,
+                    k + 1
+                );
+                let error = Diagnostic::new(here.span, message)
+                    .help("sort the points by their first numbers, each of them once");
+                let error = match table.source {
+                    Source::Points(..) if here.span.range() != before.span.range() => {
+                        error.note(before.span, "the point before")
+                    }
+                    _ => error,
+                };
+                self.report.push(error);
+            }
+        }
+        increasing?;
+        let (knots, values) = all.into_iter().unzip();
+        Some(Curve::new(knots, values, table.between, table.beyond))
+    }
+
+    /// An entry of a table.
+    fn number_of(&mut self, expr: &Expr) -> Option<BigRational> {
+        let edge = self.scalar(expr, "an entry of a table")?;
+        match self.graph.as_rational(edge) {
+            Some(number) => Some(number),
+            None => self.error(
+                Diagnostic::new(
+                    expr.span,
+                    "an entry of a table has to be a number known at build time",
+                )
+                .help(
+                    "write a number or a `const`; scale the table for a parameter: `p * thrust(a)`",
+                ),
+            ),
+        }
+    }
+
+    /// The value of a table at an argument.
+    pub(super) fn table(
+        &mut self,
+        name: &str,
+        curve: Option<&Curve>,
+        arguments: &[Expr],
+        span: Span,
+    ) -> Option<Value> {
+        let values: Vec<Option<Value>> = arguments.iter().map(|a| self.value(a)).collect();
+        let [argument] = arguments else {
+            let message = format!(
+                "the table `{name}` takes 1 argument, not {}",
+                arguments.len()
+            );
+            let help = format!("write `{name}(a)`");
+            return self.error(Diagnostic::new(span, message).help(help));
+        };
+        let at = match values.into_iter().next()?? {
+            Value::Scalar(edge) => edge,
+            other => {
+                return self.wrong_shape(
+                    argument.span,
+                    "the argument of a table",
+                    "a scalar",
+                    &other,
+                );
+            }
+        };
+        let curve = curve?;
+        let number = self.graph.as_rational(at);
+        if number.is_some_and(|number| !curve.reaches(&number)) {
+            let message = format!("the table `{name}` has no value here");
+            return self.error(
+                Diagnostic::new(argument.span, message)
+                    .help("the argument is beyond its points: add some, or extrapolate"),
+            );
+        }
+        Some(Value::Scalar(curve.value(self.graph, at)))
+    }
+}

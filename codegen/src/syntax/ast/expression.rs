@@ -1,0 +1,114 @@
+//! Expressions as they are written.
+
+use super::{Ident, Span};
+use num_rational::BigRational;
+
+/// An expression with its region.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The forms of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExprKind {
+    /// A decimal literal, exact.
+    Number(BigRational),
+    /// A name.
+    Name(String),
+    /// `q.c`, `X.R`, `M.T`.
+    Field(Box<Expr>, Ident),
+    /// `v[i]`, `M[i, j]`; indices start at 1, as in the paper.
+    Index(Box<Expr>, Vec<Expr>),
+    /// `f(a, b)`.
+    Call(Ident, Vec<Expr>),
+    /// `-a`.
+    Neg(Box<Expr>),
+    /// `a op b`.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `if a < b { c } else { d }`
+    If(Box<Choice>),
+    /// `[a, b, c]`; an array of arrays is a matrix by rows.
+    Array(Vec<Expr>),
+}
+
+/// Binary operators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOp {
+    /// `+`
+    Add,
+    /// `-`
+    Sub,
+    /// `*`
+    Mul,
+    /// `/`
+    Div,
+    /// `^`, integer or rational exponent
+    Pow,
+}
+
+/// `if left < right { then } else { otherwise }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// What is compared.
+    pub left: Expr,
+    /// How.
+    pub comparison: Comparison,
+    /// With what.
+    pub right: Expr,
+    /// The value where the comparison holds.
+    pub then: Expr,
+    /// The value elsewhere.
+    pub otherwise: Expr,
+}
+
+/// Comparisons of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// `<`
+    Less,
+    /// `<=`
+    AtMost,
+    /// `>`
+    Greater,
+    /// `>=`
+    AtLeast,
+}
+
+impl Comparison {
+    /// As it is written.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Comparison::Less => "<",
+            Comparison::AtMost => "<=",
+            Comparison::Greater => ">",
+            Comparison::AtLeast => ">=",
+        }
+    }
+}
+
+impl Expr {
+    /// The expressions that it is made of, in the order of the text.
+    pub fn parts(&self) -> Vec<&Expr> {
+        match &self.kind {
+            ExprKind::Number(_) | ExprKind::Name(_) => Vec::new(),
+            ExprKind::Field(base, _) | ExprKind::Neg(base) => vec![base],
+            ExprKind::Index(base, list) => [&**base].into_iter().chain(list).collect(),
+            ExprKind::Call(_, list) | ExprKind::Array(list) => list.iter().collect(),
+            ExprKind::Binary(_, left, right) => vec![left, right],
+            ExprKind::If(choice) => {
+                let Choice {
+                    left,
+                    comparison: _,
+                    right,
+                    then,
+                    otherwise,
+                } = &**choice;
+                vec![left, right, then, otherwise]
+            }
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Systems with branches, lengths and tables against equations written by hand.
+
+use hamel::methods::General;
+use hamel::{State, System};
+use hamel_tests::bouncing_ball::BouncingBall;
+use hamel_tests::cart_pole_friction::FrictionCartPole;
+use hamel_tests::drag_ball::DragBall;
+use hamel_tests::reference::run;
+use hamel_tests::torque_curve::TorqueCurve;
+use hamel_tests::wing::Wing;
+use std::f64::consts::PI;
+
+#[track_caller]
+fn near(what: &str, value: f64, expected: f64, bound: f64) {
+    let off = (value - expected).abs();
+    assert!(
+        off <= bound,
+        "{what}: {value}, expected {expected}, off by {off:.1e}"
+    );
+}
+
+/// The equations of the cart-pole in the form of Barto, Sutton and Anderson, rod without mass: with the force on the
+/// cart, cut at ±10 N and less the friction.
+#[test]
+fn a_cart_with_a_largest_force_and_friction() {
+    let system = FrictionCartPole::<f64>::default();
+    let (cart, pole, l, g) = (1.0, 0.1, 0.5, 9.81);
+    for (k, force) in [-40.0, -10.0, -3.0, 0.0, 9.999, 10.001, 25.0]
+        .into_iter()
+        .enumerate()
+    {
+        for speed in [-0.4, -0.003, 0.0, 0.004, 2.0] {
+            let (angle, turn) = (0.3 - 0.2 * k as f64, 0.7);
+            let cut = if force > 10.0 {
+                10.0
+            } else if force < -10.0 {
+                -10.0
+            } else {
+                force
+            };
+            let applied = cut - 0.3 * f64::tanh(speed / 0.01);
+            let (s, c) = f64::sin_cos(angle);
+            let v_dot = (applied + pole * s * (l * turn * turn - g * c)) / (cart + pole * s * s);
+            let w_dot = (g * s - c * v_dot) / l;
+            let found = system
+                .accel(&[0.2, angle], &[speed, turn], &[force])
+                .expect("regular");
+            near("cart", found[0], v_dot, 1e-12);
+            near("pole", found[1], w_dot, 1e-11);
+            let saturated = system.saturated(&[0.0; 2], &[0.0; 2], &[force]);
+            let beyond = force.abs() - 10.0;
+            let expected = if beyond == 0.0 { 0.0 } else { beyond.signum() };
+            assert_eq!(saturated, expected);
+        }
+    }
+}
+
+/// Without damping a ball that falls from h is on the ground for 2 (π − arctan(ω v/g))/ω, v² = 2 g h, and is at h
+/// again after 2 √(2h/g) and that.
+#[test]
+fn a_ball_bounces_as_long_as_it_should() {
+    let system = BouncingBall::<f64>::default();
+    let (m, g, k, h) = (0.5, 9.81, 2000.0_f64, 1.0);
+    let (omega, v) = ((k / m).sqrt(), f64::sqrt(2.0 * g * h));
+    let touching = 2.0 * (PI - f64::atan(omega * v / g)) / omega;
+    let period = 2.0 * f64::sqrt(2.0 * h / g) + touching;
+    let start = State {
+        t: 0.0,
+        x: [0.0, h],
+        xi: [0.3, 0.0],
+    };
+    let end = run(&system, General::Rkmk4, start, period, 40_000).expect("a run");
+    near("x", end.x[0], 0.3 * period, 1e-9);
+    near("height", end.x[1], h, 1e-7);
+    near("speed", end.xi[1], 0.0, 1e-5);
+    // The force is none above the ground, and none that pulls.
+    let force = |z: f64| system.generalized_force(&[0.0, z], &[0.0, 1.0], &[])[1];
+    assert_eq!([force(0.1), force(0.0), force(-0.01)], [0.0, 0.0, 20.0]);
+}
+
+/// v = u tanh(g t/u), z = −(u²/g) log cosh(g t/u) with u² = m g/c.
+#[test]
+fn a_ball_falls_through_air() {
+    let system = DragBall::<f64>::default();
+    let (m, c, g) = (0.2, 0.05, 9.81_f64);
+    let u = (m * g / c).sqrt();
+    let start = System::start(&system);
+    let start = State {
+        t: 0.0,
+        x: start.0,
+        xi: start.1,
+    };
+    let until = 2.0;
+    let end = run(&system, General::Rkmk4, start, until, 4000).expect("a run");
+    near("speed", end.xi[2], -u * (g * until / u).tanh(), 1e-11);
+    let fallen = u * u / g * (g * until / u).cosh().ln();
+    near("height", end.x[2], -fallen, 1e-11);
+}
+
+/// ∂(|v| v)/∂v = |v| I + v vᵀ/|v|, and 0 at rest; in a wind, at the speed of the air.
+#[test]
+fn drag_linearises_at_rest() {
+    let system = DragBall::<f64>::default();
+    for (v, wind) in [
+        ([0.0; 3], [0.0; 3]),
+        ([0.3, -0.4, 1.2], [0.0; 3]),
+        ([1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
+        ([1e-120, 0.0, 0.0], [0.0; 3]),
+        ([1e-30, 0.0, 0.0], [0.0; 3]),
+    ] {
+        let rows = system.linearize(&[0.0; 3], &v, &wind).expect("regular");
+        let air: [f64; 3] = std::array::from_fn(|i| v[i] - wind[i]);
+        let length = air.iter().map(|a| a * a).sum::<f64>().sqrt();
+        for i in 0..3 {
+            for j in 0..3 {
+                let same = f64::from(u8::from(i == j));
+                let slope = match length > 0.0 {
+                    true => length * same + air[i] * air[j] / length,
+                    false => 0.0,
+                };
+                let row: &[f64] = rows[3 + i].as_ref();
+                near("by v", row[3 + j], -0.25 * slope, 1e-14);
+                near("by the wind", row[6 + j], 0.25 * slope, 1e-14);
+            }
+        }
+    }
+}
+
+/// Values and slopes of SciPy 1.17.1, `PchipInterpolator(x, y)(a)` and `.derivative()(a)`: slopes of Fritsch and
+/// Butland, d = (w₁ + w₂)/(w₁/δ₁ + w₂/δ₂) with w₁ = 2 h₂ + h₁, w₂ = h₂ + 2 h₁.
+const MOTOR: [[f64; 3]; 6] = [
+    [0.25, 1.66171875, 2.515625],
+    [0.5, 2.24375, 2.1125],
+    [1.5, 3.35, 0.55],
+    [2.75, 2.475446428571429, -2.008928571428571],
+    [3.25, 1.5518973214285714, -1.8683035714285714],
+    [3.9999999999999996, 8.881784197001252e-16, -2.25],
+];
+const SPRING: [[f64; 3]; 10] = [
+    [-1.0, 2.0, -3.7142857142857144],
+    [-0.6, 0.6747936507936508, -2.891428571428571],
+    [0.1, -0.7643174603174604, -1.1580952380952374],
+    [0.6, -1.0, 0.0],
+    [1.0, -0.4946499102333931, 3.7374506283662483],
+    [1.9, 3.8781207899461423, 2.0224804308797175],
+    [2.5, 4.164206396701909, 0.2914921204867345],
+    [4.0, 4.4517587605558875, 0.10013963694394573],
+    [5.1, 4.213809523809526, -5.433333333333318],
+    [5.4, 1.3152380952380915, -11.276190476190473],
+];
+
+#[test]
+fn tables_are_those_of_scipy() {
+    let system = TorqueCurve::<f64>::default();
+    let force = |w: f64, u: f64| system.generalized_force(&[0.0], &[w], &[u])[0];
+    for [w, value, slope] in MOTOR {
+        // The fan takes the same with and without voltage.
+        near("motor", force(w, 1.0) - force(w, 0.0), value, 1e-13);
+        let rows = [1.0, 0.0].map(|u| system.linearize(&[0.0], &[w], &[u]).expect("regular"));
+        let by_w = rows.map(|rows| rows[1][1]);
+        near("motor's slope", 0.02 * (by_w[0] - by_w[1]), slope, 1e-12);
+    }
+    for [q, value, slope] in SPRING {
+        near("energy", system.potential_energy(&[q]), 2.0 * value, 1e-13);
+        near("force", system.potential_force(&[q])[0], 2.0 * slope, 1e-11);
+    }
+    // At the points, to the bit, whether from the left or from the right.
+    for (w, value) in [(0.0, 1.0), (1.0, 3.0), (2.0, 3.5), (3.0, 2.0), (4.0, 0.0)] {
+        assert_eq!(force(w, 1.0) - force(w, 0.0), value, "{w}");
+    }
+    // Held beyond its points, and with a line.
+    assert_eq!(force(-3.0, 1.0) - force(-3.0, 0.0), 1.0);
+    assert_eq!(force(9.0, 1.0) - force(9.0, 0.0), 0.0);
+    near(
+        "before",
+        system.potential_energy(&[-3.0]),
+        2.0 * (2.0 + 2.0 * 3.7142857142857144),
+        1e-12,
+    );
+    // Lines between points, and beyond.
+    for (w, fan) in [
+        (-2.0, 0.4),
+        (-0.5, 0.1),
+        (0.5, 0.125),
+        (2.0, 1.375),
+        (4.0, 3.625),
+    ] {
+        near("fan", -force(w, 0.0), fan, 1e-14);
+    }
+    // Nothing beyond the points of a table that does not extrapolate.
+    let power = |w: f64| system.power(&[0.0], &[w], &[0.0]);
+    near("power", power(1.0), 3.0 / 0.55, 1e-14);
+    near("power", power(4.0), 0.0, 1e-14);
+    assert!(power(4.0001).is_nan() && power(-0.0001).is_nan());
+}
+
+/// A table of a file: at its points, by the rate that `Builder` reads, and beyond.
+#[test]
+fn a_table_of_a_file() {
+    let system = Wing::<f64>::default();
+    let lift =
+        |pitch: f64| system.generalized_force(&[0.0, pitch], &[0.0, 0.0], &[])[0] / (0.05 * 144.0);
+    for (pitch, cl) in [
+        (-0.3, -0.9),
+        (0.0, 0.2),
+        (0.25, 1.3),
+        (0.4, 0.8),
+        (0.7, 0.8),
+        (-1.0, -0.9),
+    ] {
+        near("lift", lift(pitch), cl, 1e-15);
+    }
+}
