@@ -131,6 +131,62 @@ fn generates_the_same(name: &str) {
     assert_eq!(robot.run("emit", &[]), text(&output.stdout));
 }
 
+/// Two joints of UR5 with their rates as inputs: accelerations of Pinocchio there need its torques, and those of the
+/// other joints follow.
+#[test]
+fn prescribed_accelerations_need_the_torques_of_pinocchio() {
+    let Some(robot) = Robot::open("ur5") else {
+        return;
+    };
+    let text_of = robot.run("import", &[]);
+    let end = text_of.rfind('}').expect("a description");
+    let driven = ["shoulder_lift_joint", "wrist_2_joint"];
+    let drives = driven.map(|joint| {
+        format!("    input {joint}_rate;\n    prescribe rate({joint}_dot) = {joint}_rate;\n")
+    });
+    let description = format!("{}{}}}\n", &text_of[..end], drives.concat());
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("driven");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let file = folder.join("ur5.eom");
+    std::fs::write(&file, description).expect("a file");
+    let order = robot.values["velocity_order"].as_array().expect("names");
+    let joints: Vec<&str> = order
+        .iter()
+        .map(|name| name.as_str().expect("a name"))
+        .collect();
+    for sample in robot.values["samples"].as_array().expect("samples") {
+        let [force, acceleration] = ["force", "acceleration"].map(|name| numbers(&sample[name]));
+        let mut inputs = serde_json::Map::new();
+        for (joint, (torque, rate)) in joints.iter().zip(force.iter().zip(&acceleration)) {
+            match driven.contains(joint) {
+                true => inputs.insert(format!("{joint}_rate"), (*rate).into()),
+                false => inputs.insert(format!("{joint}_tau"), (*torque).into()),
+            };
+        }
+        let state = serde_json::json!({
+            "coord": sample["configuration"], "velocity": sample["velocity"], "input": inputs,
+        });
+        let output = hamel(
+            &["eval", &file.display().to_string(), "--at", "-"],
+            &state.to_string(),
+        );
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let printed: Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
+        let apart = |found: &[f64], expected: &[f64]| {
+            let difference: Vec<f64> = found.iter().zip(expected).map(|(a, b)| a - b).collect();
+            norm(&difference) / norm(expected)
+        };
+        let accel = apart(&numbers(&printed["accel"]), &acceleration);
+        assert!(accel <= AGREEMENT, "accelerations differ by {accel:.1e}");
+        let torques: Vec<f64> = (joints.iter().zip(&force))
+            .filter(|(joint, _)| driven.contains(joint))
+            .map(|(_, torque)| *torque)
+            .collect();
+        let torque = apart(&numbers(&printed["constraint_force"]), &torques);
+        assert!(torque <= AGREEMENT, "torques differ by {torque:.1e}");
+    }
+}
+
 macro_rules! robots {
     ($($name:ident)*) => {$(
         mod $name {

@@ -231,6 +231,7 @@ impl Reader<'_, '_> {
     ) -> Option<Edge> {
         let rate = self.evaluator.scalar(expr, "what a damper acts on")?;
         let graph = &mut *self.evaluator.graph;
+        let rate = time::linear(graph, self.declared, rate);
         let known = class::PARAM | class::CONFIGURATION | class::VELOCITY;
         let square = graph.mul(rate, rate);
         let linear = graph.class(rate.node()) & !known == 0

@@ -111,6 +111,26 @@ pub fn carried(graph: &mut Graph, declared: &Declared, rest: Edge) -> Option<(us
     (found == 0).then_some((clock.xi, rest))
 }
 
+/// A function that is linear in ξ but for a term without a velocity, as a linear one: that term goes with ξ⁰. Without
+/// time, and where it is of another kind, the function itself.
+pub fn linear(graph: &mut Graph, declared: &Declared, rate: Edge) -> Edge {
+    let Some(clock) = declared.clock else {
+        return rate;
+    };
+    let slopes: Vec<Edge> = (declared.xi.iter())
+        .map(|xi| Derivation::new([(xi.node(), graph.one())]).of(graph, rate))
+        .collect();
+    let whole = graph.dot(&slopes, &declared.xi);
+    let rest = graph.sub(rate, whole);
+    match carried(graph, declared, rest) {
+        Some((_, rest)) => {
+            let moved = graph.mul(rest, declared.xi[clock.xi]);
+            graph.add(whole, moved)
+        }
+        None => rate,
+    }
+}
+
 /// A function of degree two in ξ, such as T₂ + T₁ + T₀, as a quadratic one: T₂ + T₁ ξ⁰ + T₀ (ξ⁰)². Without time, and
 /// where it is of another kind, the function itself.
 pub fn homogeneous(graph: &mut Graph, declared: &Declared, energy: Edge) -> Edge {

@@ -123,14 +123,12 @@ impl Full {
         Some(full)
     }
 
-    /// Puts prescribed coordinates in, now that all derivatives are taken: at a point, sin q of a symbol q and sin f
-    /// of a sum f with the same value would differ.
+    /// Puts prescribed coordinates and ξ⁰ = 1 in, now that all derivatives are taken: at a point, sin q of a symbol q
+    /// and sin f of a sum f with the same value would differ.
     fn prescribe(&mut self) {
         let reference = &mut self.reference;
         let model = &mut reference.model;
-        let first = model.points.first;
-        let given = model.prescribed.iter();
-        let set: Vec<(usize, Edge)> = given.map(|(place, edge)| (first + place, *edge)).collect();
+        let set = given(model);
         let graph = &mut model.graph;
         let rows = [&mut reference.mass, &mut model.a];
         let rows = rows.into_iter().flatten();
@@ -187,12 +185,14 @@ fn compare(
 ) -> Option<[Option<String>; IDENTITIES.len()]> {
     let mut failed: [Option<String>; IDENTITIES.len()] = Default::default();
     let points = &model.points;
+    // Prescribed coordinates are where they are prescribed to be, so that roots of them have values.
+    let given = given(&full.reference.model);
     let compared = at_fresh_points(
         |number| {
             // Roots of what constraints give need values, too.
             let graph = &full.reference.model.graph;
             let solved = |lane| imposed(lane, graph, &full.solved);
-            points.lane_moved(0xb0d5 + number, graph, &[], &solved)
+            points.lane_moved(0xb0d5 + number, graph, &given, &solved)
         },
         |lane, _| {
             let results = at_point(full, reduction, program, lane)?;
@@ -207,7 +207,7 @@ fn compare(
         |number| {
             let model = &full.reference.model;
             let moved = |lane| rows_at_rest(model, &full.rows, lane);
-            points.lane_moved(0x50_0e4 + number, &model.graph, &[], &moved)
+            points.lane_moved(0x50_0e4 + number, &model.graph, &given, &moved)
         },
         |lane, _| {
             let balanced = At::new(full, reduction, program, lane)?.power()?;
@@ -218,6 +218,18 @@ fn compare(
         failed[POWER] = Some("the power differs".into());
     }
     (compared.is_ok() && still != Err(Unequal::Nowhere)).then_some(failed)
+}
+
+/// The symbols of prescribed coordinates with what they are prescribed to be, and ξ⁰ with 1.
+fn given(model: &Model) -> Vec<(usize, Edge)> {
+    let first = model.points.first;
+    let given = model.prescribed.iter();
+    let given = given.map(|(place, edge)| (first + place, *edge));
+    let velocities = places(&model.graph, class::VELOCITY);
+    let time = model
+        .clock
+        .map(|clock| (velocities[clock.xi], model.graph.one()));
+    given.chain(time).collect()
 }
 
 /// Nothing is said of what is not there.
