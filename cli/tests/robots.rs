@@ -62,6 +62,23 @@ impl Robot {
     }
 }
 
+impl Robot {
+    /// A description of the robot in which the rates of some joints are inputs.
+    fn driven(&self, name: &str, joints: &[&str]) -> String {
+        let text = self.run("import", &[]);
+        let end = text.rfind('}').expect("a description");
+        let drives = joints.iter().map(|joint| {
+            format!("    input {joint}_rate;\n    prescribe rate({joint}_dot) = {joint}_rate;\n")
+        });
+        let description = format!("{}{}}}\n", &text[..end], drives.collect::<String>());
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("driven");
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let file = folder.join(format!("{}_{name}.eom", self.name));
+        std::fs::write(&file, description).expect("a file");
+        file.display().to_string()
+    }
+}
+
 /// All numbers of a value, rows one after the other.
 fn numbers(value: &Value) -> Vec<f64> {
     match value {
@@ -138,17 +155,8 @@ fn prescribed_accelerations_need_the_torques_of_pinocchio() {
     let Some(robot) = Robot::open("ur5") else {
         return;
     };
-    let text_of = robot.run("import", &[]);
-    let end = text_of.rfind('}').expect("a description");
     let driven = ["shoulder_lift_joint", "wrist_2_joint"];
-    let drives = driven.map(|joint| {
-        format!("    input {joint}_rate;\n    prescribe rate({joint}_dot) = {joint}_rate;\n")
-    });
-    let description = format!("{}{}}}\n", &text_of[..end], drives.concat());
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("driven");
-    std::fs::create_dir_all(&folder).expect("a folder");
-    let file = folder.join("ur5.eom");
-    std::fs::write(&file, description).expect("a file");
+    let file = robot.driven("torques", &driven);
     let order = robot.values["velocity_order"].as_array().expect("names");
     let joints: Vec<&str> = order
         .iter()
@@ -166,10 +174,7 @@ fn prescribed_accelerations_need_the_torques_of_pinocchio() {
         let state = serde_json::json!({
             "coord": sample["configuration"], "velocity": sample["velocity"], "input": inputs,
         });
-        let output = hamel(
-            &["eval", &file.display().to_string(), "--at", "-"],
-            &state.to_string(),
-        );
+        let output = hamel(&["eval", &file, "--at", "-"], &state.to_string());
         assert!(output.status.success(), "{}", text(&output.stderr));
         let printed: Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
         let apart = |found: &[f64], expected: &[f64]| {
@@ -184,6 +189,40 @@ fn prescribed_accelerations_need_the_torques_of_pinocchio() {
             .collect();
         let torque = apart(&numbers(&printed["constraint_force"]), &torques);
         assert!(torque <= AGREEMENT, "torques differ by {torque:.1e}");
+    }
+}
+
+/// ξ̇ of UR5 with two joints driven takes no more operations than that of the arm with these joints locked and 60 % of
+/// inverse dynamics.
+#[test]
+fn drives_cost_no_more_than_what_they_replace() {
+    let Some(robot) = Robot::open("ur5") else {
+        return;
+    };
+    let flops = |printed: &str, function: &str| {
+        let counts: Value = serde_json::from_str(printed).expect("JSON");
+        counts["functions"][function]["shared"]["flops"]
+            .as_u64()
+            .expect("a count")
+    };
+    let inverse = flops(&robot.run("ops", &["--format", "json"]), "inverse_dynamics");
+    for (name, driven, expected) in [
+        ("base", ["shoulder_pan_joint", "shoulder_lift_joint"], 219),
+        ("middle", ["shoulder_lift_joint", "elbow_joint"], 328),
+        ("wrist", ["wrist_2_joint", "wrist_3_joint"], 391),
+    ] {
+        let file = robot.driven(name, &driven);
+        let output = hamel(&["ops", &file, "--format", "json"], "");
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let accel = flops(&text(&output.stdout), "accel");
+        let [one, other] = driven.map(|joint| format!("{joint}=0.4"));
+        let locked = robot.run(
+            "ops",
+            &["--format", "json", "--lock", &one, "--lock", &other],
+        );
+        let most = flops(&locked, "accel") as f64 + 0.6 * inverse as f64;
+        assert_eq!(accel, expected, "{name}");
+        assert!(accel as f64 <= most, "{name}: {accel}, at most {most}");
     }
 }
 

@@ -166,6 +166,8 @@ impl Reader<'_> {
             return self.evaluator.wrong_shape(expr.span, &what, &shape, &value);
         }
         self.known_ahead(name, expr.span, &value)?;
+        self.evaluator
+            .continuous(&value, expr.span, "a prescribed motion")?;
         match coordinate {
             None => self.velocity(place, &value, expr, target, all),
             Some(coordinate) => self.coordinate(place, coordinate, &value, expr, target, all),
