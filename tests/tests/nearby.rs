@@ -82,6 +82,21 @@ impl At {
         moved
     }
 
+    /// x moved along A alone: with the time among the coordinates rates have terms without ξ.
+    fn displaced(&self, x: &[f64], h: &[f64], time: f64) -> Vec<f64> {
+        let chart = |xi: &[f64]| self.chart_rate.call(x, xi, &[], &[]).expect("a value");
+        let mut chart = along(&chart(h), &chart(&vec![0.0; self.n]), -1.0);
+        chart.iter_mut().for_each(|entry| *entry *= time);
+        let mut moved = x.to_vec();
+        manifold::retract(&self.blocks, &mut moved, &chart);
+        moved
+    }
+
+    /// A h.
+    fn linear(&self, x: &[f64], h: &[f64]) -> Vec<f64> {
+        along(&self.rate(x, h), &self.rate(x, &vec![0.0; self.n]), -1.0)
+    }
+
     fn unit(&self, i: usize) -> Vec<f64> {
         (0..self.n).map(|j| f64::from(u8::from(i == j))).collect()
     }
@@ -158,15 +173,15 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
             let upper: Vec<f64> = (0..n).map(column).collect();
             let (slope, moved) = if j < n {
                 let unit = at.unit(j);
-                let slope = difference(|h| at.accel(&at.moved(&x, &unit, h), &xi, &at.u));
+                let slope = difference(|h| at.accel(&at.displaced(&x, &unit, h), &xi, &at.u));
                 // D(A ξ)[A h] − Ȧ h.
-                let ahead = difference(|h| at.rate(&at.moved(&x, &unit, h), &xi));
-                let swept = difference(|h| at.rate(&at.moved(&x, &xi, h), &unit));
+                let ahead = difference(|h| at.rate(&at.displaced(&x, &unit, h), &xi));
+                let swept = difference(|h| at.linear(&at.moved(&x, &xi, h), &unit));
                 (slope, along(&ahead, &swept, -1.0))
             } else if j < 2 * n {
                 let unit = at.unit(j - n);
                 let slope = difference(|h| at.accel(&x, &along(&xi, &unit, h), &at.u));
-                (slope, at.rate(&x, &unit))
+                (slope, at.linear(&x, &unit))
             } else {
                 let unit: Vec<f64> = (0..m)
                     .map(|k| f64::from(u8::from(k == j - 2 * n)))
@@ -175,7 +190,7 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
                 (slope, vec![0.0; x.len()])
             };
             check("velocities", j, &lower, &slope);
-            check("displacements", j, &at.rate(&x, &upper), &moved);
+            check("displacements", j, &at.linear(&x, &upper), &moved);
         }
     }
 }

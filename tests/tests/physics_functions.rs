@@ -59,7 +59,7 @@ fn a_cart_with_a_largest_force_and_friction() {
 /// again after 2 √(2h/g) and that.
 #[test]
 fn a_ball_bounces_as_long_as_it_should() {
-    let system = BouncingBall::<f64>::default();
+    let system = BouncingBall::<f64>::new(0.5, 9.81, 2000.0, 0.0).expect("a ball");
     let (m, g, k, h) = (0.5, 9.81, 2000.0_f64, 1.0);
     let (omega, v) = ((k / m).sqrt(), f64::sqrt(2.0 * g * h));
     let touching = 2.0 * (PI - f64::atan(omega * v / g)) / omega;

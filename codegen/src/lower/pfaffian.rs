@@ -138,7 +138,8 @@ impl Reader<'_> {
                 let rest = graph.sub(edge, whole);
                 let without =
                     class & class::VELOCITY == 0 && graph.class(rest.node()) & class::VELOCITY == 0;
-                let message = if (class | graph.class(rest.node())) & class::INPUT != 0 {
+                let inputs = (class | graph.class(rest.node())) & class::INPUT != 0;
+                let message = if inputs {
                     "a nonholonomic constraint cannot depend on inputs"
                 } else if without {
                     "this nonholonomic constraint has a term without a velocity"
@@ -146,7 +147,7 @@ impl Reader<'_> {
                     "this nonholonomic constraint is not linear in the velocities"
                 };
                 let help = "it is B(x) ξ = 0: every term has exactly one velocity as a factor, times coordinates and parameters";
-                let help = match without {
+                let help = match without && !inputs {
                     true => format!(
                         "{help}; with the time declared, `time t;`, it may have terms without one"
                     ),

@@ -276,11 +276,14 @@ models! {
     actuated_pendulum::ActuatedPendulum,
     benchmark_top::BenchmarkTop,
     body_with_rotor::BodyWithRotor,
+    bouncing_ball::BouncingBall,
     cart_pole::CartPole,
+    cart_pole_friction::FrictionCartPole,
     cart_rods::CartRods,
     double_pendulum_angles::DoublePendulum,
     double_pendulum_circles::CircleDoublePendulum,
     double_spherical_pendulum::DoubleSphericalPendulum,
+    drag_ball::DragBall,
     drone::Drone,
     elastic_pendulum::ElasticPendulum,
     euler_top_quaternion::EulerTop,
@@ -325,6 +328,7 @@ models! {
     spinning_particles::SpinningParticles,
     spring_chain::SpringChain,
     suspended_body::SuspendedBody,
+    torque_curve::TorqueCurve,
     tricopter::Tricopter,
     two_bodies::TwoBodies,
 }
@@ -338,11 +342,11 @@ fn no_model_is_left_out() {
         .map(|entry| entry.expect("an entry").path())
         .filter(|path| path.extension().is_some_and(|e| e == "eom"))
         .filter(|path| {
-            // Where constraints hold velocities back A is no frame of the tangent space, and these
-            // laws are others: see `physics_constraints.rs`.
+            // Where constraints hold velocities back A is no frame of the tangent space, and with time or drives
+            // these laws are others, too: see `physics_constraints.rs` and `time.rs`.
             let text = std::fs::read_to_string(path).expect("readable");
             let generated = from_text(&text).expect("correct");
-            generated.model.constraints.is_empty()
+            !generated.model.is_constrained()
         })
         .map(|path| path.file_stem().expect("a name").to_string_lossy().into())
         .collect();
