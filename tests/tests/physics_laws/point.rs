@@ -276,9 +276,7 @@ models! {
     actuated_pendulum::ActuatedPendulum,
     benchmark_top::BenchmarkTop,
     body_with_rotor::BodyWithRotor,
-    bouncing_ball::BouncingBall,
     cart_pole::CartPole,
-    cart_pole_friction::FrictionCartPole,
     cart_rods::CartRods,
     double_pendulum_angles::DoublePendulum,
     double_pendulum_circles::CircleDoublePendulum,
@@ -328,7 +326,6 @@ models! {
     spinning_particles::SpinningParticles,
     spring_chain::SpringChain,
     suspended_body::SuspendedBody,
-    torque_curve::TorqueCurve,
     tricopter::Tricopter,
     two_bodies::TwoBodies,
 }
@@ -346,7 +343,10 @@ fn no_model_is_left_out() {
             // these laws are others, too: see `physics_constraints.rs` and `time.rs`.
             let text = std::fs::read_to_string(path).expect("readable");
             let generated = from_text(&text).expect("correct");
-            !generated.model.is_constrained()
+            // Nor is what bends or jumps a matter of differences: see `physics_functions.rs`.
+            let graph = &generated.program.graph;
+            let bends = (0..graph.len() as u32).any(|id| graph.chosen_by(id).is_some());
+            !generated.model.is_constrained() && !bends
         })
         .map(|path| path.file_stem().expect("a name").to_string_lossy().into())
         .collect();
