@@ -68,7 +68,12 @@ impl Points {
     /// Values of all symbols at a random point of X, where functions have the values of the lane
     /// with this seed; `None` where no point was found.
     pub fn choose(&self, random: &mut Random, seed: u64) -> Option<Vec<Fp>> {
-        self.choose_where(random, seed, TRIES, &[&|_| Some(()); 2])
+        self.choose_where(
+            random,
+            seed,
+            TRIES,
+            &[&(|_: &mut Vec<Fp>| Some(())) as &Change<'_>; 2],
+        )
     }
 
     /// The same where values are changed before the coordinates are solved for, and after that; either may
@@ -78,7 +83,7 @@ impl Points {
         random: &mut Random,
         seed: u64,
         tries: usize,
-        [before, after]: &[&dyn Fn(&mut Vec<Fp>) -> Option<()>; 2],
+        [before, after]: &[&Change<'_>; 2],
     ) -> Option<Vec<Fp>> {
         let mut failures = 0;
         // The parts of a point in the two fields are found apart: each root halves the chance of both.
@@ -175,8 +180,13 @@ impl Points {
             self.roots = roots;
             let mut found = |seed| {
                 let anything = |_: &mut Vec<Fp>| Some(());
-                self.choose_where(&mut random, seed, STRICT_TRIES, &[&anything; 2])
-                    .is_some()
+                self.choose_where(
+                    &mut random,
+                    seed,
+                    STRICT_TRIES,
+                    &[&anything as &Change<'_>; 2],
+                )
+                .is_some()
             };
             if found(1) && found(2) {
                 return;
@@ -308,7 +318,7 @@ impl Points {
             move_in(values, moved)
         };
         let random = &mut Random::new(seed ^ 0x0b5e);
-        let values = self.choose_where(random, seed, TRIES, &[&before, &after])?;
+        let values = self.choose_where(random, seed, TRIES, &[&before as &Change<'_>, &after])?;
         Some(self.lane_of(&values, seed))
     }
 
@@ -327,6 +337,9 @@ impl Points {
         lane
     }
 }
+
+/// What changes the values of symbols, or finds them unfit.
+type Change<'a> = dyn Fn(&mut Vec<Fp>) -> Option<()> + 'a;
 
 /// Symbols with the values that they get.
 pub type Moved = Vec<(usize, Fp)>;
