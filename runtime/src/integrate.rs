@@ -49,7 +49,7 @@ where
         let mut chart = system.chart_rate(&state.x, &step);
         let still = system.chart_rate(&state.x, &system.zero_velocities());
         for (entry, &drift) in chart.as_mut().iter_mut().zip(still.as_ref()) {
-            *entry = *entry - drift;
+            *entry -= drift;
         }
         manifold::retract(system.blocks(), state.x.as_mut(), chart.as_ref());
         moved = true;

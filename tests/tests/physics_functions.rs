@@ -31,13 +31,7 @@ fn a_cart_with_a_largest_force_and_friction() {
     {
         for speed in [-0.4, -0.003, 0.0, 0.004, 2.0] {
             let (angle, turn) = (0.3 - 0.2 * k as f64, 0.7);
-            let cut = if force > 10.0 {
-                10.0
-            } else if force < -10.0 {
-                -10.0
-            } else {
-                force
-            };
+            let cut = f64::clamp(force, -10.0, 10.0);
             let applied = cut - 0.3 * f64::tanh(speed / 0.01);
             let (s, c) = f64::sin_cos(angle);
             let v_dot = (applied + pole * s * (l * turn * turn - g * c)) / (cart + pole * s * s);

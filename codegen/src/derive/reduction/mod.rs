@@ -264,11 +264,10 @@ fn keep(
 ) -> Result<(Vec<usize>, usize), Diagnostic> {
     let time = model.clock.map(|clock| clock.xi);
     // The entries of a row but that of ξ⁰.
-    let moving = |row: &[Edge]| {
-        let entries = row.to_vec().into_iter().enumerate();
-        entries
-            .filter(move |(j, _)| Some(*j) != time)
-            .map(|(_, entry)| entry)
+    let moving = |row: &[Edge]| -> Vec<Edge> {
+        let entries = row.iter().enumerate();
+        let entries = entries.filter(|(j, _)| Some(*j) != time);
+        entries.map(|(_, entry)| *entry).collect()
     };
     let mut open: Vec<usize> = Vec::new();
     let mut values: Vec<Vec<Fp>> = Vec::new();
@@ -276,7 +275,8 @@ fn keep(
         if solved.iter().any(|&(row, _)| row == i) {
             continue;
         }
-        let at_point = moving(&rows[i]).map(|entry| model.graph.value(entry));
+        let row = moving(&rows[i]);
+        let at_point = row.iter().map(|&entry| model.graph.value(entry));
         values.push(at_point.collect());
         if model.constraints[i].kind == Kind::Loop && rank(values.clone()) < values.len() {
             values.pop();
@@ -286,7 +286,7 @@ fn keep(
     }
     let edges: Vec<Edge> = open.iter().flat_map(|&i| moving(&rows[i])).collect();
     let values = evaluate(&model.graph, &edges, &start_numbers(model));
-    let columns = moving(&model.xi).count();
+    let columns = moving(&model.xi).len();
     let mut left: Vec<Vec<f64>> = values.chunks(columns).map(<[f64]>::to_vec).collect();
     let norm = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>().sqrt();
     let most = left.iter().map(|row| norm(row)).fold(0.0, f64::max);
