@@ -206,7 +206,8 @@ fn what_splits_is_free_motion_and_kicks() {
 /// Forces at two velocities differ.
 fn forces_change(case: &mut Case) -> bool {
     let (n, m) = (case.generated.program.n, case.generated.program.m);
-    let tied = !case.generated.model.points.constraints.is_empty();
+    let model = &case.generated.model;
+    let tied = !model.points.constraints.is_empty() || !model.constraints.is_empty();
     // Some forces act on one side only.
     [1.0, -1.0].into_iter().any(|side| {
         let (mut x, u) = (case.x(), case.numbers(m));

@@ -39,7 +39,8 @@ const CI: Task = &[
 
 /// The random attacks at full size: an hour.
 const ATTACK: Task = &[
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test expressions --test mounts --test rounding",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test expressions --test mounts --test rounding --test constrained --test prescribed",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test functions",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test free_rotation --test stiff",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files",
     "bash tests/robots/install.sh",
