@@ -111,11 +111,31 @@ impl Copy {
     fn copy(&self, path: &Path) {
         let from = root().join(path);
         if from.is_dir() {
+            self.forget(path);
             for entry in fs::read_dir(from).expect("a folder") {
                 self.copy(&path.join(entry.expect("an entry").file_name()));
             }
         } else {
             self.write(path, &read(&from));
+        }
+    }
+
+    /// Removes what an earlier run has copied and the workspace has no longer.
+    fn forget(&self, path: &Path) {
+        let Ok(known) = fs::read_dir(self.folder.join(path)) else {
+            return;
+        };
+        for entry in known {
+            let entry = entry.expect("an entry");
+            let source = root().join(path).join(entry.file_name());
+            let copied = entry.path();
+            if source.is_dir() != copied.is_dir() || !source.exists() {
+                let removed = match copied.is_dir() {
+                    true => fs::remove_dir_all(&copied),
+                    false => fs::remove_file(&copied),
+                };
+                removed.unwrap_or_else(|error| panic!("{}: {error}", copied.display()));
+            }
         }
     }
 
