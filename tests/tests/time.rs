@@ -4,7 +4,9 @@
 use hamel::methods::General;
 use hamel::{State, System};
 use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::program::Program;
 use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::proof::check::{Verdict, check};
 use hamel_codegen::render::render;
 use hamel_tests::belt_sleigh::BeltSleigh;
 use hamel_tests::driven_hoop::DrivenHoop;
@@ -233,6 +235,45 @@ fn a_moving_constraint() {
         // l² q̈ + 2 l l̇ q̇ + g l cos q = 0.
         let expected = -(2.0 * growth * w + 9.81 * c) / length;
         assert_near("ξ̇", value(&rows, "accel", on_rows)[0], expected, CLOSE);
+    }
+}
+
+/// An error of ξ̇ that does no work leaves the power balance as it is; it has to break the equations of motion. It is
+/// δξ̇ = (p₂, −p₁) here, for δξ̇ · p = 0.
+#[test]
+fn a_workless_error_is_noticed() {
+    for name in [
+        "ship_arm",
+        "drifting_oscillator",
+        "snakeboard",
+        "two_wheeled_robot",
+    ] {
+        for functions in ["accel, momentum", "all"] {
+            let generate = format!("generate {functions};");
+            let text = text(name);
+            let end = text.rfind('}').expect("a description");
+            let Generated {
+                model, mut program, ..
+            } = generated(&format!("{}{generate}}}", &text[..end]));
+            let failures = |program: &Program| {
+                let all = check(&model, program).into_iter();
+                let failed = all.filter(|identity| matches!(identity.verdict, Verdict::Failed(_)));
+                failed.map(|identity| identity.label).collect::<Vec<_>>()
+            };
+            assert!(failures(&program).is_empty(), "{name}, {functions}");
+            let momentum = program
+                .function("momentum")
+                .expect("it is asked for")
+                .outputs
+                .clone();
+            let graph = &mut program.graph;
+            let place = program.functions.iter().position(|f| f.name == "accel");
+            let accel = &mut program.functions[place.expect("it is asked for")].outputs;
+            accel[0] = graph.add(accel[0], momentum[1]);
+            accel[1] = graph.sub(accel[1], momentum[0]);
+            let broken = failures(&program);
+            assert!(broken.contains(&"(30c)"), "{name}, {functions}: {broken:?}");
+        }
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut lane: Lane) -> Opti
 }
 
 /// A vector with B ξ + b = 0: by elimination, dependent entries replaced.
-fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
+pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
     let n = xi.len();
     let mut rows: Vec<Vec<Fp>> = rows
         .chunks(n)

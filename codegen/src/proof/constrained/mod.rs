@@ -5,11 +5,11 @@
 mod point;
 
 use super::confidence::Confidence;
-use super::kernel::{places, rows_at_rest};
+use super::kernel::{in_kernel, places, rows_at_rest};
 use super::points::{POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict, failure};
-use crate::algebra::fp::Fp;
+use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
@@ -329,10 +329,9 @@ fn at_point(
     };
     let balanced = match (emitted("accel")?, emitted("constraint_force")?) {
         (Some(xi_dot), Some(lambda)) => {
-            let xi_dot = values.lift(c, &xi_dot);
+            let needed = values.needed(&values.lift(c, &xi_dot));
             // The row of ξ⁰ is no equation of motion.
             (0..n).filter(|&i| Some(i) != time).all(|i| {
-                let inertial = dot(&mass[i * n..][..n], &xi_dot);
                 let bonds = lambda.iter().zip(rows.chunks(n));
                 let bond = bonds.fold(Fp::ZERO, |sum, (&lambda, row)| sum + row[i] * lambda);
                 // Beyond the rows of constraints stand the forces of drives whose rates are given.
@@ -340,7 +339,7 @@ fn at_point(
                 let drives = drives.zip(lambda.get(rows.len() / n..).unwrap_or(&[]));
                 let drive = drives.filter(|((velocity, _), _)| *velocity == i);
                 let drive = drive.fold(Fp::ZERO, |sum, (_, &force)| sum + force);
-                inertial + bias[i] + slope[i] == force[i] + bond + drive
+                needed[i] == force[i] + bond + drive
             })
         }
         _ => true,
@@ -365,6 +364,21 @@ fn at_point(
     let carried: Vec<Fp> = (0..n)
         .map(|k| bias[k] + dot(&mass[k * n..][..n], &values.drift))
         .collect();
+    // Whatever the multipliers are, they do no work where B v = 0, nor do drives where what they give stands still: there
+    // the equations of motion hold by themselves.
+    let balanced = balanced
+        && match emitted("accel")? {
+            None => true,
+            Some(xi_dot) => {
+                let needed = values.needed(&values.lift(c, &xi_dot));
+                let left = needed
+                    .iter()
+                    .zip(force)
+                    .map(|(&needed, &force)| needed - force);
+                let virtual_velocity = virtual_velocity(full, &kept, &values.xi, na)?;
+                dot(&virtual_velocity, &project(&left.collect::<Vec<_>>())).is_zero()
+            }
+        };
     let held = match emitted("accel")? {
         None => true,
         Some(xi_dot) if full.reduced.overconstrained => {
@@ -389,7 +403,12 @@ fn at_point(
         && equal("potential_force", project(slope))?
         && equal("kinetic_energy", vec![values.kinetic])?
         && equal("potential_energy", vec![values.potential])?
+        && equal("energy", vec![values.kinetic + values.potential])?
         && equal("dissipation", vec![values.dissipation])?;
+    let same_rate = equal("rate", at.rate()?)?;
+    let rates = evaluate_at(inner_graph, &full.reduced.xi_dot, &mut inner.clone())?;
+    let needed = values.needed(&values.lift(c, &rates));
+    let same_whole = equal("inverse_dynamics", project(&needed))?;
     let momentum: Vec<Fp> = (0..n)
         .map(|i| dot(&mass[i * n..][..n], &values.xi))
         .collect();
@@ -397,8 +416,8 @@ fn at_point(
     let nearby = at.nearby()?;
     let result = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_string()) };
     Some([
-        result(vanish, "a row does not vanish"),
-        result(balanced, "the forces do not balance"),
+        result(vanish && same_rate, "a row does not vanish, or ẋ differs"),
+        result(balanced && same_whole, "the forces do not balance"),
         result(held, "the constraint is left"),
         result(same_mass, "M or p differs"),
         result(same_bias, "the bias differs"),
@@ -406,6 +425,20 @@ fn at_point(
         Ok(()),
         result(nearby, "a slope differs"),
     ])
+}
+
+/// A random v with B v = 0 for the rows that are kept, in which what has a given rate stands still.
+fn virtual_velocity(full: &Full, kept: &[Fp], xi: &[Fp], na: usize) -> Option<Vec<Fp>> {
+    let mut rows = kept.to_vec();
+    for (place, _) in &full.reduced.accelerated {
+        rows.extend((0..na).map(|j| if j == *place { Fp::ONE } else { Fp::ZERO }));
+    }
+    let mut random = Random::new(
+        xi.iter()
+            .fold(na as u64, |seed, xi| seed.rotate_left(7) ^ xi.bits()),
+    );
+    let random: Vec<Fp> = (0..na).map(|_| random.element()).collect();
+    in_kernel(&rows, &vec![Fp::ZERO; rows.len() / na], &random)
 }
 
 fn dot(a: &[Fp], b: &[Fp]) -> Fp {

@@ -46,6 +46,17 @@ impl Values {
         let rows = c.chunks(xi_dot.len()).zip(&self.drift);
         rows.map(|(row, &drift)| dot(row, xi_dot) + drift).collect()
     }
+
+    /// M ξ̇ + h + ∂V, the force that a motion of the full frame needs.
+    pub(super) fn needed(&self, xi_dot: &[Fp]) -> Vec<Fp> {
+        let rows = self
+            .mass
+            .chunks(xi_dot.len())
+            .zip(&self.bias)
+            .zip(&self.slope);
+        rows.map(|((row, &bias), &slope)| dot(row, xi_dot) + bias + slope)
+            .collect()
+    }
 }
 
 impl<'a> At<'a> {
@@ -93,6 +104,14 @@ impl<'a> At<'a> {
             point,
             inner,
         })
+    }
+
+    /// ẋ = A ξ of the full frame.
+    pub(super) fn rate(&self) -> Option<Vec<Fp>> {
+        let model = &self.full.reference.model;
+        let a = evaluate_at(&model.graph, &model.a.concat(), &mut self.point.clone())?;
+        let xi = evaluate_at(&model.graph, &model.xi, &mut self.point.clone())?;
+        Some(a.chunks(xi.len()).map(|row| dot(row, &xi)).collect())
     }
 
     /// What the full model has there.

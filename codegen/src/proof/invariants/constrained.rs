@@ -37,7 +37,7 @@ pub fn refute(model: &Model, program: &Program) -> Result<(), Vec<Diagnostic>> {
                 claim.name
             ),
         };
-        errors.push(Diagnostic::new(claim.span, message).help(if model.clock.is_some() {
+        errors.push(Diagnostic::new(claim.span, message).help(if model.clock.is_some() || !model.accelerated.is_empty() {
             "what depends on time, and what drives do work on, is not constant: T + V changes by −∂L/∂t and by their power"
         } else if loops {
             "claim what is constant for every position of the tree: the loops are not closed where claims are checked"
