@@ -42,8 +42,8 @@ pub struct Interpreted {
     velocity_names: Vec<String>,
     constant_singular: bool,
     constrained: bool,
-    /// Whether the time is a coordinate.
-    timed: bool,
+    /// Whether energy changes otherwise than by loads: with the time, or by drives.
+    driven: bool,
     /// What had no value last.
     failed: RefCell<Option<Failed>>,
 }
@@ -102,7 +102,7 @@ impl Interpreted {
             velocity_names: names::velocities(&generated.active),
             constant_singular: constant_singular(program, &state.params),
             constrained: generated.model.is_constrained(),
-            timed: generated.model.clock.is_some(),
+            driven: generated.model.clock.is_some() || !generated.model.accelerated.is_empty(),
             failed: RefCell::new(None),
         })
     }
@@ -127,9 +127,9 @@ impl Interpreted {
         self.constrained
     }
 
-    /// Whether the time is a coordinate.
-    pub fn is_timed(&self) -> bool {
-        self.timed
+    /// Whether energy changes otherwise than by loads: with the time, or by drives.
+    pub fn is_driven(&self) -> bool {
+        self.driven
     }
 
     /// What had no value last, where something had none.

@@ -22,8 +22,8 @@ pub struct Balance {
     work: f64,
     /// ∫ T dt, without what the run has made of nothing.
     moving: f64,
-    /// Whether T + V changes by the time alone: then it says nothing of the run.
-    timed: bool,
+    /// Whether T + V changes with the time, or by drives: then it says nothing of the run.
+    driven: bool,
     /// T and the change of T + V at the last state.
     kinetic: f64,
     change: f64,
@@ -39,7 +39,7 @@ impl Balance {
             power: system.power(&state.x, &state.xi).abs(),
             work: 0.0,
             moving: 0.0,
-            timed: system.is_timed(),
+            driven: system.is_driven(),
             kinetic: system.kinetic_energy(&state.x, &state.xi),
             change: 0.0,
         }
@@ -62,7 +62,7 @@ impl Balance {
 
     /// The change of energy here, where no load accounts for it.
     pub fn lost(&self, tolerance: f64) -> Option<f64> {
-        if self.timed {
+        if self.driven {
             return None;
         }
         let elapsed = (self.time - self.start).abs();
