@@ -9,26 +9,12 @@ use common::{Random, attack, difference, value};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::Group;
 use hamel_codegen::render::render;
-use tree::{Kind, Link, Tree, text};
+use tree::{ALL, Kind, Link, Tree, text};
 
 /// Roundings of a few thousand operations, forces of the order of 100, times the condition of M.
 const CLOSE: f64 = 1e-9;
 /// States tried per tree.
 const STATES: usize = 3;
-
-const KINDS: [Kind; 11] = [
-    Kind::Revolute,
-    Kind::Revolute,
-    Kind::Revolute,
-    Kind::Continuous,
-    Kind::Prismatic,
-    Kind::Spherical,
-    Kind::Quaternion,
-    Kind::Cylindrical,
-    Kind::Universal,
-    Kind::Free,
-    Kind::Fixed,
-];
 
 /// How a velocity of a joint is given.
 enum Given {
@@ -224,7 +210,7 @@ fn faults(seed: u64) -> Vec<String> {
     let mut links: Vec<Link> = Vec::new();
     let count = 2 + random.below(5);
     while links.len() < count || links.iter().all(|link| link.freedoms() == 0) {
-        links.push(Link::random(&mut random, &links, &KINDS));
+        links.push(Link::random(&mut random, &links, &ALL));
     }
     let drives = drives(&mut random, &links);
     let text = description(&links, &drives);

@@ -10,7 +10,7 @@ use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::proof::levi_civita::{contracted, levi_civita};
-use tree::{Kind, Link, Tree, humanoid, text};
+use tree::{ALL, Kind, Link, Tree, humanoid, text};
 
 /// Roundings of a few thousand operations, forces of the order of 100.
 const CLOSE: f64 = 1e-10;
@@ -24,20 +24,6 @@ const SIMPLE: [Kind; 4] = [
     Kind::Revolute,
     Kind::Continuous,
     Kind::Prismatic,
-];
-const ALL: [Kind; 12] = [
-    Kind::Revolute,
-    Kind::Revolute,
-    Kind::Revolute,
-    Kind::Continuous,
-    Kind::Prismatic,
-    Kind::Spherical,
-    Kind::Quaternion,
-    Kind::Cylindrical,
-    Kind::Planar,
-    Kind::Universal,
-    Kind::Free,
-    Kind::Fixed,
 ];
 const FUNCTIONS: &str =
     "accel, inverse_dynamics, mass_matrix, bias, potential_force, energy, momentum";

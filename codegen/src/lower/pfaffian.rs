@@ -116,20 +116,14 @@ impl Reader<'_> {
         let graph = &mut *self.evaluator.graph;
         let mut rows = Vec::new();
         for edge in entries {
-            let mut row: Vec<Edge> = self
+            // B ξ = b(x, t): the term without a velocity goes with ξ⁰.
+            let edge = time::linear(graph, self.declared, edge);
+            let row: Vec<Edge> = self
                 .declared
                 .xi
                 .iter()
                 .map(|xi| Derivation::new([(xi.node(), graph.one())]).of(graph, edge))
                 .collect();
-            let mut edge = edge;
-            let linear = graph.dot(&row, &self.declared.xi);
-            let rest = graph.sub(edge, linear);
-            // B ξ = b(x, t): the term without a velocity goes with ξ⁰.
-            if let Some((place, rest)) = time::carried(graph, self.declared, rest) {
-                row[place] = graph.add(row[place], rest);
-                edge = graph.dot(&row, &self.declared.xi);
-            }
             let whole = graph.dot(&row, &self.declared.xi);
             let class = row
                 .iter()

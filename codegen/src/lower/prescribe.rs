@@ -252,15 +252,7 @@ impl Reader<'_> {
             let mut row = vec![graph.zero(); self.declared.xi.len()];
             row[place + i] = graph.one();
             row[clock.xi] = -given;
-            all.0.push(Pfaffian {
-                kind: Kind::Drive { position: false },
-                row,
-                shift: graph.zero(),
-                residual: graph.zero(),
-                stabilized: None,
-                written: format!("{} = {}", written(target), shown(expr)),
-                span: target.span(),
-            });
+            all.0.push(driven(graph, row, None, target, expr));
         }
         Some(())
     }
@@ -304,16 +296,29 @@ impl Reader<'_> {
             };
             let rate = along.of(graph, given);
             row[clock.xi] = graph.sub(row[clock.xi], rate);
-            all.0.push(Pfaffian {
-                kind: Kind::Drive { position: true },
-                row,
-                shift: graph.zero(),
-                residual,
-                stabilized: None,
-                written: format!("{} = {}", written(target), shown(expr)),
-                span: target.span(),
-            });
+            all.0.push(driven(graph, row, Some(residual), target, expr));
         }
         Some(())
+    }
+}
+
+/// The row of what is driven; with φ where it is a coordinate.
+fn driven(
+    graph: &Graph,
+    row: Vec<Edge>,
+    residual: Option<Edge>,
+    target: &Target,
+    expr: &Expr,
+) -> Pfaffian {
+    Pfaffian {
+        kind: Kind::Drive {
+            position: residual.is_some(),
+        },
+        row,
+        shift: graph.zero(),
+        residual: residual.unwrap_or(graph.zero()),
+        stabilized: None,
+        written: format!("{} = {}", written(target), shown(expr)),
+        span: target.span(),
     }
 }

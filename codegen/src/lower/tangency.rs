@@ -24,23 +24,15 @@ pub fn linear_part(
     declared: &Declared,
     report: &mut Report,
 ) -> Option<Vec<Vec<Edge>>> {
+    // ẋ = A ξ + a(x, t): the term without a velocity goes with ξ⁰.
+    for rate in rates.iter_mut().flatten() {
+        rate.edge = time::linear(graph, declared, rate.edge);
+    }
     let mut a = vec![Vec::new(); rates.len()];
     for &xi in &declared.xi {
         let mut derivation = Derivation::new([(xi.node(), graph.one())]);
         for (row, rate) in a.iter_mut().zip(rates.iter()) {
             row.extend(rate.as_ref().map(|rate| derivation.of(graph, rate.edge)));
-        }
-    }
-    if declared.clock.is_some() {
-        for (row, rate) in a.iter_mut().zip(rates.iter_mut()) {
-            let Some(rate) = rate else { continue };
-            let linear = graph.dot(row, &declared.xi);
-            let rest = graph.sub(rate.edge, linear);
-            // ẋ = A ξ + a(x, t): the term without a velocity goes with ξ⁰.
-            if let Some((place, rest)) = time::carried(graph, declared, rest) {
-                row[place] = graph.add(row[place], rest);
-                rate.edge = graph.dot(row, &declared.xi);
-            }
         }
     }
     // One error a statement.

@@ -31,6 +31,22 @@ pub enum Kind {
     Fixed,
 }
 
+/// Joints of all kinds, hinges more often.
+pub const ALL: [Kind; 12] = [
+    Kind::Revolute,
+    Kind::Revolute,
+    Kind::Revolute,
+    Kind::Continuous,
+    Kind::Prismatic,
+    Kind::Spherical,
+    Kind::Quaternion,
+    Kind::Cylindrical,
+    Kind::Planar,
+    Kind::Universal,
+    Kind::Free,
+    Kind::Fixed,
+];
+
 /// A joint whose coordinate is a + b q + c q², where q is that of another one.
 #[derive(Clone, Debug)]
 pub struct Follow {
