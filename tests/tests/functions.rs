@@ -1,28 +1,21 @@
 //! Functions with branches: random expressions against another evaluator, their slopes against differences, and
 //! what must not be found equal.
 
+use hamel_codegen::algebra::fp;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::interpret::Interpreter;
 use rayon::prelude::*;
 
-/// A small generator of pseudo-random numbers, SplitMix64.
-struct Random(u64);
+/// Pseudo-random choices.
+struct Random(fp::Random);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
     fn below(&mut self, n: u64) -> usize {
-        (self.next() % n) as usize
+        (self.0.bits() % n) as usize
     }
 
     fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        (self.0.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 }
 
@@ -203,7 +196,7 @@ fn random_expressions_have_their_values_and_slopes() {
 
 /// The numbers of values and slopes of one system that were compared.
 fn attack(seed: u64) -> [usize; 2] {
-    let mut random = Random(seed);
+    let mut random = Random(fp::Random::new(seed));
     let trees: Vec<Tree> = (0..5).map(|_| Tree::random(&mut random, 4)).collect();
     let text = system(&trees);
     let generated = from_text(&text).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"));

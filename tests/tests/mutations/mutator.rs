@@ -1,5 +1,6 @@
 //! Mutations of descriptions, token by token and statement by statement.
 
+use hamel_codegen::algebra::fp;
 use std::path::Path;
 
 /// Words, numbers and signs that fixtures may lack.
@@ -130,25 +131,17 @@ const WORDS: &[&str] = &[
     "ω̂",
 ];
 
-/// A small generator of pseudo-random numbers, SplitMix64.
-pub struct Random(u64);
+/// Pseudo-random choices.
+pub struct Random(fp::Random);
 
 impl Random {
     pub fn new(seed: u64) -> Self {
-        Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        Random(fp::Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
     }
 
     /// A number below a bound that is not 0.
     fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound.max(1) as u64) as usize
+        (self.0.bits() % bound.max(1) as u64) as usize
     }
 }
 
