@@ -61,6 +61,8 @@ struct Linear {
     b: Vec<Vec<f64>>,
     /// Real and imaginary parts, the fastest growing first; `None` where they were not found.
     eigenvalues: Option<Vec<(f64, f64)>>,
+    /// Whether there are states of first order.
+    with_states: bool,
     /// ξ̇ at the state.
     xi_dot: Vec<f64>,
 }
@@ -90,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         // The time is not displaced.
         frame.remove(clock.xi);
     }
-    let velocities = names::velocities(&generated.active);
+    let velocities = names::moving(&generated.active);
     let displacements = frame.iter().map(|name| format!("h({name})"));
     let changes = velocities.iter().map(|name| format!("d({name})"));
     let states: Vec<String> = displacements.chain(changes).collect();
@@ -112,6 +114,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let linear = Linear {
         system: generated.model.name.clone(),
         eigenvalues: eigenvalues(&a),
+        with_states: !generated.model.states.is_empty(),
         states,
         inputs,
         a,
@@ -137,8 +140,13 @@ fn complete(linear: &Linear) -> Result<(), Failure> {
 
 fn text(linear: &Linear) -> String {
     let mut text = format!(
-        "\x1b[1m{}\x1b[0m  d/dt (h, d) = A (h, d) + B du; displacements h along the columns of A(x), changes d of velocities\n",
-        linear.system
+        "\x1b[1m{}\x1b[0m  d/dt (h, d) = A (h, d) + B du; displacements h along the columns of A(x), changes d of velocities{}\n",
+        linear.system,
+        if linear.with_states {
+            " and states"
+        } else {
+            ""
+        }
     );
     text.push_str("\n\x1b[1mA\x1b[0m\n");
     text.push_str(&table(&linear.states, &linear.states, &linear.a));
@@ -220,6 +228,7 @@ mod tests {
     #[test]
     fn matrices_stand_without_their_eigenvalues() {
         let mut linear = Linear {
+            with_states: false,
             system: "Stalled".into(),
             states: vec!["h(v)".into(), "d(v)".into()],
             inputs: vec!["u".into()],

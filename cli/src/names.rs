@@ -19,6 +19,12 @@ pub fn velocities(model: &Model) -> Vec<String> {
     model.velocities.iter().flat_map(group).collect()
 }
 
+/// Names of the entries of ξ and of the states of first order behind it.
+pub fn moving(model: &Model) -> Vec<String> {
+    let groups = model.velocities.iter().chain(&model.states);
+    groups.flat_map(group).collect()
+}
+
 /// Names of the entries of a group of symbols.
 pub fn group(group: &Group) -> Vec<String> {
     let name = &group.name;

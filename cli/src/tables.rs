@@ -19,7 +19,7 @@ use std::path::PathBuf;
   hamel tables heavy_top.eom --format json | jq .
 
 Tables: phi, A, Y, gamma, M, Gamma (these where --of is left out), accel, bias, potential_force,
-generalized_force, outputs, geometry.")]
+generalized_force, states, outputs, geometry.")]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]

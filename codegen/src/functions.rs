@@ -40,8 +40,8 @@ pub enum Returns {
     Vector,
     /// A matrix of n rows, n the number of velocities.
     Rows,
-    /// A matrix of 2 n rows: those of h and of δξ.
-    DoubleRows,
+    /// A matrix of the rows of h, of δξ and of δz.
+    Linear,
 }
 
 /// One row of the table.
@@ -158,7 +158,7 @@ table! {
     ProjectVelocity "project_velocity" (Coordinates, Velocities) Vector System true false [
         "The velocities with B ξ = 0 that are nearest in kinetic energy, ξ − M⁻¹ Bᵀ S⁻¹ B ξ.",
     ]
-    Linearize "linearize" (Coordinates, Velocities, Inputs) DoubleRows Asked true true [
+    Linearize "linearize" (Coordinates, Velocities, Inputs) Linear Asked true true [
         "The linearisation in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,",
         "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).",
     ]

@@ -57,6 +57,8 @@ system Everything {
     constraint q^2 = 4 * (m - 1);
     rate q = u;
     rate X.p = X.R * v;
+    state i = 0, n: vec2 = [m, 1];
+    rate i = F[1] - i;
     time t;
     prescribe u = 3 * t;
     prescribe rate(v) = 2 * v;

@@ -47,7 +47,8 @@ impl Block {
 /// Equations of motion ẋ = A(x) ξ, M(x) ξ̇ + c(x, ξ) = f(x, ξ, u) of a mechanical system.
 ///
 /// x holds ν coordinates, possibly redundant (φ(x) = 0), in the order of [`blocks`](Self::blocks);
-/// ξ holds n velocity coordinates, u the inputs. Notation and equation numbers: M. Konz, J. Rudolph,
+/// ξ holds n velocity coordinates, u the inputs. Behind the velocities stand states of first order z, where there are
+/// any: methods of integration move both alike. Notation and equation numbers: M. Konz, J. Rudolph,
 /// *Redundant configuration coordinates and nonholonomic velocity coordinates in analytical
 /// mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414 (KR18). Units are those of the description.
 ///
@@ -59,7 +60,7 @@ pub trait System {
     type Scalar: Scalar;
     /// Storage of x, ν entries.
     type Coordinates: Store<Self::Scalar>;
-    /// Storage of ξ, n entries.
+    /// Storage of ξ, n entries, and behind them those of z.
     type Velocities: Store<Self::Scalar>;
     /// Storage of a chart vector, as many entries as the blocks' charts have.
     type Chart: Store<Self::Scalar>;
@@ -92,7 +93,7 @@ pub trait System {
     /// (quaternion, rotation).
     fn chart_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart;
 
-    /// ξ̇ = M⁻¹ (f − c), KR18 (30).
+    /// ξ̇ = M⁻¹ (f − c), KR18 (30), and behind it ż.
     ///
     /// # Errors
     /// [`Singular`] when M is not positive definite, or the kinematics are singular, at x.

@@ -275,7 +275,7 @@ fn coupled(case: &mut Case, rotor: &str, other: &str) -> bool {
 
 #[test]
 fn what_stands_in_the_way_is_there() {
-    let mut kinds = [0; 6];
+    let mut kinds = [0; 7];
     for mut case in cases() {
         let structure = case.generated.program.structure.clone();
         let Err(reasons) = &structure.split else {
@@ -286,6 +286,7 @@ fn what_stands_in_the_way_is_there() {
             let (kind, holds) = match reason {
                 Reason::Constrained { .. } => (0, case.generated.model.is_constrained()),
                 Reason::Time => (5, case.generated.model.clock.is_some()),
+                Reason::States => (6, case.generated.program.n_z > 0),
                 Reason::Tied {
                     directions,
                     velocities,

@@ -30,12 +30,12 @@ impl<'a> Fields<'a> {
             .coordinates
             .iter()
             .map(|coordinate| (coordinate.name.as_str(), coordinate.offset, false));
-        let velocities = program
-            .velocities
+        let moving = program.moving();
+        let velocities = moving
             .iter()
             .map(|group| (group.name.as_str(), group.offset, true));
         let places: Vec<(&str, usize, bool)> = coordinates.chain(velocities).collect();
-        let velocity = |name: &str| program.velocities.iter().find(|group| group.name == name);
+        let velocity = |name: &str| moving.iter().find(|group| group.name == name);
         let coordinate = |name: &str| program.coordinates.iter().find(|other| other.name == name);
         let mut fields = Vec::new();
         for name in solution.fields() {

@@ -26,7 +26,8 @@ const MOST_SHOWN: usize = 64;
 /// Prints the numbers of A, γ, M, Γ, forces, rates and energies at a state, as JSON.
 ///
 /// The state is the description's start with default parameters and zero input, changed by what
-/// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…}, "input": {…}}.
+/// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…},
+/// "state": {…}, "input": {…}}.
 /// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
 /// Velocities of joints are known by the joint's name, too. What the file does not give is completed as
 /// the start of a description is: loops are closed and constraints kept by the coordinates and velocities
@@ -72,6 +73,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(at) => at.state(&source, &generated)?,
         None => State::start(&generated.active),
     };
+    let states = generated.model.states.iter();
+    let states: Vec<String> = states.flat_map(names::group).collect();
     let mut members = vec![
         ("system", Json::Text(generated.model.name.clone())),
         (
@@ -82,10 +85,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "velocities",
             Json::texts(&names::velocities(&generated.active)),
         ),
+        ("states", Json::texts(&states)),
         ("frame", Json::texts(&names::velocities(&generated.model))),
         ("x", Json::vector(&state.x)),
         ("xi", Json::vector(&state.xi)),
     ];
+    members.retain(|(name, _)| *name != "states" || !states.is_empty());
     // Rows by joint, where there are any.
     let known = joints(&generated.active, &[]);
     if !known.is_empty() {

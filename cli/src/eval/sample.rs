@@ -102,7 +102,7 @@ fn members(generated: &Generated, sample: &Sample) -> Result<Members, Failure> {
             .call(&state.x, &state.xi, &state.u, &[])
             .unwrap_or_default())
     };
-    let n = state.xi.len();
+    let n = model.n();
     let mass = DMatrix::from_row_slice(n, n, &square(call("mass_matrix")?, n)?);
     let slope = call("potential_force")?;
     let bias: Vec<f64> = call("bias")?

@@ -22,6 +22,13 @@ impl Run<'_> {
         panels.extend(grouped(["velocity", "velocities"], groups, line));
         let outputs = system.outputs().iter();
         let outputs = outputs.map(|output| (output.name.as_str(), entries(output.shape)));
+        let states = self.program.states.iter();
+        let states = states.map(|group| (group.name.as_str(), group.len));
+        let line = |i: usize| {
+            let place = self.program.n + i;
+            self.line(&self.velocity_names[place], |sample| sample.xi[place])
+        };
+        panels.extend(grouped(["state", "states"], states, line));
         let line = |i: usize| self.line(&self.output_names[i], |sample| sample.outputs[i]);
         panels.extend(grouped(["output", "outputs"], outputs, line));
         panels

@@ -233,7 +233,7 @@ impl<'a> Run<'a> {
             program: &generated.program,
             plan,
             coordinate_names: names::coordinates(&generated.model),
-            velocity_names: names::velocities(&generated.active),
+            velocity_names: names::moving(&generated.active),
             output_names: entries(system.outputs()),
             invariant_names: entries(system.invariants()),
             samples,

@@ -98,7 +98,7 @@ fn state(run: &Run, last: &Sample) -> String {
             }
         }
     }
-    for group in &run.program.velocities {
+    for group in &run.program.moving() {
         groups.push((
             group.name.clone(),
             vec![&last.xi[group.offset..group.offset + group.len]],
@@ -138,7 +138,8 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
         error(run.monitor.relative_energy_deviation())
     );
     rows.push(row("energy", first.energy, last.energy, change));
-    for (index, name) in run.velocity_names.iter().enumerate() {
+    // States of first order have no momentum.
+    for (index, name) in run.velocity_names.iter().enumerate().take(run.program.n) {
         let (size, change) = spread(run, |sample| sample.momentum[index]);
         if size > 0.0 && change <= KEPT * size {
             rows.push(row(

@@ -41,7 +41,7 @@ impl State {
         self.x = x;
         // Steps along the loops may leave constraints that are no loops.
         none(self.violations(active))?;
-        let mut xi = self.xi.clone();
+        let mut xi = self.xi[..active.n()].to_vec();
         let settled = Closure::of(active, &self.params)
             .with_inputs(&self.u)
             .settle(&self.x, &mut xi, given_xi);
@@ -52,7 +52,7 @@ impl State {
                 open.residual
             )]
         })?;
-        self.xi = xi;
+        self.xi[..xi.len()].copy_from_slice(&xi);
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! The numbers of a state: the description's own, changed by what a JSON file says.
 //!
-//! `{"param": {…}, "coord": {…}, "velocity": {…}, "input": {…}}`, all optional, or, by joints,
+//! `{"param": {…}, "coord": {…}, "velocity": {…}, "state": {…}, "input": {…}}`, all optional, or, by joints,
 //! `{"configuration": {…}, "velocity": {…}}`. Every mistake is reported with its path in the file, all at
 //! once. What a file does not give is completed as the
 //! start of a description is, so that loops are closed and constraints on velocities are kept; what it
@@ -39,8 +39,8 @@ impl State {
         State {
             params: model.defaults.clone(),
             x: model.start_x.clone(),
-            xi: model.start_xi.clone(),
-            u: vec![0.0; model.u.len()],
+            xi: [&model.start_xi[..], &model.start_z].concat(),
+            u: vec![0.0; model.m()],
         }
     }
 

@@ -59,16 +59,25 @@ impl Reader {
     /// A whole file.
     pub fn state(&mut self, json: &Value, model: &Model, state: &mut State) {
         let Value::Object(parts) = json else {
-            let expected = "{\"param\": …, \"coord\": …, \"velocity\": …, \"input\": …}";
+            let expected =
+                "{\"param\": …, \"coord\": …, \"velocity\": …, \"state\": …, \"input\": …}";
             return self.error("", format!("{expected} expected, {} found", kind(json)));
         };
-        self.known("", parts, &["param", "coord", "velocity", "input"]);
+        self.known("", parts, &["param", "coord", "velocity", "state", "input"]);
+        let states = model.states_behind();
         let groups = [
-            ("param", &model.params, &mut state.params),
-            ("velocity", &model.velocities, &mut state.xi),
-            ("input", &model.inputs, &mut state.u),
+            ("param", &model.params),
+            ("velocity", &model.velocities),
+            ("state", &states),
+            ("input", &model.inputs),
         ];
-        for (part, groups, numbers) in groups {
+        for (part, groups) in groups {
+            let numbers = match part {
+                "param" => &mut state.params,
+                "input" => &mut state.u,
+                // ξ, and the states behind it.
+                _ => &mut state.xi,
+            };
             let joints = if part == "velocity" {
                 joints(model)
             } else {

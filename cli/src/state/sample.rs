@@ -4,6 +4,7 @@ use super::joints::{Joint, Place, joints};
 use super::read::{Reader, kind, put};
 use super::values::State;
 use hamel_codegen::generate::Generated;
+use hamel_codegen::model::Model;
 use serde_json::{Map, Value};
 
 /// What a sample can have, and what is read of it.
@@ -58,7 +59,7 @@ impl Sample {
         };
         let mut reader = Reader::new(generated);
         match json {
-            Value::Object(parts) => reader.sample(parts, order, &mut sample),
+            Value::Object(parts) => reader.sample(parts, order, model, &mut sample),
             other => reader.error("", format!("an object expected, {} found", kind(other))),
         }
         reader.finish(generated, &mut sample.state)?;
@@ -67,7 +68,13 @@ impl Sample {
 }
 
 impl Reader {
-    fn sample(&mut self, parts: &Map<String, Value>, order: Option<&Value>, sample: &mut Sample) {
+    fn sample(
+        &mut self,
+        parts: &Map<String, Value>,
+        order: Option<&Value>,
+        model: &Model,
+        sample: &mut Sample,
+    ) {
         let known: Vec<&str> = READ
             .iter()
             .chain(&RESULTS)
@@ -95,7 +102,7 @@ impl Reader {
                 }
             }
         }
-        let mut force = vec![0.0; xi.len()];
+        let mut force = vec![0.0; model.n()];
         match parts.get("force") {
             None => return,
             Some(Value::Array(_)) => {

@@ -7,7 +7,7 @@ pub struct State {
     pub params: Vec<f64>,
     /// x.
     pub x: Vec<f64>,
-    /// ξ.
+    /// ξ, and behind it the states of first order.
     pub xi: Vec<f64>,
     /// u.
     pub u: Vec<f64>,

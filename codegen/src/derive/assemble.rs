@@ -4,6 +4,7 @@ use super::accel::cheapest::Computation;
 use super::accel::{Acceleration, accel, forces};
 use super::calculus::Calculus;
 use super::care::{self, Care};
+use super::multipliers::with_accelerations;
 use super::program::{Builder, MOST_LITERAL, shape_of};
 use super::reduction::Reduction;
 use super::structure::{self, Found, Functions};
@@ -113,8 +114,16 @@ impl Builder<'_> {
     fn dynamics(&mut self, reference: &Graph, potential: Edge) {
         let guards = self.guards();
         let route = format!("Route: {}.", self.chosen.route);
-        let xi_dot = self.chosen.xi_dot.clone();
-        self.push_guarded(FunctionId::Accel, xi_dot, guards);
+        let mut rates = self.chosen.xi_dot.clone();
+        rates.extend(self.state_rates());
+        self.push_guarded(FunctionId::Accel, rates, guards);
+        if let Some(accel) = self.functions.last_mut()
+            && !self.model.states.is_empty()
+        {
+            accel
+                .docs
+                .push("The rates ż of the states follow ξ̇.".into());
+        }
         if let Some(accel) = self.functions.last_mut() {
             accel.docs.push(route);
         }
@@ -137,6 +146,13 @@ impl Builder<'_> {
         self.push(FunctionId::KineticEnergy, vec![kinetic]);
         self.push(FunctionId::PotentialEnergy, vec![potential]);
         self.push(FunctionId::Energy, vec![energy]);
+    }
+
+    /// ż, with ξ̇ as it is computed.
+    fn state_rates(&mut self) -> Vec<Edge> {
+        let model = self.model;
+        let rates = rebuild(&model.graph, &mut self.graph, &model.state_rates);
+        with_accelerations(&mut self.graph, &rates, &self.chosen.xi_dot)
     }
 
     /// D, where there is one.
@@ -248,13 +264,15 @@ impl Builder<'_> {
             blocks: model.blocks.clone(),
             velocities: model.velocities.clone(),
             inputs: model.inputs.clone(),
+            states: model.states.clone(),
             joints: model.joints.clone(),
             nu: model.nu(),
             n: model.n(),
-            m: model.u.len(),
+            m: model.m(),
+            n_z: model.state_rates.len(),
             phi: model.phi.len() + loops,
             start_x: model.start_x.clone(),
-            start_xi: model.start_xi.clone(),
+            start_xi: [&model.start_xi[..], &model.start_z].concat(),
             names,
             constant_guards,
             kinematic_guards: self.kinematic_guards,

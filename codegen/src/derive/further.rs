@@ -6,7 +6,7 @@ use super::accel::setting::Setting;
 use super::accel::{Acceleration, recursions};
 use super::calculus::Calculus;
 use super::candidates::Candidates;
-use super::linearize::{Displacements, Linear, Motion, linearize};
+use super::linearize::{Displacements, Linear, Motion, linearize, with_states};
 use super::program::{Builder, MOST_LITERAL, shape_of};
 use super::reduction::Reduction;
 use super::tree::Placement;
@@ -136,7 +136,24 @@ impl Builder<'_> {
         };
         let mut outputs = graft(&linear.graph, &mut self.graph, &linear.roots());
         let guards = outputs.split_off(outputs.len() - linear.guards.len());
-        self.push_guarded(FunctionId::Linearize, outputs, guards);
+        let columns = linear.rows.first().map_or(1, Vec::len);
+        let mut rows: Vec<Vec<Edge>> = outputs.chunks(columns).map(<[Edge]>::to_vec).collect();
+        if !self.model.states.is_empty() {
+            let Some(nearby) = Displacements::new(full, reduction, &mut self.graph) else {
+                return;
+            };
+            let xi_dot = &self.chosen.xi_dot;
+            rows = with_states(self.model, &nearby, (&mut self.graph, rows), xi_dot);
+        }
+        self.push_guarded(FunctionId::Linearize, rows.concat(), guards);
+        if let Some(linearize) = self.functions.last_mut() {
+            linearize.shape = Shape::Matrix(rows.len(), columns);
+            if !self.model.states.is_empty() {
+                linearize.docs.push(
+                    "With states the rows are those of (h, δξ, δz), the columns those of (h, δξ, δz, δu).".into(),
+                );
+            }
+        }
     }
 
     /// What is claimed to be constant, as functions that watch it.

@@ -3,7 +3,7 @@
 //! ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = (∂ⱼF) hʲ + (∂F/∂ξ) δξ + (∂F/∂u) δu.
 //!
 //! Where constraints leave ξ = C(x) ξₐ, the n displacements h stay, of ξ only ξₐ varies, and the
-//! matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ.
+//! matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ. States of first order add rows and columns.
 
 use super::accel::best::NEAR;
 use super::accel::recursive::Recursion;
@@ -11,10 +11,11 @@ use super::accel::setting::Setting;
 use super::accel::solve::solve_columns;
 use super::calculus::Calculus;
 use super::care::Care;
+use super::multipliers::with_accelerations;
 use super::reduction::Reduction;
 use super::{commutation, kinematics};
 use crate::algebra::derivation::Derivation;
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::graph::{Edge, Graph, NodeId};
 use crate::algebra::linear::solve_symmetric;
 use crate::algebra::resubstitute::resubstitute;
 use crate::algebra::transplant::{map_symbols, rebuild};
@@ -109,6 +110,50 @@ impl Displacements {
     fn n(&self) -> usize {
         self.places.len()
     }
+}
+
+/// The rows of a model with states of first order, (h, δξ, δz): those of ż follow, and the columns of z stand before
+/// those of u. F is given in the graph of the rows.
+pub fn with_states(
+    model: &Model,
+    nearby: &Displacements,
+    (graph, rows): (&mut Graph, Vec<Vec<Edge>>),
+    xi_dot: &[Edge],
+) -> Vec<Vec<Edge>> {
+    let rates = rebuild(&model.graph, graph, &model.state_rates);
+    let n = nearby.n();
+    let one = graph.one();
+    let width = n + model.n() + model.u.len();
+    let moved = &model.xi.iter().chain(&model.u);
+    let slopes: Vec<Vec<Edge>> = (0..width)
+        .map(|j| {
+            let mut seeds: Vec<(NodeId, Edge)> = match j.checked_sub(n) {
+                None => model
+                    .x
+                    .iter()
+                    .zip(&nearby.a)
+                    .map(|(x, row)| (x.node(), row[j]))
+                    .collect(),
+                Some(i) => moved
+                    .clone()
+                    .nth(i)
+                    .map(|symbol| (symbol.node(), one))
+                    .into_iter()
+                    .collect(),
+            };
+            let rows = model.xi_dot.iter().zip(&rows[n..]);
+            seeds.extend(rows.map(|(rate, row)| (rate.node(), row[j])));
+            let slopes = Derivation::new(seeds).all(graph, &rates);
+            with_accelerations(graph, &slopes, xi_dot)
+        })
+        .collect();
+    let below = (0..rates.len()).map(|i| slopes.iter().map(|column| column[i]).collect());
+    let mut all: Vec<Vec<Edge>> = rows.into_iter().chain(below).collect();
+    let inputs = n + model.n()..n + model.n() + model.m();
+    for row in &mut all {
+        row[inputs.start..].rotate_left(inputs.len());
+    }
+    all
 }
 
 /// Linearises; `model` is that of the active velocities. The cheapest of three ways is taken: F itself

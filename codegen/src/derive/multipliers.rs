@@ -101,7 +101,7 @@ pub fn multipliers(
 }
 
 /// The expressions with ξ̇ₐ put in for its symbols.
-fn with_accelerations(graph: &mut Graph, edges: &[Edge], xi_dot: &[Edge]) -> Vec<Edge> {
+pub(super) fn with_accelerations(graph: &mut Graph, edges: &[Edge], xi_dot: &[Edge]) -> Vec<Edge> {
     let from = graph.clone();
     let mut values = xi_dot.iter();
     let images: Vec<Edge> = from

@@ -72,10 +72,14 @@ impl Builder<'_> {
         };
         let guards = self.guards();
         let loops = !self.loops().is_empty();
+        // States of first order stay as they are.
+        let states = rebuild(&self.model.graph, &mut self.graph, self.model.z());
         if loops {
-            let outputs = projections.position;
+            let mut outputs = projections.position;
+            outputs.resize(outputs.len() + states.len(), self.graph.zero());
             self.push_guarded(FunctionId::ProjectPosition, outputs, guards.clone());
         }
-        self.push_guarded(FunctionId::ProjectVelocity, projections.velocity, guards);
+        let outputs = [projections.velocity, states].concat();
+        self.push_guarded(FunctionId::ProjectVelocity, outputs, guards);
     }
 }

@@ -1,6 +1,5 @@
 //! Doc comments.
 
-use super::function::length;
 use super::names;
 use crate::algebra::graph::{Edge, NodeId};
 use crate::model::layout::Block;
@@ -83,7 +82,7 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
             Argument::Momenta => "momenta dual to ",
             _ => "",
         };
-        let size = numbers(length(program, argument));
+        let size = numbers(program.length(argument));
         lines.push(format!(
             "- `{}`: {size}, {prefix}`[{}]`",
             names::argument(argument),
@@ -126,9 +125,11 @@ fn numbers(n: usize) -> String {
 pub fn groups(program: &Program, argument: Argument) -> Vec<String> {
     match argument {
         Argument::Coordinates => program.coordinates.iter().flat_map(coordinate).collect(),
-        Argument::Velocities | Argument::Accelerations | Argument::Momenta => {
-            program.velocities.iter().map(group).collect()
+        Argument::Velocities | Argument::Accelerations => {
+            let groups = program.velocities.iter().chain(&program.states);
+            groups.map(group).collect()
         }
+        Argument::Momenta => program.velocities.iter().map(group).collect(),
         Argument::Inputs => program.inputs.iter().map(group).collect(),
     }
 }

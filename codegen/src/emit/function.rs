@@ -8,7 +8,7 @@ use super::places::Time;
 use super::print::{Printer, Used};
 use super::{Emitter, names};
 use crate::algebra::graph::{Edge, NodeId};
-use crate::program::{Argument, Program, Shape};
+use crate::program::{Argument, Shape};
 use rustc_hash::FxHashSet;
 
 /// What a function is.
@@ -83,15 +83,6 @@ pub fn shape_type(shape: Shape) -> String {
         Shape::Scalar => "S".into(),
         Shape::Vector(n) => format!("[S; {n}]"),
         Shape::Matrix(rows, columns) => format!("[[S; {columns}]; {rows}]"),
-    }
-}
-
-/// The length of an argument.
-pub fn length(program: &Program, argument: Argument) -> usize {
-    match argument {
-        Argument::Coordinates => program.nu,
-        Argument::Velocities | Argument::Accelerations | Argument::Momenta => program.n,
-        Argument::Inputs => program.m,
     }
 }
 
@@ -184,7 +175,7 @@ impl Drawing<'_> {
             let name = names::argument(argument);
             arguments.push(format!(
                 "{name}: &[S; {}]",
-                length(self.emitter.program, argument)
+                self.emitter.program.length(argument)
             ));
             if !used.arguments.contains(&argument) {
                 unused.push(name);

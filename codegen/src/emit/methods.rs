@@ -87,6 +87,10 @@ fn rotors(emitter: &Emitter, forms: &[RotorForm]) -> Option<String> {
 
 fn canonical(emitter: &Emitter) -> Option<String> {
     let program = emitter.program;
+    // There ξ has no entries but velocities.
+    if program.n_z > 0 {
+        return None;
+    }
     let [momentum, rate, velocity] = [
         generated(emitter, "momentum")?,
         generated(emitter, "momentum_rate")?,

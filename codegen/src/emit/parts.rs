@@ -1,6 +1,6 @@
 //! A long function as a row of calls: its parts share one array of slots and write the results.
 
-use super::function::{Drawing, Spec, length, shape_type, statements, zeros};
+use super::function::{Drawing, Spec, shape_type, statements, zeros};
 use super::names;
 use super::places::Place;
 use super::print::Used;
@@ -100,7 +100,7 @@ impl Drawing<'_> {
             let name = names::argument(argument);
             arguments.push(format!(
                 "{name}: &[S; {}]",
-                length(self.emitter.program, argument)
+                self.emitter.program.length(argument)
             ));
             values.push(name.to_string());
         }

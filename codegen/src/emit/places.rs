@@ -32,19 +32,24 @@ pub enum Place {
 /// The places of all nodes of a program.
 pub struct Places<'a> {
     graph: &'a Graph,
-    /// Numbers of parameters, x, ξ, u, ξ̇, p: the order of the symbols after π.
-    sizes: [usize; 6],
+    /// Where the symbols of parameters, x, ξ, u, z, ξ̇, p begin.
+    starts: [usize; 8],
     kept: Vec<NodeId>,
     index: FxHashMap<NodeId, usize>,
 }
 
-const ORDER: [Argument; 5] = [
+/// The arguments that the symbols after the parameters are entries of.
+const ORDER: [Argument; 6] = [
     Argument::Coordinates,
     Argument::Velocities,
     Argument::Inputs,
+    // z, behind ξ.
+    Argument::Velocities,
     Argument::Accelerations,
     Argument::Momenta,
 ];
+/// The place of z in this order.
+const STATES: usize = 3;
 
 impl<'a> Places<'a> {
     /// Places with these constants kept, and the pivots that are checked when parameters are set.
@@ -63,12 +68,9 @@ impl<'a> Places<'a> {
                 kept.push(node);
             }
         }
-        let params: usize = program.params.iter().map(|group| group.len).sum();
-        let n = program.n;
-        let sizes = [params, program.nu, n, program.m, n, n];
         Places {
             graph,
-            sizes,
+            starts: program.symbols(),
             kept,
             index,
         }
@@ -105,19 +107,20 @@ impl<'a> Places<'a> {
     }
 
     fn symbol(&self, symbol: usize) -> Place {
-        let Some(mut rest) = symbol.checked_sub(1) else {
+        let starts = &self.starts;
+        let Some(part) = (0..=ORDER.len()).find(|&i| (starts[i]..starts[i + 1]).contains(&symbol))
+        else {
             return Place::Number;
         };
-        for (part, &size) in self.sizes.iter().enumerate() {
-            if rest < size {
-                let argument = part.checked_sub(1).map(|part| ORDER[part]);
-                return argument.map_or(Place::Parameter(rest), |argument| {
-                    Place::Argument(argument, rest)
-                });
+        let rest = symbol - starts[part];
+        match part.checked_sub(1) {
+            None => Place::Parameter(rest),
+            Some(STATES) => {
+                let [_, _, velocities, inputs, ..] = self.starts;
+                Place::Argument(Argument::Velocities, inputs - velocities + rest)
             }
-            rest -= size;
+            Some(part) => Place::Argument(ORDER[part], rest),
         }
-        Place::Number
     }
 
     /// The name of the entry that an argument or a parameter is, as the user wrote it.

@@ -67,34 +67,32 @@ pub fn structure(emitter: &Emitter) -> String {
 /// Sizes and `new`.
 pub fn sizes(emitter: &Emitter) -> String {
     let program = emitter.program;
-    let params: usize = program.params.iter().map(|group| group.len).sum();
-    let first = 1 + params;
-    let sizes = [
+    let [params, x, xi, u, z, ..] = program.symbols();
+    let mut sizes = vec![
         (
             "COORDINATES",
             "ν, the number of coordinates x.",
-            first,
+            x,
             program.nu,
         ),
         (
             "VELOCITIES",
             "n, the number of velocities ξ.",
-            first + program.nu,
+            xi,
             program.n,
         ),
-        (
-            "INPUTS",
-            "The number of inputs u.",
-            first + program.nu + program.n,
-            program.m,
-        ),
+        ("INPUTS", "The number of inputs u.", u, program.m),
         (
             "PARAMETERS",
             "The number of parameters, entry by entry.",
-            1,
             params,
+            x - params,
         ),
     ];
+    if program.n_z > 0 {
+        let what = "The number of states of first order z, which stand behind the velocities: `xi` is (ξ, z).";
+        sizes.insert(2, ("STATES", what, z, program.n_z));
+    }
     let mut text = String::new();
     for (name, what, first, size) in sizes {
         let lines = docs::comment(&docs::entries(program, what, first, size));

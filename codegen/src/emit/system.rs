@@ -40,7 +40,7 @@ pub fn implementation(emitter: &Emitter) -> String {
     let chart: usize = program.blocks.iter().map(|block| block.dimension()).sum();
     let sizes = [
         ("Coordinates", program.nu),
-        ("Velocities", program.n),
+        ("Velocities", program.n + program.n_z),
         ("Chart", chart),
         ("Inputs", program.m),
     ];

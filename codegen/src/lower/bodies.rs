@@ -115,8 +115,11 @@ impl Reader<'_, '_> {
         let class = self.evaluator.graph.class(energy.node());
         if class & !(class::PARAM | class::CONFIGURATION | class::VELOCITY) != 0 {
             return self.evaluator.error(
-                Diagnostic::new(expr.span, "a kinetic energy cannot depend on inputs")
-                    .help("it is a function of coordinates, velocities and parameters"),
+                Diagnostic::new(
+                    expr.span,
+                    "a kinetic energy cannot depend on inputs or states",
+                )
+                .help("it is a function of coordinates, velocities and parameters"),
             );
         }
         let energy = time::homogeneous(self.evaluator.graph, self.declared, energy);
@@ -140,7 +143,7 @@ impl Reader<'_, '_> {
 
     pub fn potential(&mut self, expr: &Expr) -> Option<Edge> {
         let edge = self.evaluator.scalar(expr, "a potential")?;
-        let help = "what depends on velocities or inputs is a load: `generalized force`, `force`, `torque` or `wrench`";
+        let help = "what depends on velocities, inputs or states is a load: `generalized force`, `force`, `torque` or `wrench`";
         let value = Value::Scalar(edge);
         self.configuration(&value, expr.span, "a potential", help)?;
         self.evaluator

@@ -7,7 +7,8 @@ use super::rate::At;
 use super::scope::Scope;
 use super::variety::Variety;
 use super::{
-    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, time, unused,
+    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, states, time,
+    unused,
 };
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
@@ -187,6 +188,7 @@ impl<'a> Reading<'a> {
             report,
         );
         constraints.extend(drives);
+        let states = states::read(system, graph, scope, declared, &defaults, report);
         if let (Some(start), Some(kinematics), true) = (
             &mut starts,
             &kinematics,
@@ -236,6 +238,8 @@ impl<'a> Reading<'a> {
             momenta: declared.momenta,
             inputs: declared.inputs,
             u: declared.u,
+            states: declared.states,
+            state_rates: states.rates,
             rate: kinematics.rate,
             a: kinematics.a,
             constraints,
@@ -265,6 +269,7 @@ impl<'a> Reading<'a> {
             lets: names.lets,
             start_x: start.x,
             start_xi: start.xi,
+            start_z: states.start,
             asked: dynamics.asked,
             span: system.name.span,
             warnings: Vec::new(),

@@ -24,7 +24,11 @@ pub struct Declared {
     pub xi: Vec<Edge>,
     pub velocity_spans: Vec<Span>,
     pub inputs: Vec<Group>,
+    /// Inputs, and after them the states z, which act on motions as inputs do.
     pub u: Vec<Edge>,
+    /// States of first order, by their places in z.
+    pub states: Vec<Group>,
+    pub z: Vec<Edge>,
     pub xi_dot: Vec<Edge>,
     pub momenta: Vec<Edge>,
     /// Where the time is, where it is declared.
@@ -34,7 +38,7 @@ pub struct Declared {
     pub faulty: bool,
 }
 
-/// Declares everything, in the order pi, parameters, x, ξ, u, ξ̇, p, and defines the constants.
+/// Declares everything, in the order pi, parameters, x, ξ, u, z, ξ̇, p, and defines the constants.
 pub fn declare(
     system: &System,
     graph: &mut Graph,
@@ -106,6 +110,13 @@ pub fn declare(
             declarer.groups(list, NameKind::Input, class::INPUT, groups, u);
         }
     }
+    for item in &system.items {
+        if let ItemKind::State(list) = &item.kind {
+            let (groups, z) = (&mut declared.states, &mut declared.z);
+            declarer.groups(list, NameKind::State, class::INPUT, groups, z);
+        }
+    }
+    declared.u.extend(&declared.z);
     for item in &system.items {
         if let ItemKind::Function(function) = &item.kind {
             applied::claim(function, scope, report);

@@ -166,7 +166,7 @@ fn define(
 fn not_linear(name: &str, expr: &Expr, found: u8) -> Diagnostic {
     const HELP: &str = "a definition is a row of Y(x) ẋ: every term has exactly one `rate(…)` as a factor, times coordinates and parameters";
     let message = if found & class::INPUT != 0 {
-        format!("the definition of velocity `{name}` depends on an input")
+        format!("the definition of velocity `{name}` depends on an input or a state")
     } else if found & (class::VELOCITY | class::ACCEL) != 0 {
         format!("the definition of velocity `{name}` depends on a velocity")
     } else if found & class::RATE == 0 {

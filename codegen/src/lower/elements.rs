@@ -270,7 +270,9 @@ impl Reader<'_, '_> {
                     expr.span,
                     "a dissipation may depend on coordinates, velocities and parameters alone",
                 )
-                .help("what depends on inputs is a load: `generalized force w = -u * w;`"),
+                .help(
+                    "what depends on inputs or states is a load: `generalized force w = -u * w;`",
+                ),
             );
         }
         let energy = time::homogeneous(graph, self.declared, energy);

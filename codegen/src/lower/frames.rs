@@ -91,7 +91,10 @@ pub fn relative_pose(
         .iter()
         .fold(0, |class, edge| class | evaluator.graph.class(edge.node()));
     if class & !(class::PARAM | class::CONFIGURATION) != 0 {
-        let message = format!("frame `{}` depends on velocities or inputs", name.name);
+        let message = format!(
+            "frame `{}` depends on velocities, inputs or states",
+            name.name
+        );
         let error = Diagnostic::new(pose.span, message);
         return evaluator.error(error.help("a frame is a function of coordinates and parameters"));
     }

@@ -133,7 +133,7 @@ impl Reader<'_, '_> {
                     return self
                         .evaluator
                         .error(Diagnostic::new(expr.span, message).help(
-                        "inputs are free functions of time; set them after `when`: `when F = 0`",
+                        "inputs are free functions of time; set them after `when`: `when F = 0`; states move by their own rates",
                     ));
                 }
                 self.evaluator.continuous(

@@ -6,6 +6,7 @@ use super::expression::Evaluator;
 use super::rate::{At, Kinematics, Rate, part, rate_help, velocity_for, written};
 use super::relations::relate;
 use super::scope::Scope;
+use super::states;
 use super::tangency::linear_part;
 use super::variety::Variety;
 use crate::algebra::graph::Graph;
@@ -31,6 +32,9 @@ pub fn read(
         let ItemKind::Rate { target, value } = &statement.kind else {
             continue;
         };
+        if states::is_one(declared, target) {
+            continue;
+        }
         tried.push(&target.name.name);
         let evaluator = Evaluator::new(graph, scope, report);
         read_rate(target, value, item, evaluator, declared, &mut rates, system);

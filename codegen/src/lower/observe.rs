@@ -50,7 +50,8 @@ impl Evaluator<'_> {
             let class = |class, edge: &Edge| class | self.graph.class(edge.node());
             let class = value.entries().iter().fold(0, class);
             if class & !(class::PARAM | class::CONFIGURATION) != 0 {
-                let message = format!("an argument of `{name}` depends on velocities or inputs");
+                let message =
+                    format!("an argument of `{name}` depends on velocities, inputs or states");
                 return self.error(
                     Diagnostic::new(expr.span, message).help(
                         "frames and their points are functions of coordinates and parameters",

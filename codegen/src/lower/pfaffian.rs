@@ -134,7 +134,7 @@ impl Reader<'_> {
                     class & class::VELOCITY == 0 && graph.class(rest.node()) & class::VELOCITY == 0;
                 let inputs = (class | graph.class(rest.node())) & class::INPUT != 0;
                 let message = if inputs {
-                    "a nonholonomic constraint cannot depend on inputs"
+                    "a nonholonomic constraint cannot depend on inputs or states"
                 } else if without {
                     "this nonholonomic constraint has a term without a velocity"
                 } else {
@@ -185,7 +185,7 @@ impl Reader<'_> {
             return self.evaluator.error(
                 Diagnostic::new(
                     span,
-                    "a loop is about coordinates, not velocities or inputs",
+                    "a loop is about coordinates, not velocities, inputs or states",
                 )
                 .help("a constraint on velocities is written `nonholonomic … = …;`"),
             );

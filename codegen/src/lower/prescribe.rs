@@ -106,7 +106,7 @@ impl Reader<'_> {
             let message = format!("the rate of `{name}` depends on rates of velocities");
             return self.evaluator.error(
                 Diagnostic::new(expr.span, message)
-                    .help("it is a function of coordinates, velocities, time and inputs"),
+                    .help("it is a function of coordinates, velocities, states, time and inputs"),
             );
         }
         all.2.extend(
@@ -227,7 +227,7 @@ impl Reader<'_> {
         let help = match found {
             0 => return Some(()),
             class::INPUT => {
-                "an input can give the rate of a velocity: `prescribe rate(v) = a;`, with the velocity's own start"
+                "an input or a state can give the rate of a velocity: `prescribe rate(v) = a;`, with the velocity's own start"
             }
             _ => {
                 "it is a function of time and parameters; what depends on the motion is a force or a constraint"

@@ -61,6 +61,14 @@ pub fn part(
         let error = match evaluator.scope.get(&name.name) {
             // Its own definition was in error.
             Some(entry) if matches!(entry.kind, NameKind::Coord(_)) => return None,
+            Some(entry) if entry.kind == NameKind::State => {
+                let message = format!(
+                    "`{}` is a state: its motion follows from its rate",
+                    name.name
+                );
+                let error = Diagnostic::new(name.span, message).note(entry.span, "declared here");
+                error.help(format!("write `rate {} = …;`", name.name))
+            }
             Some(entry) => {
                 let kind = entry.kind.describe();
                 let message = format!("`{}` is {kind}, it has no rate of its own", name.name);

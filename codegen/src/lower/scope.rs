@@ -27,6 +27,8 @@ pub enum NameKind {
     Velocity,
     /// A run-time input.
     Input,
+    /// A state of first order.
+    State,
     /// A frame.
     Frame,
     /// An output.
@@ -45,6 +47,7 @@ impl NameKind {
             NameKind::Coord(_) => "a coordinate",
             NameKind::Velocity => "a velocity",
             NameKind::Input => "an input",
+            NameKind::State => "a state",
             NameKind::Frame => "a frame",
             NameKind::Output => "an output",
             NameKind::Function => "a function",
@@ -163,6 +166,7 @@ impl Scope {
                 ItemKind::Let(list) => (list, NameKind::Let),
                 ItemKind::Velocity(list) => (list, NameKind::Velocity),
                 ItemKind::Input(list) => (list, NameKind::Input),
+                ItemKind::State(list) => (list, NameKind::State),
                 ItemKind::Coord(list) => {
                     list.iter()
                         .for_each(|(name, kind)| note(name, NameKind::Coord(*kind)));

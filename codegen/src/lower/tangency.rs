@@ -55,8 +55,8 @@ pub fn linear_part(
             continue;
         };
         let error = if (class | rest) & class::INPUT != 0 {
-            Diagnostic::new(span, "a rate cannot depend on inputs").help(
-                "inputs act by `force`, `torque`, `wrench` or `generalized force`; one that gives the rate of a velocity is written `prescribe rate(v) = a;`",
+            Diagnostic::new(span, "the rate of a coordinate cannot depend on inputs or states").help(
+                "they act by `force`, `torque`, `wrench` or `generalized force`; one that gives the rate of a velocity is written `prescribe rate(v) = a;`",
             )
         } else if class & class::VELOCITY == 0 && rest & class::VELOCITY == 0 {
             Diagnostic::new(span, "this rate has a term without a velocity").help(

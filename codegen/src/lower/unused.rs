@@ -127,7 +127,8 @@ impl<'a> Uses<'a> {
             | ItemKind::Const(list)
             | ItemKind::Let(list)
             | ItemKind::Velocity(list)
-            | ItemKind::Input(list) => self.values(list),
+            | ItemKind::Input(list)
+            | ItemKind::State(list) => self.values(list),
             ItemKind::Coord(_) | ItemKind::Time(_) => {}
             ItemKind::Prescribe { target, value, .. } => {
                 self.name(&target.name);

@@ -236,7 +236,7 @@ fn check(graph: &Graph, difference: &Value, span: Span) -> Result<Vec<Edge>, Dia
         let error = |message: &str, help: &str| Err(Diagnostic::new(span, message).help(help));
         if class & !(class::PARAM | class::CONFIGURATION) != 0 {
             return error(
-                "a constraint is about coordinates, not velocities or inputs",
+                "a constraint is about coordinates, not velocities, inputs or states",
                 "velocities are constrained by the choice of `velocity` and `rate`",
             );
         }

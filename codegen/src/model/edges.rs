@@ -129,9 +129,9 @@ fields!(Elements {
 fields!(Model {
     x, xi, xi_dot, u, momenta, rate, a, frames, bodies, particles, wrenches, elements, dissipation, observed,
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
-    completion, params, velocities, inputs, prescribed, accelerated, whole;
+    completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, whole;
     name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, clock,
-    joints, start_x, start_xi, asked, span, warnings
+    joints, start_x, start_xi, start_z, asked, span, warnings
 });
 
 impl Edges for Along {

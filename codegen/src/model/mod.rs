@@ -40,7 +40,7 @@ pub mod class {
     pub const COORD: u8 = 2;
     /// Velocity coordinates ξ.
     pub const VELOCITY: u8 = 4;
-    /// Inputs u.
+    /// Inputs u, and states of first order z: what forces may depend on that no motion changes by itself.
     pub const INPUT: u8 = 8;
     /// Accelerations ξ̇, the argument of inverse dynamics.
     pub const ACCEL: u8 = 16;
@@ -202,8 +202,12 @@ pub struct Model {
     pub momenta: Vec<Edge>,
     /// Inputs.
     pub inputs: Vec<Group>,
-    /// u.
+    /// u, and after it z: both act on a motion as what is given from outside.
     pub u: Vec<Edge>,
+    /// States of first order, by their places in z.
+    pub states: Vec<Group>,
+    /// ż.
+    pub state_rates: Vec<Edge>,
     /// ẋ = A ξ.
     pub rate: Vec<Edge>,
     /// A, ν rows of n.
@@ -263,6 +267,8 @@ pub struct Model {
     pub start_x: Vec<f64>,
     /// ξ at the start.
     pub start_xi: Vec<f64>,
+    /// z at the start.
+    pub start_z: Vec<f64>,
     /// The functions to generate.
     pub asked: Asked,
     /// The statements that the start is about, for errors found later.
@@ -298,7 +304,23 @@ impl Model {
         self.x.len()
     }
 
-    /// The number that every symbol stands for, given x, ξ, u and ξ̇ and the parameters.
+    /// The number of inputs, without the states that stand behind them.
+    pub fn m(&self) -> usize {
+        self.u.len() - self.state_rates.len()
+    }
+
+    /// The states of first order, by their places behind the velocities.
+    pub fn states_behind(&self) -> Vec<Group> {
+        behind(&self.states, self.n())
+    }
+
+    /// z.
+    pub fn z(&self) -> &[Edge] {
+        &self.u[self.m()..]
+    }
+
+    /// The number that every symbol stands for, given x, ξ, u and ξ̇ and the parameters; z stands behind ξ, or
+    /// behind u.
     pub fn numbers(
         &self,
         params: &[f64],
@@ -308,9 +330,20 @@ impl Model {
         xi_dot: &[f64],
     ) -> Vec<f64> {
         let mut numbers = vec![std::f64::consts::PI];
-        for part in [params, x, xi, u, xi_dot] {
+        let (xi, z) = xi.split_at(xi.len().min(self.n()));
+        let xi_dot = &xi_dot[..xi_dot.len().min(self.n())];
+        for part in [params, x, xi, u, z, xi_dot] {
             numbers.extend_from_slice(part);
         }
         numbers
     }
+}
+
+/// Groups of symbols that stand behind n others.
+pub fn behind(groups: &[Group], n: usize) -> Vec<Group> {
+    let moved = |group: &Group| Group {
+        offset: n + group.offset,
+        ..group.clone()
+    };
+    groups.iter().map(moved).collect()
 }

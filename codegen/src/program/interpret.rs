@@ -5,6 +5,7 @@ use crate::algebra::graph::{Edge, Node, NodeId};
 use crate::algebra::numbers::{Form, Numbers};
 use crate::algebra::numeric::Floats;
 use num_traits::ToPrimitive;
+use std::ops::Range;
 
 /// A function compiled to steps, with everything that is constant evaluated once.
 #[derive(Clone, Debug)]
@@ -16,7 +17,9 @@ pub struct Interpreter {
     outputs: Vec<Edge>,
     /// Guards with their numbers, in the order in which they are computed.
     guards: Vec<(usize, Edge)>,
+    /// Where x, ξ, u, ξ̇ and p begin, and the place of z.
     inputs: [usize; 5],
+    states: Range<usize>,
     arguments: [bool; 5],
 }
 
@@ -68,19 +71,15 @@ impl Interpreter {
         let mut guards: Vec<(usize, Edge)> =
             function.guards.iter().map(place).enumerate().collect();
         guards.sort_by_key(|(_, place)| place.node());
-        let inputs = [
-            first,
-            first + program.nu,
-            first + program.nu + program.n,
-            first + program.nu + program.n + program.m,
-            first + program.nu + 2 * program.n + program.m,
-        ];
+        // The number 0 stands before the symbols.
+        let [_, x, xi, u, z, xi_dot, p, _] = program.symbols().map(|start| start + 1);
         Interpreter {
             outputs: function.outputs.iter().map(place).collect(),
             guards,
             initial,
             steps,
-            inputs,
+            inputs: [x, xi, u, xi_dot, p],
+            states: z..z + program.n_z,
             arguments: ORDER.map(|argument| function.arguments.contains(&argument)),
         }
     }
@@ -96,12 +95,23 @@ impl Interpreter {
         self.call_with([x, xi, u, xi_dot, &[]])
     }
 
-    /// The same for all arguments in the order x, ξ, u, ξ̇, p.
+    /// The same for all arguments in the order x, ξ, u, ξ̇, p; z stands behind ξ, and what stands behind ξ̇ is not read.
     pub fn call_with(&self, arguments: [&[f64]; 5]) -> Result<Vec<f64>, usize> {
         let mut values = self.initial.clone();
         for (index, part) in arguments.into_iter().enumerate() {
-            if self.arguments[index] {
-                values[self.inputs[index]..self.inputs[index] + part.len()].copy_from_slice(part);
+            if !self.arguments[index] {
+                continue;
+            }
+            let (part, behind) = match ORDER[index] {
+                // u stands behind ξ.
+                Argument::Velocities | Argument::Accelerations => {
+                    part.split_at(part.len().min(self.inputs[2] - self.inputs[1]))
+                }
+                _ => (part, &[][..]),
+            };
+            values[self.inputs[index]..self.inputs[index] + part.len()].copy_from_slice(part);
+            if ORDER[index] == Argument::Velocities {
+                values[self.states.start..][..behind.len()].copy_from_slice(behind);
             }
         }
         for &(index, step) in &self.steps {

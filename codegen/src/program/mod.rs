@@ -9,7 +9,7 @@ pub mod structure;
 use crate::algebra::graph::{Edge, Graph};
 use crate::model::joints::Joint;
 use crate::model::layout::Block;
-use crate::model::{Coordinate, Group};
+use crate::model::{Coordinate, Group, behind};
 use structure::Structure;
 
 use crate::functions::Returns;
@@ -56,7 +56,8 @@ impl Function {
             Returns::Number => Shape::Scalar,
             Returns::Vector => Shape::Vector(outputs.len()),
             Returns::Rows => matrix(n),
-            Returns::DoubleRows => matrix(2 * n),
+            // Its shape depends on inputs and constraints, too, and is set where it is derived.
+            Returns::Linear => matrix(2 * n),
         };
         Function {
             id: Some(id),
@@ -114,6 +115,8 @@ pub struct Program {
     pub velocities: Vec<Group>,
     /// Inputs.
     pub inputs: Vec<Group>,
+    /// States of first order, which stand behind ξ.
+    pub states: Vec<Group>,
     /// Joints, whose limits are constants of the type.
     pub joints: Vec<Joint>,
     /// ν.
@@ -122,11 +125,13 @@ pub struct Program {
     pub n: usize,
     /// Number of inputs.
     pub m: usize,
+    /// Number of states of first order.
+    pub n_z: usize,
     /// Number of rows of φ.
     pub phi: usize,
     /// x at the start.
     pub start_x: Vec<f64>,
-    /// ξ at the start.
+    /// (ξ, z) at the start.
     pub start_xi: Vec<f64>,
     /// The user's named expressions, for names of temporaries.
     pub names: Vec<(String, Edge)>,
@@ -146,6 +151,44 @@ impl Program {
         self.kinematic_guards
             .iter()
             .position(|&pivot| pivot == guard)
+    }
+
+    /// The length of an argument: states of first order stand behind the velocities, their rates behind ξ̇.
+    pub fn length(&self, argument: Argument) -> usize {
+        match argument {
+            Argument::Coordinates => self.nu,
+            Argument::Velocities | Argument::Accelerations => self.n + self.n_z,
+            Argument::Momenta => self.n,
+            Argument::Inputs => self.m,
+        }
+    }
+
+    /// Where the symbols of parameters, x, ξ, u, z, ξ̇ and p begin, in this order, after π: and the end of all.
+    pub fn symbols(&self) -> [usize; 8] {
+        let params = self.params.iter().map(|group| group.len).sum();
+        let sizes = [params, self.nu, self.n, self.m, self.n_z, self.n, self.n];
+        let mut starts = [1; 8];
+        for (i, size) in sizes.into_iter().enumerate() {
+            starts[i + 1] = starts[i] + size;
+        }
+        starts
+    }
+
+    /// What the argument ξ consists of: the velocities, and behind them the states of first order.
+    pub fn moving(&self) -> Vec<Group> {
+        [self.velocities.clone(), behind(&self.states, self.n)].concat()
+    }
+
+    /// The emitted ξ̇.
+    pub fn xi_dot(&self) -> Option<&[Edge]> {
+        let accel = self.function(FunctionId::Accel)?;
+        accel.outputs.get(..self.n)
+    }
+
+    /// The emitted ż.
+    pub fn state_rates(&self) -> Option<&[Edge]> {
+        let accel = self.function(FunctionId::Accel)?;
+        accel.outputs.get(self.n..)
     }
 
     /// A function: one that the generator knows, or an output or invariant by its name.

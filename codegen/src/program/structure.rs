@@ -97,6 +97,8 @@ pub enum Reason {
     },
     /// The equations depend on the time.
     Time,
+    /// There are states of first order, which are no momenta.
+    States,
     /// Coordinates that the description ties to one another, or fewer velocities than directions.
     Tied {
         /// Dimension of the coordinates' kinds.
@@ -129,6 +131,7 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Reason::Time => f.write_str("the equations depend on the time"),
+            Reason::States => f.write_str("there are states of first order"),
             Reason::Constrained { by } => write!(f, "velocities are constrained by {by}"),
             Reason::Tied {
                 directions,

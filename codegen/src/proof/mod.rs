@@ -11,6 +11,7 @@
 //! | `splitting` | the functions of a system that splits | |
 //! | `numbers` | the three forms at points modulo p: what every build is compared with | (30) |
 //! | `slopes` | the linearisation, by dual numbers modulo p | |
+//! | `states` | rates of states of first order, and their slopes | |
 //! | `virtual_power` | loads as forces on points, motion of points | (28) |
 //! | `hamel_form` | equations of Lagrange and Hamel, from T and γ | (30a) |
 //! | `gibbs` | equations of Gibbs and Appell, from accelerations | (30b) |
@@ -38,6 +39,7 @@ mod points;
 mod reference;
 mod slopes;
 mod splitting;
+mod states;
 pub mod validate;
 mod verdict;
 pub(crate) mod virtual_power;

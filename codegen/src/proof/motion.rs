@@ -8,10 +8,10 @@ use super::levi_civita::{contracted, levi_civita};
 use super::verdict::Sides;
 use super::virtual_power;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::transplant::rebuild;
+use crate::algebra::transplant::{rebuild, substitute};
 use crate::derive::calculus::Calculus;
 use crate::derive::tables::Geometry;
-use crate::program::{FunctionId, Program};
+use crate::program::Program;
 
 /// ∂²T/∂ξⁱ∂ξʲ = M_ij, fᵢ by virtual work, (30a) = (30b) and (30a) = (30c) for all ξ̇.
 pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
@@ -66,12 +66,12 @@ pub(super) fn forms(symbols: &mut Symbols) -> Vec<Sides> {
 
 /// The emitted ξ̇ in (30c), and d/dt (T + V) = fᵢ ξⁱ.
 pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
-    let Some(accel) = program.function(FunctionId::Accel) else {
+    let Some(xi_dot) = program.xi_dot() else {
         return Vec::new();
     };
     let geometry = &mut symbols.geometry;
     let xi = geometry.model.xi.clone();
-    let xi_dot = rebuild(&program.graph, &mut geometry.model.graph, &accel.outputs);
+    let xi_dot = rebuild(&program.graph, &mut geometry.model.graph, xi_dot);
     let mut calculus = Calculus::new(&geometry.model);
     let bias = contracted(&mut geometry.model, &geometry.connection);
     let forces = levi_civita(
@@ -108,8 +108,29 @@ pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
             right: vec![power],
         },
     ];
+    if let Some(found) = program.state_rates()
+        && !found.is_empty()
+    {
+        let model = &mut geometry.model;
+        let found = rebuild(&program.graph, &mut model.graph, found);
+        let set = model.xi_dot.iter().zip(&xi_dot);
+        let set = set.filter_map(|(symbol, &rate)| Some((symbol_of(&model.graph, *symbol)?, rate)));
+        let set: Vec<(usize, Edge)> = set.collect();
+        all.push(Sides {
+            label: "states",
+            equation: "ż as described, with the emitted ξ̇",
+            left: found,
+            right: substitute(&mut model.graph, &model.state_rates, &set),
+        });
+    }
     all.extend(of_loads(geometry, program));
     all
+}
+
+/// The number of a symbol.
+fn symbol_of(graph: &Graph, edge: Edge) -> Option<usize> {
+    let mut symbols = graph.symbols().iter();
+    symbols.position(|symbol| symbol.node == edge.node())
 }
 
 /// (28): the emitted forces, 2 D, and the motions of points, each on the route of single particles.

@@ -7,6 +7,7 @@
 
 use super::hamel_form;
 use super::reference::Reference;
+use super::states;
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
@@ -135,7 +136,8 @@ impl Slopes {
         let (n, nu) = (model.n(), model.nu());
         let outputs = |name: &str| Some(program.function(name)?.outputs.as_slice());
         let value = |name: &str| evaluate_at(graph, outputs(name)?, &mut lane.clone());
-        let xi_dot = value("accel")?;
+        let mut xi_dot = value("accel")?;
+        xi_dot.truncate(n);
         let mass = value("mass_matrix")?;
         let mass: Vec<Vec<Fp>> = mass.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
         let roots: Vec<Edge> = model
@@ -166,7 +168,7 @@ impl Slopes {
         }
         // M δξ̇ = δ(f − F(x, ξ, ξ̇)), ξ̇ held.
         let mut held = lane.clone();
-        for (place, value) in symbols(model, &model.xi_dot).into_iter().zip(xi_dot) {
+        for (place, &value) in symbols(model, &model.xi_dot).into_iter().zip(&xi_dot) {
             held.set_symbol(place, value);
         }
         let slopes = |name: &str| -> Option<Vec<Fp>> {
@@ -174,8 +176,12 @@ impl Slopes {
             Some(duals.into_iter().map(|dual| dual.1).collect())
         };
         let right = difference(&slopes("generalized_force")?, &slopes("inverse_dynamics")?);
-        if product(&mass, &found[n..]) != right {
+        let (changed, state_rates) = found[n..].split_at(n);
+        if product(&mass, changed) != right {
             return Some(Err(DYNAMIC.into()));
+        }
+        if states::slopes(model, (&xi_dot, changed), lane, &moved)? != state_rates {
+            return Some(Err(states::WHAT.into()));
         }
         Some(Ok(()))
     }
@@ -198,7 +204,10 @@ struct Nearby {
 impl Nearby {
     fn new(model: &Model, rate: &[Fp]) -> Self {
         let x = symbols(model, &model.x);
-        let others = [symbols(model, &model.xi), symbols(model, &model.u)].concat();
+        let (u, z) = model.u.split_at(model.m());
+        let others = [&model.xi, z, u]
+            .map(|edges| symbols(model, edges))
+            .concat();
         let columns = model.n() + others.len();
         let mut random = Random::new(rate.iter().fold(columns as u64, |seed, rate| {
             seed.rotate_left(7) ^ rate.bits()
@@ -272,8 +281,13 @@ fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<R
     }
     // M δξ̇ = δF − δM ξ̇.
     let right = difference(&changed.force, &product(&changed.mass, &xi_dot));
-    if product(&here.mass, &found[n..]) != right {
+    let (changed_rates, state_rates) = found[n..].split_at(n);
+    if product(&here.mass, changed_rates) != right {
         return Some(Err(DYNAMIC.into()));
+    }
+    let moved = nearby.moved(model, &here.a.concat());
+    if states::slopes(model, (&xi_dot, changed_rates), lane, &moved)? != state_rates {
+        return Some(Err(states::WHAT.into()));
     }
     Some(Ok(()))
 }

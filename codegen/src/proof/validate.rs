@@ -22,6 +22,7 @@ use super::numbers::{Numbers, Values};
 use super::points::{Unequal, at_fresh_points};
 use super::slopes::Slopes;
 use super::splitting::Proof;
+use super::states;
 use super::verdict::failure;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
@@ -202,10 +203,14 @@ fn compare(
             return Some(Err(what.into()));
         }
     }
-    if let Some(xi_dot) = emitted.get("accel")
-        && sum(&[&product(xi_dot), &resistance]) != values.force
-    {
-        return Some(Err("(30c) for the emitted ξ̇".into()));
+    if let Some(rates) = emitted.get("accel") {
+        let (xi_dot, state_rates) = rates.split_at(model.n());
+        if sum(&[&product(xi_dot), &resistance]) != values.force {
+            return Some(Err("(30c) for the emitted ξ̇".into()));
+        }
+        if state_rates != states::rates(model, xi_dot, lane)? {
+            return Some(Err(states::WHAT.into()));
+        }
     }
     // d/dt (M ξ) = Ṁ ξ + f − h − ∂V.
     if let Some(rate) = emitted.get("momentum_rate")

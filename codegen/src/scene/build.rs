@@ -154,7 +154,14 @@ impl SceneBuilder {
         Expr::name(name)
     }
 
-    /// ẋ of a coordinate, or of a part such as `X.p`: a row of ẋ = A ξ.
+    /// A state of first order z with its value at the start; [`rate`](Self::rate) says how it changes.
+    pub fn state(&mut self, name: &str, shape: ShapeKind, start: impl Into<Expr>) -> Expr {
+        let value = Some(start.into());
+        self.add(ItemKind::State(vec![declared(name, shape, value)]));
+        Expr::name(name)
+    }
+
+    /// ẋ of a coordinate, or of a part such as `X.p`: a row of ẋ = A ξ; or ż of a state.
     pub fn rate(&mut self, coordinate: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Rate {
             target: target(coordinate),

@@ -89,6 +89,7 @@ pub fn statement(item: &Item) -> String {
         ItemKind::Potential(energy) => format!("potential {}", written(energy)),
         ItemKind::Gravity(acceleration) => format!("gravity {}", written(acceleration)),
         ItemKind::Input(list) => format!("input {}", declarations(list)),
+        ItemKind::State(list) => format!("state {}", declarations(list)),
         ItemKind::Load {
             load,
             frame,

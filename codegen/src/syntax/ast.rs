@@ -334,6 +334,8 @@ pub enum ItemKind {
     Gravity(Expr),
     /// `input F: vec3;`
     Input(Vec<Declaration>),
+    /// `state i = 0;` states of first order with their values at the start; `rate i = …;` says how they change.
+    State(Vec<Declaration>),
     /// `force …`, `torque …`, `wrench …`
     Load {
         /// What is applied.

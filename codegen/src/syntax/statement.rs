@@ -29,6 +29,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         "coord" => ItemKind::Coord(declaration::coordinates(cursor)?),
         "velocity" => ItemKind::Velocity(declaration::velocities(cursor)?),
         "input" => ItemKind::Input(declaration::inputs(cursor)?),
+        "state" => ItemKind::State(declaration::values(cursor, "a state")?),
         "constraint" => {
             let left = expression(cursor)?;
             cursor.assign()?;
@@ -38,7 +39,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
             }
         }
         "rate" => {
-            let target = target(cursor, "a coordinate")?;
+            let target = target(cursor, "a coordinate or state")?;
             cursor.assign()?;
             ItemKind::Rate {
                 target,

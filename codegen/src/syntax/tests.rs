@@ -135,6 +135,7 @@ fn told(kind: &ItemKind) -> String {
         Let(all) => format!("let {}", declared(all)),
         Velocity(all) => format!("velocity {}", declared(all)),
         Input(all) => format!("input {}", declared(all)),
+        State(all) => format!("state {}", declared(all)),
         Coord(all) => {
             let one = |(name, kind): &(super::ast::Ident, _)| format!("{}: {kind:?}", name.name);
             format!(

@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 33] = [
+const STATEMENTS: [(&str, &str); 34] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -23,6 +23,10 @@ const STATEMENTS: [(&str, &str); 33] = [
     ),
     ("constraint", "a constraint is written `constraint a = b;`"),
     ("rate", "a rate is written `rate r = R * v;`"),
+    (
+        "state",
+        "a state of first order is written `state i = 0;`, with `rate i = (u - R * i) / L;`",
+    ),
     ("time", "the time is written `time t;`"),
     (
         "prescribe",

@@ -31,7 +31,7 @@ impl<'a> Collector<'a> {
     pub fn listing(&mut self, table: Table) -> Result<Listing, String> {
         match table {
             Table::Phi => Ok(self.phi()),
-            Table::A | Table::Outputs => Ok(self.described(table)),
+            Table::A | Table::States | Table::Outputs => Ok(self.described(table)),
             Table::Accel => self.accel(),
             _ => self.derived(table),
         }
@@ -63,6 +63,18 @@ impl<'a> Collector<'a> {
         let model = &self.generated.model;
         let (shape, cells) = match table {
             Table::A => (vec![model.nu(), model.n()], matrix(&model.a)),
+            Table::States => {
+                let rates = model
+                    .state_rates
+                    .iter()
+                    .zip(names(model, model.z()))
+                    .enumerate();
+                let cells = rates.map(|(i, (edge, name))| Cell {
+                    label: rate_name(&name),
+                    ..cell(vec![i], *edge)
+                });
+                (vec![model.state_rates.len()], cells.collect())
+            }
             _ => (vec![model.outputs.len()], outputs(model)),
         };
         let mut simplifier = Simplifier::modulo(&model.points);
@@ -83,7 +95,11 @@ impl<'a> Collector<'a> {
         let rates = function
             .outputs
             .iter()
-            .zip(velocity_names(model))
+            .zip(
+                names(model, &model.xi)
+                    .into_iter()
+                    .chain(names(model, model.z())),
+            )
             .enumerate();
         let cells: Vec<Cell> = rates
             .map(|(i, (edge, name))| Cell {
@@ -237,7 +253,7 @@ fn cube(slices: &[Vec<Vec<Edge>>]) -> Vec<Cell> {
     cells
 }
 
-fn velocity_names(model: &Model) -> Vec<String> {
+fn names(model: &Model, edges: &[Edge]) -> Vec<String> {
     let symbols = model.graph.symbols();
     let name = |edge: &Edge| {
         symbols
@@ -245,7 +261,7 @@ fn velocity_names(model: &Model) -> Vec<String> {
             .find(|symbol| symbol.node == edge.node())
             .map(|symbol| symbol.name.clone())
     };
-    model.xi.iter().filter_map(name).collect()
+    edges.iter().filter_map(name).collect()
 }
 
 /// The rate of a velocity, `v[1]` to `v_dot[1]`.

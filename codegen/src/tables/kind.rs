@@ -27,6 +27,8 @@ pub enum Table {
     PotentialForce,
     /// fᵢ of applied loads.
     GeneralizedForce,
+    /// ż of the states of first order.
+    States,
     /// The outputs of the description.
     Outputs,
     /// No coefficients, but what they say about the geometry.
@@ -60,7 +62,7 @@ const fn row(
     }
 }
 
-const ROWS: [Row; 14] = [
+const ROWS: [Row; 15] = [
     row(
         Table::Phi,
         "phi",
@@ -144,6 +146,14 @@ const ROWS: [Row; 14] = [
         "generalised force fᵢ of the loads",
     ),
     row(
+        Table::States,
+        "states",
+        "ż",
+        r"\dot{z}",
+        "i",
+        "rates of the states of first order",
+    ),
+    row(
         Table::Outputs,
         "outputs",
         "y",
@@ -162,7 +172,7 @@ const ROWS: [Row; 14] = [
 ];
 
 impl Table {
-    /// What is shown where nothing is asked for.
+    /// What is shown where nothing is asked for; of systems with states of first order, their rates, too.
     pub const DEFAULT: [Table; 6] = [
         Table::Phi,
         Table::A,

@@ -36,7 +36,7 @@ impl Listing {
     /// each has a name of its own.
     pub fn listed(&self, all: bool) -> Vec<&Entry> {
         let mut listed: Vec<&Entry> = self.entries.iter().collect();
-        if all || matches!(self.table, Table::Accel | Table::Outputs) {
+        if all || matches!(self.table, Table::Accel | Table::States | Table::Outputs) {
             listed.extend(&self.zeros);
         }
         listed.sort_by(|a, b| a.index.cmp(&b.index));

@@ -63,15 +63,19 @@ pub struct Tables {
     pub geometry: Option<Inspection>,
 }
 
-/// Derives tables; all of [`Table::DEFAULT`] where none is named. The error says which table
+/// Derives tables; all of [`Table::DEFAULT`] where none is named, and the rates of states. The error says which table
 /// cannot be had, and why.
 pub fn tables(generated: &Generated, of: &[Table]) -> Result<Tables, String> {
     let model = &generated.model;
-    let of = if of.is_empty() { &Table::DEFAULT } else { of };
+    let of = match of {
+        [] if model.states.is_empty() => Table::DEFAULT.to_vec(),
+        [] => [&Table::DEFAULT[..], &[Table::States]].concat(),
+        of => of.to_vec(),
+    };
     let mut collector = Collector::new(generated);
     let mut listings: Vec<Listing> = Vec::new();
     let mut geometry = None;
-    for &table in of {
+    for table in of {
         if table == Table::Geometry {
             geometry = Some(Inspection::new(model).ok_or(
                 "there is no table `geometry`: the columns of A are dependent, so that no Y has Y A = I",

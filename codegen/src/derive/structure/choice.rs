@@ -76,6 +76,10 @@ pub fn choose(structure: &Structure, steps: Option<u64>) -> Choice {
             "rkmk8",
             "multipliers keep constraints, from which a method of high order strays least between projections",
         ),
+        Err(_) if structure.canonical == Err(Reason::States) => (
+            "rkmk54",
+            "states of first order have time scales of their own, which the step should follow",
+        ),
         Err(_) if structure.canonical == Err(Reason::Time) => (
             "rkmk8",
             "the equations depend on the time, so that no momenta or energy are conserved",

@@ -147,7 +147,7 @@ fn dependence(
     }
 }
 
-/// The constraints on velocities, in words, or the time.
+/// The constraints on velocities, in words, or states of first order, or the time.
 fn constrained(full: &Model) -> Option<Reason> {
     let count = |kind: Kind| full.constraints.iter().filter(|c| c.kind == kind).count();
     let words = [
@@ -180,6 +180,7 @@ fn constrained(full: &Model) -> Option<Reason> {
         number => found.push(format!("{number} prescribed rates")),
     }
     match found.as_slice() {
+        [] if !full.states.is_empty() => Some(Reason::States),
         [] => full.clock.map(|_| Reason::Time),
         found => Some(Reason::Constrained {
             by: found.join(" and "),

@@ -46,9 +46,7 @@ pub fn read(
         given_x,
         given_xi,
     };
-    let mut symbols = vec![std::f64::consts::PI];
-    symbols.extend_from_slice(defaults);
-    symbols.resize(graph.symbols().len(), f64::NAN);
+    let symbols = known(graph, defaults);
     let mut complete = true;
     for item in &system.items {
         let ItemKind::Start { target, value } = &item.kind else {
@@ -150,30 +148,7 @@ impl Start {
             let message = format!("{what} has to be {wanted}, this is {found}");
             return evaluator.error(Diagnostic::new(expr.span, message).help(help));
         }
-        let entries = value.entries();
-        let class = entries
-            .iter()
-            .fold(0, |class, e| class | evaluator.graph.class(e.node()));
-        if class & !class::PARAM != 0 {
-            return evaluator.error(
-                Diagnostic::new(expr.span, format!("the start of `{name}` is no number"))
-                    .help("a start is made of numbers, constants and parameters"),
-            );
-        }
-        let params = symbols.iter().zip(evaluator.graph.symbols());
-        let unknown =
-            |(n, s): (&f64, &crate::algebra::graph::Symbol)| s.class == class::PARAM && n.is_nan();
-        if class != 0 && params.into_iter().any(unknown) {
-            // A default is in error; the start cannot be known.
-            return None;
-        }
-        let numbers = evaluate(evaluator.graph, &entries, symbols);
-        if numbers.iter().any(|number| !number.is_finite()) {
-            return evaluator.error(
-                Diagnostic::new(expr.span, format!("the start of `{name}` is not finite"))
-                    .help("write numbers that floating point can hold"),
-            );
-        }
+        let numbers = numbers(&mut evaluator, &value, name, expr.span, symbols)?;
         let (into, given) = if of_x {
             (&mut self.x, &mut self.given_x)
         } else {
@@ -193,6 +168,49 @@ impl Start {
         into[range].copy_from_slice(&numbers);
         Some(())
     }
+}
+
+/// The numbers that the start of something is, given those of all symbols; NaN where they are not known.
+pub fn numbers(
+    evaluator: &mut Evaluator,
+    value: &Value,
+    name: &str,
+    span: Span,
+    symbols: &[f64],
+) -> Option<Vec<f64>> {
+    let entries = value.entries();
+    let class = entries
+        .iter()
+        .fold(0, |class, e| class | evaluator.graph.class(e.node()));
+    if class & !class::PARAM != 0 {
+        return evaluator.error(
+            Diagnostic::new(span, format!("the start of `{name}` is no number"))
+                .help("a start is made of numbers, constants and parameters"),
+        );
+    }
+    let params = symbols.iter().zip(evaluator.graph.symbols());
+    let unknown =
+        |(n, s): (&f64, &crate::algebra::graph::Symbol)| s.class == class::PARAM && n.is_nan();
+    if class != 0 && params.into_iter().any(unknown) {
+        // A default is in error; the start cannot be known.
+        return None;
+    }
+    let numbers = evaluate(evaluator.graph, &entries, symbols);
+    if numbers.iter().any(|number| !number.is_finite()) {
+        return evaluator.error(
+            Diagnostic::new(span, format!("the start of `{name}` is not finite"))
+                .help("write numbers that floating point can hold"),
+        );
+    }
+    Some(numbers)
+}
+
+/// The numbers of all symbols as far as they are known before the start: those of parameters.
+pub fn known(graph: &Graph, defaults: &[f64]) -> Vec<f64> {
+    let mut symbols = vec![std::f64::consts::PI];
+    symbols.extend_from_slice(defaults);
+    symbols.resize(graph.symbols().len(), f64::NAN);
+    symbols
 }
 
 /// The entries of x or ξ that a start is about, and their value; whether they are of x.
@@ -230,6 +248,13 @@ fn place(
     {
         // Its own definition was in error.
         return None;
+    }
+    if let Some(entry) = evaluator.scope.get(name)
+        && entry.kind == NameKind::State
+    {
+        let message = format!("the start of the state `{name}` stands in its declaration");
+        let error = Diagnostic::new(target.name.span, message).note(entry.span, "declared here");
+        return evaluator.error(error.help(format!("write `state {name} = …;`")));
     }
     let wanted = Some("coordinate or velocity");
     let error = evaluator

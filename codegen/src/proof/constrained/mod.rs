@@ -8,6 +8,7 @@ use super::confidence::Confidence;
 use super::kernel::{in_kernel, places, rows_at_rest};
 use super::points::{POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
+use super::states;
 use super::verdict::{Identity, Verdict, failure};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function};
@@ -25,7 +26,7 @@ use num_rational::BigRational;
 use point::At;
 
 /// What is compared, with the label and equation that `check` prints.
-const IDENTITIES: [(&str, &str); 8] = [
+const IDENTITIES: [(&str, &str); 9] = [
     ("C", "B C = 0 for the rows that were solved"),
     (
         "(30c)",
@@ -46,6 +47,7 @@ const IDENTITIES: [(&str, &str); 8] = [
         "nearby",
         "the emitted [A B] are the slopes of ẋ and ξ̇ along δx = A h",
     ),
+    ("states", "ż as described, with the emitted ξ̇"),
 ];
 
 /// The place of the power among them: it is compared at points of its own.
@@ -237,6 +239,7 @@ fn is_there(label: &str, reduction: &Reduction, program: &Program) -> bool {
     match label {
         "C" => !reduction.solved.is_empty(),
         "B" => !reduction.kept.is_empty() || !reduction.model.accelerated.is_empty(),
+        "states" => !reduction.model.states.is_empty(),
         "nearby" => program.function(FunctionId::Linearize).is_some(),
         _ => true,
     }
@@ -327,7 +330,14 @@ fn at_point(
             Some(f) => evaluate_at(&program.graph, &f.outputs, &mut inner.clone()).map(Some),
         }
     };
-    let balanced = match (emitted("accel")?, emitted("constraint_force")?) {
+    // ξ̇, and behind it the rates of states.
+    let mut xi_dot = emitted("accel")?;
+    let state_rates = xi_dot.as_mut().map(|rates| rates.split_off(na));
+    let same_states = match (&xi_dot, state_rates) {
+        (Some(xi_dot), Some(found)) => states::rates(&full.reduced, xi_dot, inner)? == found,
+        _ => true,
+    };
+    let balanced = match (xi_dot.clone(), emitted("constraint_force")?) {
         (Some(xi_dot), Some(lambda)) => {
             let needed = values.needed(&values.lift(c, &xi_dot));
             // The row of ξ⁰ is no equation of motion.
@@ -367,7 +377,7 @@ fn at_point(
     // Whatever the multipliers are, they do no work where B v = 0, nor do drives where what they give stands still: there
     // the equations of motion hold by themselves.
     let balanced = balanced
-        && match emitted("accel")? {
+        && match xi_dot.clone() {
             None => true,
             Some(xi_dot) => {
                 let needed = values.needed(&values.lift(c, &xi_dot));
@@ -379,7 +389,7 @@ fn at_point(
                 dot(&virtual_velocity, &project(&left.collect::<Vec<_>>())).is_zero()
             }
         };
-    let held = match emitted("accel")? {
+    let held = match xi_dot {
         None => true,
         Some(xi_dot) if full.reduced.overconstrained => {
             let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - carried[k]).collect();
@@ -424,6 +434,7 @@ fn at_point(
         result(same_loads, "a force or energy differs"),
         Ok(()),
         result(nearby, "a slope differs"),
+        result(same_states, "ż differs"),
     ])
 }
 

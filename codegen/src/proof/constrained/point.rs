@@ -157,12 +157,11 @@ impl<'a> At<'a> {
     /// Whether d/dt (T + V) = f ξ, which holds where B ξ + b = 0. Drives take part, and with time the row of ξ⁰, by
     /// the power that it would need: −∂L/∂t, and that of prescribed motion.
     pub(super) fn power(&self) -> Option<bool> {
-        let Some(accel) = self.program.function(FunctionId::Accel) else {
+        let Some(xi_dot) = self.program.xi_dot() else {
             return Some(true);
         };
         let values = self.values()?;
-        let outputs = &accel.outputs;
-        let xi_dot = evaluate_at(&self.program.graph, outputs, &mut self.inner.clone())?;
+        let xi_dot = evaluate_at(&self.program.graph, xi_dot, &mut self.inner.clone())?;
         let xi_dot = values.lift(&self.c, &xi_dot);
         let n = xi_dot.len();
         let momentum: Vec<Fp> = (0..n)
@@ -212,6 +211,7 @@ impl<'a> At<'a> {
         let displaced: Vec<usize> = (0..all).filter(|&i| Some(i) != time).collect();
         let n = displaced.len();
         let width = n + na + reduced.u.len();
+        let n_z = reduced.state_rates.len();
         let table = evaluate_at(
             &self.program.graph,
             &linear.outputs,
@@ -224,7 +224,10 @@ impl<'a> At<'a> {
         let symbols = |class| places(&reduced.graph, class);
         let first = full.points.first;
         let (x, mut others) = (first..first + nu, symbols(class::VELOCITY));
-        others.extend(symbols(class::INPUT));
+        // z stands before u.
+        let mut given = symbols(class::INPUT);
+        given.rotate_right(n_z);
+        others.extend(given);
         let size = reduced.graph.symbols().len();
         // How the columns of A change along the motion.
         let mut moving = vec![Fp::ZERO; full.graph.symbols().len()];
@@ -247,7 +250,7 @@ impl<'a> At<'a> {
                 &mut self.inner.clone(),
                 &direction,
             )?;
-            let bent = (0..na).any(|row| entry(n + row, column) != slopes[row].1);
+            let bent = (0..na + n_z).any(|row| entry(n + row, column) != slopes[row].1);
             let moved = (0..nu).all(|alpha| {
                 let sum = (0..n).fold(Fp::ZERO, |sum, k| {
                     sum + a[alpha * all + displaced[k]] * entry(k, column)

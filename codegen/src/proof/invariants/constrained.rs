@@ -11,7 +11,7 @@ use crate::derive::{energy, inertia, quantity};
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::model::invariants::Invariant;
-use crate::program::{FunctionId, Program};
+use crate::program::Program;
 use crate::proof::confidence::Confidence;
 use crate::proof::kernel::at_rest;
 use crate::proof::points::{POINTS, Unequal, at_fresh_points};
@@ -77,9 +77,7 @@ fn confidence(model: &Model, program: &Program) -> Confidence {
     let energies = [energies.0, energies.1];
     let mut roots = inertia::mass_matrix(&mut own, &mut calculus).concat();
     roots.extend(own.rate.iter().chain(&energies).copied());
-    let accel = program
-        .function(FunctionId::Accel)
-        .map_or(&[][..], |accel| &accel.outputs);
+    let accel = program.xi_dot().unwrap_or_default();
     let expressions = [(&own.graph, &roots[..]), (&program.graph, accel)];
     let terms = 4 * (model.n() + 1);
     Confidence::new(model, &expressions, terms, POINTS, 9)
@@ -121,8 +119,7 @@ fn refuted(model: &Model, program: &Program, claim: &Invariant) -> Option<Unequa
 /// d/dt of the entries at a point with B ξ = 0.
 fn slopes(model: &Model, program: &Program, entries: &[Edge], lane: &Lane) -> Option<Vec<Fp>> {
     let graph = &model.graph;
-    let accel = program.function(FunctionId::Accel)?;
-    let xi_dot = evaluate_at(&program.graph, &accel.outputs, &mut lane.clone())?;
+    let xi_dot = evaluate_at(&program.graph, program.xi_dot()?, &mut lane.clone())?;
     let rate = evaluate_at(graph, &model.rate, &mut lane.clone())?;
     let direction = super::direction(model, &rate, &xi_dot);
     let duals = tangent_at(graph, entries, &mut lane.clone(), &direction)?;
