@@ -184,7 +184,7 @@ fn states_act_as_inputs_do() {
             .expect("generated");
         let compiled = Interpreter::new(&without.program, function, &without.program.defaults);
         let felt = compiled
-            .call(&x, &[w, wl], &plain[2], &expected)
+            .call(&x, &[w, wl], plain[2], &expected)
             .expect("a value");
         let mut all = expected.clone();
         all.push((v1 + t.sin() - ra * i1 - k * wheels[0]) / la);
