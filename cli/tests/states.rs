@@ -312,3 +312,45 @@ fn a_force_and_a_list_of_states_are_for_eval_alone() {
         );
     }
 }
+
+/// di/dt = (V − R i − n k w)/L of the motor, at a current that the file gives.
+#[test]
+fn states_of_first_order_are_read_and_shown() {
+    let state = r#"{"state": {"i": 2}, "velocity": {"w": 1}, "input": {"V": 3}}"#;
+    let json = |arguments: &[&str]| -> Value {
+        let output = hamel(arguments, state);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let motor = model("dc_pendulum");
+    let found = json(&["eval", &motor, "--at", "-"]);
+    assert_eq!(numbers(&found["xi"]), [1.0, 2.0]);
+    assert_eq!(found["states"], json!(["i"]));
+    assert_eq!(found["velocities"], json!(["w"]));
+    let current = numbers(&found["accel"])[1];
+    assert!((current - (3.0 - 1.2 * 2.0 - 20.0 * 0.03) / 1e-3).abs() < 1e-9);
+    let linear = json(&["linearize", &motor, "--at", "-", "--format", "json"]);
+    assert_eq!(linear["states"], json!(["h(w)", "d(w)", "d(i)"]));
+    assert_eq!(linear["A"][2], json!([0.0, -600.0, -1200.0]));
+    for (wrong, said) in [
+        (r#"{"state": {"j": 2}}"#, "state.j"),
+        (r#"{"state": {"i": [2]}}"#, "state.i: a number expected"),
+        (r#"{"velocity": {"i": 2}}"#, "velocity.i"),
+    ] {
+        let errors = refused("dc_pendulum", wrong);
+        assert!(errors.contains(said), "{wrong}: {errors}");
+    }
+    // A coil alone: i = exp(−R t/L) i₀ where the motor stands still.
+    let run = [
+        "simulate", &motor, "--at", "-", "--until", "0.001", "--method", "rkmk8",
+    ];
+    let output = hamel(&run, r#"{"param": {"n": 0}, "state": {"i": 2}}"#);
+    let report = text(&output.stdout);
+    let row = report
+        .lines()
+        .find_map(|line| line.trim().strip_prefix("i "));
+    let end: f64 = row
+        .and_then(|end| end.trim().parse().ok())
+        .expect("the current at the end");
+    assert!((end - 2.0 * (-1.2_f64).exp()).abs() < 1e-5, "{report}");
+}

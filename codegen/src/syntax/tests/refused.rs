@@ -407,7 +407,7 @@ fn every_faulty_statement_is_reported() {
     insta::assert_snapshot!(errors(&text.replace("0;]", "0] 1")), @r#"
     2:18 expected an expression, found `;` <;>
       a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`
-    3:18 expected the name of a coordinate or state, found `;` <;>
+    3:18 expected the name of a coordinate, found `;` <;>
       coordinates are written `coord r: R3, R: SO3, q;`
     4:5 unknown statement `velocty` <velocty>
       did you mean `velocity`?
