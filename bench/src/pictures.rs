@@ -3,7 +3,7 @@
 use crate::runner::BenchError;
 use hamel::methods::Rkmk4;
 use hamel::{State, integrate};
-use hamel_cases::models::principal_axes::PrincipalAxes;
+use hamel_cases::models::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_report::page::Picture;
 use hamel_report::plot::{self, Panel, Path, PlotError, Poinsot};
 
@@ -21,7 +21,8 @@ const STRIDE: u32 = 10;
 /// Where the motion or the drawing fails.
 pub fn motions() -> Result<Vec<(&'static str, Picture)>, BenchError> {
     let [j1, j2, j3] = MOMENTS;
-    let body = PrincipalAxes::new(j1, j2, j3).map_err(|error| BenchError(error.to_string()))?;
+    let body = PrincipalAxes::new(PrincipalAxesParameters { j1, j2, j3 })
+        .map_err(|error| BenchError(error.to_string()))?;
     let mut state: State<PrincipalAxes<f64>> = State::start(&body);
     state.xi = START;
     let mut track = Vec::new();

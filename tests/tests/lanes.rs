@@ -8,7 +8,7 @@ use hamel::methods::{Gauss4, Rkmk4};
 use hamel::wide::{f32x8, f64x4, f64x8};
 use hamel::{Lanes, Method, Scalar, State, StepError, System, integrate};
 use hamel_tests::bouncing_ball::BouncingBall;
-use hamel_tests::cart_pole::CartPole;
+use hamel_tests::cart_pole::{CartPole, CartPoleParameters};
 use hamel_tests::double_pendulum_angles::DoublePendulum;
 use hamel_tests::free_body::FreeBody;
 use hamel_tests::heavy_top_quaternion::QuaternionTop;
@@ -152,7 +152,12 @@ fn failures_do_not_spread() {
     let build = |group: &Group| {
         let same = f64x4::from_f64;
         let length = group.gather(|member| if member == 9 { 0.0 } else { 0.5 });
-        CartPole::<f64x4>::new(same(1.0), same(0.1), length, same(9.81))
+        CartPole::<f64x4>::new(CartPoleParameters {
+            mc: same(1.0),
+            mp: same(0.1),
+            l: length,
+            g: same(9.81),
+        })
     };
     // A push of one member from t = 0.5 on, without end.
     let push = |group: &Group, t: f64, _: &_, _: &_| {

@@ -2,16 +2,16 @@
 
 use hamel::methods::General;
 use hamel::{State, System, integrate, s1, so3};
-use hamel_tests::cart_pole::CartPole;
-use hamel_tests::free_body::FreeBody;
-use hamel_tests::heavy_top::HeavyTop;
-use hamel_tests::heavy_top_axis::AxisTop;
-use hamel_tests::hoop_bead::HoopBead;
-use hamel_tests::pendulum::Pendulum;
-use hamel_tests::pendulum_circle::CirclePendulum;
-use hamel_tests::planar_body::PlanarBody;
-use hamel_tests::polar_particle::PolarParticle;
-use hamel_tests::principal_axes::PrincipalAxes;
+use hamel_tests::cart_pole::{CartPole, CartPoleParameters};
+use hamel_tests::free_body::{FreeBody, FreeBodyParameters};
+use hamel_tests::heavy_top::{HeavyTop, HeavyTopParameters};
+use hamel_tests::heavy_top_axis::{AxisTop, AxisTopParameters};
+use hamel_tests::hoop_bead::{HoopBead, HoopBeadParameters};
+use hamel_tests::pendulum::{Pendulum, PendulumParameters};
+use hamel_tests::pendulum_circle::{CirclePendulum, CirclePendulumParameters};
+use hamel_tests::planar_body::{PlanarBody, PlanarBodyParameters};
+use hamel_tests::polar_particle::{PolarParticle, PolarParticleParameters};
+use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::reference::run;
 use std::f64::consts::{PI, TAU};
 
@@ -52,8 +52,20 @@ fn complete_elliptic(alpha: f64) -> f64 {
 #[test]
 fn pendulum_period() {
     let (l, g) = (0.8_f64, 9.81);
-    let raw = Pendulum::new(1.0, l, g, 0.0).expect("a pendulum");
-    let circle = CirclePendulum::new(1.0, l, g, 0.0).expect("a pendulum");
+    let raw = Pendulum::new(PendulumParameters {
+        m: 1.0,
+        l,
+        g,
+        d: 0.0,
+    })
+    .expect("a pendulum");
+    let circle = CirclePendulum::new(CirclePendulumParameters {
+        m: 1.0,
+        l,
+        g,
+        d: 0.0,
+    })
+    .expect("a pendulum");
     for angle in [0.05_f64, 1.0, 2.5] {
         let period = 4.0 * (l / g).sqrt() * complete_elliptic(angle / 2.0);
         if angle < 0.1 {
@@ -81,7 +93,7 @@ fn pendulum_period() {
 #[test]
 fn particle_on_a_kepler_orbit() {
     let (m, k) = (0.7_f64, 2.0);
-    let system = PolarParticle::new(m, k).expect("a particle");
+    let system = PolarParticle::new(PolarParticleParameters { m, k }).expect("a particle");
     // Start at the pericentre: ρ = 0.8 and more than the speed of the circle, √(k / (m ρ)).
     let (rho, v) = (0.8, 2.2);
     let energy = 0.5 * m * v * v - k / rho;
@@ -123,7 +135,7 @@ fn cart_pole_near_the_upright() {
     /// Nonlinear terms are of the third order in the angle: 1e-12 relative.
     const SMALL: f64 = 1e-6;
     let (mc, mp, l, g) = (1.2, 0.3, 0.5, 9.81);
-    let system = CartPole::new(mc, mp, l, g).expect("a cart");
+    let system = CartPole::new(CartPoleParameters { mc, mp, l, g }).expect("a cart");
     let square = (mc + mp) * g / (mc * l);
     let still = [0.0; 2];
     let accel = |x, u| system.accel(x, &still, u).expect("M is regular");
@@ -143,7 +155,7 @@ fn cart_pole_near_the_upright() {
 #[test]
 fn planar_body_in_free_fall() {
     let (m, j, a, b, g) = (2.0, 0.4, 0.3, 0.1, 9.81);
-    let system = PlanarBody::new(m, j, a, b, g).expect("a body");
+    let system = PlanarBody::new(PlanarBodyParameters { m, j, a, b, g }).expect("a body");
     let (r0, angle, spin) = ([0.5, -0.2], 0.9, 3.0);
     let v0 = [1.0, 4.0];
     let centre = |r: [f64; 2], q: [f64; 2]| {
@@ -181,8 +193,22 @@ fn symmetric_top_in_steady_precession() {
     const PRECESSION: f64 = 1e-7;
     let (m, g, l, j1, j3) = (1.0, 9.81, 0.5, 0.3, 0.05);
     let theta = [[j1, 0.0, 0.0], [0.0, j1, 0.0], [0.0, 0.0, j3]];
-    let third = HeavyTop::new(m, g, [0.0, 0.0, l], theta).expect("a top");
-    let second = AxisTop::new(m, g, l, j1, j3, j1).expect("a top");
+    let third = HeavyTop::new(HeavyTopParameters {
+        m,
+        g,
+        s: [0.0, 0.0, l],
+        theta,
+    })
+    .expect("a top");
+    let second = AxisTop::new(AxisTopParameters {
+        m,
+        g,
+        l,
+        j1,
+        j2: j3,
+        j3: j1,
+    })
+    .expect("a top");
     for (tilt, precession) in [(0.5_f64, 2.0), (1.2, -3.0), (2.4, 4.0)] {
         let spin = (m * g * l / precession + j1 * precession * tilt.cos()) / j3;
         let until = 0.4 * TAU / precession.abs();
@@ -217,7 +243,7 @@ fn symmetric_top_in_steady_precession() {
 #[test]
 fn free_symmetric_body_precesses_evenly() {
     let (j1, j3) = (1.0, 1.8);
-    let system = PrincipalAxes::new(j1, j1, j3).expect("a body");
+    let system = PrincipalAxes::new(PrincipalAxesParameters { j1, j2: j1, j3 }).expect("a body");
     let w0 = [0.8, 0.0, 1.5];
     let rate = (j3 - j1) / j1 * w0[2];
     let until = 3.0;
@@ -233,7 +259,13 @@ fn free_symmetric_body_precesses_evenly() {
 fn hovering_body_under_a_torque() {
     let theta = [[0.02, 0.0, 0.0], [0.0, 0.025, 0.0], [0.0, 0.0, 0.04]];
     let (m, g, tau) = (1.5, 9.81, 0.03);
-    let system = FreeBody::new(m, g, [0.0; 3], theta).expect("a body");
+    let system = FreeBody::new(FreeBodyParameters {
+        m,
+        g,
+        s: [0.0; 3],
+        theta,
+    })
+    .expect("a body");
     let mut state = State::start(&system);
     state.xi = [0.0; 6];
     let (x0, until) = (state.x, 2.0);
@@ -262,7 +294,7 @@ fn hovering_body_under_a_torque() {
 #[test]
 fn bead_on_a_turning_hoop() {
     let (m, a, j, g) = (0.2, 0.4, 0.05, 9.81);
-    let system = HoopBead::new(m, a, j, g).expect("a hoop");
+    let system = HoopBead::new(HoopBeadParameters { m, a, j, g }).expect("a hoop");
     let speed = 8.0_f64;
     let rest = (g / (a * speed * speed)).acos();
     let accel = |theta: f64| {
@@ -303,10 +335,22 @@ fn applied_loads_are_generalised_forces() {
         wrench
     );
 
-    let damped = Pendulum::new(1.0, 0.8, 9.81, 0.25).expect("a pendulum");
+    let damped = Pendulum::new(PendulumParameters {
+        m: 1.0,
+        l: 0.8,
+        g: 9.81,
+        d: 0.25,
+    })
+    .expect("a pendulum");
     let [force] = damped.generalized_force(&s1::exp(0.4), &[2.0], &[]);
     assert_near("damping", force, -0.5, 1e-15);
-    let circle = CirclePendulum::new(1.0, 0.8, 9.81, 0.25).expect("a pendulum");
+    let circle = CirclePendulum::new(CirclePendulumParameters {
+        m: 1.0,
+        l: 0.8,
+        g: 9.81,
+        d: 0.25,
+    })
+    .expect("a pendulum");
     let [force] = circle.generalized_force(&s1::exp(0.4), &[2.0], &[]);
     assert_near("damping", force, -0.5, 1e-15);
 

@@ -9,7 +9,7 @@ use hamel_tests::double_four_bar::DoubleFourBar;
 use hamel_tests::four_bar_loop::FourBarLoop;
 use hamel_tests::reference::{Reference, relative, run, slopes};
 use hamel_tests::rolling_ball::RollingBall;
-use hamel_tests::sleigh::Sleigh;
+use hamel_tests::sleigh::{Sleigh, SleighParameters};
 use hamel_tests::snakeboard::Snakeboard;
 use hamel_tests::spherical_pendulum_frame::SphericalPendulum;
 use hamel_tests::squeezer::Squeezer;
@@ -158,7 +158,7 @@ fn ball_with_general_inertia_keeps_its_energy() {
 #[test]
 fn sleigh_blade_bears_the_centrifugal_force() {
     let (m, inertia, a) = (2.0, 0.6, 0.5_f64);
-    let system = Sleigh::new(m, inertia, a).expect("a body");
+    let system = Sleigh::new(SleighParameters { m, j: inertia, a }).expect("a body");
     let (u, w) = (1.3, 0.7);
     let x = [0.0, 0.0, 1.0, 0.0];
     let [lambda]: [f64; 1] = system.constraint_force(&x, &[u, w], &[]).expect("regular");

@@ -2,11 +2,11 @@
 
 use hamel::methods::General;
 use hamel::{Singular, State, StepError, integrate};
-use hamel_tests::cart_pole::CartPole;
-use hamel_tests::free_body::FreeBody;
-use hamel_tests::heavy_top::HeavyTop;
-use hamel_tests::hoop_bead::HoopBead;
-use hamel_tests::principal_axes::PrincipalAxes;
+use hamel_tests::cart_pole::{CartPole, CartPoleParameters};
+use hamel_tests::free_body::{FreeBody, FreeBodyParameters};
+use hamel_tests::heavy_top::{HeavyTop, HeavyTopParameters};
+use hamel_tests::hoop_bead::{HoopBead, HoopBeadParameters};
+use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::two_bodies::TwoBodies;
 
 /// Numbers that are no mass and no moment of inertia.
@@ -41,7 +41,11 @@ fn a_refused_inertia_names_its_pivot() {
         for refused in REFUSED {
             let mut j = [1.0, 2.0, 3.0];
             j[pivot] = refused;
-            let result = PrincipalAxes::new(j[0], j[1], j[2]);
+            let result = PrincipalAxes::new(PrincipalAxesParameters {
+                j1: j[0],
+                j2: j[1],
+                j3: j[2],
+            });
             assert_eq!(
                 result.err(),
                 Some(Singular::Inertia { pivot }),
@@ -89,13 +93,27 @@ fn an_indefinite_inertia_with_a_positive_diagonal_is_refused() {
         Err(Singular::Inertia { pivot: 1 })
     );
     assert_eq!(system.theta(), kept);
-    assert!(HeavyTop::new(1.0, 9.81, [0.0; 3], indefinite).is_err());
+    assert!(
+        HeavyTop::new(HeavyTopParameters {
+            m: 1.0,
+            g: 9.81,
+            s: [0.0; 3],
+            theta: indefinite
+        })
+        .is_err()
+    );
 }
 
 /// Without an inertia of its own the hoop has none while the bead is on its axis.
 #[test]
 fn a_mass_matrix_singular_in_places_is_an_error_there() {
-    let system = HoopBead::new(0.2, 0.4, 0.0, 9.81).expect("regular elsewhere");
+    let system = HoopBead::new(HoopBeadParameters {
+        m: 0.2,
+        a: 0.4,
+        j: 0.0,
+        g: 9.81,
+    })
+    .expect("regular elsewhere");
     let xi = [3.0, 1.0];
     let on_axis = [1.0, 0.0, 1.0, 0.0];
     let beside = [1.0, 0.0, 0.6, 0.8];
@@ -124,7 +142,12 @@ fn a_mass_matrix_singular_in_places_is_an_error_there() {
 #[test]
 fn a_cart_without_mass_is_an_error_where_the_pole_stands() {
     // M is regular while the pole is inclined: what m_c = 0 leaves at θ = 0 is singular.
-    match CartPole::new(0.0, 0.3, 0.5, 9.81) {
+    match CartPole::new(CartPoleParameters {
+        mc: 0.0,
+        mp: 0.3,
+        l: 0.5,
+        g: 9.81,
+    }) {
         Err(singular) => assert!(matches!(singular, Singular::Inertia { pivot: 0 | 1 })),
         Ok(system) => {
             let accel = system.accel(&[0.0, 0.0], &[0.0, 1.0], &[1.0]);
@@ -174,7 +197,13 @@ fn states_that_are_not_numbers_are_errors() {
 #[test]
 fn setters_keep_the_constants_in_step() {
     let theta = [[3.0, 0.2, -0.1], [0.2, 2.5, 0.3], [-0.1, 0.3, 2.2]];
-    let fresh = FreeBody::new(1.7, 3.7, [0.2, 0.1, -0.3], theta).expect("a body");
+    let fresh = FreeBody::new(FreeBodyParameters {
+        m: 1.7,
+        g: 3.7,
+        s: [0.2, 0.1, -0.3],
+        theta,
+    })
+    .expect("a body");
     let mut set: FreeBody<f64> = FreeBody::default();
     set.set_theta(theta).expect("an inertia");
     set.set_g(3.7).expect("gravity");
@@ -196,6 +225,12 @@ fn symmetric_parameters_stay_symmetric() {
     system.set_theta(upper).expect("an inertia");
     let whole = [[2.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.0]];
     assert_eq!(system.theta(), whole);
-    let made = HeavyTop::new(1.0, 9.81, [0.0; 3], upper).expect("a top");
+    let made = HeavyTop::new(HeavyTopParameters {
+        m: 1.0,
+        g: 9.81,
+        s: [0.0; 3],
+        theta: upper,
+    })
+    .expect("a top");
     assert_eq!(made.theta(), whole);
 }

@@ -2,18 +2,18 @@
 
 use hamel::methods::General;
 use hamel::{State, System, s1, s3, so3};
-use hamel_tests::double_pendulum_angles::DoublePendulum;
-use hamel_tests::double_pendulum_circles::CircleDoublePendulum;
-use hamel_tests::free_body::FreeBody;
+use hamel_tests::double_pendulum_angles::{DoublePendulum, DoublePendulumParameters};
+use hamel_tests::double_pendulum_circles::{CircleDoublePendulum, CircleDoublePendulumParameters};
+use hamel_tests::free_body::{FreeBody, FreeBodyParameters};
 use hamel_tests::free_body_no_wrench::FallingBody;
 use hamel_tests::free_body_world::WorldBody;
 use hamel_tests::free_body_world_velocity::WorldVelocityBody;
-use hamel_tests::heavy_top::HeavyTop;
-use hamel_tests::heavy_top_axis::AxisTop;
+use hamel_tests::heavy_top::{HeavyTop, HeavyTopParameters};
+use hamel_tests::heavy_top_axis::{AxisTop, AxisTopParameters};
 use hamel_tests::heavy_top_quaternion::QuaternionTop;
 use hamel_tests::heavy_top_world::WorldTop;
-use hamel_tests::pendulum::Pendulum;
-use hamel_tests::pendulum_circle::CirclePendulum;
+use hamel_tests::pendulum::{Pendulum, PendulumParameters};
+use hamel_tests::pendulum_circle::{CirclePendulum, CirclePendulumParameters};
 use hamel_tests::reference::{relative, run};
 use hamel_tests::six_particles::SixParticles;
 
@@ -118,7 +118,13 @@ fn six_particles_are_a_body() {
             theta[other][other] += mass * a * a;
         }
     }
-    let body = FreeBody::new(m, particles.g(), s, theta).expect("a body");
+    let body = FreeBody::new(FreeBodyParameters {
+        m,
+        g: particles.g(),
+        s,
+        theta,
+    })
+    .expect("a body");
     let (x, v, w) = free_body(&body);
 
     let (r, rotation) = pose();
@@ -150,9 +156,23 @@ fn heavy_top_in_three_descriptions() {
 #[test]
 fn top_on_its_axis_is_a_top() {
     let (r0, w0) = (so3::exp([0.4, -0.9, 0.3]), [0.5, 3.0, -2.0]);
-    let axis = AxisTop::new(1.5, 9.81, 0.4, 0.9, 0.3, 0.8).expect("a top");
+    let axis = AxisTop::new(AxisTopParameters {
+        m: 1.5,
+        g: 9.81,
+        l: 0.4,
+        j1: 0.9,
+        j2: 0.3,
+        j3: 0.8,
+    })
+    .expect("a top");
     let theta = [[0.9, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, 0.8]];
-    let general = HeavyTop::new(1.5, 9.81, [0.0, 0.4, 0.0], theta).expect("a top");
+    let general = HeavyTop::new(HeavyTopParameters {
+        m: 1.5,
+        g: 9.81,
+        s: [0.0, 0.4, 0.0],
+        theta,
+    })
+    .expect("a top");
     let (axis, general) = (end(&axis, r0, w0), end(&general, r0, w0));
     assert_same("R", &axis.x, &general.x);
     assert_same("ω", &axis.xi, &general.xi);
@@ -169,7 +189,13 @@ fn free_body_does_not_depend_on_the_place_of_its_frame() {
             about_origin[i][j] - m * (square - s[i] * s[j])
         })
     });
-    let central = FreeBody::new(m, body.g(), [0.0; 3], about_centre).expect("a body");
+    let central = FreeBody::new(FreeBodyParameters {
+        m,
+        g: body.g(),
+        s: [0.0; 3],
+        theta: about_centre,
+    })
+    .expect("a body");
     let (r, rotation) = pose();
     let arm = so3::apply(rotation, s);
     let turning = so3::cross(SPIN, arm);
@@ -194,8 +220,22 @@ fn free_body_does_not_depend_on_the_place_of_its_frame() {
 #[test]
 fn double_pendulum_in_angles_and_on_circles() {
     let (theta, rates) = ([2.0, -0.7], [1.5, -2.0]);
-    let angles = DoublePendulum::new(1.1, 0.7, 0.9, 0.6, 9.81).expect("a pendulum");
-    let circles = CircleDoublePendulum::new(1.1, 0.7, 0.9, 0.6, 9.81).expect("a pendulum");
+    let angles = DoublePendulum::new(DoublePendulumParameters {
+        m1: 1.1,
+        m2: 0.7,
+        l1: 0.9,
+        l2: 0.6,
+        g: 9.81,
+    })
+    .expect("a pendulum");
+    let circles = CircleDoublePendulum::new(CircleDoublePendulumParameters {
+        m1: 1.1,
+        m2: 0.7,
+        l1: 0.9,
+        l2: 0.6,
+        g: 9.81,
+    })
+    .expect("a pendulum");
     let angles = end(&angles, theta, rates);
     let [a, b] = theta.map(s1::exp);
     let circles = end(&circles, join(a, b), rates);
@@ -206,8 +246,20 @@ fn double_pendulum_in_angles_and_on_circles() {
 
 #[test]
 fn pendulum_with_raw_coordinates_and_on_a_circle() {
-    let raw = Pendulum::new(1.3, 0.6, 9.81, 0.2).expect("a pendulum");
-    let circle = CirclePendulum::new(1.3, 0.6, 9.81, 0.2).expect("a pendulum");
+    let raw = Pendulum::new(PendulumParameters {
+        m: 1.3,
+        l: 0.6,
+        g: 9.81,
+        d: 0.2,
+    })
+    .expect("a pendulum");
+    let circle = CirclePendulum::new(CirclePendulumParameters {
+        m: 1.3,
+        l: 0.6,
+        g: 9.81,
+        d: 0.2,
+    })
+    .expect("a pendulum");
     let x0 = s1::exp(2.0);
     let (raw, circle) = (end(&raw, x0, [1.0]), end(&circle, x0, [1.0]));
     assert_same("x", &raw.x, &circle.x);

@@ -2,7 +2,7 @@
 
 use hamel::methods::General;
 use hamel::{State, System};
-use hamel_tests::bouncing_ball::BouncingBall;
+use hamel_tests::bouncing_ball::{BouncingBall, BouncingBallParameters};
 use hamel_tests::cart_pole_friction::FrictionCartPole;
 use hamel_tests::drag_ball::DragBall;
 use hamel_tests::reference::run;
@@ -53,7 +53,13 @@ fn a_cart_with_a_largest_force_and_friction() {
 /// again after 2 √(2h/g) and that.
 #[test]
 fn a_ball_bounces_as_long_as_it_should() {
-    let system = BouncingBall::<f64>::new(0.5, 9.81, 2000.0, 0.0).expect("a ball");
+    let system = BouncingBall::<f64>::new(BouncingBallParameters {
+        m: 0.5,
+        g: 9.81,
+        k: 2000.0,
+        c: 0.0,
+    })
+    .expect("a ball");
     let (m, g, k, h) = (0.5, 9.81, 2000.0_f64, 1.0);
     let (omega, v) = ((k / m).sqrt(), f64::sqrt(2.0 * g * h));
     let touching = 2.0 * (PI - f64::atan(omega * v / g)) / omega;

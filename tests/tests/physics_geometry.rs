@@ -5,13 +5,13 @@ use hamel::methods::General;
 use hamel::{State, System, so3};
 use hamel_tests::body_with_rotor::BodyWithRotor;
 use hamel_tests::gyrostat::Gyrostat;
-use hamel_tests::heavy_top::HeavyTop;
-use hamel_tests::heisenberg::Heisenberg;
-use hamel_tests::planar_body::PlanarBody;
-use hamel_tests::planar_world::PlanarWorld;
+use hamel_tests::heavy_top::{HeavyTop, HeavyTopParameters};
+use hamel_tests::heisenberg::{Heisenberg, HeisenbergParameters};
+use hamel_tests::planar_body::{PlanarBody, PlanarBodyParameters};
+use hamel_tests::planar_world::{PlanarWorld, PlanarWorldParameters};
 use hamel_tests::reference::run;
-use hamel_tests::spherical_angles::SphericalAngles;
-use hamel_tests::spherical_orthonormal::SphericalOrthonormal;
+use hamel_tests::spherical_angles::{SphericalAngles, SphericalAnglesParameters};
+use hamel_tests::spherical_orthonormal::{SphericalOrthonormal, SphericalOrthonormalParameters};
 use hamel_tests::spinning_particles::SpinningParticles;
 
 /// The motions compared last 1 s.
@@ -39,8 +39,9 @@ fn assert_near(what: &str, value: f64, expected: f64) {
 #[test]
 fn spherical_frames_agree() {
     let (m, k) = (1.3, 2.1);
-    let plain = SphericalAngles::new(m, k).expect("a particle");
-    let orthonormal = SphericalOrthonormal::new(m, k).expect("a particle");
+    let plain = SphericalAngles::new(SphericalAnglesParameters { m, k }).expect("a particle");
+    let orthonormal =
+        SphericalOrthonormal::new(SphericalOrthonormalParameters { m, k }).expect("a particle");
     let x = [0.9, 1.1, 0.4];
     let rates = [0.3, -0.5, 1.2];
     let speeds = |x: [f64; 3], q: [f64; 3]| [q[0], x[0] * q[1], x[0] * x[1].sin() * q[2]];
@@ -61,8 +62,8 @@ fn spherical_frames_agree() {
 #[test]
 fn planar_frames_agree() {
     let (m, j, a, b) = (2.0, 0.4, 0.3, 0.1);
-    let body = PlanarBody::new(m, j, a, b, 0.0).expect("a body");
-    let world = PlanarWorld::new(m, j, a, b).expect("a body");
+    let body = PlanarBody::new(PlanarBodyParameters { m, j, a, b, g: 0.0 }).expect("a body");
+    let world = PlanarWorld::new(PlanarWorldParameters { m, j, a, b }).expect("a body");
     let angle = 0.7_f64;
     let x = [0.5, -0.2, angle.cos(), angle.sin()];
     // ṙ and θ̇.
@@ -103,7 +104,13 @@ fn particles_make_a_top() {
             }
         }
     }
-    let top = HeavyTop::new(mass, system.g(), com.map(|c| c / mass), theta).expect("a top");
+    let top = HeavyTop::new(HeavyTopParameters {
+        m: mass,
+        g: system.g(),
+        s: com.map(|c| c / mass),
+        theta,
+    })
+    .expect("a top");
     let (x, xi) = (so3::exp([0.3, -0.4, 0.2]), [0.5, -0.7, 3.0]);
     let (a, b) = (end(&system, x, xi), end(&top, x, xi));
     for i in 0..9 {
@@ -159,7 +166,7 @@ fn rotors_follow_their_motor() {
 #[test]
 fn heisenberg_motion() {
     let (m, k) = (1.5, 2.0);
-    let system = Heisenberg::new(m, k).expect("a particle");
+    let system = Heisenberg::new(HeisenbergParameters { m, k }).expect("a particle");
     let (x0, y0, u0, v0, w) = (0.3, -0.1, 0.2, 1.0, 0.8);
     let last = end(&system, [x0, y0, 0.0], [u0, v0, w]);
     assert_near("w", last.xi[2], w);

@@ -3,7 +3,7 @@
 
 use hamel::methods::General;
 use hamel::{Monitor, Singular, State, StepError, System, integrate, s3, so3};
-use hamel_tests::four_bar::FourBar;
+use hamel_tests::four_bar::{FourBar, FourBarParameters};
 use hamel_tests::free_body::FreeBody;
 use hamel_tests::free_body_both::FreeBodyBoth;
 use hamel_tests::free_body_rows::FreeBodyRows;
@@ -191,7 +191,19 @@ fn a_four_bar_keeps_its_energy() {
 #[test]
 fn a_locked_four_bar_is_a_typed_error() {
     let (m, g, j) = ([1.0, 2.0, 1.5], 0.0, [0.1, 1.1, 0.5]);
-    let system = FourBar::<f64>::new(2.0, 1.0, 1.0, 3.0, m[0], m[1], m[2], g, j[0], j[1], j[2]);
+    let system = FourBar::<f64>::new(FourBarParameters {
+        l1: 2.0,
+        l2: 1.0,
+        l3: 1.0,
+        d: 3.0,
+        m1: m[0],
+        m2: m[1],
+        m3: m[2],
+        g,
+        j1: j[0],
+        j2: j[1],
+        j3: j[2],
+    });
     let system = system.expect("lengths and masses");
     let half = 0.75_f64.sqrt();
     let start = [1.0, 0.0, 0.5, half, -0.5, half];

@@ -6,11 +6,11 @@
 
 use hamel::methods::General;
 use hamel::{State, System, integrate};
-use hamel_tests::double_pendulum_circles::CircleDoublePendulum;
-use hamel_tests::heavy_top::HeavyTop;
+use hamel_tests::double_pendulum_circles::{CircleDoublePendulum, CircleDoublePendulumParameters};
+use hamel_tests::heavy_top::{HeavyTop, HeavyTopParameters};
 use hamel_tests::heavy_top_axis::AxisTop;
-use hamel_tests::heavy_top_quaternion::QuaternionTop;
-use hamel_tests::principal_axes::PrincipalAxes;
+use hamel_tests::heavy_top_quaternion::{QuaternionTop, QuaternionTopParameters};
+use hamel_tests::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_tests::reference::{Reference, distance, relative, run};
 
 /// How far a measured error may be from the expected one.
@@ -39,12 +39,18 @@ fn ends<Sys: System>(
 fn heavy_top(reference: &Reference) -> HeavyTop<f64> {
     let [m] = reference.parameter("m");
     let s = reference.parameter("s");
-    HeavyTop::new(m, reference.gravity(), s, reference.matrix("J")).expect("a body")
+    HeavyTop::new(HeavyTopParameters {
+        m,
+        g: reference.gravity(),
+        s,
+        theta: reference.matrix("J"),
+    })
+    .expect("a body")
 }
 
 fn principal_axes(reference: &Reference) -> PrincipalAxes<f64> {
     let [[j1, ..], [_, j2, _], [.., j3]] = reference.matrix("J");
-    PrincipalAxes::new(j1, j2, j3).expect("a body")
+    PrincipalAxes::new(PrincipalAxesParameters { j1, j2, j3 }).expect("a body")
 }
 
 /// Error of R (Frobenius) of a body with x = R, ξ = ω.
@@ -89,7 +95,12 @@ fn tops_on_quaternions() {
         let reference = Reference::read(case);
         let [m] = reference.parameter("m");
         let s = reference.parameter("s");
-        let system = QuaternionTop::new(m, reference.gravity(), s, reference.matrix("J"));
+        let system = QuaternionTop::new(QuaternionTopParameters {
+            m,
+            g: reference.gravity(),
+            s,
+            theta: reference.matrix("J"),
+        });
         let system = system.expect("a body");
         let q = hamel::s3::from_matrix(reference.initial("R"));
         let end = ends(&system, q, reference.initial("omega"), until, n);
@@ -116,8 +127,14 @@ const CHAOTIC: [(u32, f64); 2] = [(2000, 4.61), (4000, 0.366)];
 fn chaotic_double_pendulum_on_circles() {
     let reference = Reference::read("double-pendulum-planar-chaotic");
     let ([m1, m2], [l1, l2]) = (reference.parameter("m"), reference.parameter("l"));
-    let system =
-        CircleDoublePendulum::new(m1, m2, l1, l2, reference.gravity()).expect("a pendulum");
+    let system = CircleDoublePendulum::new(CircleDoublePendulumParameters {
+        m1,
+        m2,
+        l1,
+        l2,
+        g: reference.gravity(),
+    })
+    .expect("a pendulum");
     let [a, b] = reference.initial::<2>("theta").map(hamel::s1::exp);
     let (x, xi) = (join(a, b), reference.initial("thetadot"));
     for (n, expected) in CHAOTIC {

@@ -10,10 +10,10 @@ use hamel_codegen::program::count::count;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::proof::check::{Verdict, check};
 use hamel_codegen::render::render;
-use hamel_tests::dc_pendulum::DcPendulum;
-use hamel_tests::lagging_drone::LaggingDrone;
+use hamel_tests::dc_pendulum::{DcPendulum, DcPendulumParameters};
+use hamel_tests::lagging_drone::{LaggingDrone, LaggingDroneParameters};
 use hamel_tests::reference::run;
-use hamel_tests::wheel_motors::WheelMotors;
+use hamel_tests::wheel_motors::{WheelMotors, WheelMotorsParameters};
 use std::path::Path;
 
 /// Rounding of a few hundred operations.
@@ -50,7 +50,18 @@ fn states<const N: usize>() -> impl Iterator<Item = [f64; N]> {
 #[test]
 fn a_motor_turns_a_pendulum() {
     let (m, l, g, j, n, k, r, coil, d) = (0.5, 0.3, 9.81, 2e-5, 20.0, 0.03, 1.2, 1e-3, 0.002);
-    let system = DcPendulum::new(m, l, g, j, n, k, r, coil, d).expect("a motor");
+    let system = DcPendulum::new(DcPendulumParameters {
+        m,
+        l,
+        g,
+        j,
+        n,
+        k,
+        r,
+        l_upper: coil,
+        d,
+    })
+    .expect("a motor");
     assert_eq!(DcPendulum::<f64>::STATES, 1);
     assert_eq!(system.start().1, [0.0, 0.2]);
     let inertia = m * l * l + j * n * n;
@@ -131,7 +142,16 @@ fn rotors_lag_behind_their_commands() {
             assert_near("ξ̇, ż", found, expected, 1e-10);
         }
     }
-    let start = LaggingDrone::new(m, g, a, kappa, c, lag, theta_of(theta)).expect("a drone");
+    let start = LaggingDrone::new(LaggingDroneParameters {
+        m,
+        g,
+        a,
+        kappa,
+        c,
+        t: lag,
+        theta: theta_of(theta),
+    })
+    .expect("a drone");
     let (_, xi) = start.start();
     assert_near("thrust at the start", xi[6..].iter().sum(), m * g, CLOSE);
 }
@@ -166,8 +186,21 @@ fn states_act_as_inputs_do() {
     let (with, without) = (generated(&states_text), generated(&inputs_text));
     let (na, k, ra, la, tau) = (with.program.n, 0.4, 0.6, 0.002, 0.03);
     assert_eq!((na, with.program.n_z), (2, 6));
-    let system = WheelMotors::new(9.0, 0.05, 0.3, 0.5, 0.1, 0.2, 0.003, 0.0015, k, ra, la, tau)
-        .expect("a platform");
+    let system = WheelMotors::new(WheelMotorsParameters {
+        m: 9.0,
+        d: 0.05,
+        j: 0.3,
+        mw: 0.5,
+        r: 0.1,
+        b: 0.2,
+        jy: 0.003,
+        jz: 0.0015,
+        k,
+        ra,
+        la,
+        tau,
+    })
+    .expect("a platform");
     for [t, q, w, wl, v1, v2, i1, i2, far] in states() {
         let x = [t, 0.3, 0.1, q.cos(), q.sin(), 0.2, -0.4];
         let (z, u) = ([i1, i2, far, 0.3, -0.2, 0.1], [v1, v2]);
@@ -287,8 +320,18 @@ fn a_state_costs_its_expression() {
 #[test]
 fn methods_keep_their_orders() {
     // No gear: the current does not feel the pendulum.
-    let system =
-        DcPendulum::new(0.5, 0.3, 9.81, 2e-5, 0.0, 0.03, 1.2, 0.8, 0.002).expect("a motor");
+    let system = DcPendulum::new(DcPendulumParameters {
+        m: 0.5,
+        l: 0.3,
+        g: 9.81,
+        j: 2e-5,
+        n: 0.0,
+        k: 0.03,
+        r: 1.2,
+        l_upper: 0.8,
+        d: 0.002,
+    })
+    .expect("a motor");
     let start = State {
         t: 0.0,
         x: [0.4],
@@ -324,8 +367,18 @@ fn methods_keep_their_orders() {
 /// Error control follows a state that is faster than the motion.
 #[test]
 fn error_control_sees_states() {
-    let system =
-        DcPendulum::new(0.5, 0.3, 9.81, 2e-5, 0.0, 0.03, 1.2, 1e-3, 0.002).expect("a motor");
+    let system = DcPendulum::new(DcPendulumParameters {
+        m: 0.5,
+        l: 0.3,
+        g: 9.81,
+        j: 2e-5,
+        n: 0.0,
+        k: 0.03,
+        r: 1.2,
+        l_upper: 1e-3,
+        d: 0.002,
+    })
+    .expect("a motor");
     let (x, xi) = system.start();
     let state = State { t: 0.0, x, xi };
     let end = run(&system, General::Rkmk54, state.clone(), 0.01, 4000).expect("a run");

@@ -8,11 +8,11 @@ use hamel_codegen::program::Program;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::proof::check::{Verdict, check};
 use hamel_codegen::render::render;
-use hamel_tests::belt_sleigh::BeltSleigh;
-use hamel_tests::driven_hoop::DrivenHoop;
-use hamel_tests::kapitza::Kapitza;
+use hamel_tests::belt_sleigh::{BeltSleigh, BeltSleighParameters};
+use hamel_tests::driven_hoop::{DrivenHoop, DrivenHoopParameters};
+use hamel_tests::kapitza::{Kapitza, KapitzaParameters};
 use hamel_tests::reference::run;
-use hamel_tests::turntable_ball::TurntableBall;
+use hamel_tests::turntable_ball::{TurntableBall, TurntableBallParameters};
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
@@ -51,7 +51,14 @@ fn states<const N: usize>() -> impl Iterator<Item = [f64; N]> {
 #[test]
 fn kapitzas_pendulum() {
     let (m, l, g, a, w) = (1.3, 0.8, 9.81, 0.1, 60.0);
-    let system = Kapitza::new(m, l, g, a, w).expect("a pendulum");
+    let system = Kapitza::new(KapitzaParameters {
+        m,
+        l,
+        g,
+        a,
+        omega: w,
+    })
+    .expect("a pendulum");
     for [t, q, rate] in states() {
         let [found] = system.accel(&[t, q], &[rate], &[]).expect("a value");
         let lift = -a * w * w * (w * t).cos();
@@ -71,7 +78,14 @@ fn kapitzas_pendulum_stands_on_its_head() {
     let (l, g, a) = (1.0, 9.81_f64, 0.05);
     let limit = (2.0 * g * l).sqrt() / a;
     for (factor, stands) in [(1.2, true), (0.8, false)] {
-        let system = Kapitza::new(1.0, l, g, a, factor * limit).expect("a pendulum");
+        let system = Kapitza::new(KapitzaParameters {
+            m: 1.0,
+            l,
+            g,
+            a,
+            omega: factor * limit,
+        })
+        .expect("a pendulum");
         let mut state = State {
             t: 0.0,
             x: [0.0, PI - 0.02],
@@ -90,7 +104,7 @@ fn kapitzas_pendulum_stands_on_its_head() {
 #[test]
 fn a_bead_on_a_driven_hoop() {
     let (m, r, j, g, w, b) = (0.5, 1.2, 0.3, 9.81, 3.0, 0.2);
-    let system = DrivenHoop::new(m, r, j, g, w, b).expect("a hoop");
+    let system = DrivenHoop::new(DrivenHoopParameters { m, r, j, g, w, b }).expect("a hoop");
     for [t, q, rate] in states() {
         // The hoop is where it is prescribed to be, whatever x says.
         let (x, xi) = ([t, 17.0, q], [rate]);
@@ -113,7 +127,12 @@ fn a_bead_on_a_driven_hoop() {
 #[test]
 fn a_ball_on_a_turntable() {
     let omega = 2.0;
-    let system = TurntableBall::new(0.8, 0.1, omega).expect("a ball");
+    let system = TurntableBall::new(TurntableBallParameters {
+        m: 0.8,
+        a: 0.1,
+        omega,
+    })
+    .expect("a ball");
     let (x, xi) = system.start();
     let [vx, vy, vz] = system.run(&x, &xi, &[]);
     let xi_dot = system.accel(&x, &xi, &[]).expect("a value");
@@ -134,7 +153,7 @@ fn a_ball_on_a_turntable() {
 #[test]
 fn a_sleigh_on_a_belt() {
     let (m, j, a, c) = (2.0, 0.5, 0.2, 0.3);
-    let system = BeltSleigh::new(m, j, a, c).expect("a sleigh");
+    let system = BeltSleigh::new(BeltSleighParameters { m, j, a, c }).expect("a sleigh");
     for [t, angle, v, w] in states() {
         let x = [t, 0.4, -0.7, angle];
         let [dv, dw] = system.accel(&x, &[v, w], &[]).expect("a value");
@@ -363,7 +382,14 @@ fn prescribed_motion_is_that_of_the_force_of_the_drive() {
 /// Every general method keeps its order where the right-hand side depends on time: stages are at their own times.
 #[test]
 fn methods_keep_their_orders() {
-    let system = Kapitza::<f64>::new(1.0, 1.0, 9.81, 0.3, 4.0).expect("a pendulum");
+    let system = Kapitza::<f64>::new(KapitzaParameters {
+        m: 1.0,
+        l: 1.0,
+        g: 9.81,
+        a: 0.3,
+        omega: 4.0,
+    })
+    .expect("a pendulum");
     let start = State {
         t: 0.0,
         x: [0.0, 0.4],

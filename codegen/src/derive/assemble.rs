@@ -9,7 +9,7 @@ use super::program::{Builder, MOST_LITERAL, shape_of};
 use super::reduction::Reduction;
 use super::structure::{self, Found, Functions};
 use super::{correction, energy, inertia, kinematics};
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::graph::{Edge, Graph, Node, NodeId};
 use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
@@ -187,16 +187,30 @@ impl Builder<'_> {
             let entries = rebuild(&self.model.graph, &mut self.graph, &value.entries());
             let shape = shape_of(value);
             let docs = format!("Output `{name}` of the description.");
-            let class = |class, edge: &Edge| class | self.graph.class(edge.node());
-            let accelerated = entries.iter().fold(0, class) & class::ACCEL != 0;
-            let arguments: &[Argument] = if accelerated {
-                &[Coordinates, Velocities, Accelerations, Inputs]
-            } else {
-                &[Coordinates, Velocities, Inputs]
-            };
+            let arguments = self.arguments(&entries);
             self.functions
-                .push(Function::described(name, docs, arguments, shape, entries));
+                .push(Function::described(name, docs, &arguments, shape, entries));
         }
+    }
+
+    /// What expressions depend on, as arguments of a function.
+    fn arguments(&self, entries: &[Edge]) -> Vec<Argument> {
+        let states: Vec<NodeId> = self.model.z().iter().map(|z| z.node()).collect();
+        let of = |id: NodeId| match self.graph.class(id) {
+            _ if states.contains(&id) => Some(Velocities),
+            class::COORD | class::TIME => Some(Coordinates),
+            class::VELOCITY => Some(Velocities),
+            class::ACCEL => Some(Accelerations),
+            class::INPUT => Some(Inputs),
+            _ => None,
+        };
+        let reached = self.graph.reachable(entries).into_iter();
+        let symbols = reached.filter(|&id| matches!(self.graph.node(id), Node::Symbol(_)));
+        let found: Vec<Argument> = symbols.filter_map(of).collect();
+        let all = [Coordinates, Velocities, Accelerations, Inputs];
+        all.into_iter()
+            .filter(|argument| found.contains(argument))
+            .collect()
     }
 
     /// What the methods for systems that split call; an error where it is asked for in vain.

@@ -19,6 +19,7 @@
 //! | `structure` | the type: fields, sizes, constructor, defaults |
 //! | `parameters` | accessors, and the constants kept for parameters |
 //! | `system` | `impl hamel::System` |
+//! | `views` | parameters, states and inputs by name |
 //! | `methods` | `impl hamel::Split`, `impl hamel::Canonical` |
 //!
 //! Text is built first and parsed second, so that all front ends share every byte. What is no Rust is an
@@ -50,6 +51,7 @@ mod sums;
 mod system;
 #[cfg(test)]
 mod tests;
+mod views;
 
 use crate::algebra::graph::Edge;
 use crate::program::schedule::Schedule;
@@ -175,12 +177,15 @@ pub fn rust(program: &Program, options: &Options) -> String {
     methods.push_str(&parameters::accessors(&emitter));
     let name = &emitter.names.type_name;
     let mut text = structure::structure(&emitter);
+    let system = system::implementation(&emitter);
+    text.push_str(&views::parameters(&emitter));
+    text.push_str(&views::state(&emitter, !system.is_empty()));
+    text.push_str(&views::inputs(&emitter));
     text.push_str(structure::ALLOW);
     text.push_str(&format!(
         "impl<S: ::hamel::Scalar> {name}<S> {{\n{methods}}}\n"
     ));
     text.push_str(&structure::default(&emitter));
-    let system = system::implementation(&emitter);
     if !system.is_empty() {
         text.push_str(&system);
         text.push_str(&methods::implementations(&emitter));

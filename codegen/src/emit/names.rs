@@ -146,7 +146,7 @@ pub fn type_name(name: &str) -> String {
 }
 
 /// Names in lower snake case; of two that differ by case alone, the one with capitals gets `_upper`.
-fn cased(names: &[&str]) -> Vec<String> {
+pub fn cased(names: &[&str]) -> Vec<String> {
     let is_lower = |name: &str| !name.chars().any(char::is_uppercase);
     let snakes: Vec<String> = names.iter().map(|name| snake(name)).collect();
     let lower = |wanted: &String| {

@@ -18,7 +18,7 @@ pub fn group_type(shape: ShapeKind) -> String {
 }
 
 /// The indices of the entries of a group, in the order of its symbols.
-fn indices(shape: ShapeKind) -> Vec<String> {
+pub fn indices(shape: ShapeKind) -> Vec<String> {
     let matrix = |n: usize, first: fn(usize) -> usize| {
         let rows = (0..n).flat_map(move |i| (first(i)..n).map(move |j| format!("[{i}][{j}]")));
         rows.collect()

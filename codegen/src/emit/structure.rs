@@ -1,10 +1,9 @@
 //! The generated type: its fields, sizes, constructor and defaults.
 
 use super::function::zeros;
-use super::parameters::{errors, group_type, kept_value, needs_update, shaped};
-use super::{Emitter, docs, number};
+use super::parameters::{errors, group_type, kept_value, needs_update};
+use super::{Emitter, docs};
 use crate::program::{FunctionId, Shape};
-use crate::syntax::ast::ShapeKind;
 
 /// Lints that generated functions cannot obey in general.
 pub const ALLOW: &str = r#"#[rustfmt::skip]
@@ -103,39 +102,23 @@ pub fn sizes(emitter: &Emitter) -> String {
 
 fn constructor(emitter: &Emitter) -> String {
     let groups = || emitter.program.params.iter().zip(&emitter.names.fields);
-    let arguments: Vec<String> = groups()
-        .map(|(group, field)| format!("{field}: {}", group_type(group.shape)))
-        .collect();
-    let mut lines = vec![
-        "The system with given parameters.".to_string(),
-        String::new(),
-    ];
-    for (group, field) in groups() {
-        lines.push(format!(
-            "- `{field}`: `{}`, {}",
-            group.name,
-            docs::shape(group.shape)
-        ));
-    }
-    if groups().any(|(group, _)| matches!(group.shape, ShapeKind::Symmetric(_))) {
-        lines.extend([
-            String::new(),
-            "Of symmetric matrices only the upper triangle is read.".into(),
-        ]);
-    }
+    let mut lines = vec!["The system with given parameters.".to_string()];
     lines.extend(errors());
-    let values = groups().map(|(group, field)| match kept_value(group, field) {
-        value if value == *field => value,
-        value => format!("{field}: {value}"),
+    let argument = match emitter.program.params.is_empty() {
+        true => String::new(),
+        false => format!("parameters: {}Parameters<S>", emitter.names.type_name),
+    };
+    let values = groups().map(|(group, field)| {
+        let value = kept_value(group, &format!("parameters.{field}"));
+        format!("{field}: {value}")
     });
     let (mutable, update) = match needs_update(emitter) {
         true => ("mut ", format!("system.{}()?;\n", emitter.names.update)),
         false => ("", String::new()),
     };
     format!(
-        "{}pub fn new({}) -> ::core::result::Result<Self, ::hamel::Singular> {{\nlet {mutable}system = {};\n{update}Ok(system)\n}}\n\n",
+        "{}pub fn new({argument}) -> ::core::result::Result<Self, ::hamel::Singular> {{\nlet {mutable}system = {};\n{update}Ok(system)\n}}\n\n",
         docs::comment(&lines),
-        arguments.join(", "),
         literal(emitter, values.collect())
     )
 }
@@ -155,26 +138,21 @@ fn literal(emitter: &Emitter, mut fields: Vec<String>) -> String {
 /// `impl Default`
 pub fn default(emitter: &Emitter) -> String {
     let program = emitter.program;
-    let entry =
-        |index: usize| number::scalar(program.defaults.get(index).copied().unwrap_or_default());
-    let groups = program.params.iter().zip(&emitter.names.fields);
-    let fields = groups.map(|(group, field)| {
-        let columns = match group.shape {
-            ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => n,
-            _ => 0,
-        };
-        let value = shaped(group.shape, |i, j| match group.shape {
-            ShapeKind::Symmetric(n) => entry(group.offset + upper(n, i.min(j), i.max(j))),
-            _ => entry(group.offset + i * columns + j),
-        });
-        format!("{field}: {value}")
-    });
+    let fields = emitter.names.fields.iter();
+    let fields = fields.map(|field| format!("{field}: parameters.{field}"));
     let value = literal(emitter, fields.collect());
     let names = &emitter.names;
-    let body = match emitter.kept.is_empty() {
-        true => value,
+    let given = match program.params.is_empty() {
+        true => String::new(),
         false => format!(
-            "let mut system = {value};\nsystem.{} = system.{}();\nsystem",
+            "let parameters = {}Parameters::<S>::default();\n",
+            names.type_name
+        ),
+    };
+    let body = match emitter.kept.is_empty() {
+        true => format!("{given}{value}"),
+        false => format!(
+            "{given}let mut system = {value};\nsystem.{} = system.{}();\nsystem",
             names.kept, names.constants
         ),
     };
@@ -182,9 +160,4 @@ pub fn default(emitter: &Emitter) -> String {
         "{ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::default::Default for {}<S> {{\n/// The parameters of the description.\nfn default() -> Self {{\n{body}\n}}\n}}\n\n",
         names.type_name
     )
-}
-
-/// The place of entry (i, j), i ≤ j, among those on and above the diagonal, by rows.
-fn upper(n: usize, i: usize, j: usize) -> usize {
-    i * n - i * (i + 1) / 2 + j
 }

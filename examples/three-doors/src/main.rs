@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
         "after {} s the mass is at {:?}",
         state.t,
-        built.bob(&state.x, &state.xi, &[])
+        built.bob(&state.x)
     );
     println!("energy kept to {:.1e}", monitor.relative_energy_deviation());
     Ok(())

@@ -1,13 +1,13 @@
 //! Cases of one rigid body: free, on a fixed point, in flight.
 
 use crate::case::{Case, Field, Measure};
-use crate::models::benchmark_top::BenchmarkTop;
-use crate::models::free_body::FreeBody;
-use crate::models::kovalevskaya_top::KovalevskayaTop;
-use crate::models::lagrange_top::LagrangeTop;
-use crate::models::principal_axes::PrincipalAxes;
-use crate::models::satellite::Satellite;
-use crate::models::spherical_bob::SphericalBob;
+use crate::models::benchmark_top::{BenchmarkTop, BenchmarkTopParameters};
+use crate::models::free_body::{FreeBody, FreeBodyParameters};
+use crate::models::kovalevskaya_top::{KovalevskayaTop, KovalevskayaTopParameters};
+use crate::models::lagrange_top::{LagrangeTop, LagrangeTopParameters};
+use crate::models::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
+use crate::models::satellite::{Satellite, SatelliteParameters};
+use crate::models::spherical_bob::{SphericalBob, SphericalBobParameters};
 use crate::reference::Reference;
 use hamel::{State, System, so3};
 
@@ -52,7 +52,7 @@ fn moments(reference: &Reference) -> [f64; 3] {
 fn free(name: &'static str, until: f64) -> Case<PrincipalAxes<f64>> {
     let system = |reference: &Reference| {
         let [j1, j2, j3] = moments(reference);
-        PrincipalAxes::new(j1, j2, j3).expect("a body")
+        PrincipalAxes::new(PrincipalAxesParameters { j1, j2, j3 }).expect("a body")
     };
     rotation(name, until, system, Box::new(|_, _, _| []))
 }
@@ -89,7 +89,14 @@ pub fn benchmark_top() -> Case<BenchmarkTop<f64>> {
         assert_eq!([x, z], [0.0; 2], "the centre of mass is on axis 2");
         let ([m], [j1, j2, j3]) = (reference.parameter("m"), moments(reference));
         assert_eq!(j1, j3, "a symmetric top");
-        BenchmarkTop::new(m, reference.gravity(), l, j1, j2).expect("a body")
+        BenchmarkTop::new(BenchmarkTopParameters {
+            m,
+            g: reference.gravity(),
+            l,
+            a: j1,
+            c: j2,
+        })
+        .expect("a body")
     };
     let none = Box::new(|_, _: &_, _: &_| []);
     rotation("heavy-top-benchmark-150", 1.0, system, none)
@@ -102,7 +109,13 @@ pub fn kovalevskaya() -> Case<KovalevskayaTop<f64>> {
         let ([m], [j1, j2, j3]) = (reference.parameter("m"), moments(reference));
         assert_eq!([y, z], [0.0; 2], "the centre of mass is on axis 1");
         assert_eq!([j1, j2], [2.0 * j3; 2], "moments 2 : 2 : 1");
-        KovalevskayaTop::new(m, reference.gravity(), a, j3).expect("a body")
+        KovalevskayaTop::new(KovalevskayaTopParameters {
+            m,
+            g: reference.gravity(),
+            a,
+            c: j3,
+        })
+        .expect("a body")
     };
     let none = Box::new(|_, _: &_, _: &_| []);
     rotation("kovalevskaya-top", 20.0, system, none)
@@ -114,7 +127,14 @@ fn lagrange(name: &'static str, until: f64) -> Case<LagrangeTop<f64>> {
         let ([m], [j1, j2, j3]) = (reference.parameter("m"), moments(reference));
         assert_eq!([x, y], [0.0; 2], "the centre of mass is on axis 3");
         assert_eq!(j1, j2, "a symmetric top");
-        LagrangeTop::new(m, reference.gravity(), l, j1, j3).expect("a body")
+        LagrangeTop::new(LagrangeTopParameters {
+            m,
+            g: reference.gravity(),
+            l,
+            a: j1,
+            c: j3,
+        })
+        .expect("a body")
     };
     rotation(name, until, system, Box::new(|_, _, _| []))
 }
@@ -143,7 +163,13 @@ pub fn gravity_gradient() -> Case<Satellite<f64>> {
     };
     let system = |reference: &Reference| {
         let [j1, j2, j3] = moments(reference);
-        Satellite::new(j1, j2, j3, rate(reference)).expect("a body")
+        Satellite::new(SatelliteParameters {
+            j1,
+            j2,
+            j3,
+            n: rate(reference),
+        })
+        .expect("a body")
     };
     let n: f64 = rate(&Reference::read(NAME));
     let outward = Box::new(move |t: f64, _: &_, _: &_| [(n * t).cos(), (n * t).sin(), 0.0]);
@@ -163,7 +189,13 @@ fn flight(name: &'static str) -> Case<FreeBody<f64>> {
     );
     Case {
         name,
-        system: FreeBody::new(m, reference.gravity(), s, inertia).expect("a body"),
+        system: FreeBody::new(FreeBodyParameters {
+            m,
+            g: reference.gravity(),
+            s,
+            theta: inertia,
+        })
+        .expect("a body"),
         start: State {
             t: 0.0,
             x: join(reference.initial::<3>("r"), reference.initial::<9>("R")),
@@ -207,7 +239,12 @@ pub fn spherical_pendulum() -> Case<SphericalBob<f64>> {
     let angle = sin.atan2(cos);
     Case {
         name: "spherical-pendulum-through-poles",
-        system: SphericalBob::new(m, reference.gravity(), l).expect("a body"),
+        system: SphericalBob::new(SphericalBobParameters {
+            m,
+            g: reference.gravity(),
+            l,
+        })
+        .expect("a body"),
         start: State {
             t: 0.0,
             x: so3::exp(tilt.map(|t| t / sin * angle)),
@@ -218,8 +255,8 @@ pub fn spherical_pendulum() -> Case<SphericalBob<f64>> {
         fields: |system, state| {
             let (x, xi) = (&state.x, &state.xi);
             vec![
-                Field::Numbers("x", system.bob(x, xi, &[]).to_vec()),
-                Field::Numbers("xdot", system.speed(x, xi, &[]).to_vec()),
+                Field::Numbers("x", system.bob(x).to_vec()),
+                Field::Numbers("xdot", system.speed(x, xi).to_vec()),
             ]
         },
         measure: Measure::Largest,

@@ -2,10 +2,10 @@
 
 use crate::bodies::join;
 use crate::case::{Case, Field, Measure};
-use crate::models::double_pendulum_angles::DoublePendulum;
-use crate::models::rolling_disk::RollingDisk;
-use crate::models::sleigh::Sleigh;
-use crate::models::two_bodies::TwoBodies;
+use crate::models::double_pendulum_angles::{DoublePendulum, DoublePendulumParameters};
+use crate::models::rolling_disk::{RollingDisk, RollingDiskParameters};
+use crate::models::sleigh::{Sleigh, SleighParameters};
+use crate::models::two_bodies::{TwoBodies, TwoBodiesParameters};
 use crate::reference::Reference;
 use hamel::State;
 
@@ -16,7 +16,8 @@ pub fn double_pendulum() -> Case<DoublePendulum<f64>> {
     let g = reference.gravity();
     Case {
         name: "double-pendulum-planar-chaotic",
-        system: DoublePendulum::new(m1, m2, l1, l2, g).expect("a pendulum"),
+        system: DoublePendulum::new(DoublePendulumParameters { m1, m2, l1, l2, g })
+            .expect("a pendulum"),
         start: State {
             t: 0.0,
             x: reference.initial("theta"),
@@ -40,16 +41,16 @@ pub fn two_bodies() -> Case<TwoBodies<f64>> {
     let reference = Reference::read("two-bodies-ball-joints");
     let [m1, m2] = reference.parameter("m");
     let g = reference.gravity();
-    let system = TwoBodies::new(
+    let system = TwoBodies::new(TwoBodiesParameters {
         m1,
         m2,
         g,
-        reference.parameter("s1"),
-        reference.parameter("s2"),
-        reference.parameter("d"),
-        reference.matrix("Theta1"),
-        reference.matrix("Theta2"),
-    );
+        s1: reference.parameter("s1"),
+        s2: reference.parameter("s2"),
+        d: reference.parameter("d"),
+        theta1: reference.matrix("Theta1"),
+        theta2: reference.matrix("Theta2"),
+    });
     Case {
         name: "two-bodies-ball-joints",
         system: system.expect("two bodies"),
@@ -87,7 +88,7 @@ pub fn sleigh() -> Case<Sleigh<f64>> {
         ["x", "y", "theta", "u", "w"].map(|name| reference.initial::<1>(name));
     Case {
         name: "chaplygin-sleigh",
-        system: Sleigh::new(m, inertia, a).expect("a body"),
+        system: Sleigh::new(SleighParameters { m, j: inertia, a }).expect("a body"),
         start: State {
             t: 0.0,
             x: [x, y, theta.cos(), theta.sin()],
@@ -116,7 +117,7 @@ pub fn rolling_disk() -> Case<RollingDisk<f64>> {
     let g = reference.gravity();
     Case {
         name: "rolling-disk",
-        system: RollingDisk::new(m, a, g, i1, i3).expect("a body"),
+        system: RollingDisk::new(RollingDiskParameters { m, a, g, i1, i3 }).expect("a body"),
         start: State {
             t: 0.0,
             x: join(reference.initial::<3>("r"), reference.initial::<9>("R")),

@@ -3,7 +3,7 @@
 use hamel::methods::{Rkmk8, Scheme, free};
 use hamel::so3;
 use hamel_cases::models::lagrange_top::LagrangeTop;
-use hamel_cases::models::principal_axes::PrincipalAxes;
+use hamel_cases::models::principal_axes::{PrincipalAxes, PrincipalAxesParameters};
 use hamel_cases::{Case, bodies};
 
 /// ω of the closed form, relative to max(1, |ω|): some ten roundings, through Jacobi's functions near
@@ -76,7 +76,7 @@ fn symmetric_bodies_and_principal_axes_are_limits() {
         ([1.0, 2.0, 3.0], [0.0, f64::MIN_POSITIVE / 8.0, 0.0]),
     ] {
         let [j1, j2, j3] = moments;
-        let system = PrincipalAxes::new(j1, j2, j3).expect("a body");
+        let system = PrincipalAxes::new(PrincipalAxesParameters { j1, j2, j3 }).expect("a body");
         let start = hamel::State {
             t: 0.0,
             x: so3::identity(),
