@@ -95,13 +95,16 @@ impl Lane {
         self.written.insert(value, form);
     }
 
+    /// The form with each atom once, as the graph has it in which it is written out.
     fn written_out(&self, form: &LinearForm) -> LinearForm {
         let mut all = LinearForm::new();
         for (atom, coefficient) in form {
             match self.written.get(atom) {
-                None => all.push((*atom, coefficient.clone())),
+                None => collect(&mut all, *atom, coefficient.clone()),
                 Some(form) => {
-                    all.extend(form.iter().map(|(atom, own)| (*atom, own * coefficient)));
+                    for (atom, own) in form {
+                        collect(&mut all, *atom, own * coefficient);
+                    }
                 }
             }
         }
@@ -231,6 +234,10 @@ impl Lane {
             (Residue::ONE, Residue::ZERO),
             |total, (atom, coefficient)| {
                 let (base, count, parts) = split(part(*atom), coefficient);
+                // A velocity that is 0 at this point.
+                if base.is_zero() {
+                    return total;
+                }
                 let pi = part(Fp::PI);
                 let (point, count) = match parts {
                     1 if base == pi => (twelfth(), count),
@@ -249,6 +256,9 @@ impl Lane {
         form.iter()
             .fold(Residue::ONE, |total, (atom, coefficient)| {
                 let (base, count, parts) = split(part(*atom), coefficient);
+                if base.is_zero() {
+                    return total;
+                }
                 let magnitude = self
                     .draw(96 + parts, base, Residue::ONE)
                     .residue::<K>()
@@ -302,6 +312,21 @@ impl Modular for Lane {
     fn residue(&mut self, value: Fp) -> Option<Fp> {
         Some(value)
     }
+}
+
+/// Adds a term to a form.
+fn collect(form: &mut LinearForm, atom: Fp, coefficient: BigRational) {
+    for (known, sum) in form.iter_mut() {
+        if *known == atom {
+            *sum += coefficient;
+            return;
+        }
+        if *known == -atom {
+            *sum -= coefficient;
+            return;
+        }
+    }
+    form.push((atom, coefficient));
 }
 
 /// Cosine and sine.
@@ -402,6 +427,25 @@ mod tests {
     use crate::fp::Fp;
     use crate::graph::Function;
     use num_rational::BigRational;
+
+    /// What is 0 at a point is 0 for functions, and like terms of what is written out are one.
+    #[test]
+    fn forms_are_collected() {
+        let mut lane = Lane::new(4);
+        let [a, b, zero] = [Fp::new(7), Fp::new(5), Fp::ZERO];
+        let rational = |n: i64, d: i64| BigRational::new(n.into(), d.into());
+        // b = −2/3 a, so that a/3 − b/3 = 5/9 a.
+        lane.write_out(b, vec![(a, rational(-2, 3))]);
+        for function in [Function::Sin, Function::Exp, Function::Tanh] {
+            let mut at = |form: &[(Fp, i64, i64)]| {
+                let form = form.iter().map(|&(atom, n, d)| (atom, rational(n, d)));
+                lane.function(function, Fp::ZERO, &form.collect())
+            };
+            assert_eq!(at(&[(a, 1, 3), (b, -1, 3)]), at(&[(a, 5, 9)]));
+            assert_eq!(at(&[(a, 1, 3), (-a, 1, 3)]), at(&[]));
+            assert_eq!(at(&[(a, 1, 3), (zero, 1, 1)]), at(&[(a, 1, 3)]));
+        }
+    }
 
     /// Sines and cosines of twelfths of π are the roots that they are, in both fields.
     #[test]

@@ -179,6 +179,40 @@ fn forces_depend_on_dependent_velocities() {
     }
 }
 
+/// Functions of sums of velocities that constraints make multiples of one another, and of velocities that they keep
+/// at 0: proofs take the values of both from one linear form.
+#[test]
+fn forces_depend_on_multiples_of_velocities() {
+    let text = "system A { coord x, y, z; velocity u, v, w; rate x = u; rate y = v; rate z = w;
+        kinetic 1.5 * u^2 / 2 + v^2 / 4 + w^2 / 2; nonholonomic 3 * u + 2 * w = 0;
+        generalized force u = cosh((w - u) / 3) - sin((w + u) / 5); }";
+    let (v, w) = (0.3, -0.7);
+    let u = -2.0 / 3.0 * w;
+    let force = ((w - u) / 3.0_f64).cosh() - ((w + u) / 5.0_f64).sin();
+    let expected = [0.0, -2.0 / 3.0 * force / (1.0 + 1.5 * 4.0 / 9.0)];
+    let found = value(&generated(text), "accel", [&[0.0; 3], &[v, w], &[], &[]]);
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    }
+    for still in ["sin(u)", "tanh(u)", "exp(u) - 1", "sinh(u / 3 + v)"] {
+        let text = format!(
+            "system A {{ coord x, y, z; velocity u, v, w; rate x = u; rate y = v; rate z = w;
+                kinetic u^2 + w^2; nonholonomic (1 + y^2) * u = 0; nonholonomic 3 * v = 0;
+                generalized force w = {still} + log(2 + sin(v)); }}"
+        );
+        let found = value(
+            &generated(&text),
+            "accel",
+            [&[0.0; 3], &[0.0, 0.4], &[], &[]],
+        );
+        assert_eq!(found.len(), 2, "{still}");
+        assert!(
+            (found[1] - 2.0_f64.ln() / 2.0).abs() < 1e-14,
+            "{still}: {found:?}"
+        );
+    }
+}
+
 /// √(e²) of an e that is positive everywhere and turns up later, when slopes are taken: at some points modulo the
 /// primes the root is e, at others −e.
 #[test]
