@@ -96,7 +96,14 @@ fn calls(program: &Program, case: usize) -> String {
         .collect();
     // Parameters by the constructor, or one by one.
     let system = if case.is_multiple_of(2) {
-        format!("    let system = {of}::<L>::new({})?;\n", values.join(", "))
+        let fields = names.fields.iter().zip(&values);
+        let fields = fields.map(|(field, value)| format!("{field}: {value}"));
+        let fields = fields.collect::<Vec<_>>().join(", ");
+        let given = match values.is_empty() {
+            true => String::new(),
+            false => format!("{of}Parameters {{ {fields} }}"),
+        };
+        format!("    let system = {of}::<L>::new({given})?;\n")
     } else {
         let sets = values.iter().zip(&names.accessors).map(|(value, name)| {
             format!("    system.set_{name}({value})?;\n    let _ = system.{name}();\n")
@@ -109,19 +116,28 @@ fn calls(program: &Program, case: usize) -> String {
     let calls: String = functions
         .map(|(function, name)| call(function, name))
         .collect();
+    // x, ξ and u by their names, and back.
+    let inputs = match program.inputs.is_empty() {
+        true => "[]".into(),
+        false => format!("{of}Inputs::<L>::from_array(&gather(at, 4)).to_array()"),
+    };
+    let views = format!(
+        "    let (x, xi) = {of}State::<L>::from_arrays(&gather(at, 0), &gather(at, 1)).to_arrays();\n    let u: [L; {}] = {inputs};\n    let _ = (&x, &xi, &u);\n",
+        program.m
+    );
     format!(
-        "fn calls{case}<L: Lanes>(at: &At) -> Values<L> {{\n{system}    Ok(vec![\n{calls}    ])\n}}\n"
+        "fn calls{case}<L: Lanes>(at: &At) -> Values<L> {{\n{system}{views}    Ok(vec![\n{calls}    ])\n}}\n"
     )
 }
 
 /// A function's value as a list of numbers, nothing where it has none.
 fn call(function: &Function, name: &str) -> String {
     let arguments = function.arguments.iter().map(|argument| match argument {
-        Argument::Coordinates => "&gather(at, 0)",
-        Argument::Velocities => "&gather(at, 1)",
+        Argument::Coordinates => "&x",
+        Argument::Velocities => "&xi",
         Argument::Accelerations => "&gather(at, 2)",
         Argument::Momenta => "&gather(at, 3)",
-        Argument::Inputs => "&gather(at, 4)",
+        Argument::Inputs => "&u",
     });
     let call = format!(
         "system.{name}({})",

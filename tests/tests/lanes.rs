@@ -297,12 +297,12 @@ fn branches_are_selected_in_every_lane() {
         let pack = |values: [f64; 4]| f64x4::from_lanes(|lane| values[lane]);
         let force = four.generalized_force(&[pack(q)], &[pack(w)], &[f64x4::from_f64(1.5)]);
         let energy = four.potential_energy(&[pack(q)]);
-        let zone = balls.zone(&[pack(w), pack(q)], &[f64x4::default(); 2], &[]);
+        let zone = balls.zone(&[pack(w), pack(q)]);
         for lane in 0..4 {
             let expected = one.generalized_force(&[q[lane]], &[w[lane]], &[1.5]);
             assert_eq!(force[0].lanes()[lane], expected[0]);
             assert_eq!(energy.lanes()[lane], one.potential_energy(&[q[lane]]));
-            let alone = ball.zone(&[w[lane], q[lane]], &[0.0; 2], &[]);
+            let alone = ball.zone(&[w[lane], q[lane]]);
             assert_eq!(zone.map(|entry| entry.lanes()[lane]), alone);
         }
     }

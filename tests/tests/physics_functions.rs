@@ -41,7 +41,7 @@ fn a_cart_with_a_largest_force_and_friction() {
                 .expect("regular");
             near("cart", found[0], v_dot, 1e-12);
             near("pole", found[1], w_dot, 1e-11);
-            let saturated = system.saturated(&[0.0; 2], &[0.0; 2], &[force]);
+            let saturated = system.saturated(&[force]);
             let beyond = force.abs() - 10.0;
             let expected = if beyond == 0.0 { 0.0 } else { beyond.signum() };
             assert_eq!(saturated, expected);
@@ -188,7 +188,7 @@ fn tables_are_those_of_scipy() {
         near("fan", -force(w, 0.0), fan, 1e-14);
     }
     // Nothing beyond the points of a table that does not extrapolate.
-    let power = |w: f64| system.power(&[0.0], &[w], &[0.0]);
+    let power = |w: f64| system.power(&[w]);
     near("power", power(1.0), 3.0 / 0.55, 1e-14);
     near("power", power(4.0), 0.0, 1e-14);
     assert!(power(4.0001).is_nan() && power(-0.0001).is_nan());

@@ -188,13 +188,13 @@ fn sensors_of_a_pendulum_see_its_motion() {
     start.xi = [0.4, -1.7];
     let states = three(&bob, start);
     let u = [0.0];
-    let places = states.each_ref().map(|s| bob.place(&s.x, &s.xi, &u));
+    let places = states.each_ref().map(|s| bob.place(&s.x));
     let State { x, xi, .. } = &states[1];
-    let speed = bob.speed(x, xi, &u);
+    let speed = bob.speed(x, xi);
     let measured = difference(places[2], places[0], 2.0 * STEP);
     assert_near("speed", &speed, &measured, DIFFERENCE);
 
-    let speeds = states.each_ref().map(|s| bob.speed(&s.x, &s.xi, &u));
+    let speeds = states.each_ref().map(|s| bob.speed(&s.x, &s.xi));
     let mut felt = difference(speeds[2], speeds[0], 2.0 * STEP);
     felt[1] += bob.g();
     let (c, s) = (x[1], x[2]);
@@ -204,14 +204,9 @@ fn sensors_of_a_pendulum_see_its_motion() {
         felt[2],
     ];
     let xi_dot = bob.accel(x, xi, &u).expect("a mass");
-    assert_near("felt", &bob.felt(x, xi, &xi_dot, &u), &turned, DIFFERENCE);
-    assert_near("gyro", &[bob.gyro(x, xi, &u)], &[xi[1]], ROUNDING);
-    assert_near(
-        "sliding",
-        &bob.sliding(x, xi, &u),
-        &[xi[0], 0.0, 0.0],
-        ROUNDING,
-    );
+    assert_near("felt", &bob.felt(x, xi, &xi_dot), &turned, DIFFERENCE);
+    assert_near("gyro", &[bob.gyro(xi)], &[xi[1]], ROUNDING);
+    assert_near("sliding", &bob.sliding(xi), &[xi[0], 0.0, 0.0], ROUNDING);
 }
 
 /// Hanging at rest, an accelerometer shows g upwards, and the spring carries the weight.
@@ -222,7 +217,7 @@ fn at_rest_an_accelerometer_shows_gravity() {
     let (x, xi, u) = ([bob.l() + stretch, 0.0, -1.0], [0.0; 2], [0.0]);
     let xi_dot = bob.accel(&x, &xi, &u).expect("a mass");
     assert_near("rest", &xi_dot, &[0.0, 0.0], ROUNDING);
-    let felt = bob.felt(&x, &xi, &xi_dot, &u);
+    let felt = bob.felt(&x, &xi, &xi_dot);
     assert_near("felt", &felt, &[-bob.g(), 0.0, 0.0], ROUNDING);
 }
 
@@ -235,7 +230,7 @@ fn sensors_of_a_drone_see_its_motion() {
     start.xi = [1.0, 0.3, -0.5, 2.0, -1.0, 3.0];
     let u = [0.0; 4];
     let states = three(&drone, start);
-    let places = states.each_ref().map(|s| drone.place(&s.x, &s.xi, &u));
+    let places = states.each_ref().map(|s| drone.place(&s.x));
     let State { x, xi, .. } = &states[1];
     let sum: [f64; 3] = std::array::from_fn(|i| places[2][i] - 2.0 * places[1][i] + places[0][i]);
     let mut acceleration = sum.map(|sum| sum / (STEP * STEP));
@@ -243,16 +238,16 @@ fn sensors_of_a_drone_see_its_motion() {
     let rotation: [f64; 9] = std::array::from_fn(|i| x[3 + i]);
     let expected = so3::apply_transpose(rotation, acceleration);
     let xi_dot = drone.accel(x, xi, &u).expect("a body");
-    let felt = drone.accelerometer(x, xi, &xi_dot, &u);
+    let felt = drone.accelerometer(x, xi, &xi_dot);
     assert_near("accelerometer", &felt, &expected, DIFFERENCE);
-    let turning = drone.turning(x, xi, &xi_dot, &u);
+    let turning = drone.turning(&xi_dot);
     assert_near("ω̇", &turning, &xi_dot[3..], ROUNDING);
     // The speed of the centre of mass, where the drag acts.
     let w = [xi[3], xi[4], xi[5]];
     let lever = so3::cross(w, drone.s());
     let local: [f64; 3] = std::array::from_fn(|i| xi[i] + lever[i]);
     let world = so3::apply(rotation, local);
-    assert_near("speed", &drone.ground_speed(x, xi, &u), &world, ROUNDING);
+    assert_near("speed", &drone.ground_speed(x, xi), &world, ROUNDING);
     let drag = drone.generalized_force(x, xi, &u);
     let pull = local.map(|v| -drone.d() * v);
     let twist = so3::cross(drone.s(), pull);

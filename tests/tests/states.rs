@@ -75,7 +75,7 @@ fn a_motor_turns_a_pendulum() {
         );
         assert_near("di/dt", di, (v - r * i - n * k * w) / coil, CLOSE);
         let stored = inertia * w * dw + m * g * l * q.sin() * w + coil * i * di;
-        let supplied = system.supplied(&[q], &[w, i], &[v]);
+        let supplied = system.supplied(&[w, i], &[v]);
         assert_near("power", stored + r * i * i + d * w * w, supplied, 1e-10);
         let rows = system.linearize(&[q], &[w, i], &[v]).expect("a value");
         let expected = [

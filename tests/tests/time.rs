@@ -134,9 +134,9 @@ fn a_ball_on_a_turntable() {
     })
     .expect("a ball");
     let (x, xi) = system.start();
-    let [vx, vy, vz] = system.run(&x, &xi, &[]);
+    let [vx, vy, vz] = system.run(&x, &xi);
     let xi_dot = system.accel(&x, &xi, &[]).expect("a value");
-    let push = system.push(&x, &xi, &xi_dot, &[]);
+    let push = system.push(&x, &xi, &xi_dot);
     let turn = 2.0 / 7.0 * omega;
     for (found, expected) in push.into_iter().zip([-turn * vy, turn * vx, 0.0]) {
         assert_near("acceleration", found, expected, CLOSE);

@@ -10,7 +10,7 @@ const NAMES: &str = "
     String Clone Copy Debug Default Drop Iterator From Into Send Sized Fn drop panic println vec
     assert core std hamel alloc derive inline test union auto raw safe macro_rules default generate_
     async_ type_ S System Scalar Split Canonical Singular Rotor Block Rotors FREE Coordinates
-    Velocities Chart Inputs COORDINATES VELOCITIES INPUTS PARAMETERS new clone clone_from into try_into fmt blocks
+    Velocities Chart Inputs COORDINATES VELOCITIES STATES INPUTS PARAMETERS Parameters State from_arrays to_array new clone clone_from into try_into fmt blocks
     zero_coordinates zero_velocities zero_chart zero_inputs constraint_norm rotors constants update
     free system next value norm pivot kinematics from_f64 sin_cos mul_add is_positive max abs x xi u
     xi_dot momentum_ k k_2 slots out j y p q t1 t2 c1 sin1 cos1 sin_q minus_t1 zero one two three
@@ -266,10 +266,21 @@ impl Draft<'_> {
         }
     }
 
-    /// A new input, or an entry of one.
+    /// A new input, or an entry of one; or a state of first order.
     fn input(&mut self) -> String {
         let name = self.name();
-        match self.random.below(3) {
+        match self.random.below(4) {
+            1 => {
+                let (start, slope) = (self.constant(), self.constant());
+                let (moved, other) = (self.all.clone(), self.constants.clone());
+                let driven = match moved.is_empty() {
+                    true => self.one_of(&other),
+                    false => self.one_of(&moved),
+                };
+                self.line(&format!("    state {name} = {start};"));
+                self.line(&format!("    rate {name} = {driven} - {slope} * {name};"));
+                name
+            }
             0 => {
                 let n = 1 + self.random.below(3);
                 self.line(&format!("    input {name}: vec{n};"));

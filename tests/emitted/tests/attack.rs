@@ -33,7 +33,8 @@ fn states(generated: &Generated, random: &mut Random) -> Vec<State> {
     let program = &generated.program;
     let mut state = || {
         let x = random.configuration(&program.blocks);
-        let [xi, xi_dot, momentum] = [(); 3].map(|()| random.numbers(program.n));
+        let [xi, xi_dot] = [(); 2].map(|()| random.numbers(program.n + program.n_z));
+        let momentum = random.numbers(program.n);
         [x, xi, xi_dot, momentum, random.numbers(program.m)]
     };
     (0..STATES).map(|_| state()).collect()
