@@ -84,6 +84,7 @@ mod monitor;
 pub mod rotor;
 pub mod s1;
 pub mod s3;
+mod sampled;
 mod scalar;
 pub mod so3;
 mod split;
@@ -105,6 +106,7 @@ pub use monitor::Monitor;
 #[cfg(feature = "nalgebra")]
 pub use nalgebra;
 pub use rotor::Rotor;
+pub use sampled::Sampled;
 pub use scalar::Scalar;
 pub use split::Split;
 pub use state::State;

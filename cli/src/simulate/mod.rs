@@ -10,7 +10,7 @@ mod write;
 
 use crate::failure::{Failure, print};
 use crate::interpreted::Interpreted;
-use crate::method::{self, Chosen, Stepper};
+use crate::method::{self, AUTO, Chosen, Stepper};
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
@@ -20,7 +20,7 @@ use hamel::methods::General;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
 use hamel_report::plot;
-use record::{Plan, Run};
+use record::{Every, Plan, Run};
 use std::path::PathBuf;
 use write::Format;
 
@@ -28,12 +28,12 @@ use write::Format;
 const STEP: f64 = 1e-3;
 const FEWEST: f64 = 1e3;
 const MOST: f64 = 1e6;
-/// Systems with more velocities are run without their tables.
-const MOST_SHOWN: usize = 6;
 /// λ where --lambda is left out.
 const LAMBDA: f64 = 10.0;
 /// The tolerance where `auto` takes a method that chooses its steps.
 const TOLERANCE: f64 = 1e-9;
+/// What `auto` takes where a tolerance is given and the method that fits has equal steps.
+const BY_TOLERANCE: &str = "rkmk8";
 
 /// Integrates the equations of motion from a start.
 ///
@@ -43,7 +43,7 @@ const TOLERANCE: f64 = 1e-9;
 #[command(after_help = "Examples:
   hamel simulate dzhanibekov.eom --until 100 --plot flip.svg
   hamel simulate heavy_top.eom --until 10 --step 1e-3 --out run.csv --every 10
-  hamel simulate heavy_top.eom --until 10 --method auto
+  hamel simulate heavy_top.eom --until 10 --method gauss6 --tables
   hamel simulate heavy_top.eom --until 10 --method rkmk8 --tol 1e-10
   hamel simulate heavy_top.eom --until 10 --method rk4 --lambda 5
   hamel simulate heavy_top.eom --until 10 --at state.json", after_long_help = method::described())]
@@ -57,8 +57,9 @@ pub struct Arguments {
     /// Length of a step; default 0.001, adjusted so that a run takes 10³ to 10⁶ steps.
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     step: Option<f64>,
-    /// How to step; `auto` takes what fits the system and says why. --help tells them apart.
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(method::names()), default_value = "rkmk4")]
+    /// How to step; `auto` takes what fits the system and says why, a method that chooses its steps where
+    /// --tol is given. --help tells them apart.
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(method::names()), default_value = AUTO)]
     method: String,
     /// Error that a step may make, for rkmk54 and rkmk8, which then choose their steps themselves.
     #[arg(long, value_name = "E", value_parser = positive, allow_negative_numbers = true, conflicts_with = "step")]
@@ -72,9 +73,13 @@ pub struct Arguments {
     /// Samples as .csv or .json, or a plot as .svg.
     #[arg(long, value_name = "F")]
     out: Option<PathBuf>,
-    /// A sample every N steps; by default about 1000 samples.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
-    every: Option<u64>,
+    /// Print γ, M and Γ before the run.
+    #[arg(long)]
+    tables: bool,
+    /// A sample every N steps, or with an `s`, as in 0.01s, at multiples of that time; by default about 1000
+    /// samples.
+    #[arg(long, value_name = "N", value_parser = every, allow_negative_numbers = true)]
+    every: Option<Every>,
     /// Plot of coordinates, velocities, outputs and what is conserved over time, with the path of a body
     /// axis where there is one attitude, and with Poinsot's construction of a body that is nearly free.
     #[arg(long, value_name = "F.svg")]
@@ -122,8 +127,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         crate::failure::write(path, &text)?;
         written.push_str(&format!("wrote {}\n", path.display()));
     }
-    if arguments.out.is_none() {
+    if arguments.tables {
         print(&coefficients(&generated))?;
+    }
+    if arguments.out.is_none() {
         print(&summary::table(&run))?;
     }
     print(&summary::text(&run, arguments.step.is_none()))?;
@@ -140,12 +147,9 @@ fn drawn(picture: &plot::Picture) -> Result<String, Failure> {
     Ok(figure.standalone())
 }
 
-/// γ, M and Γ of a small system, so that a first run shows what was derived; empty for a large one.
+/// γ, M and Γ; empty where A has dependent columns.
 fn coefficients(generated: &Generated) -> String {
     let of = [Table::Gamma, Table::Mass, Table::Connection];
-    if generated.model.n() > MOST_SHOWN {
-        return String::new();
-    }
     match tables::tables(generated, &of) {
         Ok(tables) => tables::text(&tables, false) + "\n",
         Err(_) => String::new(),
@@ -161,24 +165,32 @@ fn chosen(
 ) -> Result<Chosen, Failure> {
     let structure = system.structure(&generated.program);
     let mut chosen = Chosen::new(&arguments.method, system, &structure, steps)?;
+    if arguments.method == AUTO && arguments.tol.is_some() && !adapts(&chosen) {
+        chosen = Chosen::new(BY_TOLERANCE, system, &structure, steps)?;
+        chosen.reason = Some("a tolerance was given");
+    }
     if let Stepper::General(General::Rk4 { lambda }) = &mut chosen.stepper {
         *lambda = arguments.lambda.unwrap_or(LAMBDA);
     }
     Ok(chosen)
 }
 
-/// The tolerance of a run that chooses its steps; `None` for equal steps.
-fn tolerance(arguments: &Arguments, chosen: &Chosen) -> Result<Option<f64>, Failure> {
-    let adapts = matches!(
+/// Whether a method can choose its steps.
+fn adapts(chosen: &Chosen) -> bool {
+    matches!(
         chosen.stepper,
         Stepper::General(General::Rkmk54 | General::Rkmk8)
-    );
+    )
+}
+
+/// The tolerance of a run that chooses its steps; `None` for equal steps.
+fn tolerance(arguments: &Arguments, chosen: &Chosen) -> Result<Option<f64>, Failure> {
     match arguments.tol {
-        Some(_) if !adapts => Err(Failure::usage(format!(
+        Some(_) if !adapts(chosen) => Err(Failure::usage(format!(
             "--tol goes with --method rkmk54 and rkmk8, which choose their steps; {} takes --step",
             chosen.name
         ))),
-        None if adapts && chosen.reason.is_some() && arguments.step.is_none() => {
+        None if adapts(chosen) && chosen.reason.is_some() && arguments.step.is_none() => {
             Ok(Some(TOLERANCE))
         }
         tol => Ok(tol),
@@ -190,6 +202,17 @@ pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("a number greater than zero is needed".into()),
+    }
+}
+
+/// `10`: steps; `0.01s`: a time.
+fn every(text: &str) -> Result<Every, String> {
+    match text.strip_suffix('s') {
+        Some(time) => positive(time).map(Every::Time),
+        None => match text.parse::<u64>() {
+            Ok(steps) if steps > 0 => Ok(Every::Steps(steps)),
+            _ => Err("a number of steps, 1 or greater, or a time as in 0.01s is needed".into()),
+        },
     }
 }
 

@@ -26,6 +26,15 @@ const LONG: u64 = 20_000;
 /// Steps between two movements of the progress bar.
 const TICK: u64 = 500;
 
+/// How often samples are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Every {
+    /// Every so many steps.
+    Steps(u64),
+    /// At multiples of this time.
+    Time(f64),
+}
+
 /// What is to be run.
 #[derive(Debug)]
 pub struct Plan {
@@ -40,17 +49,30 @@ pub struct Plan {
     pub chosen: bool,
     /// The error that a step may make, where steps are chosen by it.
     pub tolerance: Option<f64>,
+    /// The time between two samples, where steps are chosen by their error and samples are not at their ends.
+    pub spacing: Option<f64>,
 }
 
 impl Plan {
-    /// A plan with about a thousand samples, or one every so many steps.
+    /// A plan with about a thousand samples, or as many as are asked for. Equal steps are shortened so that samples are
+    /// at their ends.
     pub fn new(
         method: Chosen,
         until: f64,
-        step: f64,
-        every: Option<u64>,
+        mut step: f64,
+        every: Option<Every>,
         tolerance: Option<f64>,
     ) -> Self {
+        let (every, spacing) = match (every, tolerance) {
+            (None, _) => (None, None),
+            (Some(Every::Steps(steps)), _) => (Some(steps), None),
+            (Some(Every::Time(time)), Some(_)) => (Some(1), Some(time)),
+            (Some(Every::Time(time)), None) => {
+                let parts = (time / step * (1.0 - 1e-9)).ceil().max(1.0);
+                step = time / parts;
+                (Some(parts as u64), None)
+            }
+        };
         // As the integrator counts: a ratio that is whole but for rounding is whole.
         let steps = ((until / step) * (1.0 - 1e-9)).ceil().max(1.0) as u64;
         let default = match tolerance {
@@ -66,6 +88,7 @@ impl Plan {
             every: every.unwrap_or(default),
             chosen: every.is_none(),
             tolerance,
+            spacing,
         }
     }
 }
@@ -147,6 +170,10 @@ impl<'a> Run<'a> {
         };
         let mut steps = 0;
         let observe = |state: &State<Interpreted>, place: Place| {
+            if place == Place::Sample {
+                samples.push(Sample::of(system, state));
+                return;
+            }
             if place == Place::Within {
                 track.push(Sample::of(system, state));
                 if thin(&mut track) {
@@ -158,7 +185,7 @@ impl<'a> Run<'a> {
             if plan.tolerance.is_some() {
                 balance.set(balance.get().after(system, state));
             }
-            if steps % every == 0 {
+            if steps % every == 0 && (plan.spacing.is_none() || steps == 0) {
                 samples.push(Sample::of(system, state));
                 if plan.chosen && thin(&mut samples) {
                     every *= 2;
@@ -266,12 +293,15 @@ enum Place {
     End,
     /// Between, for plots: steps chosen by their error may be few.
     Within,
+    /// Where a sample was asked for.
+    Sample,
 }
 
 /// Shows the end of a step that a tolerance has chosen, and before it what a plot needs of its path.
 fn show<const D: usize>(
     report: Report<'_, Interpreted, D>,
     spacing: f64,
+    samples: Option<f64>,
     observe: &mut impl FnMut(&State<Interpreted>, Place),
 ) {
     let Report::Step(step) = report else {
@@ -282,6 +312,13 @@ fn show<const D: usize>(
     for part in 1..parts as u64 {
         let t = from + (to - from) * (part as f64 / parts);
         observe(&step.at(t), Place::Within);
+    }
+    if let Some(time) = samples {
+        let mut number = (from / time).floor() + 1.0;
+        while number * time <= to {
+            observe(&step.at(number * time), Place::Sample);
+            number += 1.0;
+        }
     }
     observe(step.end(), Place::End);
 }
@@ -319,12 +356,12 @@ fn advance(
     let outcome = match general {
         General::Rkmk8 => {
             Adaptive::rkmk8(tolerance).integrate(system, state, until, inputs, &events, |report| {
-                show(report, spacing, &mut observe);
+                show(report, spacing, plan.spacing, &mut observe);
             })
         }
         _ => {
             Adaptive::rkmk54(tolerance).integrate(system, state, until, inputs, &events, |report| {
-                show(report, spacing, &mut observe);
+                show(report, spacing, plan.spacing, &mut observe);
             })
         }
     };

@@ -12,9 +12,18 @@ use sketch::{Declared, function, sketch};
 use std::collections::HashSet;
 
 fn methods(file: &syn::File) -> Vec<&syn::ImplItemFn> {
+    // The type itself stands first; what follows are views of its parameters, states and inputs.
+    let of = file.items.iter().find_map(|item| match item {
+        syn::Item::Struct(item) => Some(item.ident.clone()),
+        _ => None,
+    });
     let impls = file.items.iter().filter_map(|item| match item {
         syn::Item::Impl(item) => Some(item),
         _ => None,
+    });
+    let impls = impls.filter(|item| match &*item.self_ty {
+        syn::Type::Path(path) => path.path.segments.last().map(|last| &last.ident) == of.as_ref(),
+        _ => false,
     });
     let items = impls.flat_map(|item| &item.items);
     items

@@ -1,0 +1,161 @@
+//! Controllers that are asked at a period of their own, and whose inputs are held in between.
+
+use crate::adaptive::{Adaptive, Statistics};
+use crate::error::StepError;
+use crate::integrate::integrate;
+use crate::methods::Method;
+use crate::state::State;
+use crate::system::System;
+
+/// A digital controller: asked for u at multiples of a period from the start of a run on, in order of time, it may
+/// keep a state of its own; u is constant in between (zero-order hold).
+///
+/// Steps end where u jumps, so that every method keeps its order, and error control meets no jump within a step.
+///
+/// ```
+/// # use hamel::{Block, Singular, State, System};
+/// # use hamel::methods::Rkmk4;
+/// # struct Cart;
+/// # impl System for Cart {
+/// #     type Scalar = f64; type Coordinates = [f64; 1]; type Velocities = [f64; 1]; type Chart = [f64; 1];
+/// #     type Inputs = [f64; 1];
+/// #     fn blocks(&self) -> &[Block] { &[Block::Flat(1)] }
+/// #     fn zero_coordinates(&self) -> [f64; 1] { [0.0] }
+/// #     fn zero_velocities(&self) -> [f64; 1] { [0.0] }
+/// #     fn zero_chart(&self) -> [f64; 1] { [0.0] }
+/// #     fn zero_inputs(&self) -> [f64; 1] { [0.0] }
+/// #     fn start(&self) -> ([f64; 1], [f64; 1]) { ([0.0], [0.0]) }
+/// #     fn rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] { *xi }
+/// #     fn chart_rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] { *xi }
+/// #     fn accel(&self, _: &[f64; 1], _: &[f64; 1], u: &[f64; 1]) -> Result<[f64; 1], Singular> { Ok(*u) }
+/// #     fn correction(&self, _: &[f64; 1]) -> [f64; 1] { [0.0] }
+/// #     fn constraint_norm(&self, _: &[f64; 1]) -> f64 { 0.0 }
+/// #     fn kinetic_energy(&self, _: &[f64; 1], xi: &[f64; 1]) -> f64 { 0.5 * xi[0] * xi[0] }
+/// #     fn potential_energy(&self, _: &[f64; 1]) -> f64 { 0.0 }
+/// # }
+/// # fn main() -> Result<(), hamel::StepError> {
+/// // A cart of mass 1 is held at 1 by a controller with an integral, asked every 10 ms.
+/// let cart = Cart;
+/// let mut state = State::start(&cart);
+/// let mut integral = 0.0;
+/// let mut controller = hamel::Sampled::new(0.01, |state: &State<Cart>| {
+///     integral += 0.01 * (1.0 - state.x[0]);
+///     [3.0 * (1.0 - state.x[0]) + 1.0 * integral - 3.0 * state.xi[0]]
+/// });
+/// controller.integrate(&cart, Rkmk4, &mut state, 1e-3, 30.0, |_| {})?;
+/// assert!((state.x[0] - 1.0).abs() < 1e-3);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Sampled<C> {
+    period: f64,
+    controller: C,
+}
+
+impl<C> Sampled<C> {
+    /// A controller that is asked every `period`, in the unit of time of the description.
+    pub const fn new(period: f64, controller: C) -> Self {
+        Self { period, controller }
+    }
+
+    /// Moves `state` to the time `until`, in steps no longer than `length`, as [`integrate`](integrate()) does; the steps
+    /// of a period are equal. `observe` is called with the first state and after every step.
+    ///
+    /// # Errors
+    /// [`StepError`]; `state` is then the last valid one. A period that is not positive and finite is
+    /// [`StepError::InvalidStep`], as is a time that lies before.
+    pub fn integrate<Sys, M, O>(
+        &mut self,
+        system: &Sys,
+        method: M,
+        state: &mut State<Sys>,
+        length: f64,
+        until: f64,
+        mut observe: O,
+    ) -> Result<(), StepError>
+    where
+        Sys: System + ?Sized,
+        M: Method<Sys>,
+        C: FnMut(&State<Sys>) -> Sys::Inputs,
+        O: FnMut(&State<Sys>),
+    {
+        observe(state);
+        self.periods(state, until, |state, end, u| {
+            let from = state.t;
+            let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
+            // The first state was seen at the end of the period before.
+            let observe = |state: &State<Sys>| {
+                if state.t != from {
+                    observe(state);
+                }
+            };
+            integrate(system, &method, state, length, end, inputs, observe)
+        })
+    }
+
+    /// The same with steps that are chosen by their error; `observe` is called with the first state and at the end of
+    /// every period.
+    ///
+    /// # Errors
+    /// As those of [`integrate`](Self::integrate).
+    pub fn adapt<Sys, O, const M: usize, const D: usize>(
+        &mut self,
+        system: &Sys,
+        method: &Adaptive<M, D>,
+        state: &mut State<Sys>,
+        until: f64,
+        mut observe: O,
+    ) -> Result<Statistics, StepError>
+    where
+        Sys: System + ?Sized,
+        C: FnMut(&State<Sys>) -> Sys::Inputs,
+        O: FnMut(&State<Sys>),
+    {
+        observe(state);
+        let mut all = Statistics::default();
+        self.periods(state, until, |state, end, u| {
+            let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
+            let part = method.run(system, state, end, inputs)?;
+            all.accepted += part.accepted;
+            all.rejected += part.rejected;
+            all.evaluations += part.evaluations;
+            observe(state);
+            Ok(())
+        })?;
+        Ok(all)
+    }
+
+    /// Goes through the periods: asks the controller, and moves the state to the end of the period.
+    fn periods<Sys>(
+        &mut self,
+        state: &mut State<Sys>,
+        until: f64,
+        mut run: impl FnMut(&mut State<Sys>, f64, &Sys::Inputs) -> Result<(), StepError>,
+    ) -> Result<(), StepError>
+    where
+        Sys: System + ?Sized,
+        C: FnMut(&State<Sys>) -> Sys::Inputs,
+    {
+        let from = state.t;
+        let (step, span) = (self.period, until - from);
+        let count = span / step;
+        // Beyond this count neighbouring times are hardly distinct; also where it is no number.
+        let few = count < (1_u64 << 52) as f64;
+        if !(step > 0.0 && step.is_finite() && span >= 0.0 && few) {
+            return Err(StepError::InvalidStep { step, span });
+        }
+        // A ratio that is whole but for rounding is whole.
+        let whole = count as u64;
+        let last = whole + u64::from(count - whole as f64 > 1e-9 * count.max(1.0));
+        for index in 1..=last {
+            let u = (self.controller)(state);
+            let end = match index == last {
+                true => until,
+                false => from + index as f64 * step,
+            };
+            run(state, end, &u)?;
+        }
+        Ok(())
+    }
+}
