@@ -9,7 +9,7 @@
 //! Two modules carry the mathematics of rotations, [`so3`] and [`s3`]; numbers are any [`Scalar`].
 //!
 //! # Features
-//! - `std` (default): mathematical functions of the standard library, `Vec` as a [`Store`]. Without
+//! - `std` (default): mathematical functions of the standard library, in nalgebra, too, `Vec` as a [`Store`]. Without
 //!   it the crate is `no_std` and takes them from `libm`.
 //! - `macros` (default): `rigid_eom!`, which expands a description to a `System`.
 //! - `wide`: SIMD lanes as scalars, in `wide`.
