@@ -34,6 +34,7 @@ fn spelled(expr: &Expr) -> String {
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(of, field) => format!("{}.{}", spelled(of), field.name),
         ExprKind::Index(of, indices) => format!("{}[{}]", spelled(of), list(indices)),
+        ExprKind::InAxes(call, frame) => format!("({} in {})", spelled(call), spelled(frame)),
         ExprKind::Call(function, arguments) => format!("{}({})", function.name, list(arguments)),
         ExprKind::Neg(of) => format!("(-{})", spelled(of)),
         ExprKind::Binary(op, left, right) => {
