@@ -20,6 +20,9 @@ pub struct Generated {
     pub model: Model,
     /// The same in the velocities that constraints leave: what states and functions are about.
     pub active: Model,
+    /// The velocities that constraints give by others: places in ξ of the full frame, each with that of its
+    /// constraint.
+    pub solved: Vec<(usize, usize)>,
     /// Its functions, validated.
     pub program: Program,
     /// Hash of the description's tokens: the same through every front end.
@@ -158,7 +161,11 @@ impl Generated {
         let program = assemble(&model, reduction.as_ref(), linearized);
         let program = program.map_err(|error| vec![error])?;
         proof::prove(&model, reduction.as_ref(), &program)?;
+        let solved = reduction.as_ref().map_or(Vec::new(), |reduction| {
+            reduction.solved.iter().map(|&(row, velocity)| (velocity, row)).collect()
+        });
         Ok(Generated {
+            solved,
             active: reduction.map_or_else(|| model.clone(), |reduction| reduction.model),
             model,
             program,

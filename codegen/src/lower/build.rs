@@ -7,7 +7,7 @@ use super::rate::At;
 use super::scope::Scope;
 use super::variety::Variety;
 use super::{
-    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, time, unused,
+    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, staying, time, unused,
 };
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
@@ -147,6 +147,10 @@ impl<'a> Reading<'a> {
         // The start is needed to choose pivots; what is wrong with it is said last.
         let mut last = Report::new();
         let mut starts = start::read(system, graph, scope, declared, &defaults, &mut last);
+        start::guess::check(system, declared, &mut last);
+        if let (Some(start), Some(x)) = (&mut starts, &variety.assembled) {
+            start.x.clone_from(x);
+        }
         if let Some(start) = &starts {
             start::check::check(system, variety, declared, &defaults, &start.x, &mut last);
         }
@@ -187,6 +191,7 @@ impl<'a> Reading<'a> {
             report,
         );
         constraints.extend(drives);
+        let independent = staying::read(system, graph, scope, declared, &constraints, report);
         if let (Some(start), Some(kinematics), true) = (
             &mut starts,
             &kinematics,
@@ -201,7 +206,18 @@ impl<'a> Reading<'a> {
                 &constraints,
                 &defaults,
             );
-            report.keep(start.close(&closure, &constraints, &defaults));
+            let known = !defaults.iter().any(|number| number.is_nan());
+            report.keep(match start::guess::any(system) && known {
+                true => {
+                    let inertia = (&frames[..], &dynamics);
+                    let mass = |x: &[f64]| {
+                        let moved = (declared, kinematics);
+                        start::guess::mass(graph, inertia, moved, &numbers, x)
+                    };
+                    start.close_near(&closure, &constraints, mass)
+                }
+                false => start.close(&closure, &constraints, &defaults),
+            });
         }
         last.finish()
             .err()
@@ -242,6 +258,7 @@ impl<'a> Reading<'a> {
             clock: declared.clock,
             prescribed,
             accelerated,
+            independent,
             whole: None,
             spans: true,
             overconstrained: false,

@@ -40,6 +40,7 @@ mod reader;
 mod relations;
 mod scope;
 mod start;
+mod staying;
 mod tangency;
 mod time;
 mod unused;
