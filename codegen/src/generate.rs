@@ -162,7 +162,11 @@ impl Generated {
         let program = program.map_err(|error| vec![error])?;
         proof::prove(&model, reduction.as_ref(), &program)?;
         let solved = reduction.as_ref().map_or(Vec::new(), |reduction| {
-            reduction.solved.iter().map(|&(row, velocity)| (velocity, row)).collect()
+            reduction
+                .solved
+                .iter()
+                .map(|&(row, velocity)| (velocity, row))
+                .collect()
         });
         Ok(Generated {
             solved,

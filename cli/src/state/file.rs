@@ -66,9 +66,8 @@ impl File {
             .map(|(part, why)| format!("{part}: {why}"))
             .collect();
         match refused.is_empty() {
-            true => {
-                Sample::parse(&self.json, None, (generated, &source.text), source.joints()).map(|read| read.state)
-            }
+            true => Sample::parse(&self.json, None, (generated, &source.text), source.joints())
+                .map(|read| read.state),
             false => Err(refused),
         }
     }

@@ -9,7 +9,10 @@ const LISTED: usize = 12;
 
 /// A constraint with its place in the text of the description.
 pub fn shown(constraint: &Pfaffian, text: &str) -> String {
-    let before = constraint.span.range().and_then(|range| text.get(..range.start));
+    let before = constraint
+        .span
+        .range()
+        .and_then(|range| text.get(..range.start));
     let line = before.map(|before| 1 + before.matches('\n').count());
     let written = match constraint.kind {
         Kind::Inactive => format!("inactive {}", constraint.written),
@@ -28,16 +31,27 @@ pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
         return Vec::new();
     }
     let all = names::velocities(full);
-    let row = |place: usize| generated.solved.iter().find(|(velocity, _)| *velocity == place);
-    let width = all.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    let row = |place: usize| {
+        generated
+            .solved
+            .iter()
+            .find(|(velocity, _)| *velocity == place)
+    };
+    let width = all
+        .iter()
+        .map(|name| name.chars().count())
+        .max()
+        .unwrap_or(0);
     let mut lines = Vec::new();
     for (place, name) in all.iter().enumerate() {
         let clock = full.clock.is_some_and(|clock| clock.xi == place);
-        lines.push(match row(place).and_then(|(_, row)| full.constraints.get(*row)) {
-            Some(row) => format!("velocity {name:width$}  follows from {}", shown(row, text)),
-            None if clock => format!("velocity {name:width$}  is 1, the rate of time"),
-            None => format!("velocity {name:width$}  stays in the state"),
-        });
+        lines.push(
+            match row(place).and_then(|(_, row)| full.constraints.get(*row)) {
+                Some(row) => format!("velocity {name:width$}  follows from {}", shown(row, text)),
+                None if clock => format!("velocity {name:width$}  is 1, the rate of time"),
+                None => format!("velocity {name:width$}  stays in the state"),
+            },
+        );
     }
     for row in &active.constraints {
         let shown = shown(row, text);
@@ -64,9 +78,10 @@ pub fn solved(generated: &Generated, text: &str) -> Vec<(String, String)> {
             number.is_some_and(|rest| rest.starts_with('_') && rest[1..].parse::<usize>().is_ok())
         };
         let entries: Vec<&str> = stay.iter().filter(entry).map(String::as_str).collect();
-        let of_group = generated.solved.iter().filter(|(velocity, _)| {
-            (group.offset..group.offset + group.len).contains(velocity)
-        });
+        let of_group = generated
+            .solved
+            .iter()
+            .filter(|(velocity, _)| (group.offset..group.offset + group.len).contains(velocity));
         let rows = of_group.filter_map(|(_, row)| full.constraints.get(*row));
         let mut rows: Vec<String> = rows.map(|row| shown(row, text)).collect();
         rows.dedup();

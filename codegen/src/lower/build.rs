@@ -7,7 +7,8 @@ use super::rate::At;
 use super::scope::Scope;
 use super::variety::Variety;
 use super::{
-    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, staying, time, unused,
+    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, staying,
+    strange, time, unused,
 };
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
@@ -31,7 +32,8 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
 pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
     let own = SEED + number * ATTEMPTS;
     let mut first = Report::new();
-    let warnings = unused::warnings(system);
+    let mut warnings = unused::warnings(system);
+    let written = system;
     let system = &joints::expand(system, &mut first);
     let system = &time::expand(system, &mut first);
     let mut variety = Variety::read(system, own, &mut first);
@@ -62,6 +64,7 @@ pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> 
             Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
+                warnings.extend(strange::warnings(written, &model));
                 model.warnings = warnings;
                 return Ok(model);
             }

@@ -124,7 +124,9 @@ const NAMES_OF_ALL: [&str; 2] = ["translation", "angle"];
 
 /// Whether a name is that of a function of the language, which no function of a description can have.
 pub fn is_function(name: &str) -> bool {
-    usage(name).is_some() && !NAMES_OF_ALL.contains(&name) || FUNCTIONS.contains(&name) || name == "rate"
+    usage(name).is_some() && !NAMES_OF_ALL.contains(&name)
+        || FUNCTIONS.contains(&name)
+        || name == "rate"
 }
 
 /// Why a call has no value.
@@ -328,9 +330,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             _ => return Err(Fault::Usage),
         },
         ("translation", [p]) => Pose(identity3(graph), p.as_vec3().ok_or(Fault::Usage)?),
-        ("angle", [Vector(q)]) if q.len() == 2 => {
-            Scalar(angle_from(graph, [q[0], q[1]], None))
-        }
+        ("angle", [Vector(q)]) if q.len() == 2 => Scalar(angle_from(graph, [q[0], q[1]], None)),
         ("inverse", [Pose(r, p)]) => {
             let back = transpose3(r);
             Pose(back, apply3(graph, &back, *p).map(|edge| -edge))
@@ -384,7 +384,10 @@ pub(super) fn angle_from(graph: &mut Graph, [c, s]: [Edge; 2], rest: Option<Edge
         graph.apply(Function::Cos, rest),
         graph.apply(Function::Sin, rest),
     );
-    let (along, across) = (graph.dot(&[c, s], &[cos, sin]), graph.dot(&[s, -c], &[cos, sin]));
+    let (along, across) = (
+        graph.dot(&[c, s], &[cos, sin]),
+        graph.dot(&[s, -c], &[cos, sin]),
+    );
     graph.atan2(across, along)
 }
 

@@ -41,6 +41,7 @@ mod relations;
 mod scope;
 mod start;
 mod staying;
+mod strange;
 mod tangency;
 mod time;
 mod unused;

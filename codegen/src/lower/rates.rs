@@ -73,7 +73,10 @@ impl Evaluator<'_> {
         }
         let rates = motion.along(self.graph, &entries);
         if scope.rates.is_none() {
-            motion.seen.borrow_mut().extend(noted(self, &entries, &rates));
+            motion
+                .seen
+                .borrow_mut()
+                .extend(noted(self, &entries, &rates));
         }
         let circle = matches!(&argument.kind, ExprKind::Name(name)
             if scope.get(name).is_some_and(|e| e.kind == NameKind::Coord(CoordKind::S1)));

@@ -58,7 +58,11 @@ fn refused(
 ) -> Option<Diagnostic> {
     if let Some((_, first)) = before.iter().find(|(other, _)| *other == place) {
         let error = Diagnostic::new(expr.span, "this velocity is independent already");
-        return Some(error.help("remove one of the two").note(*first, "first here"));
+        return Some(
+            error
+                .help("remove one of the two")
+                .note(*first, "first here"),
+        );
     }
     if declared.clock.is_some_and(|clock| clock.xi == place) {
         let error = Diagnostic::new(expr.span, "the rate of time is 1, and not independent");
@@ -67,7 +71,11 @@ fn refused(
     let xi = declared.xi[place];
     let alone = |row: &&Pfaffian| {
         let given = matches!(row.kind, Kind::Inactive | Kind::Drive { position: false });
-        let entry = row.row.iter().zip(&declared.xi).find(|(_, other)| **other == xi);
+        let entry = row
+            .row
+            .iter()
+            .zip(&declared.xi)
+            .find(|(_, other)| **other == xi);
         given && entry.is_some_and(|(entry, _)| entry.abs() != crate::algebra::graph::Edge::of(0))
     };
     let row = constraints.iter().find(alone)?;

@@ -57,7 +57,10 @@ pub fn nearest(problem: &impl Assembly, guess: &[f64]) -> Option<Vec<f64>> {
         };
         let distance = distance(problem, &x);
         // A later one has to be nearer by more than rounding.
-        if best.as_ref().is_none_or(|(least, _)| distance < least * (1.0 - 1e-9)) {
+        if best
+            .as_ref()
+            .is_none_or(|(least, _)| distance < least * (1.0 - 1e-9))
+        {
             best = Some((distance, x));
         }
     }
@@ -127,18 +130,30 @@ fn step(problem: &impl Assembly, x: &[f64], residuals: &[f64], towards: bool) ->
     let count = problem.directions();
     let column = |i: usize| slopes.iter().map(move |row| row[i]);
     let mut metric: Vec<Vec<f64>> = (0..count)
-        .map(|i| (0..count).map(|j| column(i).zip(column(j)).map(|(a, b)| a * b).sum()).collect())
+        .map(|i| {
+            (0..count)
+                .map(|j| column(i).zip(column(j)).map(|(a, b)| a * b).sum())
+                .collect()
+        })
         .collect();
-    let scale = (0..count).map(|i| metric[i][i]).fold(f64::MIN_POSITIVE, f64::max);
+    let scale = (0..count)
+        .map(|i| metric[i][i])
+        .fold(f64::MIN_POSITIVE, f64::max);
     (0..count).for_each(|i| metric[i][i] += REGULAR * scale);
     let factor = cholesky(&metric)?;
     let gradient: Vec<f64> = match towards {
-        true => (0..count).map(|i| column(i).zip(&apart).map(|(a, b)| a * b).sum()).collect(),
+        true => (0..count)
+            .map(|i| column(i).zip(&apart).map(|(a, b)| a * b).sum())
+            .collect(),
         false => vec![0.0; count],
     };
     // In u = Lᵀ h the metric is 1.
     let away = forward(&factor, &gradient);
-    let rows: Vec<Vec<f64>> = problem.slopes(x).iter().map(|row| forward(&factor, row)).collect();
+    let rows: Vec<Vec<f64>> = problem
+        .slopes(x)
+        .iter()
+        .map(|row| forward(&factor, row))
+        .collect();
     let target: Vec<f64> = rows
         .iter()
         .zip(residuals)
@@ -203,7 +218,13 @@ fn square(a: &[f64]) -> f64 {
 
 /// max |a|, infinite where an entry is no number.
 fn largest(a: &[f64]) -> f64 {
-    let worst = |most: f64, a: &f64| if a.is_nan() { f64::INFINITY } else { most.max(a.abs()) };
+    let worst = |most: f64, a: &f64| {
+        if a.is_nan() {
+            f64::INFINITY
+        } else {
+            most.max(a.abs())
+        }
+    };
     a.iter().fold(0.0, worst)
 }
 

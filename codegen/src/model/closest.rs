@@ -47,17 +47,29 @@ impl<'c, 'a> Loops<'c, 'a> {
         let factor = cholesky(&regular(mass))?;
         let rates = self.chart_rates(self.guess);
         let gram: Vec<Vec<f64>> = (0..n)
-            .map(|i| (0..n).map(|j| rates.iter().map(|c| c[i] * c[j]).sum()).collect())
+            .map(|i| {
+                (0..n)
+                    .map(|j| rates.iter().map(|c| c[i] * c[j]).sum())
+                    .collect()
+            })
             .collect();
         let gram = cholesky(&gram)?;
         let columns = rates.iter().map(|c| backward(&gram, &forward(&gram, c)));
         let columns: Vec<Vec<f64>> = columns.collect();
         let entry = |i: usize, column: &[f64]| (i..n).map(|k| factor[k][i] * column[k]).sum();
-        Some((0..n).map(|i| columns.iter().map(|column| entry(i, column)).collect()).collect())
+        Some(
+            (0..n)
+                .map(|i| columns.iter().map(|column| entry(i, column)).collect())
+                .collect(),
+        )
     }
 
     fn a(&self, x: &[f64]) -> Vec<f64> {
-        evaluate(self.closure.graph, &self.closure.a, &self.closure.numbers(x))
+        evaluate(
+            self.closure.graph,
+            &self.closure.a,
+            &self.closure.numbers(x),
+        )
     }
 
     /// How the velocities change the charts, row by row.
@@ -73,7 +85,9 @@ impl<'c, 'a> Loops<'c, 'a> {
             })
             .collect();
         let rows = columns.first().map_or(0, Vec::len);
-        (0..rows).map(|row| columns.iter().map(|column| column[row]).collect()).collect()
+        (0..rows)
+            .map(|row| columns.iter().map(|column| column[row]).collect())
+            .collect()
     }
 }
 
@@ -95,9 +109,13 @@ impl Assembly for Loops<'_, '_> {
         let rows: Vec<Edge> = rows.collect();
         let b = evaluate(self.closure.graph, &rows, &self.closure.numbers(x));
         let a = self.a(x);
-        let given = self.given.iter().map(|&alpha| &a[alpha * n..(alpha + 1) * n]);
+        let given = self
+            .given
+            .iter()
+            .map(|&alpha| &a[alpha * n..(alpha + 1) * n]);
         let rows = b.chunks(n).chain(given);
-        rows.map(|row| self.free.iter().map(|&i| row[i]).collect()).collect()
+        rows.map(|row| self.free.iter().map(|&i| row[i]).collect())
+            .collect()
     }
 
     fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
@@ -121,7 +139,10 @@ impl Assembly for Loops<'_, '_> {
         let weighed = |column: &dyn Fn(usize) -> f64, row: &[f64]| -> f64 {
             row.iter().enumerate().map(|(k, s)| s * column(k)).sum()
         };
-        let far = weight.iter().map(|row| weighed(&|k| apart[k], row)).collect();
+        let far = weight
+            .iter()
+            .map(|row| weighed(&|k| apart[k], row))
+            .collect();
         let bent = weight.iter().map(|row| {
             let columns = 0..self.free.len();
             columns.map(|i| weighed(&|k| slopes[k][i], row)).collect()
@@ -133,7 +154,12 @@ impl Assembly for Loops<'_, '_> {
         let (a, n) = (self.a(x), self.closure.n);
         let mut moved = x.to_vec();
         for (entry, row) in moved.iter_mut().zip(a.chunks(n)) {
-            *entry += self.free.iter().zip(step).map(|(&i, h)| row[i] * h).sum::<f64>();
+            *entry += self
+                .free
+                .iter()
+                .zip(step)
+                .map(|(&i, h)| row[i] * h)
+                .sum::<f64>();
         }
         normalise(&self.closure.blocks, &mut moved);
         moved
@@ -315,8 +341,16 @@ fn relative(p: &[f64], q: &[f64]) -> [f64; 4] {
 /// The unit quaternion of a rotation by rows, up to its sign.
 fn quaternion(r: &[f64]) -> [f64; 4] {
     let trace = r[0] + r[4] + r[8];
-    let squares = [1.0 + trace, 1.0 + 2.0 * r[0] - trace, 1.0 + 2.0 * r[4] - trace, 1.0 + 2.0 * r[8] - trace];
-    let largest = (0..4).fold(0, |best, k| if squares[k] > squares[best] { k } else { best });
+    let squares = [
+        1.0 + trace,
+        1.0 + 2.0 * r[0] - trace,
+        1.0 + 2.0 * r[4] - trace,
+        1.0 + 2.0 * r[8] - trace,
+    ];
+    let largest = (0..4).fold(
+        0,
+        |best, k| if squares[k] > squares[best] { k } else { best },
+    );
     // Twice the products of the largest entry with the others.
     let skew = [r[7] - r[5], r[2] - r[6], r[3] - r[1]];
     let sum = |i: usize, j: usize| r[3 * i + j] + r[3 * j + i];
@@ -399,7 +433,10 @@ mod tests {
             };
             let one = turn(&shifted, Block::Quaternion, &from);
             let other = turn(&|h| matrix(&shifted(h)), Block::Rotation, &matrix(&from));
-            assert!((0..3).all(|k| (one[k] - other[k]).abs() < 1e-9), "{one:?} {other:?}");
+            assert!(
+                (0..3).all(|k| (one[k] - other[k]).abs() < 1e-9),
+                "{one:?} {other:?}"
+            );
         }
         assert_eq!(turned([1.0, 0.0, 0.0, 0.0]).0, [0.0; 3]);
     }

@@ -120,7 +120,9 @@ impl Moving<'_> {
         let energy = |moving: &[usize]| {
             let mut numbers = numbers.to_vec();
             numbers[self.velocity..self.velocity + self.n].fill(0.0);
-            moving.iter().for_each(|i| numbers[self.velocity + i] += 1.0);
+            moving
+                .iter()
+                .for_each(|i| numbers[self.velocity + i] += 1.0);
             evaluate(self.graph, &[kinetic], &numbers)[0]
         };
         let alone: Vec<f64> = (0..self.n).map(|i| energy(&[i])).collect();

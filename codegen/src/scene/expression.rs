@@ -46,7 +46,10 @@ pub fn call<const N: usize>(function: &str, arguments: [Expr; N]) -> Expr {
 /// assert_eq!(spin.to_string(), "angular_velocity(hull) in hull");
 /// ```
 pub fn in_axes(motion: Expr, frame: &str) -> Expr {
-    expr(ExprKind::InAxes(Box::new(motion), Box::new(Expr::name(frame))))
+    expr(ExprKind::InAxes(
+        Box::new(motion),
+        Box::new(Expr::name(frame)),
+    ))
 }
 
 /// `if a < b { then } else { otherwise }`: of two values of one shape the first where a < b.

@@ -131,6 +131,11 @@ fn told(kind: &ItemKind) -> String {
             let (name, between, beyond) = (&table.name.name, table.between, table.beyond);
             format!("table {name} = {source}, {between:?}, beyond {beyond:?}")
         }
+        Independent(all) => {
+            let all: Vec<String> = all.iter().map(spelled).collect();
+            format!("independent {}", all.join(", "))
+        }
+        Guess { target, value } => format!("guess {target:?} ~ {}", spelled(value)),
         Param(all) => format!("param {}", declared(all)),
         Const(all) => format!("const {}", declared(all)),
         Let(all) => format!("let {}", declared(all)),

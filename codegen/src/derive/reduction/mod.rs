@@ -157,7 +157,12 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     let mut rows: Vec<Vec<Edge>> = constraints.iter().map(|c| c.row.clone()).collect();
     let mut solved: Vec<(usize, usize)> = Vec::new();
     let is_time = |velocity: usize| model.clock.is_some_and(|clock| clock.xi == velocity);
-    let stays = |velocity: usize| model.independent.iter().any(|(place, _)| *place == velocity);
+    let stays = |velocity: usize| {
+        model
+            .independent
+            .iter()
+            .any(|(place, _)| *place == velocity)
+    };
     loop {
         let mut best = None;
         for (i, constraint) in constraints.iter().enumerate() {
@@ -241,7 +246,9 @@ fn impossible(
 fn entry_name(model: &Model, place: usize) -> String {
     let node = model.xi[place].node();
     let mut symbols = model.graph.symbols().iter();
-    symbols.find(|s| s.node == node).map_or(String::new(), |s| s.name.clone())
+    symbols
+        .find(|s| s.node == node)
+        .map_or(String::new(), |s| s.name.clone())
 }
 
 /// Velocities whose rates are given have to stay.

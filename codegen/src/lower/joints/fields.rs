@@ -16,7 +16,8 @@ use num_traits::Signed;
 /// The fields that a joint can have, and why no others.
 fn allowed(joint: &Joint) -> (&'static [JointField], &'static str) {
     const OWN: &str = "a joint that follows others has no force of its own: damping, armature and force stand on the joint that it follows";
-    const CIRCLE: &str = "a continuous joint turns without end: use `revolute` where there are limits";
+    const CIRCLE: &str =
+        "a continuous joint turns without end: use `revolute` where there are limits";
     const FOLLOWING: &str = "a continuous joint that follows others has no angle of its own: let a `revolute` joint follow, or put the spring on what it follows";
     const SEVERAL: &str = "it has several velocities: write `damper coefficient d on …;`, `spring …` or `generalized force … = …;` with the names of its coordinates and velocities";
     match joint.kind.0 {

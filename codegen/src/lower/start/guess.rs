@@ -4,8 +4,8 @@ use super::Start;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::declare::Declared;
-use crate::lower::reader::Dynamics;
 use crate::lower::rate::{Kinematics, written};
+use crate::lower::reader::Dynamics;
 use crate::lower::time;
 use crate::model::Frame;
 use crate::model::assembly::nearest;
@@ -38,7 +38,10 @@ pub fn check(system: &System, declared: &Declared, report: &mut Report) {
             continue;
         }
         if let Some((why, help, place)) = fixed(system, name, velocity) {
-            let message = format!("there is nothing to guess about `{}`: {why}", written(target));
+            let message = format!(
+                "there is nothing to guess about `{}`: {why}",
+                written(target)
+            );
             let error = Diagnostic::new(target.span(), message).help(help);
             report.push(match place {
                 Some((span, what)) => error.note(span, what),
@@ -59,7 +62,11 @@ fn fixed(system: &System, name: &str, velocity: bool) -> Option<Fixed> {
     let mut constrained = false;
     for item in &system.items {
         match &item.kind {
-            ItemKind::Prescribe { target, rate: false, .. } if target.name.name == name => {
+            ItemKind::Prescribe {
+                target,
+                rate: false,
+                ..
+            } if target.name.name == name => {
                 let place = Some((target.span(), "prescribed here"));
                 let help = "remove the guess: its start follows from its motion";
                 return Some(("its motion is prescribed".into(), help.into(), place));
@@ -83,7 +90,13 @@ fn fixed(system: &System, name: &str, velocity: bool) -> Option<Fixed> {
         }
     }
     let help = format!("write `start {name} = …;`");
-    (!constrained).then(|| ("no constraint acts on it, so that its start is exact".into(), help, None))
+    (!constrained).then(|| {
+        (
+            "no constraint acts on it, so that its start is exact".into(),
+            help,
+            None,
+        )
+    })
 }
 
 /// The x nearest to a start and its guesses that satisfies the user's constraints, in the metric of the coordinates;
@@ -100,7 +113,11 @@ pub fn assembled(
     let mut place = 0;
     for &block in blocks {
         let entries = &x[place..place + block.len()];
-        phi.extend(constraint(graph, block, entries, "").into_iter().map(|(edge, _)| edge));
+        phi.extend(
+            constraint(graph, block, entries, "")
+                .into_iter()
+                .map(|(edge, _)| edge),
+        );
         place += block.len();
     }
     let kept = |alpha: &usize| start.given_x[*alpha].is_some();
@@ -138,7 +155,11 @@ pub fn mass(
     };
     let mut numbers = numbers.to_vec();
     numbers[first..first + x.len()].copy_from_slice(x);
-    let inertia = (&dynamics.bodies[..], &dynamics.particles[..], dynamics.kinetic);
+    let inertia = (
+        &dynamics.bodies[..],
+        &dynamics.particles[..],
+        dynamics.kinetic,
+    );
     moving.mass(frames, inertia, &numbers)
 }
 

@@ -6,7 +6,7 @@ use hamel_codegen::lower::build;
 use hamel_codegen::syntax::parse_text;
 use std::f64::consts::{PI, TAU};
 
-const FIVE_BAR: &str = include_str!("../models/five_bar.eom");
+const FIVE_BAR: &str = include_str!("../../tests/models/five_bar.eom");
 /// Cranks, rods, distance of the pivots, as the model has them.
 const LENGTHS: (f64, f64, f64) = (0.3, 0.5, 0.25);
 
@@ -14,13 +14,18 @@ const LENGTHS: (f64, f64, f64) = (0.3, 0.5, 0.25);
 fn started(starts: &str) -> Vec<f64> {
     let (text, _) = FIVE_BAR.split_once("start q1").expect("starts");
     let text = format!("{text}{starts} output tip = tip1; }}");
-    build(&parse_text(&text).expect("a description")).expect("a start").start_x
+    build(&parse_text(&text).expect("a description"))
+        .expect("a start")
+        .start_x
 }
 
 /// The relative angles of the two rods for the two points in which the circles about the ends of the cranks meet.
 fn modes(q1: f64, q2: f64) -> [[f64; 2]; 2] {
     let (a, b, d) = LENGTHS;
-    let (left, right) = ([a * q1.cos(), a * q1.sin()], [d + a * q2.cos(), a * q2.sin()]);
+    let (left, right) = (
+        [a * q1.cos(), a * q1.sin()],
+        [d + a * q2.cos(), a * q2.sin()],
+    );
     let way = [right[0] - left[0], right[1] - left[1]];
     let half = way[0].hypot(way[1]) / 2.0;
     let height = (b * b - half * half).sqrt();
@@ -120,7 +125,9 @@ fn constraints_are_solved_near_the_guesses() {
                 particle mass 1 at [x, y, 0]; start x ~ {}, y ~ {}; }}",
             guess[0], guess[1]
         );
-        let x = build(&parse_text(&text).expect("a description")).expect("a start").start_x;
+        let x = build(&parse_text(&text).expect("a description"))
+            .expect("a start")
+            .start_x;
         assert!((x[0] * x[0] / 4.0 + x[1] * x[1] - 1.0).abs() < 1e-11);
         let distance = |x: f64, y: f64| (x - guess[0]).hypot(y - guess[1]);
         let least = (0..10_000)
@@ -134,7 +141,13 @@ fn constraints_are_solved_near_the_guesses() {
 /// A hanging body on a ball joint and a rod: rotations and quaternions take part.
 #[test]
 fn rotations_are_guessed_by_rotations() {
-    for (kind, guess) in [("spherical", "rotx(0.4)"), ("spherical S3", "[0.98, 0.2, 0, 0] / norm([0.98, 0.2, 0, 0])")] {
+    for (kind, guess) in [
+        ("spherical", "rotx(0.4)"),
+        (
+            "spherical S3",
+            "[0.98, 0.2, 0, 0] / norm([0.98, 0.2, 0, 0])",
+        ),
+    ] {
         let text = format!(
             "system S {{
                 joint ball: {kind} moves arm;
@@ -156,6 +169,9 @@ fn rotations_are_guessed_by_rotations() {
         };
         // A turn about the first axis is the shortest way, as it is the axis of the guess.
         let expected = [0.0, 0.6, -0.8];
-        assert!((0..3).all(|k| (tip[k] - expected[k]).abs() < 1e-8), "{tip:?}");
+        assert!(
+            (0..3).all(|k| (tip[k] - expected[k]).abs() < 1e-8),
+            "{tip:?}"
+        );
     }
 }
