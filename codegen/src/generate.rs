@@ -58,6 +58,18 @@ pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagn
     derive(&system, fingerprint(&(canonical(text) + &tables.concat())))
 }
 
+/// The same but for functions with M⁻¹ in them, where M is not positive definite; then the error that they would have is
+/// returned, too. Robots say what they are, and not what is wanted of them.
+///
+/// # Errors
+/// What is wrong with the description beyond that.
+#[cfg(feature = "files")]
+pub fn available_in(text: &str) -> Result<(Generated, Option<Diagnostic>), Vec<Diagnostic>> {
+    let system = syntax::parse_text(text)?;
+    let hash = fingerprint(&canonical(text));
+    at_some_point(&system, |model| Generated::available(model, hash))
+}
+
 /// Derives the description in a text.
 #[cfg(feature = "files")]
 pub fn from_text(text: &str) -> Result<Generated, Vec<Diagnostic>> {

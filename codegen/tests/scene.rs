@@ -348,7 +348,7 @@ fn starts_that_are_near_and_velocities_that_stay_are_built() -> Result<(), Scene
             .mass(2)
             .inertia_about_com(diagonal([1.0, 1.0, 1.0])),
     );
-    sleigh.nonholonomic(&v, 2 * w);
+    sleigh.nonholonomic(&v, w * 2);
     sleigh.independent([v.clone()]);
     sleigh.guess("v", 3);
     sleigh.output("slip", in_axes(call("velocity", [blade.pose()]), "blade"));

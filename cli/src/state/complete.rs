@@ -4,6 +4,8 @@
 use super::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
+use hamel_codegen::model::assembly::nearest;
+use hamel_codegen::model::closest::Constraints;
 use hamel_codegen::model::closure::{Closure, Open, normalise};
 use hamel_codegen::model::twists::Moving;
 
@@ -24,7 +26,12 @@ impl State {
             true => Ok(()),
             false => Err(errors),
         };
-        none(self.violations(active))?;
+        let violations = self.violations(active);
+        if !violations.is_empty() && !given_x.iter().all(|given| *given) {
+            self.x = self.satisfied(full, given_x).ok_or(violations)?;
+        } else {
+            none(violations)?;
+        }
         if self.residuals(active).iter().any(|size| size.abs() > EXACT) {
             normalise(&active.blocks, &mut self.x);
         }
@@ -67,6 +74,27 @@ impl State {
 }
 
 impl State {
+    /// The nearest x that satisfies the description's constraints, where what is given stays.
+    fn satisfied(&self, full: &Model, given: &[bool]) -> Option<Vec<f64>> {
+        let still = vec![0.0; full.n()];
+        let numbers = full.numbers(&self.params, &self.x, &still, &self.u, &still);
+        let kept = |alpha: &usize| given[*alpha];
+        let problem = Constraints {
+            graph: &full.points.free,
+            phi: full.phi.iter().map(|(edge, _)| *edge).collect(),
+            first: full.points.first,
+            numbers: &numbers,
+            blocks: &full.blocks,
+            guess: &self.x,
+            given: (0..given.len()).filter(kept).collect(),
+        };
+        let mut found = nearest(&problem, &self.x)?;
+        for &alpha in &problem.given {
+            found[alpha] = self.x[alpha];
+        }
+        Some(found)
+    }
+
     /// M of the full frame.
     fn mass(&self, full: &Model) -> Vec<Vec<f64>> {
         let first = 1 + self.params.len();
