@@ -153,7 +153,7 @@ fn rotations_are_guessed_by_rotations() {
                 joint ball: {kind} moves arm;
                 body on arm {{ mass 1; com [0, 0, -1]; inertia diag(0.3, 0.2, 0.1) about com; }}
                 let tip = position(arm, [0, 0, -1]);
-                loop tip[2] = -0.8;
+                loop tip[3] = -0.8;
                 start ball ~ {guess};
             }}"
         );

@@ -1,6 +1,7 @@
 //! The configuration nearest to a guess among those that satisfy equations: Newton's method to one of them, then
 //! descent along all of them, and the same from a few neighbours of the guess, of which the nearest end counts.
 
+use crate::algebra::fp::Random;
 use crate::algebra::numeric::least_norm;
 
 /// Steps of Newton's method.
@@ -15,10 +16,14 @@ const STILL: f64 = 1e-11;
 const HALVED: usize = 24;
 /// The longest step of Newton's method (rad, m), beside the size of the coordinates.
 const REACH: f64 = 0.1;
-/// Directions whose neighbours are tried, too.
-const DIRECTIONS: usize = 8;
-/// How far away these neighbours are (rad, m).
-const AWAY: f64 = 0.5;
+/// The longest step of the descent, as a multiple of the one that a flat surface would ask for.
+const LONGER: f64 = 16.0;
+/// How many neighbours of the guess are tried at most, times the number of directions.
+const NEIGHBOURS: usize = 240;
+/// The most of them.
+const MOST: usize = 40;
+/// How far away the farthest of these neighbours are (rad, m).
+const AWAY: f64 = 2.0;
 /// What is added to the metric, relative to its largest entry, so that it is positive definite.
 const REGULAR: f64 = 1e-9;
 
@@ -43,12 +48,12 @@ pub fn nearest(problem: &impl Assembly, guess: &[f64]) -> Option<Vec<f64>> {
     }
     let count = problem.directions();
     let mut starts = vec![guess.to_vec()];
-    for direction in 0..count.min(DIRECTIONS) {
-        for away in [AWAY, -AWAY] {
-            let mut step = vec![0.0; count];
-            step[direction] = away;
-            starts.push(problem.moved(guess, &step));
-        }
+    let mut random = Random::new(0x6e65_6172);
+    let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+    for _ in 0..(NEIGHBOURS / count.max(1)).min(MOST) {
+        let away = AWAY * number();
+        let step: Vec<f64> = (0..count).map(|_| away * number()).collect();
+        starts.push(problem.moved(guess, &step));
     }
     let mut best: Option<(f64, Vec<f64>)> = None;
     for start in starts {
@@ -99,11 +104,38 @@ fn descend(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
         if square(&step).sqrt() <= STILL * (1.0 + before) {
             break;
         }
-        let nearer = shortened(&step, |step| {
-            let next = close(problem, problem.moved(&x, step))?;
+        let at = |factor: f64| -> Option<(Vec<f64>, f64)> {
+            let step: Vec<f64> = step.iter().map(|h| factor * h).collect();
+            let next = close(problem, problem.moved(&x, &step))?;
             let after = distance(problem, &next);
             (after < before).then_some((next, after))
-        });
+        };
+        // Along the step the square of the distance is nearly a parabola, whose slope at its start is known.
+        let (apart, slopes) = problem.apart(&x);
+        let slope: f64 = slopes
+            .iter()
+            .zip(&apart)
+            .map(|(row, e)| e * dot(row, &step))
+            .sum();
+        let whole = at(1.0);
+        let ahead = whole
+            .as_ref()
+            .map_or(f64::INFINITY, |(_, after)| after * after);
+        let bend = (ahead - before * before) / 2.0 - slope;
+        let lowest = if bend > 0.0 {
+            -slope / (2.0 * bend)
+        } else {
+            LONGER
+        };
+        let lowest = lowest.min(LONGER);
+        let lower = if lowest > 0.0 { at(lowest) } else { None };
+        let better = match (whole, lower) {
+            (Some(one), Some(other)) if one.1 <= other.1 => Some(one),
+            (Some(one), None) => Some(one),
+            (_, other) => other,
+        };
+        let halves = (1..HALVED as i32).map(|k| 0.5_f64.powi(k));
+        let nearer = better.or_else(|| halves.into_iter().find_map(at));
         let Some((next, after)) = nearer else {
             break;
         };
