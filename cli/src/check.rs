@@ -3,6 +3,7 @@
 use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
 use crate::source::Source;
+use crate::state::solved::lines as lines_of;
 use clap::Args;
 use hamel_codegen::derive::care::{HELP, MANY, losses};
 use hamel_codegen::derive::geometry::Inspection;
@@ -54,6 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             print(&table(&identities))?;
             print(&rounding(&generated))?;
             print(&merging(&generated))?;
+            print(&constrained(&generated, &source.text))?;
             print(&geometry(&generated))?;
             print(&methods(&generated))?;
             let failed = identities
@@ -143,6 +145,12 @@ fn merging(generated: &Generated) -> String {
     let confidence = Confidence::of_merging(&generated.model, graph);
     let count = graph.len();
     format!("  merging   {count} expressions compared by their values: {confidence}\n")
+}
+
+/// Which velocities constraints leave, and what the others follow from.
+fn constrained(generated: &Generated, text: &str) -> String {
+    let lines = lines_of(generated, text);
+    lines.iter().map(|line| format!("  {line}\n")).collect()
 }
 
 /// Integrable velocities, the Lie algebra of the frame, the pattern of M, symmetries.

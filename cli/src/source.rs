@@ -5,7 +5,7 @@ use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::functions::{Asked, FunctionId};
-use hamel_codegen::generate::{Generated, at_some_point, from_file};
+use hamel_codegen::generate::{Generated, at_some_point, available_in, from_file};
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
@@ -135,7 +135,11 @@ impl Source {
         &self,
         derive: impl Fn(Model) -> Result<T, Vec<Diagnostic>>,
     ) -> Result<T, Failure> {
-        let system = syntax::parse_text(&self.text).map_err(|errors| self.refused(&errors))?;
+        let system = syntax::parse_text(&self.text).and_then(|mut system| {
+            syntax::read_tables(&mut system, &mut |table| self.table(table))?;
+            Ok(system)
+        });
+        let system = system.map_err(|errors| self.refused(&errors))?;
         let derived = progress::during(DERIVING, || {
             at_some_point(&system, |model| {
                 self.warn(&model);
@@ -150,17 +154,29 @@ impl Source {
             model.asked = asked.clone();
             Generated::available(model, 0)
         })?;
+        self.left_out(singular);
+        Ok(generated)
+    }
+
+    /// Says that M has no inverse.
+    fn left_out(&self, singular: Option<Diagnostic>) {
         if let Some(Diagnostic { message, .. }) = singular {
             failure::warn(&format!(
                 "warning: {}: {message}; what needs its inverse is left out\n",
                 self.path
             ));
         }
-        Ok(generated)
     }
 
-    /// Derives the functions that the description asks for.
+    /// Derives the functions that the description asks for; for a robot, which asks for nothing by itself, all
+    /// that exist.
     pub fn derive(&self) -> Result<Generated, Failure> {
+        if self.robot.is_some() {
+            let derived = progress::during(DERIVING, || available_in(&self.text));
+            let (generated, singular) = derived.map_err(|errors| self.refused(&errors))?;
+            self.left_out(singular);
+            return Ok(generated);
+        }
         let derived = progress::during(DERIVING, || {
             from_file(&self.text, &mut |table| self.table(table))
         });
@@ -181,6 +197,23 @@ impl Source {
     /// not positive definite.
     pub fn derive_available(&self) -> Result<Generated, Failure> {
         self.available(Asked::everything())
+    }
+
+    /// Derives all functions and the linearisation, of a robot without an inverse of M what exists.
+    pub fn derive_counted(&self) -> Result<Generated, Failure> {
+        let (generated, singular) = self.derived(|mut model| {
+            let errors = match Generated::all(model.clone(), 0) {
+                Ok(generated) => return Ok((generated, None)),
+                Err(errors) => errors,
+            };
+            if self.robot.is_none() || !errors.iter().all(|error| error.inverse) {
+                return Err(errors);
+            }
+            model.asked = Asked::everything();
+            Generated::available(model, 0)
+        })?;
+        self.left_out(singular);
+        Ok(generated)
     }
 
     /// Derives all functions and the linearisation, whatever the description's `generate` says.

@@ -155,12 +155,20 @@ fn generate_file(path: &Path, kind: &Kind, target: &Path) -> Result<(), String> 
         }
         #[cfg(feature = "urdf")]
         Kind::Urdf(options) => {
+            use crate::generate::available_in;
             use crate::urdf::{import, refused, warnings};
             let imported = import(&text, options, &shown, false)?;
             warn(&warnings(&imported, &shown, &text, false));
             let description = name(&path.with_extension("eom"));
-            source(&imported.text, &description)
-                .map_err(|errors| refused(&errors, &imported, &shown, &text, false))
+            let refused =
+                |errors: Vec<Diagnostic>| refused(&errors, &imported, &shown, &text, false);
+            let (generated, singular) = available_in(&imported.text).map_err(refused)?;
+            if let Some(Diagnostic { message, .. }) = singular {
+                warn(&format!(
+                    "{shown}: {message}; what needs its inverse is left out"
+                ));
+            }
+            written(&generated, &description).map_err(refused)
         }
     }?;
     hamel_files::update(target, &code).map_err(|error| error.to_string())

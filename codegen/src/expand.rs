@@ -3,7 +3,7 @@
 use crate::diagnostics::Diagnostic;
 use crate::emit;
 use crate::generate::from_tokens;
-use crate::render::to_compile_errors;
+use crate::render::{to_compile_errors, to_compile_warnings};
 use proc_macro2::TokenStream;
 use std::path::PathBuf;
 
@@ -40,7 +40,10 @@ pub fn expand(input: TokenStream) -> TokenStream {
         return to_compile_errors(&[error], &places);
     }
     match emit::tokens(&generated.program, &emit::Options::default()) {
-        Ok(tokens) => tokens.into_iter().chain(read).collect(),
+        Ok(tokens) => {
+            let warnings = to_compile_warnings(&generated.model.warnings, &places);
+            tokens.into_iter().chain(read).chain(warnings).collect()
+        }
         Err(error) => to_compile_errors(&[generated.fault(&error)], &places),
     }
 }

@@ -20,6 +20,9 @@ pub struct Generated {
     pub model: Model,
     /// The same in the velocities that constraints leave: what states and functions are about.
     pub active: Model,
+    /// The velocities that constraints give by others: places in ξ of the full frame, each with that of its
+    /// constraint.
+    pub solved: Vec<(usize, usize)>,
     /// Its functions, validated.
     pub program: Program,
     /// Hash of the description's tokens: the same through every front end.
@@ -53,6 +56,18 @@ pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagn
     let mut system = syntax::parse_text(text)?;
     let tables = syntax::read_tables(&mut system, open)?;
     derive(&system, fingerprint(&(canonical(text) + &tables.concat())))
+}
+
+/// The same but for functions with M⁻¹ in them, where M is not positive definite; then the error that they would have is
+/// returned, too. Robots say what they are, and not what is wanted of them.
+///
+/// # Errors
+/// What is wrong with the description beyond that.
+#[cfg(feature = "files")]
+pub fn available_in(text: &str) -> Result<(Generated, Option<Diagnostic>), Vec<Diagnostic>> {
+    let system = syntax::parse_text(text)?;
+    let hash = fingerprint(&canonical(text));
+    at_some_point(&system, |model| Generated::available(model, hash))
 }
 
 /// Derives the description in a text.
@@ -158,7 +173,15 @@ impl Generated {
         let program = assemble(&model, reduction.as_ref(), linearized);
         let program = program.map_err(|error| vec![error])?;
         proof::prove(&model, reduction.as_ref(), &program)?;
+        let solved = reduction.as_ref().map_or(Vec::new(), |reduction| {
+            reduction
+                .solved
+                .iter()
+                .map(|&(row, velocity)| (velocity, row))
+                .collect()
+        });
         Ok(Generated {
+            solved,
             active: reduction.map_or_else(|| model.clone(), |reduction| reduction.model),
             model,
             program,

@@ -13,6 +13,27 @@ pub fn to_compile_errors(errors: &[Diagnostic], places: &Places) -> TokenStream 
         .collect()
 }
 
+/// Warnings of the compiler, for what is legal and looks like a mistake: a constant that is deprecated, with the message
+/// for its reason, is used at the place that the warning is about. No macro can warn in another way.
+pub fn to_compile_warnings(list: &[Diagnostic], places: &Places) -> TokenStream {
+    let one = |warning: &Diagnostic| {
+        let (first, _) = places.ends(warning.span);
+        let note = match &warning.help {
+            Some(help) => format!("{}\nhelp: {help}", warning.message),
+            None => warning.message.clone(),
+        };
+        let name = Ident::new("LOOKS_LIKE_A_MISTAKE", first);
+        quote::quote! {
+            const _: () = {
+                #[deprecated(note = #note)]
+                const #name: () = ();
+                #name
+            };
+        }
+    };
+    list.iter().map(one).collect()
+}
+
 /// `::core::compile_error! { "message" }`; the compiler underlines from the span of its first token to that of its last.
 fn compile_error(error: &Diagnostic, places: &Places) -> [TokenTree; 8] {
     let (first, last) = places.ends(error.span);

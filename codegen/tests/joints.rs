@@ -24,7 +24,23 @@ const REST: &str = "
 ";
 
 /// A joint, and the same by hand.
-const PAIRS: [(&str, &str); 14] = [
+const PAIRS: [(&str, &str); 17] = [
+    (
+        "joint j: continuous [0, 0, 2] on base at [0, 0, 1] moves g { stiffness 3; rest 0.4; }",
+        "coord j: S1; velocity j_dot; rate j = j_dot; frame g on base = pose(rotz(j), [0, 0, 1]);
+         potential 3 * angle([j.c * cos(0.4) + j.s * sin(0.4), j.s * cos(0.4) - j.c * sin(0.4)])^2 / 2;"
+    ),
+    (
+        "joint j: universal [1, 0, 0], [0, 1, 0] on base at translation([0, 0.1, 0]) moves g { damping 0.3; }",
+        "coord j_1, j_2; velocity j_1_dot, j_2_dot; rate j_1 = j_1_dot, j_2 = j_2_dot;
+         frame c on base = pose(rotx(j_1), [0, 0.1, 0]); frame g on c = pose(roty(j_2), [0, 0, 0]);
+         dissipation 0.15 * (j_1_dot^2 + j_2_dot^2);"
+    ),
+    (
+        "joint j: revolute [1, 2, 2] on base at [0.1, 0, 0.2] moves g;",
+        "coord j; velocity j_dot; rate j = j_dot;
+         frame g on base = pose(axis_angle([1, 2, 2], j), [0.1, 0, 0.2]);",
+    ),
     (
         "joint j: revolute [0, 1, 0] on base at pose(rotx(pi / 2), [0, 0, 0.4]) moves g;",
         "coord j; velocity j_dot; rate j = j_dot;

@@ -3,7 +3,7 @@
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::scene::{
     Body, CoordKind, Element, Expr, Extrapolation, Interpolation, Joint, Load, Point, Scene,
-    SceneError, ShapeKind, WORLD, call, cos, diagonal, if_less, pose, shifted, sin,
+    SceneError, ShapeKind, WORLD, call, cos, diagonal, if_less, in_axes, pose, shifted, sin,
 };
 use std::path::Path;
 
@@ -63,6 +63,7 @@ system Everything {
     prescribe u = 3 * t;
     prescribe rate(v) = 2 * v;
     inactive u, v[2];
+    independent u, v[1];
     nonholonomic u = m * v[1] stabilized 20;
     nonholonomic u = v[1];
     loop q = r[1] stabilized 2 * m;
@@ -87,7 +88,11 @@ system Everything {
     damper coefficient m on u;
     dissipation m * u^2;
     generalized force v = -m * v;
-    start X.p = [0, 0, 1], q = 2;
+    start X.p = [0, 0, 1], q = 2, u ~ 1.2;
+    start X.R ~ rotx(1);
+    rate r = v, b = 2 * b;
+    frame k_0 on f at [0, 0, 1], k_1 = translation(e);
+    output spin = angular_velocity(f) in body, push = 2 * (acceleration(f, e, g) in world)[2];
     output speed = norm(v) - (1 - (2 - 3)) / (4 / 5) * (6 * 7);
     output branch = 2 * (if q < 1 { r[1] } else if q >= 2 { -r[2] } else { min(q, 1) })^2;
     invariant energy when F = 0, k[1] = 2;
@@ -319,4 +324,48 @@ fn scenes_and_errors_can_be_sent_to_other_threads() {
     sent::<Scene>();
     sent::<SceneError>();
     sent::<Diagnostic>();
+}
+
+/// Guesses, independent velocities and components in axes have methods of their own.
+#[test]
+fn starts_that_are_near_and_velocities_that_stay_are_built() -> Result<(), SceneError> {
+    let mut sleigh = Scene::builder("Sleigh");
+    let (x, q) = (
+        sleigh.coordinate("x", CoordKind::Real),
+        sleigh.coordinate("q", CoordKind::Real),
+    );
+    let (v, w) = (
+        sleigh.velocity("v", ShapeKind::Scalar),
+        sleigh.velocity("w", ShapeKind::Scalar),
+    );
+    sleigh.rate("x", &v);
+    sleigh.rate("q", &w);
+    let blade = sleigh.frame(
+        "blade",
+        WORLD,
+        pose(call("rotz", [q]), [x, 0.into(), 0.into()]),
+    );
+    sleigh.body(
+        Body::on(&blade)
+            .mass(2)
+            .inertia_about_com(diagonal([1.0, 1.0, 1.0])),
+    );
+    sleigh.nonholonomic(&v, w * 2);
+    sleigh.independent([v.clone()]);
+    sleigh.guess("v", 3);
+    sleigh.output("slip", in_axes(call("velocity", [blade.pose()]), "blade"));
+    let scene = sleigh.build()?;
+    let text = scene.to_string();
+    for statement in [
+        "independent v;",
+        "start v ~ 3;",
+        "output slip = velocity(blade) in blade;",
+    ] {
+        assert!(text.contains(statement), "{text}");
+    }
+    let generated = scene.generate()?;
+    // The least of 2 (v - 3)² + w² with v = 2 w.
+    assert!((generated.model.start_xi[0] - 8.0 / 3.0).abs() < 1e-8);
+    assert_eq!(generated.solved, [(1, 0)]);
+    Ok(())
 }

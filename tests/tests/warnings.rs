@@ -76,3 +76,112 @@ fn warnings_are_underlined() {
       = help: remove it, or call it `_k`
     ");
 }
+
+/// A cart on a rail with an arm on it, and more statements.
+fn said(statements: &str) -> Vec<String> {
+    let text = format!(
+        "system A {{
+            joint rail: prismatic [1, 0, 0] moves cart;
+            joint arm: spherical on cart moves hand;
+            body on cart {{ mass 1; }}
+            {statements}
+            body on hand {{ mass 1; com [0, 0, 1]; inertia diag(1, 1, 1) about com; }}
+        }}"
+    );
+    let list = read(&text, Path::new("")).warnings.into_iter();
+    list.map(|warning| {
+        let place = warning.span.range().expect("a place");
+        format!("{} [{}]", warning.message, &text[place])
+    })
+    .collect()
+}
+
+/// Each beside a statement that differs in a detail, and cannot be complained of.
+#[test]
+fn what_cannot_be_meant_is_said() {
+    let body =
+        |inertia: &str| format!("body on hand {{ mass 1; com [0, 0, 1]; inertia {inertia}; }}");
+    for (statement, message, right) in [
+        (
+            body("diag(1, 1, 2.1) about com"),
+            "the inertia of this body violates the triangle inequality [diag(1, 1, 2.1)]",
+            body("diag(1, 1, 2) about com"),
+        ),
+        (
+            body("diag(0.5, 1.5, 1) about origin"),
+            "the inertia of this body is not positive [diag(0.5, 1.5, 1)]",
+            body("diag(1.5, 1.5, 1) about origin"),
+        ),
+        (
+            body("[[1, 0.9, 0], [0.9, 1, 0], [0, 0, 0.05]] about com"),
+            "the inertia of this body violates the triangle inequality [[[1, 0.9, 0], [0.9, 1, 0], [0, 0, 0.05]]]",
+            body("[[1, 0.9, 0], [0.9, 1, 0], [0, 0, 2]] about com"),
+        ),
+        (
+            "param J: sym3 = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]; body on hand { mass 1; inertia J about com; }".into(),
+            "the inertia of this body is not positive, with the default parameters [J]",
+            "param J: sym3 = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]; body on hand { mass 1; inertia J about com; }".into(),
+        ),
+        (
+            "body on hand { mass -1; }".into(),
+            "the mass of this body is negative: -1 [-1]",
+            "body on hand { mass 0; }".into(),
+        ),
+        (
+            "joint turn: revolute [0, 0, 1] moves disk; body on disk { mass 1; inertia diag(0, 0, -2) about com; }".into(),
+            "the moment of inertia about the axis that this body turns about is negative [diag(0, 0, -2)]",
+            "joint turn: revolute [0, 0, 1] moves disk; body on disk { mass 1; inertia diag(0, 0, 2) about com; }".into(),
+        ),
+        (
+            "force [0, 0, 1] on cart in world;".into(),
+            "this load can never do work: nothing that moves `cart` yields to it [force [0, 0, 1] on cart in world;]",
+            "force [0, 0, 1] on hand in world; force [1, 0, 0] on cart in world;".into(),
+        ),
+        (
+            "input t; torque [t, 0, 0] on cart in body;".into(),
+            "this load can never do work: nothing that moves `cart` yields to it [torque [t, 0, 0] on cart in body;]",
+            "input t; torque [t, 0, 0] on hand in body;".into(),
+        ),
+        (
+            "frame bolt on cart at [0, 0, 1]; force 3 from bolt to [0, 1, 0] on cart;".into(),
+            "this force can never do work: the distance of its points never changes [force 3 from bolt to [0, 1, 0] on cart;]",
+            "frame bolt on cart at [0, 0, 1]; force 3 from bolt to [0, 1, 0] on hand;".into(),
+        ),
+        (
+            "spring stiffness 3 from [0, 0, 1] on cart to [0, 1, 0] on cart;".into(),
+            "this spring can never do work: the distance of its points never changes [spring stiffness 3 from [0, 0, 1] on cart to [0, 1, 0] on cart;]",
+            "spring stiffness 3 from [0, 0, 1] on cart to [0, 1, 0] on hand;".into(),
+        ),
+        (
+            "joint turn: revolute [0, 0, 1] moves disk { limit 0.5 to 2; } body on disk { mass 1; inertia identity(3) about com; }".into(),
+            "the start of `turn` is 0, beyond its limits 0.5 to 2 [turn]",
+            "joint turn: revolute [0, 0, 1] moves disk { limit 0.5 to 2; } body on disk { mass 1; inertia identity(3) about com; } start turn = 0.5;".into(),
+        ),
+        (
+            "joint turn: revolute [0, 0, 1] moves disk { limit -1 to 1; } body on disk { mass 1; inertia identity(3) about com; } start turn = 1.1;".into(),
+            "the start of `turn` is 1.1, beyond its limits -1 to 1 [start turn = 1.1;]",
+            "joint turn: revolute [0, 0, 1] moves disk { limit -1 to 1; } body on disk { mass 1; inertia identity(3) about com; } start turn = -1;".into(),
+        ),
+    ] {
+        assert_eq!(said(&statement), [message], "{statement}");
+        assert_eq!(said(&right), [""; 0], "{right}");
+    }
+}
+
+/// The macro has no warnings of its own; what it expands to makes the compiler say them.
+#[test]
+fn the_macro_hands_warnings_to_the_compiler() {
+    let text = |more: &str| {
+        format!("system A {{ coord q; velocity w; rate q = w; kinetic w^2 / 2; {more} }}")
+    };
+    let expanded = |more: &str| {
+        let tokens: proc_macro2::TokenStream = text(more).parse().expect("tokens");
+        hamel_codegen::expand(tokens).to_string()
+    };
+    let with = expanded("param k = 2;");
+    assert!(
+        with.contains("deprecated") && with.contains("the parameter `k` is never used"),
+        "{with}"
+    );
+    assert!(!expanded("").contains("deprecated"));
+}

@@ -46,7 +46,7 @@ pub fn run(source: &Source, at: &File) -> Result<(), Failure> {
     let mut errors = Vec::new();
     let mut samples = Vec::new();
     for (index, one) in list.iter().enumerate() {
-        match Sample::parse(one, order, &generated, source.joints()) {
+        match Sample::parse(one, order, (&generated, &source.text), source.joints()) {
             Ok(sample) => samples.push(sample),
             Err(found) if several => {
                 errors.extend(

@@ -69,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     // What is generated on demand alone is counted as well, unless functions were chosen.
     let generated = match source.model()?.asked == Asked::everything() {
-        true => source.derive_linearized()?,
+        true => source.derive_counted()?,
         false => source.derive()?,
     };
     let program = &generated.program;

@@ -4,7 +4,10 @@
 use super::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
+use hamel_codegen::model::assembly::nearest;
+use hamel_codegen::model::closest::Constraints;
 use hamel_codegen::model::closure::{Closure, Open, normalise};
+use hamel_codegen::model::twists::Moving;
 
 /// Smaller values of |φ(x)| are left as they are.
 const EXACT: f64 = 1e-12;
@@ -23,14 +26,27 @@ impl State {
             true => Ok(()),
             false => Err(errors),
         };
-        none(self.violations(active))?;
+        let violations = self.violations(active);
+        if !violations.is_empty() && !given_x.iter().all(|given| *given) {
+            self.x = self.satisfied(full, given_x).ok_or(violations)?;
+        } else {
+            none(violations)?;
+        }
         if self.residuals(active).iter().any(|size| size.abs() > EXACT) {
             normalise(&active.blocks, &mut self.x);
         }
         let mut x = self.x.clone();
-        let closed = Closure::of(full, &self.params)
-            .with_inputs(&self.u)
-            .close_loops(&mut x, given_x);
+        let closure = Closure::of(full, &self.params).with_inputs(&self.u);
+        let mut closed = closure.close_loops(&mut x, given_x);
+        if full.constraints.iter().any(|row| row.is_holonomic()) && !given_x.iter().all(|g| *g) {
+            // As the guesses of a description: nearest to its start, in the metric of M.
+            let (mut near, mass) = (self.x.clone(), self.mass(full));
+            let assembled = closure.assemble(&mut near, given_x, &mass);
+            if assembled.is_ok() || closed.is_err() {
+                closed = assembled;
+                x = near;
+            }
+        }
         closed.map_err(|open| {
             vec![format!(
                 "coord: this configuration leaves {} open by {:.2e}, and no change of coordinates that are not given closes it",
@@ -54,6 +70,45 @@ impl State {
         })?;
         self.xi[..xi.len()].copy_from_slice(&xi);
         Ok(())
+    }
+}
+
+impl State {
+    /// The nearest x that satisfies the description's constraints, where what is given stays.
+    fn satisfied(&self, full: &Model, given: &[bool]) -> Option<Vec<f64>> {
+        let still = vec![0.0; full.n()];
+        let numbers = full.numbers(&self.params, &self.x, &still, &self.u, &still);
+        let kept = |alpha: &usize| given[*alpha];
+        let problem = Constraints {
+            graph: &full.points.free,
+            phi: full.phi.iter().map(|(edge, _)| *edge).collect(),
+            first: full.points.first,
+            numbers: &numbers,
+            blocks: &full.blocks,
+            guess: &self.x,
+            given: (0..given.len()).filter(kept).collect(),
+        };
+        let mut found = nearest(&problem, &self.x)?;
+        for &alpha in &problem.given {
+            found[alpha] = self.x[alpha];
+        }
+        Some(found)
+    }
+
+    /// M of the full frame.
+    fn mass(&self, full: &Model) -> Vec<Vec<f64>> {
+        let first = 1 + self.params.len();
+        let moving = Moving {
+            graph: &full.graph,
+            a: &full.a,
+            first,
+            velocity: first + full.nu(),
+            n: full.n(),
+        };
+        let still = vec![0.0; full.n()];
+        let numbers = full.numbers(&self.params, &self.x, &still, &self.u, &still);
+        let inertia = (&full.bodies[..], &full.particles[..], full.kinetic);
+        moving.mass(&full.frames, inertia, &numbers)
     }
 }
 

@@ -53,7 +53,7 @@ impl File {
     pub fn state(&self, source: &Source, generated: &Generated) -> Result<State, Failure> {
         let state = match self.is_by_joints() {
             true => self.by_joints(source, generated),
-            false => State::of(generated, &self.json),
+            false => State::of(generated, &source.text, &self.json),
         };
         state.map_err(|errors| Failure::usages(&self.path, &errors))
     }
@@ -66,9 +66,8 @@ impl File {
             .map(|(part, why)| format!("{part}: {why}"))
             .collect();
         match refused.is_empty() {
-            true => {
-                Sample::parse(&self.json, None, generated, source.joints()).map(|read| read.state)
-            }
+            true => Sample::parse(&self.json, None, (generated, &source.text), source.joints())
+                .map(|read| read.state),
             false => Err(refused),
         }
     }

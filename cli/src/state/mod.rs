@@ -11,7 +11,7 @@ pub mod file;
 pub mod joints;
 mod read;
 pub mod sample;
-mod solved;
+pub mod solved;
 pub mod strict;
 #[cfg(test)]
 mod tests;
@@ -56,11 +56,11 @@ impl State {
         }
     }
 
-    /// The start, changed by a JSON value with coordinates.
-    pub fn of(generated: &Generated, json: &Value) -> Result<Self, Vec<String>> {
+    /// The start, changed by a JSON value with coordinates; `text` is that of the description.
+    pub fn of(generated: &Generated, text: &str, json: &Value) -> Result<Self, Vec<String>> {
         let model = &generated.active;
         let mut state = State::start(model);
-        let mut reader = Reader::new(generated);
+        let mut reader = Reader::new(generated, text);
         reader.state(json, model, &mut state);
         reader.finish(generated, &mut state)?;
         Ok(state)

@@ -25,14 +25,14 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Nothing was given yet.
-    pub fn new(generated: &Generated) -> Self {
+    /// Nothing was given yet; `text` is that of the description.
+    pub fn new(generated: &Generated, text: &str) -> Self {
         let model = &generated.active;
         Reader {
             errors: Vec::new(),
             given_x: vec![false; model.nu()],
             given_xi: vec![false; model.n()],
-            solved: solved(generated),
+            solved: solved(generated, text),
         }
     }
 

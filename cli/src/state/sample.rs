@@ -48,7 +48,7 @@ impl Sample {
     pub fn parse(
         json: &Value,
         order: Option<&Value>,
-        generated: &Generated,
+        (generated, text): (&Generated, &str),
         names: &[(String, String)],
     ) -> Result<Self, Vec<String>> {
         let model = &generated.active;
@@ -57,7 +57,7 @@ impl Sample {
             joints: joints(model, names),
             force: None,
         };
-        let mut reader = Reader::new(generated);
+        let mut reader = Reader::new(generated, text);
         match json {
             Value::Object(parts) => reader.sample(parts, order, model, &mut sample),
             other => reader.error("", format!("an object expected, {} found", kind(other))),

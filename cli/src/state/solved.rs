@@ -1,32 +1,99 @@
-//! Velocities that the constraints give by others: a state has no place for them.
+//! Velocities that follow from constraints: a state has no place for them.
 
+use crate::names;
 use hamel_codegen::generate::Generated;
-use hamel_codegen::model::Group;
+use hamel_codegen::model::pfaffian::{Kind, Pfaffian};
 
 /// Names listed at most.
 const LISTED: usize = 12;
 
-/// The names of velocities that were solved away, and of joints that have no others, each with what to do
+/// A constraint with its place in the text of the description.
+pub fn shown(constraint: &Pfaffian, text: &str) -> String {
+    let before = constraint
+        .span
+        .range()
+        .and_then(|range| text.get(..range.start));
+    let line = before.map(|before| 1 + before.matches('\n').count());
+    let written = match constraint.kind {
+        Kind::Inactive => format!("inactive {}", constraint.written),
+        _ => constraint.written.clone(),
+    };
+    match line {
+        Some(line) => format!("the constraint on line {line}, `{written}`"),
+        None => format!("the constraint `{written}`"),
+    }
+}
+
+/// The velocities that constraints give by others, each with its constraint, and those that stay.
+pub fn lines(generated: &Generated, text: &str) -> Vec<String> {
+    let (full, active) = (&generated.model, &generated.active);
+    if full.constraints.is_empty() {
+        return Vec::new();
+    }
+    let all = names::velocities(full);
+    let row = |place: usize| {
+        generated
+            .solved
+            .iter()
+            .find(|(velocity, _)| *velocity == place)
+    };
+    let width = all
+        .iter()
+        .map(|name| name.chars().count())
+        .max()
+        .unwrap_or(0);
+    let mut lines = Vec::new();
+    for (place, name) in all.iter().enumerate() {
+        let clock = full.clock.is_some_and(|clock| clock.xi == place);
+        lines.push(
+            match row(place).and_then(|(_, row)| full.constraints.get(*row)) {
+                Some(row) => format!("velocity {name:width$}  follows from {}", shown(row, text)),
+                None if clock => format!("velocity {name:width$}  is 1, the rate of time"),
+                None => format!("velocity {name:width$}  stays in the state"),
+            },
+        );
+    }
+    for row in &active.constraints {
+        let shown = shown(row, text);
+        lines.push(format!("multiplier of {shown}"));
+    }
+    lines
+}
+
+/// The names of velocities that were solved for, and of joints that have no others, each with what to do
 /// where a state gives it.
-pub fn solved(generated: &Generated) -> Vec<(String, String)> {
-    let active = &generated.active.velocities;
-    let whole = |group: &&Group| active.iter().all(|left| left.name != group.name);
+pub fn solved(generated: &Generated, text: &str) -> Vec<(String, String)> {
+    let full = &generated.model;
+    let stay: Vec<String> = {
+        let groups = generated.active.velocities.iter();
+        groups.map(|group| group.name.clone()).collect()
+    };
     let mut reasons = Vec::new();
-    for group in generated.model.velocities.iter().filter(whole) {
-        let entry = |name: &str| {
+    for group in &full.velocities {
+        if stay.contains(&group.name) {
+            continue;
+        }
+        let entry = |name: &&String| {
             let number = name.strip_prefix(group.name.as_str());
             number.is_some_and(|rest| rest.starts_with('_') && rest[1..].parse::<usize>().is_ok())
         };
-        let entries = active.iter().map(|left| left.name.as_str());
-        let entries: Vec<&str> = entries.filter(|name| entry(name)).collect();
+        let entries: Vec<&str> = stay.iter().filter(entry).map(String::as_str).collect();
+        let of_group = generated
+            .solved
+            .iter()
+            .filter(|(velocity, _)| (group.offset..group.offset + group.len).contains(velocity));
+        let rows = of_group.filter_map(|(_, row)| full.constraints.get(*row));
+        let mut rows: Vec<String> = rows.map(|row| shown(row, text)).collect();
+        rows.dedup();
+        let rows = listed(&rows, " and ");
         let why = match entries[..] {
-            [] => format!(
-                "solved away, since constraints give it by {}; leave it out",
-                names(active)
+            [] if rows.is_empty() => format!(
+                "no velocity of the state, which are {}; leave it out",
+                listed(&stay, ", ")
             ),
+            [] => format!("follows from {rows}; leave it out"),
             _ => format!(
-                "solved away in part, since constraints give the rest by {}; give {}",
-                names(active),
+                "follows in part from {rows}; give {}",
                 entries.join(" and ")
             ),
         };
@@ -38,10 +105,9 @@ pub fn solved(generated: &Generated) -> Vec<(String, String)> {
     reasons
 }
 
-fn names(groups: &[Group]) -> String {
-    let names: Vec<&str> = groups.iter().map(|group| group.name.as_str()).collect();
+fn listed(names: &[String], between: &str) -> String {
     match names.get(..LISTED) {
-        Some(first) if names.len() > LISTED => format!("{} and others", first.join(", ")),
-        _ => names.join(", "),
+        Some(first) if names.len() > LISTED => format!("{} and others", first.join(between)),
+        _ => names.join(between),
     }
 }

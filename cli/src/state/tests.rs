@@ -20,7 +20,7 @@ fn model() -> Generated {
 }
 
 fn read(text: &str) -> Result<State, Vec<String>> {
-    State::of(&model(), &strict::parse(text).expect("JSON"))
+    State::of(&model(), "", &strict::parse(text).expect("JSON"))
 }
 
 #[test]
@@ -91,14 +91,14 @@ const SLEIGH: &str = "system Sleigh {
 }";
 
 #[test]
-fn velocities_that_were_solved_away_are_named_as_such() {
+fn velocities_that_follow_are_named_with_their_constraints() {
     let generated = from_text(SLEIGH).expect("a sound description");
     let text = r#"{"velocity": {"u": 1, "v": 0, "w": [0, 0, 2], "z": 1}}"#;
-    let read = |text: &str| State::of(&generated, &strict::parse(text).expect("JSON"));
+    let read = |text: &str| State::of(&generated, SLEIGH, &strict::parse(text).expect("JSON"));
     let errors = read(text).expect_err("mistakes");
     let expected = [
-        "velocity.v: solved away, since constraints give it by u, w_3; leave it out",
-        "velocity.w: solved away in part, since constraints give the rest by u, w_3; give w_3",
+        "velocity.v: follows from the constraint on line 10, `inactive v`; leave it out",
+        "velocity.w: follows in part from the constraint on line 10, `inactive w[1]` and the constraint on line 10, `inactive w[2]`; give w_3",
         "velocity.z: unknown name; known are u, w_3",
     ];
     assert_eq!(errors, expected);

@@ -1,7 +1,7 @@
 //! Axes and places of joints: exact unit vectors.
 
 use crate::algebra::graph::{Edge, Function, Graph};
-use crate::algebra::linear::{Mat3, Vec3};
+use crate::algebra::linear::{Mat3, Vec3, identity3};
 use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::value::Value;
@@ -41,19 +41,22 @@ pub fn call(graph: &mut Graph, name: &str, value: &Value) -> Result<Value, Refus
 
 /// A pose that does not depend on the motion.
 fn place(graph: &Graph, value: &Value) -> Result<Value, Refused> {
-    let Value::Pose(..) = value else {
+    if !matches!(value, Value::Pose(..)) && value.as_vec3().is_none() {
         return Err(Refused(
-            "the place of a joint has to be a pose",
-            "write `at pose(R, p)`, or `at pose(identity(3), p)` for a place without a turn",
+            "the place of a joint has to be a pose or a point",
+            "write `at pose(R, p)`, or `at p` for a place without a turn",
         ));
-    };
+    }
     if class_of(graph, value) & !class::PARAM != 0 {
         return Err(Refused(
             "the place of a joint has to be constant",
             "it may depend on parameters and constants alone; what moves is a joint or a `frame`",
         ));
     }
-    Ok(value.clone())
+    Ok(match value.as_vec3() {
+        Some(point) => Value::Pose(identity3(graph), point),
+        None => value.clone(),
+    })
 }
 
 fn class_of(graph: &Graph, value: &Value) -> u8 {
@@ -62,7 +65,7 @@ fn class_of(graph: &Graph, value: &Value) -> u8 {
 }
 
 /// The unit vector of a constant direction.
-fn unit(graph: &mut Graph, value: &Value) -> Result<Vec3, Refused> {
+pub fn unit(graph: &mut Graph, value: &Value) -> Result<Vec3, Refused> {
     let Some(axis) = value.as_vec3() else {
         return Err(Refused(
             "the axis of a joint has to be a vector of 3",
@@ -138,7 +141,7 @@ fn plane(graph: &mut Graph, normal: Vec3) -> Value {
 
 /// The shortest turn from ±eₖ to n: I + ŵ + ŵ²/(1 + c) with w = ±eₖ × n and c = ±nₖ.
 fn shortest(graph: &mut Graph, k: usize, negative: bool, n: Vec3) -> Mat3 {
-    use crate::algebra::linear::{cross, identity3, multiply3};
+    use crate::algebra::linear::{cross, multiply3};
     use crate::model::rotations::hat;
     let mut from = [graph.zero(); 3];
     from[k] = graph.one().signed(negative);

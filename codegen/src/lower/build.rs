@@ -7,8 +7,8 @@ use super::rate::At;
 use super::scope::Scope;
 use super::variety::Variety;
 use super::{
-    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, states, time,
-    unused,
+    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, states,
+    staying, strange, time, unused,
 };
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
@@ -32,7 +32,8 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
 pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
     let own = SEED + number * ATTEMPTS;
     let mut first = Report::new();
-    let warnings = unused::warnings(system);
+    let mut warnings = unused::warnings(system);
+    let written = system;
     let system = &joints::expand(system, &mut first);
     let system = &time::expand(system, &mut first);
     let mut variety = Variety::read(system, own, &mut first);
@@ -63,6 +64,7 @@ pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> 
             Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
+                warnings.extend(strange::warnings(written, &model));
                 model.warnings = warnings;
                 return Ok(model);
             }
@@ -148,6 +150,10 @@ impl<'a> Reading<'a> {
         // The start is needed to choose pivots; what is wrong with it is said last.
         let mut last = Report::new();
         let mut starts = start::read(system, graph, scope, declared, &defaults, &mut last);
+        start::guess::check(system, declared, &mut last);
+        if let (Some(start), Some(x)) = (&mut starts, &variety.assembled) {
+            start.x.clone_from(x);
+        }
         if let Some(start) = &starts {
             start::check::check(system, variety, declared, &defaults, &start.x, &mut last);
         }
@@ -189,6 +195,7 @@ impl<'a> Reading<'a> {
         );
         constraints.extend(drives);
         let states = states::read(system, graph, scope, declared, &defaults, report);
+        let independent = staying::read(system, graph, scope, declared, &constraints, report);
         if let (Some(start), Some(kinematics), true) = (
             &mut starts,
             &kinematics,
@@ -203,7 +210,18 @@ impl<'a> Reading<'a> {
                 &constraints,
                 &defaults,
             );
-            report.keep(start.close(&closure, &constraints, &defaults));
+            let known = !defaults.iter().any(|number| number.is_nan());
+            report.keep(match start::guess::any(system) && known {
+                true => {
+                    let inertia = (&frames[..], &dynamics);
+                    let mass = |x: &[f64]| {
+                        let moved = (declared, kinematics);
+                        start::guess::mass(graph, inertia, moved, &numbers, x)
+                    };
+                    start.close_near(&closure, &constraints, mass)
+                }
+                false => start.close(&closure, &constraints, &defaults),
+            });
         }
         last.finish()
             .err()
@@ -246,6 +264,7 @@ impl<'a> Reading<'a> {
             clock: declared.clock,
             prescribed,
             accelerated,
+            independent,
             whole: None,
             spans: true,
             overconstrained: false,

@@ -2,7 +2,8 @@
 
 use super::declare::{Declared, shape_fits};
 use super::expression::Evaluator;
-use super::scope::{Rates, Scope};
+use super::motion::Motion;
+use super::scope::Scope;
 use super::time;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Random;
@@ -83,19 +84,16 @@ pub fn read(
     definitions
 }
 
-/// Symbols for ẋ, and a scope in which `rate(…)` means them.
+/// Symbols for ẋ, and a scope in which d/dt is along them.
 fn rates(graph: &mut Graph, scope: &Scope, x: &[Edge]) -> (Scope, Vec<Edge>) {
     let mut random = Random::new(SEED);
-    let mut rates = Rates::default();
     let mut x_dot = Vec::new();
-    for &x in x {
+    for _ in x {
         let value = random.element();
-        let rate = graph.symbol("rate", class::RATE, value);
-        rates.of.insert(x.node(), rate);
-        x_dot.push(rate);
+        x_dot.push(graph.symbol("rate", class::RATE, value));
     }
     let mut scope = scope.clone();
-    scope.rates = Some(rates);
+    scope.rates = Some(Motion::new(x, &x_dot, &[], &[]));
     (scope, x_dot)
 }
 

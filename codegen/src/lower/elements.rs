@@ -5,9 +5,11 @@
 //! as wrenches on the frames of the two points. On a scalar e: V = ½ k (e − l)², D = ½ c e². What is
 //! left of D acts by Rayleigh's fᵢ = −∂D/∂ξⁱ (W; N, N m).
 
+use super::functions::angle_from;
 use super::line::{Line, is_root};
 use super::quadratic::is_quadratic;
 use super::reader::{Dynamics, Reader};
+use super::scope::NameKind;
 use super::time;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{scale3, sub3};
@@ -15,7 +17,7 @@ use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::elements::{Along, Damper, Push, Spring};
 use crate::model::value::Value;
-use crate::syntax::ast::{Acting, Expr, ItemKind, Span};
+use crate::syntax::ast::{Acting, CoordKind, Expr, ExprKind, ItemKind, Span};
 
 impl Reader<'_, '_> {
     /// Reads a statement of this kind into energies and forces; `start` are the numbers of all
@@ -102,7 +104,15 @@ impl Reader<'_, '_> {
         };
         let (from, to) = match acting {
             Acting::On(expr) => {
-                let scalar = self.spring_scalar(expr);
+                let (scalar, rest) = match self.circle(expr) {
+                    // Of a circle the angle from where the spring is at rest.
+                    Some(point) => {
+                        let graph = &mut *self.evaluator.graph;
+                        let angle = rest.map(|rest| angle_from(graph, point, Some(rest)));
+                        (angle, Some(graph.zero()))
+                    }
+                    None => (self.spring_scalar(expr), rest),
+                };
                 return Some(Spring {
                     stiffness: stiffness?,
                     length: rest?,
@@ -143,6 +153,20 @@ impl Reader<'_, '_> {
             along: line.along(Some(length)),
             wrenches,
         })
+    }
+
+    /// The cosine and sine of an S1 coordinate, where an expression is the name of one.
+    fn circle(&mut self, expr: &Expr) -> Option<[Edge; 2]> {
+        let ExprKind::Name(name) = &expr.kind else {
+            return None;
+        };
+        let entry = self.evaluator.scope.get(name)?;
+        match (entry.kind, entry.value.as_ref()?) {
+            (NameKind::Coord(CoordKind::S1), Value::Vector(point)) => {
+                Some([*point.first()?, *point.get(1)?])
+            }
+            _ => None,
+        }
     }
 
     fn spring_scalar(&mut self, expr: &Expr) -> Option<Edge> {

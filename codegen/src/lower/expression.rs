@@ -95,6 +95,7 @@ impl<'a> Evaluator<'a> {
             ExprKind::Field(base, field) => self.field(base, field),
             ExprKind::Index(base, indices) => self.index(base, indices, expr.span),
             ExprKind::Call(function, arguments) => self.call(function, arguments, expr.span),
+            ExprKind::InAxes(call, frame) => self.in_axes(call, frame),
             ExprKind::Neg(inner) => Some(self.value(inner)?.map(|edge| -edge)),
             ExprKind::Binary(op, left, right) => {
                 let (a, b) = (self.value(left), self.value(right));

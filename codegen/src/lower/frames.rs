@@ -77,7 +77,10 @@ pub fn relative_pose(
 ) -> Option<Value> {
     let Relation { name, pose, .. } = relation;
     let mut evaluator = Evaluator::new(graph, scope, report);
-    let value = evaluator.value(pose)?;
+    let mut value = evaluator.value(pose)?;
+    if let Some(point) = value.as_vec3() {
+        value = Value::Pose(identity3(evaluator.graph), point);
+    }
     let Value::Pose(rotation, position) = value else {
         let message = format!("a frame has to be a pose, this is {}", value.shape());
         let help = match value.shape().as_str() {

@@ -6,7 +6,7 @@ use super::expression::Evaluator;
 use super::motion::FUNCTIONS;
 use super::scope::{NameKind, reserved};
 use crate::algebra::graph::{Edge, Function, Graph};
-use crate::algebra::linear::{apply3, cross, multiply3, transpose, transpose3};
+use crate::algebra::linear::{apply3, cross, identity3, multiply3, transpose, transpose3};
 use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::rotations::{axis_angle, hat, quaternion_matrix, turn};
@@ -76,6 +76,7 @@ impl Evaluator<'_> {
         let known = || {
             reserved()
                 .chain(FUNCTIONS)
+                .chain(NAMES_OF_ALL)
                 .filter(|name| usage(name).is_some())
         };
         if self.scope.get(name).is_some() {
@@ -118,9 +119,14 @@ impl Evaluator<'_> {
     }
 }
 
-/// Whether a name is that of a function of the language.
+/// Functions whose names values and functions of a description may share.
+const NAMES_OF_ALL: [&str; 2] = ["translation", "angle"];
+
+/// Whether a name is that of a function of the language, which no function of a description can have.
 pub fn is_function(name: &str) -> bool {
-    usage(name).is_some() || FUNCTIONS.contains(&name) || name == "rate"
+    usage(name).is_some() && !NAMES_OF_ALL.contains(&name)
+        || FUNCTIONS.contains(&name)
+        || name == "rate"
 }
 
 /// Why a call has no value.
@@ -170,6 +176,8 @@ fn usage(name: &str) -> Option<Cow<'static, str>> {
         "qmul" => "`qmul(p, q)` of vectors of 4, scalar first",
         "pose" => "`pose(R, p)` of a rotation matrix and a vector of 3",
         "inverse" => "`inverse(P)` of a pose",
+        "translation" => "`translation(p)` of a vector of 3",
+        "angle" => "`angle(q)` of an S1 coordinate, or of a cosine and a sine in one vector",
         "position" => "`position(f, p)` of a frame and a point of it",
         "velocity" => "`velocity(f, p)` of a frame and a point of it",
         "acceleration" => "`acceleration(f, p)` of a frame and a point of it",
@@ -290,8 +298,10 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             Value::from_mat3(&multiply3(graph, &last, &turns[0]))
         }
         ("axis_angle", [axis, turn @ ..]) => {
-            let axis = axis.as_vec3().ok_or(Fault::Usage)?;
+            let given = axis.as_vec3().ok_or(Fault::Usage)?;
             let (c, s) = cosine_sine(graph, turn).ok_or(Fault::Usage)?;
+            // A direction in numbers has an exact unit vector.
+            let axis = axes::unit(graph, axis).unwrap_or(given);
             if !free && graph.dot(&axis, &axis) != graph.one() {
                 return Err(Fault::Why(
                     "the axis of `axis_angle` is no unit vector",
@@ -319,6 +329,8 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             (Some(r), Some(p)) => Pose(r, p),
             _ => return Err(Fault::Usage),
         },
+        ("translation", [p]) => Pose(identity3(graph), p.as_vec3().ok_or(Fault::Usage)?),
+        ("angle", [Vector(q)]) if q.len() == 2 => Scalar(angle_from(graph, [q[0], q[1]], None)),
         ("inverse", [Pose(r, p)]) => {
             let back = transpose3(r);
             Pose(back, apply3(graph, &back, *p).map(|edge| -edge))
@@ -361,6 +373,22 @@ fn cosine_sine(graph: &mut Graph, values: &[Value]) -> Option<(Edge, Edge)> {
         [Value::Vector(v)] if v.len() == 2 => Some((v[0], v[1])),
         _ => None,
     }
+}
+
+/// The angle of (c, s) beyond that of a turn by `rest`, from −π to π.
+pub(super) fn angle_from(graph: &mut Graph, [c, s]: [Edge; 2], rest: Option<Edge>) -> Edge {
+    let Some(rest) = rest else {
+        return graph.atan2(s, c);
+    };
+    let (cos, sin) = (
+        graph.apply(Function::Cos, rest),
+        graph.apply(Function::Sin, rest),
+    );
+    let (along, across) = (
+        graph.dot(&[c, s], &[cos, sin]),
+        graph.dot(&[s, -c], &[cos, sin]),
+    );
+    graph.atan2(across, along)
 }
 
 /// The length of a vector. At rest that of a velocity has slopes of both signs and counts as level: so drag

@@ -41,6 +41,8 @@ mod relations;
 mod scope;
 mod start;
 mod states;
+mod staying;
+mod strange;
 mod tangency;
 mod time;
 mod unused;

@@ -32,7 +32,7 @@ pub const FUNCTIONS: [&str; 5] = [
 
 /// Whether a function is known only once the rates are.
 pub fn needs_rates(function: &str) -> bool {
-    FUNCTIONS.contains(&function) && function != "position"
+    function == "rate" || FUNCTIONS.contains(&function) && function != "position"
 }
 
 /// ẋ and ξ̇: what d/dt does to x and ξ.
@@ -51,6 +51,11 @@ impl Motion {
             seeds: pairs.map(|(symbol, &rate)| (symbol.node(), rate)).collect(),
             seen: RefCell::new(Vec::new()),
         }
+    }
+
+    /// d/dt of expressions.
+    pub fn along(&self, graph: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
+        Derivation::new(self.seeds.iter().copied()).all(graph, edges)
     }
 
     /// d/dt of several expressions.
@@ -114,6 +119,32 @@ impl Motion {
             let turn = cross(graph, omega, velocity);
             add3(graph, change, turn);
         }
+    }
+
+    /// ṙ + R (ω × p) and R ω with ω̂ the skew part of RᵀṘ, KR18 (36): what velocities are where ẋ is any vector.
+    /// The same in the axes of the frame is known to the graph, too.
+    pub(super) fn defining(
+        &self,
+        graph: &mut Graph,
+        rotation: &Mat3,
+        position: Vec3,
+        point: Vec3,
+    ) -> (Vec3, Vec3) {
+        let back = transpose3(rotation);
+        let turned = self.turning(graph, rotation);
+        let product = multiply3(graph, &back, &turned);
+        let half = graph.ratio(1, 2);
+        let omega = [(2, 1), (0, 2), (1, 0)].map(|(i, j)| {
+            let difference = graph.sub(product[i][j], product[j][i]);
+            graph.mul(half, difference)
+        });
+        let moved = self.rates(graph, position);
+        let lever = cross(graph, omega, point);
+        let own = apply3(graph, &back, moved);
+        add3(graph, own, lever);
+        let lever = apply3(graph, rotation, lever);
+        let velocity = add3(graph, moved, lever);
+        (velocity, apply3(graph, rotation, omega))
     }
 
     fn turning(&self, graph: &mut Graph, rotation: &Mat3) -> Mat3 {

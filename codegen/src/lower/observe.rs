@@ -2,12 +2,12 @@
 
 use super::expression::Evaluator;
 use crate::algebra::graph::Edge;
-use crate::algebra::linear::{add3, apply3, multiply3, sub3, transpose3, zero3};
+use crate::algebra::linear::{Mat3, Vec3, add3, apply3, multiply3, sub3, transpose3, zero3};
 use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::motion::{Observed, Quantity};
 use crate::model::value::Value;
-use crate::syntax::ast::{Expr, Ident, Span};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Span};
 
 impl Evaluator<'_> {
     /// A call of one of these functions; `None` where the function is another.
@@ -78,6 +78,9 @@ impl Evaluator<'_> {
                 let arm = apply3(graph, &rotation, point);
                 add3(graph, position, arm)
             }
+            (None, _) if self.scope.rates.is_some() => {
+                return self.defining(quantity, (&rotation, position, point), span);
+            }
             (None, _) if self.scope.unmoved => return None,
             (None, _) => {
                 let message = format!("`{name}` is not known here: it follows from the rates");
@@ -91,6 +94,8 @@ impl Evaluator<'_> {
             (Some(motion), Quantity::Acceleration) => {
                 motion.acceleration(graph, &rotation, position, point)
             }
+            // `rate(e)` is read by itself.
+            (Some(_), Quantity::Rate) => return None,
             (Some(motion), Quantity::AngularVelocity) => motion.spin(graph, &rotation),
             (Some(motion), Quantity::AngularAcceleration) => {
                 let spin = motion.spin(graph, &rotation);
@@ -107,6 +112,65 @@ impl Evaluator<'_> {
             });
         }
         Some(Value::Vector(value.to_vec()))
+    }
+
+    /// A motion in the definition of a velocity, by symbols for ẋ.
+    fn defining(
+        &mut self,
+        quantity: Quantity,
+        (rotation, position, point): (&Mat3, Vec3, Vec3),
+        span: Span,
+    ) -> Option<Value> {
+        let motion = self.scope.rates.as_ref()?;
+        let (velocity, spin) = motion.defining(self.graph, rotation, position, point);
+        match quantity {
+            Quantity::Velocity => Some(Value::Vector(velocity.to_vec())),
+            Quantity::AngularVelocity => Some(Value::Vector(spin.to_vec())),
+            _ => self.error(
+                Diagnostic::new(span, "a velocity is not defined by accelerations")
+                    .help("define it by `velocity(f, p)`, `angular_velocity(f)` or rates"),
+            ),
+        }
+    }
+
+    /// `velocity(f, p) in g`: the components of a motion in the axes of a frame; `in body` are those of f itself.
+    pub fn in_axes(&mut self, call: &Expr, frame: &Expr) -> Option<Value> {
+        let motion = match &call.kind {
+            ExprKind::Call(function, arguments) => Quantity::named(&function.name)
+                .filter(|_| !self.scope.functions.contains_key(&function.name))
+                .map(|_| arguments),
+            _ => None,
+        };
+        let Some(arguments) = motion else {
+            let error = Diagnostic::new(call.span, "only the motion of a frame is written in axes");
+            return self.error(error.help(
+                "write `velocity(f, p) in g` or the like; a vector v with components in world axes is `g.R.T * v` in those of g",
+            ));
+        };
+        let value = self.value(call);
+        let own = matches!(&frame.kind, ExprKind::Name(name) if name == "body");
+        let axes = match own {
+            true => self.value(arguments.first()?),
+            false => self.value(frame),
+        };
+        let (value, axes) = (value?.as_vec3()?, axes?);
+        let Value::Pose(axes, _) = axes else {
+            let message = format!("this is {}, which has no axes", axes.shape());
+            return self.error(
+                Diagnostic::new(frame.span, message)
+                    .help("write the name of a frame, `world`, or `body` for the frame itself"),
+            );
+        };
+        // Where it is seen from another frame, its components are in the axes of that one.
+        let seen = arguments.last().filter(|_| arguments.len() > 1);
+        let seen = match seen.map(|seen| self.value(seen)) {
+            Some(Some(Value::Pose(rotation, _))) => Some(rotation),
+            _ => None,
+        };
+        let graph = &mut *self.graph;
+        let world = seen.map_or(value, |rotation| apply3(graph, &rotation, value));
+        let turned = apply3(graph, &transpose3(&axes), world);
+        Some(Value::Vector(turned.to_vec()))
     }
 
     fn misused(&mut self, name: &str, span: Span) -> Option<Value> {

@@ -1,36 +1,46 @@
-//! `rate(q)` in the definition of a velocity: ẋ of a coordinate, of a part or of entries of it.
+//! `rate(e)`: d/dt of an expression. In the definition of a velocity it is a row of Y ẋ, anywhere else a function of
+//! x, ξ and, where e depends on velocities, of ξ̇.
 //!
 //! | `rate(…)` of | is |
 //! |---|---|
 //! | a real, a vector, a unit quaternion, a rotation matrix | its ẋ, of the same shape |
 //! | an S1 coordinate q | its angular rate c ṡ − s ċ; ċ and ṡ are `rate(q.c)`, `rate(q.s)` |
-//! | a part `X.p`, `X.R`, an entry `r[1]`, an array `[x, y]` | the same of its entries |
+//! | any expression of coordinates | its derivative by the chain rule, entry by entry |
 
 use super::expression::Evaluator;
 use super::scope::NameKind;
 use crate::algebra::graph::Edge;
+use crate::algebra::linear::{identity3, zero3};
 use crate::diagnostics::Diagnostic;
+use crate::model::class;
+use crate::model::motion::{Observed, Quantity};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ExprKind, Span};
 
 impl Evaluator<'_> {
-    /// `rate(…)` of coordinates.
+    /// `rate(…)` of an expression.
     pub fn rate(&mut self, arguments: &[Expr], span: Span) -> Option<Value> {
-        const USAGE: &str =
-            "write `rate(q)` of a coordinate, of a part `rate(X.p)` or of an entry `rate(r[1])`";
+        const USAGE: &str = "write `rate(q)` of a coordinate, or `rate(e)` of an expression";
         let [argument] = arguments else {
-            let message = format!("`rate` takes one coordinate, not {}", arguments.len());
+            let message = format!("`rate` takes one expression, not {}", arguments.len());
             return self.error(Diagnostic::new(span, message).help(USAGE));
         };
         let value = self.value(argument)?;
-        let Some(rates) = &self.scope.rates else {
-            return self.error(
-                Diagnostic::new(
-                    span,
-                    "`rate(…)` stands in the definition of a velocity only",
-                )
-                .help("define a velocity by it, `velocity w = …;`, and write that velocity here"),
-            );
+        let scope = self.scope;
+        let (motion, known) = match (&scope.rates, &scope.motion) {
+            (Some(motion), _) => (motion, class::PARAM | class::CONFIGURATION),
+            (None, Some(motion)) => {
+                let known = class::PARAM | class::CONFIGURATION | class::VELOCITY;
+                (motion, known)
+            }
+            (None, None) if scope.unmoved => return None,
+            (None, None) => {
+                return self.error(
+                    Diagnostic::new(span, "`rate` is not known here: it follows from the rates").help(
+                        "use it in definitions of velocities, outputs, loads and named expressions, not in what defines the coordinates and their rates",
+                    ),
+                );
+            }
         };
         if let Value::Pose(..) = value {
             return self.error(
@@ -38,28 +48,61 @@ impl Evaluator<'_> {
                     .help("take its parts: `rate(X.p)` and `rate(X.R)`"),
             );
         }
-        let found: Option<Vec<Edge>> = value
-            .entries()
+        let entries = value.entries();
+        let found = entries
             .iter()
-            .map(|entry| {
-                let rate = rates.of.get(&entry.node())?;
-                Some(rate.signed(entry.is_negative()))
-            })
-            .collect();
-        let Some(found) = found else {
-            return self.error(
-                Diagnostic::new(argument.span, "`rate` takes coordinates only, not expressions")
-                    .help("write the derivative out by the chain rule, with the rate of every coordinate in it"),
-            );
+            .fold(0, |found, e| found | self.graph.class(e.node()));
+        let (what, help) = match found & !known {
+            0 => ("", ""),
+            unknown if unknown & class::INPUT != 0 => (
+                "an input",
+                "inputs are given at run time, without their rates; let the rate itself be an input",
+            ),
+            _ if scope.rates.is_some() => (
+                "a velocity or a rate",
+                "a definition is a row of Y(x) ẋ: `rate(…)` stands for coordinates and expressions of them",
+            ),
+            _ => (
+                "a rate of a velocity",
+                "second derivatives of coordinates are known, third ones are not",
+            ),
         };
+        if !help.is_empty() {
+            let message = format!("`rate` of what depends on {what} has no value");
+            return self.error(Diagnostic::new(argument.span, message).help(help));
+        }
+        let rates = motion.along(self.graph, &entries);
+        if scope.rates.is_none() {
+            motion
+                .seen
+                .borrow_mut()
+                .extend(noted(self, &entries, &rates));
+        }
         let circle = matches!(&argument.kind, ExprKind::Name(name)
-            if self.scope.get(name).is_some_and(|e| e.kind == NameKind::Coord(CoordKind::S1)));
-        if let (true, Value::Vector(x), [c_dot, s_dot]) = (circle, &value, found.as_slice()) {
+            if scope.get(name).is_some_and(|e| e.kind == NameKind::Coord(CoordKind::S1)));
+        if let (true, Value::Vector(x), [c_dot, s_dot]) = (circle, &value, rates.as_slice()) {
             let graph = &mut *self.graph;
             let (gain, loss) = (graph.mul(x[0], *s_dot), graph.mul(x[1], *c_dot));
             return Some(Value::Scalar(graph.sub(gain, loss)));
         }
-        let mut next = found.into_iter();
+        let mut next = rates.into_iter();
         Some(value.map(|entry| next.next().unwrap_or(entry)))
     }
+}
+
+/// What is to be derived once more: three entries at a time.
+fn noted(evaluator: &Evaluator, entries: &[Edge], rates: &[Edge]) -> Vec<Observed> {
+    let graph = &*evaluator.graph;
+    let three = |list: &[Edge]| -> [Edge; 3] {
+        std::array::from_fn(|k| list.get(k).copied().unwrap_or(graph.zero()))
+    };
+    let pairs = entries.chunks(3).zip(rates.chunks(3));
+    let observed = pairs.map(|(entries, rates)| Observed {
+        quantity: Quantity::Rate,
+        rotation: identity3(graph),
+        position: three(entries),
+        point: zero3(graph),
+        value: three(rates),
+    });
+    observed.collect()
 }

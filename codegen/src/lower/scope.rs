@@ -8,7 +8,6 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Function as Defined, Ident, Item, ItemKind, Span, System};
 use crate::syntax::suggest::closest;
-use rustc_hash::FxHashMap;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
@@ -119,13 +118,6 @@ pub fn reserved() -> impl Iterator<Item = &'static str> {
 /// Names listed where none is close to a misspelt one.
 const LISTED: usize = 12;
 
-/// The symbols that stand for ẋ, by the nodes of x.
-#[derive(Clone, Debug, Default)]
-pub struct Rates {
-    /// ẋ^α by the node of x^α.
-    pub of: FxHashMap<NodeId, Edge>,
-}
-
 /// The names of a description.
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
@@ -140,8 +132,8 @@ pub struct Scope {
     pub motion: Option<Motion>,
     /// Whether the rates are in error: what needs them is no further error.
     pub unmoved: bool,
-    /// What `rate(…)` stands for, in definitions of velocities.
-    pub rates: Option<Rates>,
+    /// How x moves along symbols that stand for ẋ, in definitions of velocities.
+    pub rates: Option<Motion>,
     /// The functions of the description.
     pub functions: BTreeMap<String, Defined>,
     /// The tables of the description; `None` where they are in error.

@@ -151,8 +151,9 @@ impl<'a> Uses<'a> {
             ItemKind::Rate { value, .. }
             | ItemKind::Generalized { value, .. }
             | ItemKind::Start { value, .. }
+            | ItemKind::Guess { value, .. }
             | ItemKind::Output { value, .. } => self.expr(value),
-            ItemKind::Inactive(list) => self.all(list),
+            ItemKind::Inactive(list) | ItemKind::Independent(list) => self.all(list),
             ItemKind::Nonholonomic {
                 left,
                 right,

@@ -38,6 +38,8 @@ pub struct Variety {
     /// The numbers of all symbols at the start, for variety whose branch matters: those with constraints
     /// of the user's.
     pub near: Option<Vec<f64>>,
+    /// x at the start, where guesses were solved for the constraints.
+    pub assembled: Option<Vec<f64>>,
     /// Statements that could be evaluated off X.
     read: Vec<usize>,
 }
@@ -83,9 +85,10 @@ impl Variety {
             .collect();
         let first = 1 + declared.params.iter().map(|group| group.len).sum::<usize>();
         let constraints: Vec<Edge> = rows.iter().map(|(edge, _)| *edge).collect();
+        let mut assembled = None;
         let near = (!constraints.is_empty()).then(|| {
             let defaults = defaults::read(system, &mut graph, &scope, &declared, &mut silent);
-            let start = start::read(
+            let mut start = start::read(
                 system,
                 &mut graph,
                 &scope,
@@ -93,6 +96,14 @@ impl Variety {
                 &defaults,
                 &mut silent,
             );
+            if let (Some(start), true) = (&mut start, start::guess::any(system)) {
+                let numbers = declared.numbers(&defaults, Some(start));
+                let graph = &mut graph;
+                let places = (first, &declared.x[..]);
+                assembled =
+                    start::guess::assembled(graph, &constraints, &blocks, places, &numbers, start);
+                start.x = assembled.clone().unwrap_or(std::mem::take(&mut start.x));
+            }
             declared.numbers(&defaults, start.as_ref())
         });
         let near = near.filter(|near| near.iter().all(|number| number.is_finite()));
@@ -111,6 +122,7 @@ impl Variety {
             complete,
             seed,
             near,
+            assembled,
             read,
         };
         variety.collect(&declared, &rows);

@@ -4,6 +4,8 @@
 //! start of a description the identity and rest. Where everything is given it only has to hold, but for
 //! rounding.
 
+use super::assembly::nearest;
+use super::closest::{Loops, velocities};
 use super::layout::{Block, blocks};
 use super::pfaffian::Pfaffian;
 use super::{Clock, Coordinate, Model};
@@ -19,13 +21,13 @@ const ROUNDING: f64 = 1e-6;
 
 /// The equations φ(x) = 0 of loops and B(x) ξ = 0, with numbers for the parameters.
 pub struct Closure<'a> {
-    graph: &'a Graph,
-    blocks: Vec<Block>,
-    a: Vec<Edge>,
-    n: usize,
+    pub(super) graph: &'a Graph,
+    pub(super) blocks: Vec<Block>,
+    pub(super) a: Vec<Edge>,
+    pub(super) n: usize,
     /// The place of ξ⁰ among the velocities: the time is always given.
-    time: Option<usize>,
-    constraints: &'a [Pfaffian],
+    pub(super) time: Option<usize>,
+    pub(super) constraints: &'a [Pfaffian],
     params: &'a [f64],
     inputs: Option<&'a [f64]>,
 }
@@ -83,7 +85,7 @@ impl<'a> Closure<'a> {
     }
 
     /// The loops, by their places among the constraints.
-    fn loops(&self) -> Vec<usize> {
+    pub(super) fn loops(&self) -> Vec<usize> {
         let is_loop = |&place: &usize| self.constraints[place].is_holonomic();
         (0..self.constraints.len()).filter(is_loop).collect()
     }
@@ -107,6 +109,53 @@ impl<'a> Closure<'a> {
             constraint: self.loops()[which],
             residual,
         })
+    }
+
+    /// Closes all loops as near to x as possible in the metric of M, by the coordinates that are not given. An error
+    /// leaves x as it was.
+    pub fn assemble(&self, x: &mut [f64], given: &[bool], mass: &[Vec<f64>]) -> Result<(), Open> {
+        let before = self.residuals(x);
+        let Some((which, residual)) = worst(&before) else {
+            return Ok(());
+        };
+        let loops = Loops::new(self, mass, x, given);
+        let Some(closed) = nearest(&loops, x) else {
+            let constraint = self.loops()[which];
+            return Err(Open {
+                constraint,
+                residual,
+            });
+        };
+        let free = (0..x.len()).filter(|&alpha| !given[alpha]);
+        free.for_each(|alpha| x[alpha] = closed[alpha]);
+        Ok(())
+    }
+
+    /// Keeps all constraints on the velocities as near to ξ as possible in the metric of M, by those that are not
+    /// given. An error leaves ξ as it was.
+    pub fn settle_near(
+        &self,
+        x: &[f64],
+        xi: &mut Vec<f64>,
+        given: &[bool],
+        mass: &[Vec<f64>],
+    ) -> Result<(), Open> {
+        let rows = self.constraints.iter().flat_map(|c| c.row.iter().copied());
+        let rows: Vec<Edge> = rows.collect();
+        let b = evaluate(self.graph, &rows, &self.numbers(x));
+        let b: Vec<Vec<f64>> = b.chunks(self.n.max(1)).map(<[f64]>::to_vec).collect();
+        let shifts: Vec<Edge> = self.constraints.iter().map(|c| c.shift).collect();
+        let shifts = evaluate(self.graph, &shifts, &self.numbers(x));
+        let mut fixed = given.to_vec();
+        if let Some(time) = self.time {
+            fixed[time] = true;
+        }
+        let near = velocities(&b, &shifts, mass, &fixed, xi);
+        // What contradicts what is given is found, and said, by the other way.
+        let mut settled = near.unwrap_or_else(|| xi.clone());
+        self.settle(x, &mut settled, given)?;
+        *xi = settled;
+        Ok(())
     }
 
     /// x with all loops closed, moved along A where not fixed; `None` where Newton's method fails.
@@ -204,7 +253,7 @@ impl<'a> Closure<'a> {
         })
     }
 
-    fn residuals(&self, x: &[f64]) -> Vec<f64> {
+    pub(super) fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let loops = self.loops().into_iter();
         let edges: Vec<Edge> = loops
             .map(|place| self.constraints[place].residual)
@@ -212,7 +261,7 @@ impl<'a> Closure<'a> {
         evaluate(self.graph, &edges, &self.numbers(x))
     }
 
-    fn numbers(&self, x: &[f64]) -> Vec<f64> {
+    pub(super) fn numbers(&self, x: &[f64]) -> Vec<f64> {
         let mut numbers = vec![std::f64::consts::PI];
         numbers.extend(self.params.iter().chain(x));
         if let Some(inputs) = self.inputs {

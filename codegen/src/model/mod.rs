@@ -1,7 +1,9 @@
 //! A mechanical system in terms of a graph: configuration, kinematics, inertia, loads, as expressions with their
 //! points on X. What a description means, once it is read.
 
+pub mod assembly;
 pub mod charts;
+pub mod closest;
 pub mod closure;
 pub mod completion;
 mod edges;
@@ -16,6 +18,7 @@ pub mod points;
 pub mod rotations;
 pub mod samples;
 pub mod states;
+pub mod twists;
 pub mod value;
 
 use crate::algebra::graph::{Edge, Graph};
@@ -220,6 +223,8 @@ pub struct Model {
     pub prescribed: Vec<(usize, Edge)>,
     /// Velocities whose rates ξ̇ⁱ are given, by their places in ξ.
     pub accelerated: Vec<(usize, Edge)>,
+    /// Velocities that constraints are not solved for, by their places in ξ, and where that was said.
+    pub independent: Vec<(usize, Span)>,
     /// The full frame, where all that was solved for is given ahead.
     pub whole: Option<Whole>,
     /// Whether A spans the tangent space of X: not so where constraints have been solved.

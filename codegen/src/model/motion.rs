@@ -9,7 +9,7 @@ pub struct Observed {
     pub quantity: Quantity,
     /// Rotation of the frame as seen from the other, or from the world.
     pub rotation: Mat3,
-    /// Its origin.
+    /// Its origin; of a rate, three expressions.
     pub position: Vec3,
     /// The point, in the frame's axes.
     pub point: Vec3,
@@ -30,6 +30,8 @@ pub enum Quantity {
     AngularVelocity,
     /// ω̇.
     AngularAcceleration,
+    /// d/dt of expressions.
+    Rate,
 }
 
 impl Quantity {

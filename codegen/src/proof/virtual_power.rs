@@ -259,6 +259,13 @@ fn derived(model: &Model, graph: &mut Graph, calculus: &mut Calculus, observed: 
     };
     match observed.quantity {
         Quantity::Position => add3(graph, *position, arm),
+        Quantity::Rate => {
+            let driven = position.map(|entry| {
+                let slopes = slopes(graph, &model.xi, entry);
+                graph.dot(&slopes, &model.xi_dot)
+            });
+            add3(graph, velocity, driven)
+        }
         Quantity::Velocity => {
             let lever = cross(graph, omega, arm);
             add3(graph, velocity, lever)

@@ -206,6 +206,11 @@ impl SceneBuilder {
         self.add(ItemKind::Inactive(velocities.into_iter().collect()));
     }
 
+    /// Velocities that no constraint is solved for: they stay in ξ.
+    pub fn independent(&mut self, velocities: impl IntoIterator<Item = Expr>) {
+        self.add(ItemKind::Independent(velocities.into_iter().collect()));
+    }
+
     /// A constraint B(x) ξ = 0: both sides linear in the velocities.
     pub fn nonholonomic(&mut self, left: impl Into<Expr>, right: impl Into<Expr>) {
         self.add(ItemKind::Nonholonomic {
@@ -312,6 +317,14 @@ impl SceneBuilder {
     /// The value of a coordinate or velocity at the start.
     pub fn start(&mut self, of: &str, value: impl Into<Expr>) {
         self.add(ItemKind::Start {
+            target: target(of),
+            value: value.into(),
+        });
+    }
+
+    /// A value near that of a coordinate or velocity at the start: it chooses how loops are assembled.
+    pub fn guess(&mut self, of: &str, value: impl Into<Expr>) {
+        self.add(ItemKind::Guess {
             target: target(of),
             value: value.into(),
         });

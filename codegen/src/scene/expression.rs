@@ -37,6 +37,21 @@ pub fn call<const N: usize>(function: &str, arguments: [Expr; N]) -> Expr {
     expr(ExprKind::Call(ident(function), arguments.into()))
 }
 
+/// Components of the motion of a frame in the axes of another: `velocity(f, p) in g`; the `motion` is a [`call`].
+///
+/// ```
+/// use hamel_codegen::scene::{Expr, call, in_axes};
+/// let hull = Expr::name("hull");
+/// let spin = in_axes(call("angular_velocity", [hull]), "hull");
+/// assert_eq!(spin.to_string(), "angular_velocity(hull) in hull");
+/// ```
+pub fn in_axes(motion: Expr, frame: &str) -> Expr {
+    expr(ExprKind::InAxes(
+        Box::new(motion),
+        Box::new(Expr::name(frame)),
+    ))
+}
+
 /// `if a < b { then } else { otherwise }`: of two values of one shape the first where a < b.
 ///
 /// ```

@@ -51,7 +51,7 @@ pub use crate::syntax::ast::{
     Between as Interpolation, Beyond as Extrapolation, CoordKind, Expr, ShapeKind,
 };
 pub use build::SceneBuilder;
-pub use expression::{call, cos, diagonal, if_less, pose, shifted, sin, sqrt};
+pub use expression::{call, cos, diagonal, if_less, in_axes, pose, shifted, sin, sqrt};
 pub use parts::{Between, Body, Element, Frame, Joint, Load, Point, WORLD};
 
 /// A description of a mechanical system.

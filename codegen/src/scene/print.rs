@@ -59,6 +59,7 @@ pub fn statement(item: &Item) -> String {
             format!("prescribe {of} = {}", written(value))
         }
         ItemKind::Inactive(velocities) => format!("inactive {}", list(velocities)),
+        ItemKind::Independent(velocities) => format!("independent {}", list(velocities)),
         ItemKind::Nonholonomic {
             left,
             right,
@@ -129,6 +130,9 @@ pub fn statement(item: &Item) -> String {
         }
         ItemKind::Start { target, value } => {
             format!("start {} = {}", part(target), written(value))
+        }
+        ItemKind::Guess { target, value } => {
+            format!("start {} ~ {}", part(target), written(value))
         }
         ItemKind::Output { name, value } => format!("output {} = {}", name.name, written(value)),
         ItemKind::Invariant {

@@ -286,6 +286,8 @@ pub enum ItemKind {
     },
     /// `inactive v, w[3];` velocities that stay zero.
     Inactive(Vec<Expr>),
+    /// `independent u, w[1];` velocities that no constraint gives by others.
+    Independent(Vec<Expr>),
     /// `nonholonomic a = b;` both sides linear in the velocities.
     Nonholonomic {
         /// The left side.
@@ -386,6 +388,13 @@ pub enum ItemKind {
         /// The coordinate or velocity.
         target: Target,
         /// Its value at the start.
+        value: Expr,
+    },
+    /// `start q ~ 1.2;` near which value the start is looked for.
+    Guess {
+        /// The coordinate or velocity.
+        target: Target,
+        /// A value near that at the start.
         value: Expr,
     },
     /// `output speed = norm(v);`

@@ -6,7 +6,7 @@
 //! sign     = "-"* power
 //! power    = postfix ("^" "-"* postfix)*              to the right: a^b^c = a^(b^c), and -a^b = -(a^b)
 //! postfix  = primary ("." name | "[" sum ("," sum)* "]")*
-//! primary  = number | name | name "(" list ")" | "(" sum ")" | "[" list "]" | choice
+//! primary  = number | name | name "(" list ")" ["in" name] | "(" sum ")" | "[" list "]" | choice
 //! choice   = "if" sum ("<" | "<=" | ">" | ">=") sum "{" sum "}" "else" (choice | "{" sum "}")
 //! ```
 //!
@@ -207,11 +207,12 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             let function = cursor.name("a function")?;
             cursor.bump();
             let arguments = list(cursor, Delimiter::Parenthesis)?;
-            node(
+            let call = node(
                 ExprKind::Call(function, arguments.entries),
                 span.to(cursor.before()),
                 arguments.depth,
-            )
+            )?;
+            in_axes(cursor, call)
         }
         Kind::Word if !cursor.is_connective() && !cursor.starts_statement() => {
             check_name(token, span)?;
@@ -251,6 +252,27 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             })
         }
     }
+}
+
+/// `velocity(f) in g`: a call, and the frame whose axes its components are in.
+fn in_axes(cursor: &mut Cursor<'_>, call: Node) -> Parsed<Node> {
+    if !cursor.eat_word("in") {
+        return Ok(call);
+    }
+    let Ident { name, span } = cursor.name("a frame")?;
+    let whole = call.expr.span.to(span);
+    if cursor.is_open(Delimiter::Bracket) || cursor.is_punct('.') {
+        return Err(
+            Diagnostic::new(cursor.here(), "a part of a frame has no axes of its own")
+                .help("put what has components in parentheses: `(velocity(f) in g)[1]`"),
+        );
+    }
+    let frame = Expr {
+        kind: ExprKind::Name(name),
+        span,
+    };
+    let kind = ExprKind::InAxes(Box::new(call.expr), Box::new(frame));
+    node(kind, whole, call.depth)
 }
 
 fn binary(op: BinaryOp, left: Node, right: Node) -> Parsed<Node> {

@@ -30,67 +30,21 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         "velocity" => ItemKind::Velocity(declaration::velocities(cursor)?),
         "input" => ItemKind::Input(declaration::inputs(cursor)?),
         "state" => ItemKind::State(declaration::values(cursor, "a state")?),
-        "constraint" => {
-            let left = expression(cursor)?;
-            cursor.assign()?;
-            ItemKind::Constraint {
-                left,
-                right: expression(cursor)?,
-            }
-        }
-        "rate" => {
-            let target = target(cursor, "a coordinate or state")?;
-            cursor.assign()?;
-            ItemKind::Rate {
-                target,
-                value: expression(cursor)?,
-            }
-        }
+        "constraint" => return list(cursor, start, constraint),
+        "rate" => return list(cursor, start, rate),
         "time" => ItemKind::Time(cursor.name("the time")?),
-        "prescribe" => {
-            let (target, rate) = prescribed(cursor)?;
-            cursor.assign()?;
-            ItemKind::Prescribe {
-                target,
-                rate,
-                value: expression(cursor)?,
-            }
-        }
-        "inactive" => {
-            let mut list = vec![expression(cursor)?];
-            while cursor.eat_punct(',') {
-                list.push(expression(cursor)?);
-            }
-            ItemKind::Inactive(list)
-        }
-        "nonholonomic" => {
-            let (left, right, stabilized) = kept(cursor)?;
-            ItemKind::Nonholonomic {
-                left,
-                right,
-                stabilized,
-            }
-        }
-        "loop" => {
-            let (left, right, stabilized) = kept(cursor)?;
-            ItemKind::Loop {
-                left,
-                right,
-                stabilized,
-            }
-        }
+        "prescribe" => return list(cursor, start, prescribe),
+        "inactive" => ItemKind::Inactive(expressions(cursor)?),
+        "independent" => ItemKind::Independent(expressions(cursor)?),
+        "nonholonomic" => return list(cursor, start, nonholonomic),
+        "loop" => return list(cursor, start, closed_loop),
         "generalized" => {
             cursor.expect_word("force")?;
-            let target = target(cursor, "a velocity")?;
-            cursor.assign()?;
-            ItemKind::Generalized {
-                target,
-                value: expression(cursor)?,
-            }
+            return list(cursor, start, generalized);
         }
         "start" => return list(cursor, start, starting),
         "output" => return list(cursor, start, output),
-        "frame" => frame(cursor)?,
+        "frame" => return list(cursor, start, frame),
         // Ends with its braces.
         "body" => {
             let kind = ItemKind::Body(body::body(cursor)?);
@@ -144,35 +98,109 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
     Ok(vec![Item { kind, span }])
 }
 
-/// `start a = 1, b = 2;`, `output p = a, q = b;`: an item for each part.
+/// `start a = 1, b = 2;`, `rate q = u, s = v;`: an item for each part.
 fn list(
     cursor: &mut Cursor<'_>,
     start: Span,
     part: fn(&mut Cursor<'_>) -> Parsed<ItemKind>,
 ) -> Parsed<Vec<Item>> {
-    let mut parts = vec![(start, part(cursor)?)];
-    while cursor.eat_punct(',') {
-        parts.push((cursor.here(), part(cursor)?));
+    let mut items = Vec::new();
+    let mut begin = start;
+    loop {
+        let kind = part(cursor)?;
+        let span = since(begin, cursor);
+        items.push(Item { kind, span });
+        if !cursor.eat_punct(',') {
+            break;
+        }
+        begin = cursor.here();
     }
     cursor.end(true)?;
-    let whole = since(start, cursor);
-    let several = parts.len() > 1;
-    let item = |(begin, kind): (Span, ItemKind)| {
-        let value = match &kind {
-            ItemKind::Start { value, .. } | ItemKind::Output { value, .. } => value.span,
-            _ => whole,
-        };
-        let span = if several { begin.to(value) } else { whole };
-        Item { kind, span }
-    };
-    Ok(parts.into_iter().map(item).collect())
+    if let [one] = items.as_mut_slice() {
+        one.span = since(start, cursor);
+    }
+    Ok(items)
 }
 
-/// `w = [0.01, 1, 0]`
+/// One or more expressions, with commas between them.
+fn expressions(cursor: &mut Cursor<'_>) -> Parsed<Vec<Expr>> {
+    let mut list = vec![expression(cursor)?];
+    while cursor.eat_punct(',') {
+        list.push(expression(cursor)?);
+    }
+    Ok(list)
+}
+
+/// `w = [0.01, 1, 0]`, or a guess: `q ~ 1.2`
 fn starting(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     let target = target(cursor, "a coordinate or velocity")?;
+    let guess = cursor.eat_punct('~');
+    if !guess {
+        cursor.assign()?;
+    }
+    let value = expression(cursor)?;
+    Ok(match guess {
+        true => ItemKind::Guess { target, value },
+        false => ItemKind::Start { target, value },
+    })
+}
+
+/// `a = b`
+fn constraint(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let left = expression(cursor)?;
     cursor.assign()?;
-    Ok(ItemKind::Start {
+    Ok(ItemKind::Constraint {
+        left,
+        right: expression(cursor)?,
+    })
+}
+
+/// `r = R * v`
+fn rate(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let target = target(cursor, "a coordinate or state")?;
+    cursor.assign()?;
+    Ok(ItemKind::Rate {
+        target,
+        value: expression(cursor)?,
+    })
+}
+
+/// `q = 0.3 * sin(t)`, `rate(v) = a`
+fn prescribe(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let (target, rate) = prescribed(cursor)?;
+    cursor.assign()?;
+    Ok(ItemKind::Prescribe {
+        target,
+        rate,
+        value: expression(cursor)?,
+    })
+}
+
+/// `a = b [stabilized λ]`, of velocities
+fn nonholonomic(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let (left, right, stabilized) = kept(cursor)?;
+    Ok(ItemKind::Nonholonomic {
+        left,
+        right,
+        stabilized,
+    })
+}
+
+/// `a = b [stabilized λ]`, of coordinates
+fn closed_loop(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let (left, right, stabilized) = kept(cursor)?;
+    Ok(ItemKind::Loop {
+        left,
+        right,
+        stabilized,
+    })
+}
+
+/// `w = -d * w`
+fn generalized(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    let target = target(cursor, "a velocity")?;
+    cursor.assign()?;
+    Ok(ItemKind::Generalized {
         target,
         value: expression(cursor)?,
     })
@@ -223,7 +251,7 @@ fn kept(cursor: &mut Cursor<'_>) -> Parsed<(Expr, Expr, Option<Expr>)> {
     Ok((left, right, stabilized))
 }
 
-/// `frame f [on g] = pose(R, p)`
+/// `f [on g] = pose(R, p)`, or `f [on g] at [x, y, z]`
 fn frame(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     let name = cursor.name("a frame")?;
     let on = if cursor.eat_word("on") {
@@ -231,7 +259,9 @@ fn frame(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     } else {
         None
     };
-    cursor.assign()?;
+    if !cursor.eat_word("at") {
+        cursor.assign()?;
+    }
     Ok(ItemKind::Frame {
         name,
         on,

@@ -34,6 +34,7 @@ fn spelled(expr: &Expr) -> String {
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(of, field) => format!("{}.{}", spelled(of), field.name),
         ExprKind::Index(of, indices) => format!("{}[{}]", spelled(of), list(indices)),
+        ExprKind::InAxes(call, frame) => format!("({} in {})", spelled(call), spelled(frame)),
         ExprKind::Call(function, arguments) => format!("{}({})", function.name, list(arguments)),
         ExprKind::Neg(of) => format!("(-{})", spelled(of)),
         ExprKind::Binary(op, left, right) => {
@@ -130,6 +131,11 @@ fn told(kind: &ItemKind) -> String {
             let (name, between, beyond) = (&table.name.name, table.between, table.beyond);
             format!("table {name} = {source}, {between:?}, beyond {beyond:?}")
         }
+        Independent(all) => {
+            let all: Vec<String> = all.iter().map(spelled).collect();
+            format!("independent {}", all.join(", "))
+        }
+        Guess { target, value } => format!("guess {target:?} ~ {}", spelled(value)),
         Param(all) => format!("param {}", declared(all)),
         Const(all) => format!("const {}", declared(all)),
         Let(all) => format!("let {}", declared(all)),

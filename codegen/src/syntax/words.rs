@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 34] = [
+const STATEMENTS: [(&str, &str); 35] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -37,6 +37,10 @@ const STATEMENTS: [(&str, &str); 34] = [
         "velocities that stay zero are written `inactive v, w[3];`",
     ),
     (
+        "independent",
+        "velocities that constraints are not solved for are written `independent u, w[1];`",
+    ),
+    (
         "nonholonomic",
         "a nonholonomic constraint is written `nonholonomic v + cross(w, p) = [0, 0, 0];`",
     ),
@@ -46,7 +50,7 @@ const STATEMENTS: [(&str, &str); 34] = [
     ),
     (
         "frame",
-        "a frame is written `frame f = pose(R, p);` or `frame f on g = pose(R, p);`",
+        "a frame is written `frame f = pose(R, p);`, `frame f on g = pose(R, p);` or `frame f on g at [x, y, z];`",
     ),
     (
         "joint",
@@ -97,7 +101,7 @@ const STATEMENTS: [(&str, &str); 34] = [
     ),
     (
         "start",
-        "an initial value is written `start w = [0.01, 1, 0];`",
+        "an initial value is written `start w = [0.01, 1, 0];`, one that is only near it `start q ~ 1.2;`",
     ),
     ("output", "an output is written `output speed = norm(v);`"),
     (

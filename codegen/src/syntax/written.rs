@@ -18,6 +18,7 @@ pub fn written(expr: &Expr) -> String {
         ExprKind::Field(base, field) => format!("{}.{}", tight(base, 5), field.name),
         ExprKind::Index(base, indices) => format!("{}[{}]", tight(base, 5), list(indices)),
         ExprKind::Call(function, arguments) => format!("{}({})", function.name, list(arguments)),
+        ExprKind::InAxes(call, frame) => format!("{} in {}", written(call), written(frame)),
         ExprKind::Neg(inner) => format!("-{}", tight(inner, 3)),
         ExprKind::If(choice) => {
             let (sign, then) = (choice.comparison.sign(), written(&choice.then));
@@ -65,7 +66,7 @@ pub fn list(items: &[Expr]) -> String {
 /// An expression in parentheses where it binds less than is wanted.
 fn tight(expr: &Expr, wanted: u8) -> String {
     let binds = match &expr.kind {
-        ExprKind::If(_) => 0,
+        ExprKind::If(_) | ExprKind::InAxes(..) => 0,
         ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => 1,
         ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => 2,
         ExprKind::Neg(_) => 3,
@@ -120,6 +121,8 @@ mod tests {
             "-(a + b)",
             "-0.05 * a",
             "if a < b + 1 { [a, 2] } else { -v }",
+            "a + dot(v, (velocity(f, p) in g)^2)",
+            "(acceleration(f, [0, 0, 1]) in body)[1] * 2",
             "2 * (if a <= -b { a } else if c >= d { b } else { if_1 })^2 - x",
             "if (if a > b { a } else { b }) > c { if a > 0 { 1 } else { 2 } } else { (if a > b { a } else { b })[1] }",
         ] {

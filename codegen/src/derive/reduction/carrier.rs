@@ -84,6 +84,7 @@ impl Carrier {
             .collect();
         model.start_xi = self.active.iter().map(|&i| full.start_xi[i]).collect();
         model.velocities = self.groups();
+        model.independent = Vec::new();
         for (velocity, _) in &mut model.accelerated {
             *velocity = self.active.iter().position(|i| i == velocity).unwrap_or(0);
         }

@@ -17,6 +17,7 @@ use crate::algebra::numeric::{evaluate, rank};
 use crate::diagnostics::Diagnostic;
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::{Model, Whole};
+use crate::syntax::ast::Span;
 use carrier::Carrier;
 use std::sync::Arc;
 
@@ -156,6 +157,12 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
     let mut rows: Vec<Vec<Edge>> = constraints.iter().map(|c| c.row.clone()).collect();
     let mut solved: Vec<(usize, usize)> = Vec::new();
     let is_time = |velocity: usize| model.clock.is_some_and(|clock| clock.xi == velocity);
+    let stays = |velocity: usize| {
+        model
+            .independent
+            .iter()
+            .any(|(place, _)| *place == velocity)
+    };
     loop {
         let mut best = None;
         for (i, constraint) in constraints.iter().enumerate() {
@@ -163,7 +170,7 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
                 continue;
             }
             for (j, &entry) in rows[i].iter().enumerate() {
-                if entry == zero || is_time(j) || !graph.is_free(entry.node()) {
+                if entry == zero || is_time(j) || stays(j) || !graph.is_free(entry.node()) {
                     continue;
                 }
                 let effort = match graph.as_rational(entry) {
@@ -204,8 +211,44 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
         if (0..row.len()).all(|j| row[j] == zero || is_time(j)) {
             return Err(contradicting(&constraints, i));
         }
+        if constraints[i].stabilized.is_none() && solved.iter().all(|&(row, _)| row != i) {
+            impossible(model, &model.graph, (row, &constraints[i]))?;
+        }
     }
     Ok((rows, solved))
+}
+
+/// A row that could be solved for velocities that the user wants to stay, and for no others.
+fn impossible(
+    model: &Model,
+    graph: &Graph,
+    (row, constraint): (&[Edge], &Pfaffian),
+) -> Result<(), Diagnostic> {
+    let fits = |&&(place, _): &&(usize, Span)| {
+        row[place] != graph.zero() && graph.is_free(row[place].node())
+    };
+    let Some(&(place, span)) = model.independent.iter().find(fits) else {
+        return Ok(());
+    };
+    let others = (0..row.len()).filter(|&j| row[j] != graph.zero() && j != place);
+    let name = entry_name(model, place);
+    let message = match others.count() {
+        0 => format!("`{name}` cannot be independent: a constraint gives it"),
+        _ => format!("`{name}` cannot be independent: a constraint can be solved for nothing else"),
+    };
+    let error = Diagnostic::new(span, message).help(
+        "leave one velocity of this constraint out of `independent` whose factor in it is constant",
+    );
+    Err(error.note(constraint.span, "this constraint"))
+}
+
+/// The name of an entry of ξ.
+fn entry_name(model: &Model, place: usize) -> String {
+    let node = model.xi[place].node();
+    let mut symbols = model.graph.symbols().iter();
+    symbols
+        .find(|s| s.node == node)
+        .map_or(String::new(), |s| s.name.clone())
 }
 
 /// Velocities whose rates are given have to stay.

@@ -16,27 +16,33 @@ use num_traits::Signed;
 /// The fields that a joint can have, and why no others.
 fn allowed(joint: &Joint) -> (&'static [JointField], &'static str) {
     const OWN: &str = "a joint that follows others has no force of its own: damping, armature and force stand on the joint that it follows";
-    const CIRCLE: &str = "the coordinate of a continuous joint is a pair (c, s), not an angle: use `revolute`, or a `potential` of its sine and cosine";
+    const CIRCLE: &str =
+        "a continuous joint turns without end: use `revolute` where there are limits";
+    const FOLLOWING: &str = "a continuous joint that follows others has no angle of its own: let a `revolute` joint follow, or put the spring on what it follows";
     const SEVERAL: &str = "it has several velocities: write `damper coefficient d on …;`, `spring …` or `generalized force … = …;` with the names of its coordinates and velocities";
     match joint.kind.0 {
         JointKind::Fixed => (&[], "a fixed joint does not move"),
         JointKind::Revolute | JointKind::Prismatic if joint.follows.is_some() => {
             (&[Stiffness, Rest, Limit, MaxSpeed, MaxForce], OWN)
         }
-        JointKind::Continuous if joint.follows.is_some() => (&[MaxSpeed, MaxForce], OWN),
+        JointKind::Continuous if joint.follows.is_some() => (&[MaxSpeed, MaxForce], FOLLOWING),
         JointKind::Revolute | JointKind::Prismatic => (
             &[
                 Damping, Armature, Stiffness, Rest, Force, Limit, MaxSpeed, MaxForce,
             ],
             "",
         ),
-        JointKind::Continuous => (&[Damping, Armature, Force, MaxSpeed, MaxForce], CIRCLE),
+        JointKind::Continuous => (
+            &[
+                Damping, Armature, Stiffness, Rest, Force, MaxSpeed, MaxForce,
+            ],
+            CIRCLE,
+        ),
         JointKind::Spherical | JointKind::SphericalS3 => {
             (&[Damping, Force, MaxSpeed, MaxForce], SEVERAL)
         }
-        JointKind::Free | JointKind::Planar | JointKind::Universal | JointKind::Cylindrical => {
-            (&[], SEVERAL)
-        }
+        JointKind::Universal => (&[Damping], SEVERAL),
+        JointKind::Free | JointKind::Planar | JointKind::Cylindrical => (&[], SEVERAL),
     }
 }
 

@@ -304,6 +304,7 @@ impl Writer<'_> {
                     kind: ExprKind::Index(Box::new(whole.clone()), vec![self.number(index)]),
                 })
                 .collect(),
+            JointKind::Universal => vec![self.name("_1_dot"), self.name("_2_dot")],
             _ => vec![whole],
         }
     }

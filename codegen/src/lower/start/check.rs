@@ -57,7 +57,7 @@ fn violation(
     let text = &variety.phi[row].1;
     let names = coordinates_of(variety, declared, row);
     let given = system.items.iter().rev().find_map(|item| match &item.kind {
-        ItemKind::Start { target, value } => names
+        ItemKind::Start { target, value } | ItemKind::Guess { target, value } => names
             .contains(&target.name.name.as_str())
             .then_some(value.span),
         _ => None,

@@ -1,6 +1,7 @@
 //! The start: numbers for x and ξ, on the constraint.
 
 pub mod check;
+pub mod guess;
 
 use crate::algebra::graph::{Function, Graph};
 use crate::algebra::numeric::evaluate;
@@ -10,18 +11,20 @@ use crate::lower::expression::Evaluator;
 use crate::lower::rate::{part, written};
 use crate::lower::scope::{NameKind, Scope};
 use crate::model::class;
-use crate::model::closure::Closure;
+use crate::model::closure::{Closure, Open};
 use crate::model::layout::{blocks, identity};
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 
-/// x and ξ so far, and where each entry was given.
+/// x and ξ so far, where each entry was given, and where guessed.
 pub struct Start {
     pub x: Vec<f64>,
     pub xi: Vec<f64>,
     pub given_x: Vec<Option<Span>>,
     pub given_xi: Vec<Option<Span>>,
+    guessed_x: Vec<Option<Span>>,
+    guessed_xi: Vec<Option<Span>>,
 }
 
 /// x and ξ from the `start` statements; what is not given is at the identity and at rest.
@@ -39,22 +42,26 @@ pub fn read(
         .map(|coordinate| coordinate.kind);
     let x: Vec<f64> = kinds.flat_map(blocks).flat_map(identity).collect();
     let xi = vec![0.0; declared.xi.len()];
-    let (given_x, given_xi) = (vec![None; x.len()], vec![None; xi.len()]);
+    let (no_x, no_xi) = (vec![None; x.len()], vec![None; xi.len()]);
     let mut start = Start {
         x,
         xi,
-        given_x,
-        given_xi,
+        given_x: no_x.clone(),
+        given_xi: no_xi.clone(),
+        guessed_x: no_x,
+        guessed_xi: no_xi,
     };
     let symbols = known(graph, defaults);
     let mut complete = true;
     for item in &system.items {
-        let ItemKind::Start { target, value } = &item.kind else {
-            continue;
+        let (target, value, guess) = match &item.kind {
+            ItemKind::Start { target, value } => (target, value, false),
+            ItemKind::Guess { target, value } => (target, value, true),
+            _ => continue,
         };
         let evaluator = Evaluator::new(graph, scope, report);
         complete &= start
-            .read(target, value, evaluator, declared, &symbols)
+            .read((target, guess), value, evaluator, declared, &symbols)
             .is_some();
     }
     complete.then_some(start)
@@ -93,23 +100,13 @@ impl Start {
             )
         })?;
         let given: Vec<bool> = self.given_xi.iter().map(Option::is_some).collect();
-        closure.settle(&self.x, &mut self.xi, &given).map_err(|open| {
-            let error = Diagnostic::new(
-                constraints[open.constraint].span,
-                format!(
-                    "the start velocities violate this constraint by {:.3e}",
-                    open.residual
-                ),
-            );
-            error.help(
-                "leave out the `start` of velocities that follow from the others: they are solved for",
-            )
-        })
+        let settled = closure.settle(&self.x, &mut self.xi, &given);
+        settled.map_err(|open| violated(constraints, open))
     }
 
     fn read(
         &mut self,
-        target: &Target,
+        (target, guess): (&Target, bool),
         expr: &Expr,
         mut evaluator: Evaluator,
         declared: &Declared,
@@ -149,22 +146,36 @@ impl Start {
             return evaluator.error(Diagnostic::new(expr.span, message).help(help));
         }
         let numbers = numbers(&mut evaluator, &value, name, expr.span, symbols)?;
-        let (into, given) = if of_x {
-            (&mut self.x, &mut self.given_x)
+        let (into, given, guessed) = if of_x {
+            (&mut self.x, &mut self.given_x, &mut self.guessed_x)
         } else {
-            (&mut self.xi, &mut self.given_xi)
+            (&mut self.xi, &mut self.given_xi, &mut self.guessed_xi)
         };
-        if let Some(first) = given[range.clone()].iter().flatten().next() {
-            return evaluator.error(
-                Diagnostic::new(
-                    target.span(),
-                    format!("the start of `{}` is given twice", written(target)),
-                )
-                .help("remove one of the two")
-                .note(*first, "first given here"),
-            );
+        let first = |list: &[Option<Span>]| list[range.clone()].iter().flatten().next().copied();
+        if let Some((span, exact)) = first(given)
+            .map(|span| (span, true))
+            .or(first(guessed).map(|span| (span, false)))
+        {
+            let written = written(target);
+            let (message, help) = match (exact, guess) {
+                (true, false) => (
+                    format!("the start of `{written}` is given twice"),
+                    "remove one of the two",
+                ),
+                (false, true) => (
+                    format!("the start of `{written}` is guessed twice"),
+                    "remove one of the two",
+                ),
+                _ => (
+                    format!("`{written}` has an exact start and a guess"),
+                    "remove the guess to keep the exact start, or the exact start to be near the guess",
+                ),
+            };
+            let error = Diagnostic::new(target.span(), message).help(help);
+            return evaluator.error(error.note(span, "first given here"));
         }
-        given[range.clone()].fill(Some(target.span()));
+        let known = if guess { guessed } else { given };
+        known[range.clone()].fill(Some(target.span()));
         into[range].copy_from_slice(&numbers);
         Some(())
     }
@@ -211,6 +222,17 @@ pub fn known(graph: &Graph, defaults: &[f64]) -> Vec<f64> {
     symbols.extend_from_slice(defaults);
     symbols.resize(graph.symbols().len(), f64::NAN);
     symbols
+}
+
+/// Start velocities that contradict a constraint.
+fn violated(constraints: &[Pfaffian], open: Open) -> Diagnostic {
+    let message = format!(
+        "the start velocities violate this constraint by {:.3e}",
+        open.residual
+    );
+    Diagnostic::new(constraints[open.constraint].span, message).help(
+        "leave out the `start` of velocities that follow from the others: they are solved for",
+    )
 }
 
 /// The entries of x or ξ that a start is about, and their value; whether they are of x.

@@ -25,6 +25,8 @@ pub enum ExprKind {
     Index(Box<Expr>, Vec<Expr>),
     /// `f(a, b)`.
     Call(Ident, Vec<Expr>),
+    /// `velocity(f, p) in g`: the components of a call in the axes of a frame.
+    InAxes(Box<Expr>, Box<Expr>),
     /// `-a`.
     Neg(Box<Expr>),
     /// `a op b`.
@@ -98,7 +100,7 @@ impl Expr {
             ExprKind::Field(base, _) | ExprKind::Neg(base) => vec![base],
             ExprKind::Index(base, list) => [&**base].into_iter().chain(list).collect(),
             ExprKind::Call(_, list) | ExprKind::Array(list) => list.iter().collect(),
-            ExprKind::Binary(_, left, right) => vec![left, right],
+            ExprKind::Binary(_, left, right) | ExprKind::InAxes(left, right) => vec![left, right],
             ExprKind::If(choice) => {
                 let Choice {
                     left,

@@ -310,15 +310,15 @@ fn equations() {
     2:13 expected `force`, found `w` <w>
       a generalized force is written `generalized force w = -d * w;`
     2:7 expected the name of a coordinate or velocity, found `=` <=>
-      an initial value is written `start w = [0.01, 1, 0];`
+      an initial value is written `start w = [0.01, 1, 0];`, one that is only near it `start q ~ 1.2;`
     2:13 expected `=`, found `;` <;>
       an output is written `output speed = norm(v);`
     2:9 expected the name of a function, found `;` <;>
       a selection of functions is written `generate accel, energy;`
     2:8 expected `=`, found `;` <;>
-      a frame is written `frame f = pose(R, p);` or `frame f on g = pose(R, p);`
+      a frame is written `frame f = pose(R, p);`, `frame f on g = pose(R, p);` or `frame f on g at [x, y, z];`
     2:12 expected the name of a frame, found `=` <=>
-      a frame is written `frame f = pose(R, p);` or `frame f on g = pose(R, p);`
+      a frame is written `frame f = pose(R, p);`, `frame f on g = pose(R, p);` or `frame f on g at [x, y, z];`
     "#);
 }
 

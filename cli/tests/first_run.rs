@@ -1,0 +1,143 @@
+//! What a first run meets: states of closed loops and of constraints that leave coordinates out, and velocities that
+//! follow from others.
+
+mod common;
+
+use common::{hamel, text};
+use serde_json::Value;
+
+/// The numbers of a member of what `eval` prints for a description at a state.
+fn evaluated(description: &str, state: &str, member: &str) -> Vec<f64> {
+    let folder = std::env::temp_dir().join(format!("hamel-first-{}-{member}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join("state.json");
+    std::fs::write(&path, state).expect("written");
+    let path = path.to_string_lossy().into_owned();
+    let output = hamel(&["eval", "-", "--at", &path], description);
+    std::fs::remove_dir_all(&folder).expect("removed");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let list = value[member].as_array().expect("a list");
+    list.iter().filter_map(Value::as_f64).collect()
+}
+
+const FIVE_BAR: &str = include_str!("../../tests/models/five_bar.eom");
+
+/// The two rods meet, in the assembly of the start, for cranks that were moved and kept.
+#[test]
+fn states_on_loops_are_closed_in_the_assembly_of_the_start() {
+    let state = r#"{"coord": {"q1": 1.9, "q2": 1.1}, "velocity": {"w1": 1, "w2": -0.5}}"#;
+    let x = evaluated(FIVE_BAR, state, "x");
+    assert_eq!(x[..2], [1.9, 1.1]);
+    let (a, b, d) = (0.3, 0.5, 0.25);
+    let tip = |q: f64, p: f64, at: f64| {
+        [
+            at + a * q.cos() + b * (q + p).cos(),
+            a * q.sin() + b * (q + p).sin(),
+        ]
+    };
+    let (left, right) = (tip(x[0], x[2], 0.0), tip(x[1], x[3], d));
+    assert!(
+        (0..2).all(|k| (left[k] - right[k]).abs() < 1e-11),
+        "{left:?} {right:?}"
+    );
+    // Above the cranks, not below.
+    assert!(left[1] > 0.5, "{left:?}");
+    let xi = evaluated(FIVE_BAR, state, "xi");
+    let speed = |q: f64, p: f64, w: f64, u: f64| {
+        [
+            -a * q.sin() * w - b * (q + p).sin() * (w + u),
+            a * q.cos() * w + b * (q + p).cos() * (w + u),
+        ]
+    };
+    let (left, right) = (
+        speed(x[0], x[2], xi[0], xi[2]),
+        speed(x[1], x[3], xi[1], xi[3]),
+    );
+    assert!(
+        (0..2).all(|k| (left[k] - right[k]).abs() < 1e-10),
+        "{left:?} {right:?}"
+    );
+}
+
+/// A bead on an ellipse: of x alone, y follows, on the side of the start.
+#[test]
+fn coordinates_that_constraints_give_are_solved_for() {
+    let bead = "system Bead {
+        coord x, y; velocity u;
+        constraint x^2 / 4 + y^2 = 1;
+        rate x = -2 * y * u, y = x * u / 2;
+        particle mass 1 at [x, y, 0];
+        start x = 0, y = -1;
+    }";
+    let x = evaluated(bead, r#"{"coord": {"x": 1.2}}"#, "x");
+    assert!((x[1] + 0.8).abs() < 1e-12, "{x:?}");
+    let output = hamel(&["eval", "-", "--at", "/dev/null"], bead);
+    assert!(!output.status.success());
+}
+
+/// `check` says what a velocity follows from, and a state that gives it is told the same.
+#[test]
+fn velocities_that_follow_are_shown_with_their_line() {
+    let sleigh = include_str!("../../tests/models/sleigh_choice.eom");
+    let output = hamel(&["check", "-"], sleigh);
+    let said = text(&output.stdout);
+    assert!(output.status.success(), "{said}");
+    for line in [
+        "velocity u  stays in the state",
+        "velocity v  stays in the state",
+        "velocity w  follows from the constraint on line 10, `v = -a * w`",
+    ] {
+        assert!(said.contains(line), "{said}");
+    }
+}
+
+/// A robot with a finger without mass: what needs no inverse of M is there, with a warning.
+#[test]
+fn robots_without_an_inverse_of_m_are_emitted_and_counted() {
+    let robot = r#"<robot name="hand">
+  <link name="base"/>
+  <joint name="hinge" type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <link name="rod"><inertial><mass value="1"/><inertia ixx="0.2" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.01"/></inertial></link>
+  <joint name="finger" type="revolute"><parent link="rod"/><child link="tip"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <link name="tip"/>
+</robot>"#;
+    let output = hamel(&["emit", "-"], robot);
+    let (code, said) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.contains("what needs its inverse is left out"),
+        "{said}"
+    );
+    assert!(
+        code.contains("fn inverse_dynamics") && !code.contains("fn accel"),
+        "{code}"
+    );
+    let output = hamel(&["ops", "-"], robot);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let counts = text(&output.stdout);
+    assert!(
+        counts.contains("mass_matrix") && !counts.contains("accel"),
+        "{counts}"
+    );
+    // Motions have no value.
+    let output = hamel(&["simulate", "-", "--until", "1"], robot);
+    assert!(!output.status.success());
+}
+
+/// A table in a file is found by every command.
+#[test]
+fn tables_in_files_are_read_by_all_commands() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../tests/models/tabled/wing.eom"
+    );
+    for command in ["check", "ops", "eval", "tables"] {
+        let output = hamel(&[command, path], "");
+        assert!(
+            output.status.success(),
+            "{command}: {}",
+            text(&output.stderr)
+        );
+    }
+}

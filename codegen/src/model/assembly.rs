@@ -1,0 +1,341 @@
+//! The configuration nearest to a guess among those that satisfy equations: Newton's method to one of them, then
+//! descent along all of them, and the same from a few neighbours of the guess, of which the nearest end counts.
+
+use crate::algebra::fp::Random;
+use crate::algebra::numeric::least_norm;
+
+/// Steps of Newton's method.
+const STEPS: usize = 100;
+/// Steps of the descent.
+const DESCENT: usize = 200;
+/// Largest residual of a solution.
+const SOLVED: f64 = 1e-12;
+/// A descent whose next step is shorter than this, relative to the distance, is at its end.
+const STILL: f64 = 1e-11;
+/// How often a step is halved.
+const HALVED: usize = 24;
+/// The longest step of Newton's method (rad, m), beside the size of the coordinates.
+const REACH: f64 = 0.1;
+/// The longest step of the descent, as a multiple of the one that a flat surface would ask for.
+const LONGER: f64 = 16.0;
+/// How many neighbours of the guess are tried at most, times the number of directions.
+const NEIGHBOURS: usize = 240;
+/// The most of them.
+const MOST: usize = 40;
+/// How far away the farthest of these neighbours are (rad, m).
+const AWAY: f64 = 2.0;
+/// What is added to the metric, relative to its largest entry, so that it is positive definite.
+const REGULAR: f64 = 1e-9;
+
+/// Equations for a configuration, and its distance from a guess. Directions are the rates along which it may move.
+pub trait Assembly {
+    /// How many directions there are.
+    fn directions(&self) -> usize;
+    /// What has to be 0.
+    fn residuals(&self, x: &[f64]) -> Vec<f64>;
+    /// The slopes of the residuals along the directions, row by row.
+    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>>;
+    /// e(x), whose length is the distance from the guess, and its slopes along the directions.
+    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>);
+    /// The configuration a step away.
+    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64>;
+}
+
+/// The solution nearest to the guess; `None` where none was found.
+pub fn nearest(problem: &impl Assembly, guess: &[f64]) -> Option<Vec<f64>> {
+    if largest(&problem.residuals(guess)) <= SOLVED {
+        return Some(guess.to_vec());
+    }
+    let count = problem.directions();
+    let mut starts = vec![guess.to_vec()];
+    let mut random = Random::new(0x6e65_6172);
+    let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+    for _ in 0..(NEIGHBOURS / count.max(1)).min(MOST) {
+        let away = AWAY * number();
+        let step: Vec<f64> = (0..count).map(|_| away * number()).collect();
+        starts.push(problem.moved(guess, &step));
+    }
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for start in starts {
+        let Some(x) = close(problem, start).and_then(|x| descend(problem, x)) else {
+            continue;
+        };
+        let distance = distance(problem, &x);
+        // A later one has to be nearer by more than rounding.
+        if best
+            .as_ref()
+            .is_none_or(|(least, _)| distance < least * (1.0 - 1e-9))
+        {
+            best = Some((distance, x));
+        }
+    }
+    best.map(|(_, x)| x)
+}
+
+/// Newton's method with the shortest steps in the metric.
+fn close(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
+    let mut residuals = problem.residuals(&x);
+    for _ in 0..STEPS {
+        if largest(&residuals) <= SOLVED {
+            return Some(x);
+        }
+        let mut step = step(problem, &x, &residuals, false)?;
+        // Long steps end on far branches.
+        let most = REACH * (1.0 + largest(&x));
+        let size = largest(&step);
+        if size > most {
+            step.iter_mut().for_each(|h| *h *= most / size);
+        }
+        let (next, after) = shortened(&step, |step| {
+            let next = problem.moved(&x, step);
+            let after = problem.residuals(&next);
+            (square(&after) < square(&residuals)).then_some((next, after))
+        })?;
+        (x, residuals) = (next, after);
+    }
+    (largest(&residuals) <= SOLVED).then_some(x)
+}
+
+/// Along the solutions to where the distance is least.
+fn descend(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
+    let mut before = distance(problem, &x);
+    for _ in 0..DESCENT {
+        let step = step(problem, &x, &problem.residuals(&x), true)?;
+        if square(&step).sqrt() <= STILL * (1.0 + before) {
+            break;
+        }
+        let at = |factor: f64| -> Option<(Vec<f64>, f64)> {
+            let step: Vec<f64> = step.iter().map(|h| factor * h).collect();
+            let next = close(problem, problem.moved(&x, &step))?;
+            let after = distance(problem, &next);
+            (after < before).then_some((next, after))
+        };
+        // Along the step the square of the distance is nearly a parabola, whose slope at its start is known.
+        let (apart, slopes) = problem.apart(&x);
+        let slope: f64 = slopes
+            .iter()
+            .zip(&apart)
+            .map(|(row, e)| e * dot(row, &step))
+            .sum();
+        let whole = at(1.0);
+        let ahead = whole
+            .as_ref()
+            .map_or(f64::INFINITY, |(_, after)| after * after);
+        let bend = (ahead - before * before) / 2.0 - slope;
+        let lowest = if bend > 0.0 {
+            -slope / (2.0 * bend)
+        } else {
+            LONGER
+        };
+        let lowest = lowest.min(LONGER);
+        let lower = if lowest > 0.0 { at(lowest) } else { None };
+        let better = match (whole, lower) {
+            (Some(one), Some(other)) if one.1 <= other.1 => Some(one),
+            (Some(one), None) => Some(one),
+            (_, other) => other,
+        };
+        let halves = (1..HALVED as i32).map(|k| 0.5_f64.powi(k));
+        let nearer = better.or_else(|| halves.into_iter().find_map(at));
+        let Some((next, after)) = nearer else {
+            break;
+        };
+        (x, before) = (next, after);
+    }
+    Some(x)
+}
+
+/// The first of a step, its half, its quarter … that serves.
+fn shortened<T>(step: &[f64], mut serves: impl FnMut(&[f64]) -> Option<T>) -> Option<T> {
+    let mut step = step.to_vec();
+    for _ in 0..HALVED {
+        if let Some(found) = serves(&step) {
+            return Some(found);
+        }
+        step.iter_mut().for_each(|h| *h *= 0.5);
+    }
+    None
+}
+
+/// The step h with φ + B h = 0 that is shortest in the metric EᵀE or, towards the guess, has the shortest e + E h.
+fn step(problem: &impl Assembly, x: &[f64], residuals: &[f64], towards: bool) -> Option<Vec<f64>> {
+    let (apart, slopes) = problem.apart(x);
+    let count = problem.directions();
+    let column = |i: usize| slopes.iter().map(move |row| row[i]);
+    let mut metric: Vec<Vec<f64>> = (0..count)
+        .map(|i| {
+            (0..count)
+                .map(|j| column(i).zip(column(j)).map(|(a, b)| a * b).sum())
+                .collect()
+        })
+        .collect();
+    let scale = (0..count)
+        .map(|i| metric[i][i])
+        .fold(f64::MIN_POSITIVE, f64::max);
+    (0..count).for_each(|i| metric[i][i] += REGULAR * scale);
+    let factor = cholesky(&metric)?;
+    let gradient: Vec<f64> = match towards {
+        true => (0..count)
+            .map(|i| column(i).zip(&apart).map(|(a, b)| a * b).sum())
+            .collect(),
+        false => vec![0.0; count],
+    };
+    // In u = Lᵀ h the metric is 1.
+    let away = forward(&factor, &gradient);
+    let rows: Vec<Vec<f64>> = problem
+        .slopes(x)
+        .iter()
+        .map(|row| forward(&factor, row))
+        .collect();
+    let target: Vec<f64> = rows
+        .iter()
+        .zip(residuals)
+        .map(|(row, residual)| dot(row, &away) - residual)
+        .collect();
+    let across = match rows.is_empty() {
+        true => vec![0.0; count],
+        false => least_norm(&rows, &target)?,
+    };
+    let u: Vec<f64> = across.iter().zip(&away).map(|(a, b)| a - b).collect();
+    Some(backward(&factor, &u))
+}
+
+/// L with L Lᵀ = M; `None` where M is not positive definite.
+pub fn cholesky(m: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+    let n = m.len();
+    let mut l = vec![vec![0.0; n]; n];
+    for i in 0..n {
+        for j in 0..=i {
+            let sum = m[i][j] - dot(&l[i][..j], &l[j][..j]);
+            l[i][j] = if i == j { sum.sqrt() } else { sum / l[j][j] };
+        }
+        if !(l[i][i] > 0.0 && l[i][i].is_finite()) {
+            return None;
+        }
+    }
+    Some(l)
+}
+
+/// L⁻¹ b.
+pub fn forward(l: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
+    let mut y = b.to_vec();
+    for i in 0..y.len() {
+        y[i] = (y[i] - dot(&l[i][..i], &y[..i])) / l[i][i];
+    }
+    y
+}
+
+/// L⁻ᵀ b.
+pub fn backward(l: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
+    let mut y = b.to_vec();
+    for i in (0..y.len()).rev() {
+        let sum: f64 = (i + 1..y.len()).map(|k| l[k][i] * y[k]).sum();
+        y[i] = (y[i] - sum) / l[i][i];
+    }
+    y
+}
+
+fn distance(problem: &impl Assembly, x: &[f64]) -> f64 {
+    square(&problem.apart(x).0).sqrt()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// |a|², infinite where an entry is no number.
+fn square(a: &[f64]) -> f64 {
+    let sum = dot(a, a);
+    if sum.is_nan() { f64::INFINITY } else { sum }
+}
+
+/// max |a|, infinite where an entry is no number.
+fn largest(a: &[f64]) -> f64 {
+    let worst = |most: f64, a: &f64| {
+        if a.is_nan() {
+            f64::INFINITY
+        } else {
+            most.max(a.abs())
+        }
+    };
+    a.iter().fold(0.0, worst)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Assembly, nearest};
+
+    /// A point on the circle of radius r about the origin, with its distance in a diagonal metric.
+    struct Circle {
+        radius: f64,
+        guess: [f64; 2],
+        weights: [f64; 2],
+    }
+
+    impl Assembly for Circle {
+        fn directions(&self) -> usize {
+            2
+        }
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            vec![x[0] * x[0] + x[1] * x[1] - self.radius * self.radius]
+        }
+        fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+            vec![vec![2.0 * x[0], 2.0 * x[1]]]
+        }
+        fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+            let entry = |k: usize| self.weights[k] * (x[k] - self.guess[k]);
+            let slopes = vec![vec![self.weights[0], 0.0], vec![0.0, self.weights[1]]];
+            (vec![entry(0), entry(1)], slopes)
+        }
+        fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+            vec![x[0] + step[0], x[1] + step[1]]
+        }
+    }
+
+    /// Against the least of many points of the circle.
+    #[test]
+    fn the_nearest_point_of_a_circle_is_found() {
+        let mut random = crate::algebra::fp::Random::new(11);
+        let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+        for _ in 0..200 {
+            let circle = Circle {
+                radius: 0.3 + number().abs(),
+                guess: [2.0 * number(), 2.0 * number()],
+                weights: [1.0 + number().abs(), 1.0 + 2.0 * number().abs()],
+            };
+            let x = nearest(&circle, &circle.guess).expect("a point");
+            let distance = |x: &[f64]| circle.apart(x).0.iter().map(|e| e * e).sum::<f64>().sqrt();
+            let least = (0..20_000)
+                .map(|k| {
+                    let angle = k as f64 * std::f64::consts::TAU / 20_000.0;
+                    distance(&[circle.radius * angle.cos(), circle.radius * angle.sin()])
+                })
+                .fold(f64::INFINITY, f64::min);
+            assert!(circle.residuals(&x)[0].abs() < 1e-11);
+            // The points are 3e-4 apart.
+            assert!(distance(&x) < least + 1e-7, "{} {least}", distance(&x));
+        }
+    }
+
+    #[test]
+    fn where_there_is_no_solution_none_is_found() {
+        struct Nowhere;
+        impl Assembly for Nowhere {
+            fn directions(&self) -> usize {
+                1
+            }
+            fn residuals(&self, x: &[f64]) -> Vec<f64> {
+                vec![x[0] * x[0] + 1.0]
+            }
+            fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+                vec![vec![2.0 * x[0]]]
+            }
+            fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+                (vec![x[0] - 0.4], vec![vec![1.0]])
+            }
+            fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+                vec![x[0] + step[0]]
+            }
+        }
+        assert_eq!(nearest(&Nowhere, &[0.4]), None);
+    }
+}

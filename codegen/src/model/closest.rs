@@ -1,0 +1,443 @@
+//! Configurations nearest to a guess: of loops in the metric of M, of the description's own constraints in that of
+//! the coordinates, where velocities are not yet known.
+
+use super::assembly::{Assembly, backward, cholesky, forward};
+use super::closure::{Closure, normalise};
+use super::layout::Block;
+use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::numeric::{evaluate, least_norm};
+use crate::algebra::slopes::slopes;
+
+/// What is added to M, relative to its largest entry: something may be without mass.
+const LEAST: f64 = 1e-9;
+
+/// Loops to be closed near a guess.
+pub struct Loops<'c, 'a> {
+    closure: &'c Closure<'a>,
+    guess: &'c [f64],
+    given: Vec<usize>,
+    free: Vec<usize>,
+    /// S with |S δ|² the square of the distance, δ that in the charts of the coordinates.
+    weight: Option<Vec<Vec<f64>>>,
+}
+
+impl<'c, 'a> Loops<'c, 'a> {
+    /// The loops of a description; what is given stays as it is in the guess.
+    pub fn new(
+        closure: &'c Closure<'a>,
+        mass: &[Vec<f64>],
+        guess: &'c [f64],
+        given: &[bool],
+    ) -> Self {
+        let directions = 0..closure.n;
+        let mut loops = Loops {
+            closure,
+            guess,
+            given: (0..given.len()).filter(|&alpha| given[alpha]).collect(),
+            free: directions.filter(|&i| closure.time != Some(i)).collect(),
+            weight: None,
+        };
+        loops.weight = loops.weights(mass);
+        loops
+    }
+
+    /// S = Lᵀ (CᵀC)⁻¹ Cᵀ with M = L Lᵀ and the rates C ξ of the charts at the guess.
+    fn weights(&self, mass: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        let n = self.closure.n;
+        let factor = cholesky(&regular(mass))?;
+        let rates = self.chart_rates(self.guess);
+        let gram: Vec<Vec<f64>> = (0..n)
+            .map(|i| {
+                (0..n)
+                    .map(|j| rates.iter().map(|c| c[i] * c[j]).sum())
+                    .collect()
+            })
+            .collect();
+        let gram = cholesky(&gram)?;
+        let columns = rates.iter().map(|c| backward(&gram, &forward(&gram, c)));
+        let columns: Vec<Vec<f64>> = columns.collect();
+        let entry = |i: usize, column: &[f64]| (i..n).map(|k| factor[k][i] * column[k]).sum();
+        Some(
+            (0..n)
+                .map(|i| columns.iter().map(|column| entry(i, column)).collect())
+                .collect(),
+        )
+    }
+
+    fn a(&self, x: &[f64]) -> Vec<f64> {
+        evaluate(
+            self.closure.graph,
+            &self.closure.a,
+            &self.closure.numbers(x),
+        )
+    }
+
+    /// How the velocities change the charts, row by row.
+    fn chart_rates(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        let (a, n) = (self.a(x), self.closure.n);
+        let columns: Vec<Vec<f64>> = (0..n)
+            .map(|i| {
+                let rate: Vec<f64> = a.chunks(n).map(|row| row[i]).collect();
+                each(&self.closure.blocks, |block, place| {
+                    let end = place + block.len();
+                    chart_rate(block, &x[place..end], &rate[place..end])
+                })
+            })
+            .collect();
+        let rows = columns.first().map_or(0, Vec::len);
+        (0..rows)
+            .map(|row| columns.iter().map(|column| column[row]).collect())
+            .collect()
+    }
+}
+
+impl Assembly for Loops<'_, '_> {
+    fn directions(&self) -> usize {
+        self.free.len()
+    }
+
+    fn residuals(&self, x: &[f64]) -> Vec<f64> {
+        let mut residuals = self.closure.residuals(x);
+        residuals.extend(self.given.iter().map(|&alpha| x[alpha] - self.guess[alpha]));
+        residuals
+    }
+
+    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        let n = self.closure.n;
+        let loops = self.closure.loops().into_iter();
+        let rows = loops.flat_map(|place| self.closure.constraints[place].row.iter().copied());
+        let rows: Vec<Edge> = rows.collect();
+        let b = evaluate(self.closure.graph, &rows, &self.closure.numbers(x));
+        let a = self.a(x);
+        let given = self
+            .given
+            .iter()
+            .map(|&alpha| &a[alpha * n..(alpha + 1) * n]);
+        let rows = b.chunks(n).chain(given);
+        rows.map(|row| self.free.iter().map(|&i| row[i]).collect())
+            .collect()
+    }
+
+    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let (mut apart, mut slopes): (Vec<f64>, Vec<Vec<f64>>) = Default::default();
+        let rates = self.chart_rates(x);
+        let mut place = 0;
+        for &block in &self.closure.blocks {
+            let end = place + block.len();
+            let (way, bent) = way(block, &self.guess[place..end], &x[place..end]);
+            let rows = &rates[apart.len()..apart.len() + way.len()];
+            slopes.extend(bent.iter().map(|row| {
+                let entry = |i: usize| row.iter().zip(rows).map(|(a, b)| a * b[i]).sum();
+                self.free.iter().map(|&i| entry(i)).collect::<Vec<f64>>()
+            }));
+            apart.extend(way);
+            place = end;
+        }
+        let Some(weight) = &self.weight else {
+            return (apart, slopes);
+        };
+        let weighed = |column: &dyn Fn(usize) -> f64, row: &[f64]| -> f64 {
+            row.iter().enumerate().map(|(k, s)| s * column(k)).sum()
+        };
+        let far = weight
+            .iter()
+            .map(|row| weighed(&|k| apart[k], row))
+            .collect();
+        let bent = weight.iter().map(|row| {
+            let columns = 0..self.free.len();
+            columns.map(|i| weighed(&|k| slopes[k][i], row)).collect()
+        });
+        (far, bent.collect())
+    }
+
+    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+        let (a, n) = (self.a(x), self.closure.n);
+        let mut moved = x.to_vec();
+        for (entry, row) in moved.iter_mut().zip(a.chunks(n)) {
+            *entry += self
+                .free
+                .iter()
+                .zip(step)
+                .map(|(&i, h)| row[i] * h)
+                .sum::<f64>();
+        }
+        normalise(&self.closure.blocks, &mut moved);
+        moved
+    }
+}
+
+/// Constraints φ(x) = 0 of a description to be satisfied near a guess.
+pub struct Constraints<'a> {
+    /// The graph of φ.
+    pub graph: &'a Graph,
+    /// φ, those of the kinds of coordinates among them.
+    pub phi: Vec<Edge>,
+    /// The symbol of the first coordinate.
+    pub first: usize,
+    /// The numbers of all symbols.
+    pub numbers: &'a [f64],
+    /// The blocks of x.
+    pub blocks: &'a [Block],
+    /// The guess.
+    pub guess: &'a [f64],
+    /// Entries that stay as they are in the guess.
+    pub given: Vec<usize>,
+}
+
+impl Constraints<'_> {
+    fn at(&self, x: &[f64]) -> Vec<f64> {
+        let mut numbers = self.numbers.to_vec();
+        numbers[self.first..self.first + x.len()].copy_from_slice(x);
+        numbers
+    }
+}
+
+impl Assembly for Constraints<'_> {
+    fn directions(&self) -> usize {
+        self.guess.len()
+    }
+
+    fn residuals(&self, x: &[f64]) -> Vec<f64> {
+        let mut residuals = evaluate(self.graph, &self.phi, &self.at(x));
+        residuals.extend(self.given.iter().map(|&alpha| x[alpha] - self.guess[alpha]));
+        residuals
+    }
+
+    fn slopes(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        let unit = |alpha: usize| {
+            let mut direction = vec![0.0; self.first + alpha + 1];
+            direction[self.first + alpha] = 1.0;
+            direction
+        };
+        let directions: Vec<Vec<f64>> = (0..x.len()).map(unit).collect();
+        let rows = slopes(self.graph, &self.phi, &self.at(x), &directions).into_iter();
+        let rows = rows.map(|row| (0..x.len()).map(|alpha| row.slope(alpha)).collect());
+        let given = self.given.iter().map(|&alpha| {
+            let mut row = vec![0.0; x.len()];
+            row[alpha] = 1.0;
+            row
+        });
+        rows.chain(given).collect()
+    }
+
+    fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let apart = x.iter().zip(self.guess).map(|(a, b)| a - b).collect();
+        let row = |alpha: usize| (0..x.len()).map(|beta| f64::from(alpha == beta)).collect();
+        (apart, (0..x.len()).map(row).collect())
+    }
+
+    fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
+        let mut moved: Vec<f64> = x.iter().zip(step).map(|(x, h)| x + h).collect();
+        normalise(self.blocks, &mut moved);
+        moved
+    }
+}
+
+/// The ξ nearest to a guess with B ξ + b = 0, some of it given, in the metric of M.
+pub fn velocities(
+    rows: &[Vec<f64>],
+    shifts: &[f64],
+    mass: &[Vec<f64>],
+    given: &[bool],
+    guess: &[f64],
+) -> Option<Vec<f64>> {
+    let n = guess.len();
+    let factor = cholesky(&regular(mass))?;
+    let unit = |i: usize| (0..n).map(|j| f64::from(i == j)).collect::<Vec<f64>>();
+    let kept = (0..n).filter(|&i| given[i]).map(|i| (unit(i), -guess[i]));
+    let rows = rows.iter().cloned().zip(shifts.iter().copied());
+    let rows: Vec<(Vec<f64>, f64)> = rows.chain(kept).collect();
+    let across: Vec<Vec<f64>> = rows.iter().map(|(row, _)| forward(&factor, row)).collect();
+    let mut xi = guess.to_vec();
+    for _ in 0..3 {
+        let residual = |(row, shift): &(Vec<f64>, f64)| -> f64 {
+            -shift - row.iter().zip(&xi).map(|(b, v)| b * v).sum::<f64>()
+        };
+        let target: Vec<f64> = rows.iter().map(residual).collect();
+        let step = backward(&factor, &least_norm(&across, &target)?);
+        xi.iter_mut().zip(step).for_each(|(xi, h)| *xi += h);
+    }
+    (0..n).filter(|&i| given[i]).for_each(|i| xi[i] = guess[i]);
+    Some(xi)
+}
+
+/// M with a little on its diagonal.
+fn regular(mass: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let scale = (0..mass.len()).map(|i| mass[i][i]).fold(0.0, f64::max);
+    let scale = if scale > 0.0 { scale } else { 1.0 };
+    let mut mass = mass.to_vec();
+    (0..mass.len()).for_each(|i| mass[i][i] += LEAST * scale);
+    mass
+}
+
+/// A list of what each block gives at its place.
+fn each(blocks: &[Block], mut of: impl FnMut(Block, usize) -> Vec<f64>) -> Vec<f64> {
+    let mut place = 0;
+    let mut all = Vec::new();
+    for &block in blocks {
+        all.extend(of(block, place));
+        place += block.len();
+    }
+    all
+}
+
+/// The rate of a chart: that of plain coordinates, of an angle, or the angular velocity in body axes.
+fn chart_rate(block: Block, x: &[f64], rate: &[f64]) -> Vec<f64> {
+    match block {
+        Block::Flat(_) => rate.to_vec(),
+        Block::Circle => vec![x[0] * rate[1] - x[1] * rate[0]],
+        Block::Quaternion => {
+            let entry = |i: usize| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let plus = x[0] * rate[1 + i] + x[1 + k] * rate[1 + j];
+                2.0 * (plus - x[1 + i] * rate[0] - x[1 + j] * rate[1 + k])
+            };
+            (0..3).map(entry).collect()
+        }
+        Block::Rotation => {
+            let product = |j: usize, k: usize| -> f64 {
+                (0..3).map(|row| x[3 * row + j] * rate[3 * row + k]).sum()
+            };
+            let entry = |i: usize| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                0.5 * (product(k, j) - product(j, k))
+            };
+            (0..3).map(entry).collect()
+        }
+    }
+}
+
+/// The way from one point of a block to another in its chart, and the factor from the rate of the chart to that of
+/// the way.
+fn way(block: Block, from: &[f64], to: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    match block {
+        Block::Flat(n) => {
+            let way = to.iter().zip(from).map(|(a, b)| a - b).collect();
+            let row = |i: usize| (0..n).map(|j| f64::from(i == j)).collect();
+            (way, (0..n).map(row).collect())
+        }
+        Block::Circle => {
+            let (c, s) = (
+                from[0] * to[0] + from[1] * to[1],
+                from[0] * to[1] - from[1] * to[0],
+            );
+            (vec![s.atan2(c)], vec![vec![1.0]])
+        }
+        Block::Quaternion => turned(relative(from, to)),
+        Block::Rotation => turned(relative(&quaternion(from), &quaternion(to))),
+    }
+}
+
+/// p̄ q.
+fn relative(p: &[f64], q: &[f64]) -> [f64; 4] {
+    let entry = |i: usize| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        p[0] * q[1 + i] - q[0] * p[1 + i] - p[1 + j] * q[1 + k] + p[1 + k] * q[1 + j]
+    };
+    let scalar = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
+    [scalar, entry(0), entry(1), entry(2)]
+}
+
+/// The unit quaternion of a rotation by rows, up to its sign.
+fn quaternion(r: &[f64]) -> [f64; 4] {
+    let trace = r[0] + r[4] + r[8];
+    let squares = [
+        1.0 + trace,
+        1.0 + 2.0 * r[0] - trace,
+        1.0 + 2.0 * r[4] - trace,
+        1.0 + 2.0 * r[8] - trace,
+    ];
+    let largest = (0..4).fold(
+        0,
+        |best, k| if squares[k] > squares[best] { k } else { best },
+    );
+    // Twice the products of the largest entry with the others.
+    let skew = [r[7] - r[5], r[2] - r[6], r[3] - r[1]];
+    let sum = |i: usize, j: usize| r[3 * i + j] + r[3 * j + i];
+    let row = match largest {
+        0 => [squares[0], skew[0], skew[1], skew[2]],
+        1 => [skew[0], squares[1], sum(0, 1), sum(0, 2)],
+        2 => [skew[1], sum(0, 1), squares[2], sum(1, 2)],
+        _ => [skew[2], sum(0, 2), sum(1, 2), squares[3]],
+    };
+    let length = row.iter().map(|e| e * e).sum::<f64>().sqrt();
+    row.map(|e| e / length)
+}
+
+/// The rotation vector δ of a unit quaternion, and 1 + δ̂/2 + κ δ̂² of δ̇ = (…) ω.
+fn turned(q: [f64; 4]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let q = if q[0] < 0.0 { q.map(|e| -e) } else { q };
+    let v = [q[1], q[2], q[3]];
+    let length = v.iter().map(|e| e * e).sum::<f64>().sqrt();
+    let angle = 2.0 * length.atan2(q[0]);
+    let factor = if length > 1e-8 { angle / length } else { 2.0 };
+    let way = v.map(|e| factor * e);
+    let kappa = match angle {
+        small if small < 1e-3 => 1.0 / 12.0 + small * small / 720.0,
+        angle => 1.0 / (angle * angle) - q[0] / (2.0 * angle * length),
+    };
+    let square: f64 = way.iter().map(|e| e * e).sum();
+    let entry = |i: usize, j: usize| {
+        let bent = kappa * way[i] * way[j];
+        match (3 + j - i) % 3 {
+            0 => 1.0 + bent - kappa * square,
+            1 => bent - 0.5 * way[(i + 2) % 3],
+            _ => bent + 0.5 * way[(i + 1) % 3],
+        }
+    };
+    let rows = (0..3).map(|i| (0..3).map(|j| entry(i, j)).collect());
+    (way.to_vec(), rows.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{chart_rate, turned, way};
+    use crate::algebra::fp::Random;
+    use crate::model::layout::{Block, rotation};
+
+    /// The rate of the way between two points is the product that it should be, by differences of the way.
+    #[test]
+    fn the_way_changes_as_its_factor_says() {
+        let mut random = Random::new(5);
+        let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+        for _ in 0..50 {
+            let mut unit = || {
+                let q: [f64; 4] = std::array::from_fn(|_| number());
+                let length = q.iter().map(|e| e * e).sum::<f64>().sqrt();
+                q.map(|e| e / length)
+            };
+            let (from, to, push) = (unit(), unit(), unit());
+            let along: f64 = (0..4).map(|k| to[k] * push[k]).sum();
+            let rate: [f64; 4] = std::array::from_fn(|k| push[k] - along * to[k]);
+            let shifted = |h: f64| -> Vec<f64> {
+                let q: [f64; 4] = std::array::from_fn(|k| to[k] + h * rate[k]);
+                let length = q.iter().map(|e| e * e).sum::<f64>().sqrt();
+                q.map(|e| e / length).to_vec()
+            };
+            let matrix = |q: &[f64]| rotation([q[0], q[1], q[2], q[3]], 2.0);
+            let h = 1e-5;
+            let turn = |q: &dyn Fn(f64) -> Vec<f64>, block, from: &[f64]| {
+                let (ahead, behind) = (way(block, from, &q(h)).0, way(block, from, &q(-h)).0);
+                let slope: Vec<f64> = (0..3).map(|k| (ahead[k] - behind[k]) / (2.0 * h)).collect();
+                let (a, b) = (q(h), q(-h));
+                let x_dot: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - b) / (2.0 * h)).collect();
+                let spin = chart_rate(block, &q(0.0), &x_dot);
+                let factor = way(block, from, &q(0.0)).1;
+                for k in 0..3 {
+                    let expected: f64 = (0..3).map(|l| factor[k][l] * spin[l]).sum();
+                    // The way is cut where the turn is by π.
+                    let cut = (slope[k]).abs() > 1e3;
+                    assert!(cut || (slope[k] - expected).abs() < 1e-6 * (1.0 + expected.abs()));
+                }
+                way(block, from, &q(0.0)).0
+            };
+            let one = turn(&shifted, Block::Quaternion, &from);
+            let other = turn(&|h| matrix(&shifted(h)), Block::Rotation, &matrix(&from));
+            assert!(
+                (0..3).all(|k| (one[k] - other[k]).abs() < 1e-9),
+                "{one:?} {other:?}"
+            );
+        }
+        assert_eq!(turned([1.0, 0.0, 0.0, 0.0]).0, [0.0; 3]);
+    }
+}
