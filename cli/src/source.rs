@@ -9,7 +9,7 @@ use hamel_codegen::generate::{Generated, at_some_point, from_file};
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
-use hamel_codegen::syntax;
+use hamel_codegen::syntax::{self, ast::System};
 use hamel_codegen::urdf;
 use std::cell::Cell;
 use std::io::Read;
@@ -107,18 +107,24 @@ impl Source {
         })
     }
 
-    /// The text of a table that stands in a file, by its path from the description.
-    fn table(&self, name: &str) -> std::io::Result<String> {
+    /// The text of a file that the description names, by its path from there.
+    fn file(&self, name: &str) -> std::io::Result<String> {
         let folder = Path::new(&self.path).parent();
         std::fs::read_to_string(folder.unwrap_or(Path::new("")).join(name))
     }
 
+    /// The description with what it has in other files.
+    fn system(&self) -> Result<System, Failure> {
+        let system = syntax::parse_text(&self.text).and_then(|mut system| {
+            syntax::read_files(&mut system, &mut |name| self.file(name))?;
+            Ok(system)
+        });
+        system.map_err(|errors| self.refused(&errors))
+    }
+
     /// What the description says, not derived yet.
     pub fn model(&self) -> Result<Model, Failure> {
-        let model = syntax::parse_text(&self.text).and_then(|mut system| {
-            syntax::read_tables(&mut system, &mut |table| self.table(table))?;
-            lower::build(&system)
-        });
+        let model = lower::build(&self.system()?);
         let model = model.map_err(|errors| self.refused(&errors))?;
         self.warn(&model);
         Ok(model)
@@ -135,7 +141,7 @@ impl Source {
         &self,
         derive: impl Fn(Model) -> Result<T, Vec<Diagnostic>>,
     ) -> Result<T, Failure> {
-        let system = syntax::parse_text(&self.text).map_err(|errors| self.refused(&errors))?;
+        let system = self.system()?;
         let derived = progress::during(DERIVING, || {
             at_some_point(&system, |model| {
                 self.warn(&model);
@@ -162,7 +168,7 @@ impl Source {
     /// Derives the functions that the description asks for.
     pub fn derive(&self) -> Result<Generated, Failure> {
         let derived = progress::during(DERIVING, || {
-            from_file(&self.text, &mut |table| self.table(table))
+            from_file(&self.text, &mut |name| self.file(name))
         });
         let derived = derived.map_err(|errors| self.refused(&errors))?;
         self.warn(&derived.model);

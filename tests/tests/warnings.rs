@@ -3,14 +3,14 @@
 use hamel_codegen::lower::build;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::warnings;
-use hamel_codegen::syntax::{parse_text, read_tables};
+use hamel_codegen::syntax::{parse_text, read_files};
 use hamel_codegen::urdf::{Options, import};
 use std::path::{Path, PathBuf};
 
 fn read(text: &str, folder: &Path) -> Model {
     let mut system = parse_text(text).expect("a description");
     let open = &mut |name: &str| std::fs::read_to_string(folder.join(name));
-    read_tables(&mut system, open).expect("tables");
+    read_files(&mut system, open).expect("files");
     build(&system).expect("a correct description")
 }
 

@@ -131,7 +131,7 @@ fields!(Model {
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, prescribed, accelerated, whole;
     name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, clock,
-    joints, start_x, start_xi, asked, span, warnings
+    joints, start_x, start_xi, asked, span, origins, warnings
 });
 
 impl Edges for Along {

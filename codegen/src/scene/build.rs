@@ -6,7 +6,7 @@ use super::{Scene, SceneError, print};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
     Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, Function, Item, ItemKind,
-    Shape, ShapeKind, Source, Span, System, Table, Target,
+    Origins, Shape, ShapeKind, Source, Span, System, Table, Target,
 };
 use crate::syntax::parse_text;
 
@@ -27,6 +27,7 @@ impl SceneBuilder {
                 public: true,
                 name: ident(name),
                 items: Vec::new(),
+                origins: Origins::default(),
             },
         }
     }

@@ -7,7 +7,7 @@ use super::expression::expression;
 use super::suggest::closest;
 use super::tokens::Kind;
 use super::words::statements;
-use super::{body, declaration, element, invariant, joint, load, table};
+use super::{body, declaration, element, invariant, joint, load, path, reuse, table};
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -90,6 +90,20 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         "start" => return list(cursor, start, starting),
         "output" => return list(cursor, start, output),
         "frame" => frame(cursor)?,
+        "include" => reuse::include(cursor)?,
+        // End with their braces, or take their `;`.
+        "component" => {
+            let kind = reuse::component(cursor)?;
+            return Ok(reuse::ended(kind, start, cursor));
+        }
+        "for" => {
+            let kind = reuse::repeat(cursor)?;
+            return Ok(reuse::ended(kind, start, cursor));
+        }
+        "part" => {
+            let kind = reuse::part(cursor)?;
+            return Ok(reuse::ended(kind, start, cursor));
+        }
         // Ends with its braces.
         "body" => {
             let kind = ItemKind::Body(body::body(cursor)?);
@@ -137,6 +151,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
             | "spring"
             | "damper"
             | "generate"
+            | "include"
     );
     cursor.end(!names)?;
     let span = since(start, cursor);
@@ -179,7 +194,7 @@ fn starting(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 
 /// `speed = norm(v)`
 fn output(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
-    let name = cursor.name("an output")?;
+    let name = path::declared(cursor, "an output")?;
     cursor.assign()?;
     Ok(ItemKind::Output {
         name,
@@ -187,15 +202,24 @@ fn output(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     })
 }
 
-/// `R`, `X.p`
+/// `R`, `X.p`, `leg[3].knee`: its last word is the field, until it is known what the others stand for.
 fn target(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Target> {
-    let name = cursor.name(of)?;
-    let field = if cursor.eat_punct('.') {
-        Some(cursor.word("the name of a part")?)
-    } else {
-        None
-    };
-    Ok(Target { name, field })
+    let name = path::path(cursor, of)?;
+    let last = cursor.before();
+    let Ident { name: text, span } = &name;
+    Ok(match text.rsplit_once('.') {
+        Some((before, field)) if !field.contains('[') => Target {
+            name: Ident {
+                name: before.to_owned(),
+                span: *span,
+            },
+            field: Some(Ident {
+                name: field.to_owned(),
+                span: last,
+            }),
+        },
+        _ => Target { name, field: None },
+    })
 }
 
 /// `q`, `v`, `rate(v)`
@@ -224,9 +248,9 @@ fn kept(cursor: &mut Cursor<'_>) -> Parsed<(Expr, Expr, Option<Expr>)> {
 
 /// `frame f [on g] = pose(R, p)`
 fn frame(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
-    let name = cursor.name("a frame")?;
+    let name = path::declared(cursor, "a frame")?;
     let on = if cursor.eat_word("on") {
-        Some(cursor.name("a frame")?)
+        Some(path::path(cursor, "a frame")?)
     } else {
         None
     };
@@ -240,11 +264,19 @@ fn frame(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 
 /// `generate accel, energy`
 fn functions(cursor: &mut Cursor<'_>) -> Parsed<Vec<Ident>> {
-    let mut names = vec![cursor.word("the name of a function")?];
+    let mut names = vec![function(cursor)?];
     while cursor.eat_punct(',') {
-        names.push(cursor.word("the name of a function")?);
+        names.push(function(cursor)?);
     }
     Ok(names)
+}
+
+/// `energy`, `leg[3].reach`
+fn function(cursor: &mut Cursor<'_>) -> Parsed<Ident> {
+    match cursor.is_followed_by(&['.'], &[]) || cursor.is_indexed() {
+        true => path::path(cursor, "a function"),
+        false => cursor.word("the name of a function"),
+    }
 }
 
 fn no_statement(cursor: &Cursor<'_>) -> Diagnostic {
