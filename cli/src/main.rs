@@ -16,6 +16,7 @@
 
 mod check;
 mod columns;
+mod constants;
 mod compare;
 mod eigenvalues;
 mod emit;

@@ -1,5 +1,6 @@
 //! A description's file: reading and deriving it, with errors and warnings shown in its text.
 
+use crate::constants;
 use crate::failure::{self, Failure};
 use crate::progress;
 use crate::robot::{Robot, RobotOptions};
@@ -83,9 +84,17 @@ impl Source {
 
     /// Reads a description, or a robot in URDF.
     pub fn open(path: &Path, options: &RobotOptions) -> Result<Self, Failure> {
-        let source = Source::read(path)?;
+        let mut source = Source::read(path)?;
         if urdf::is_urdf(path) || source.text.trim_start().starts_with('<') {
+            if !options.constants.is_empty() {
+                let message = format!("{} is a robot: --const is for descriptions", source.path);
+                return Err(Failure::usage(message));
+            }
             return source.robot(options);
+        }
+        for (name, value) in &options.constants {
+            source.text = constants::given(&source.text, name, value)
+                .map_err(|why| Failure::usage(format!("--const {name}={value}: {why}")))?;
         }
         if options.given() {
             return Err(Failure::usage(format!(

@@ -179,12 +179,7 @@ mod text {
         Some((path, source, place(span, source)?))
     }
 
-    fn group<'a>(
-        error: &'a Diagnostic,
-        level: Level,
-        path: &'a str,
-        source: &'a str,
-    ) -> Group<'a> {
+    fn group<'a>(error: &'a Diagnostic, level: Level, path: &'a str, source: &'a str) -> Group<'a> {
         let title = level.title().primary_title(error.message.as_str());
         let mut group = Group::with_title(title);
         let mut messages = Vec::new();

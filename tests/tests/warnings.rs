@@ -14,12 +14,14 @@ fn read(text: &str, folder: &Path) -> Model {
     build(&system).expect("a correct description")
 }
 
-/// All files below a folder with an ending.
+/// All files below a folder with an ending, but those that others include, in folders `parts`.
 fn below(folder: &str, ending: &str) -> Vec<PathBuf> {
     let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
     let mut found = Vec::new();
     while let Some(path) = open.pop() {
-        if path.is_dir() {
+        if path.ends_with("parts") {
+            continue;
+        } else if path.is_dir() {
             let entries = std::fs::read_dir(path).expect("a folder");
             open.extend(entries.map(|entry| entry.expect("an entry").path()));
         } else if path.extension().is_some_and(|end| end == ending) {

@@ -3,9 +3,7 @@
 use super::names::{Context, Kind, World};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::visit::{Visit, places, visit};
-use crate::syntax::ast::{
-    Counter, Expr, Ident, Item, ItemKind, Repeat, Span, Target,
-};
+use crate::syntax::ast::{Counter, Expr, Ident, Item, ItemKind, Repeat, Span, Target};
 use crate::syntax::joint_endings;
 use crate::syntax::path::{Step, steps};
 use std::rc::Rc;
@@ -36,13 +34,8 @@ impl<'a> World<'a> {
             }
             match &item.kind {
                 ItemKind::Component(_) => {}
-                ItemKind::Include(name, span) => {
-                    let message = format!("nothing says in which folder `{name}` is");
-                    self.report.push_once(
-                        Diagnostic::new(span.later(context.by), message)
-                            .help("read the description from its file"),
-                    );
-                }
+                // Reported before, if it was not read.
+                ItemKind::Include(..) => {}
                 ItemKind::Repeat(repeat) => self.repeat(repeat, item.span, context),
                 ItemKind::Part(part) => self.part(part, item.span, context),
                 _ => self.copy(item, context),
@@ -54,7 +47,8 @@ impl<'a> World<'a> {
     pub fn grows(&mut self, span: Span) -> bool {
         self.size += 1;
         if self.size == MOST_STATEMENTS {
-            let message = format!("the description has more than {MOST_STATEMENTS} statements here");
+            let message =
+                format!("the description has more than {MOST_STATEMENTS} statements here");
             let error = Diagnostic::new(span, message);
             self.report.push(error.help("let ranges be shorter"));
         }
@@ -146,10 +140,13 @@ impl<'a> World<'a> {
             let mut declare = Declare {
                 world: self,
                 context,
+                sound: true,
             };
             visit(&mut item, &mut declare);
-            for mut name in names {
-                self.declare(&mut name, Kind::Other, context);
+            if declare.sound {
+                for mut name in names {
+                    self.declare(&mut name, Kind::Other, context);
+                }
             }
         }
         self.pending.push((item, context.clone()));
@@ -223,12 +220,14 @@ pub fn moved(expr: &mut Expr, by: usize) {
 struct Declare<'w, 'a> {
     world: &'w mut World<'a>,
     context: &'w Context,
+    /// Whether all names can be declared.
+    sound: bool,
 }
 
 impl Visit for Declare<'_, '_> {
     fn declares(&mut self, name: &mut Ident, frame: bool) {
         let kind = if frame { Kind::Frame } else { Kind::Other };
-        self.world.declare(name, kind, self.context);
+        self.sound &= self.world.declare(name, kind, self.context);
     }
 
     fn uses(&mut self, _: &mut Ident) {}

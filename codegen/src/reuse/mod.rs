@@ -15,8 +15,8 @@ mod numbers;
 mod parts;
 mod replace;
 
-use crate::diagnostics::{Diagnostic, Report};
-use crate::syntax::ast::{ItemKind, System};
+use crate::diagnostics::Diagnostic;
+use crate::syntax::ast::{Item, ItemKind, System};
 use names::{Context, World};
 use std::collections::BTreeSet;
 
@@ -32,6 +32,11 @@ pub struct Written {
 
 /// Writes out what stands for other statements; all independent errors are reported together.
 pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
+    let unread: Vec<Diagnostic> = system.items.iter().filter_map(unread).collect();
+    if !unread.is_empty() {
+        // What is missing there is no further error.
+        return Err(unread);
+    }
     let mut world = World::new(system);
     for item in &system.items {
         if let ItemKind::Component(component) = &item.kind {
@@ -63,7 +68,11 @@ pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
     })
 }
 
-/// An error is an error once.
-fn report_once(report: &mut Report, error: Diagnostic) {
-    report.push_once(error);
+/// The error for a file that was not read.
+fn unread(item: &Item) -> Option<Diagnostic> {
+    let ItemKind::Include(name, span) = &item.kind else {
+        return None;
+    };
+    let message = format!("nothing says in which folder `{name}` is");
+    Some(Diagnostic::new(*span, message).help("read the description from its file"))
 }

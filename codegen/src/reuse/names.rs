@@ -74,7 +74,7 @@ pub struct Scope<'a> {
     pub part: Option<(&'a Component, usize)>,
     /// The parameters of the component.
     pub bindings: BTreeMap<&'a str, Binding<'a>>,
-    /// Names without an index.
+    /// Names without an index, by themselves.
     pub plain: BTreeMap<String, Thing>,
     /// Arrays, by their names and by what stands behind the index.
     pub arrays: BTreeMap<(String, String), Array>,
@@ -142,8 +142,9 @@ impl<'a> World<'a> {
         ((self.origins, written), self.report)
     }
 
-    /// Notes a name that a statement declares, and replaces it by the one that it has in the end.
-    pub fn declare(&mut self, ident: &mut Ident, kind: Kind, context: &Context) {
+    /// Notes a name that a statement declares, and replaces it by the one that it has in the end; whether it can be
+    /// declared here.
+    pub fn declare(&mut self, ident: &mut Ident, kind: Kind, context: &Context) -> bool {
         let found = steps(ident);
         let (base, list, ending) = match found.as_slice() {
             [Step::Name(base)] => (base, None, ""),
@@ -151,22 +152,29 @@ impl<'a> World<'a> {
             [Step::Name(base), Step::Index(list), Step::Ending(ending)] => {
                 (base, Some(list), ending.as_str())
             }
-            _ => return,
+            _ => return false,
         };
         let counted = context.counter(base).is_some();
-        if counted || self.scopes[context.scope].bindings.contains_key(base.as_str()) {
+        if counted
+            || self.scopes[context.scope]
+                .bindings
+                .contains_key(base.as_str())
+        {
             let what = if counted { "counter" } else { "parameter" };
             let message = format!("`{base}` is the name of a {what} here");
             let error = Diagnostic::new(ident.span, message);
             self.report
                 .push_once(error.help("give one of the two another name"));
-            return;
+            return false;
         }
         let indices = match list {
             None => None,
             Some(list) => match self.indices(list, context) {
                 Ok(indices) => Some(indices),
-                Err(error) => return self.report.push_once(error),
+                Err(error) => {
+                    self.report.push_once(error);
+                    return false;
+                }
             },
         };
         let thing = Thing {
@@ -175,6 +183,7 @@ impl<'a> World<'a> {
             span: ident.span,
         };
         ident.name = self.register(base, indices, ending, thing, context.scope);
+        true
     }
 
     /// Notes a thing; its name in the end.
@@ -190,21 +199,31 @@ impl<'a> World<'a> {
         let Scope {
             prefix, written, ..
         } = &self.scopes[scope];
-        let (name, written) = (format!("{prefix}{}", plain(&own)), format!("{written}{own}"));
+        let (name, written) = (
+            format!("{prefix}{}", plain(&own)),
+            format!("{written}{own}"),
+        );
         thing.name.clone_from(&name);
-        if let Some(error) = self.contradiction(base, indices.as_ref(), ending, &thing, &written, scope) {
+        if let Some(error) =
+            self.contradiction(base, indices.as_ref(), ending, &thing, &written, scope)
+        {
             self.report.push_once(error);
         }
         self.ends
             .entry(name.clone())
             .or_insert((written, thing.span));
         let scope = &mut self.scopes[scope];
-        match indices {
-            None => _ = scope.plain.entry(base.to_owned()).or_insert(thing),
+        let kind = thing.kind;
+        let known = match indices {
+            None => scope.plain.entry(base.to_owned()).or_insert(thing),
             Some(indices) => {
                 let array = scope.arrays.entry((base.to_owned(), ending.to_owned()));
-                array.or_default().entry(indices).or_insert(thing);
+                array.or_default().entry(indices).or_insert(thing)
             }
+        };
+        // Of two things with one name the part is meant where parts of it are.
+        if !matches!(known.kind, Kind::Part(_)) && matches!(kind, Kind::Part(_)) {
+            known.kind = kind;
         }
         name
     }
@@ -259,7 +278,8 @@ impl<'a> World<'a> {
             "`{written}` and `{first}` would both be called `{}`",
             thing.name
         );
-        let error = error(message).help("give one of the two another name: in generated code brackets and dots are `_`");
+        let error = error(message)
+            .help("give one of the two another name: in generated code brackets and dots are `_`");
         Some(error.note(*span, "the other one"))
     }
 
@@ -329,7 +349,11 @@ impl<'a> World<'a> {
         /// Names that are listed.
         const MOST: usize = 8;
         let scope = &self.scopes[scope];
-        let names: Vec<String> = scope.bases().take(MOST).map(|name| format!("`{name}`")).collect();
+        let names: Vec<String> = scope
+            .bases()
+            .take(MOST)
+            .map(|name| format!("`{name}`"))
+            .collect();
         match names.as_slice() {
             [] => "it declares nothing that has a name".to_owned(),
             list => format!("it has {}; write `{}NAME`", list.join(", "), scope.written),
@@ -364,7 +388,10 @@ impl<'a> World<'a> {
             (Some(array), None) => {
                 let message = format!("`{name}` is an array");
                 let first = array.keys().next().map_or(Vec::new(), Vec::clone);
-                let help = format!("write which one is meant, as in `{}`", shown(name, Some(&first), ""));
+                let help = format!(
+                    "write which one is meant, as in `{}`",
+                    shown(name, Some(&first), "")
+                );
                 return Err(Diagnostic::new(span, message).help(help));
             }
             (None, Some(_)) if !ending.is_empty() && array("").is_some() => {

@@ -23,8 +23,10 @@ impl World<'_> {
             let value = self.integer(index, context, 0)?;
             match value >= 0 {
                 true => Ok(value),
-                false => Err(Diagnostic::new(index.span, format!("the index {value} is negative"))
-                    .help("indices start at 0 or 1: let the range of the counter begin later")),
+                false => Err(
+                    Diagnostic::new(index.span, format!("the index {value} is negative"))
+                        .help("indices start at 0 or 1: let the range of the counter begin later"),
+                ),
             }
         };
         list.iter().map(one).collect()
@@ -119,8 +121,9 @@ impl World<'_> {
 
 fn not_known(span: Span, what: &str) -> Diagnostic {
     let message = format!("{what} is no number that is known when the description is read");
-    Diagnostic::new(span, message)
-        .help("ranges and indices are made of numbers, counters and constants: write `const n = 8;`")
+    Diagnostic::new(span, message).help(
+        "ranges and indices are made of numbers, counters and constants: write `const n = 8;`",
+    )
 }
 
 fn computed(op: BinaryOp, left: BigRational, right: BigRational) -> Option<BigRational> {

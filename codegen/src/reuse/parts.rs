@@ -30,12 +30,10 @@ impl<'a> World<'a> {
     /// Copies the statements of a component for a part, or for each part of an array.
     pub fn part(&mut self, part: &'a Part, span: Span, context: &Context) {
         let by = context.by;
-        let Ident {
-            name,
-            span: place,
-        } = &part.component;
+        let Ident { name, span: place } = &part.component;
         let Some((component, whole, used)) = self.components.get_mut(name.as_str()) else {
-            let error = Diagnostic::new(place.later(by), format!("no component is called `{name}`"));
+            let error =
+                Diagnostic::new(place.later(by), format!("no component is called `{name}`"));
             let known = self.components.keys().copied();
             let error = match closest(name, known.clone()) {
                 Some(close) => error.help(format!("did you mean `{close}`?")),
@@ -112,9 +110,7 @@ impl<'a> World<'a> {
             ([Step::Name(_)], Some(value)) => {
                 let message = format!("the index {value} is negative");
                 let error = Diagnostic::new(name.span, message);
-                return self
-                    .report
-                    .push_once(error.help("indices start at 0 or 1"));
+                return self.report.push_once(error.help("indices start at 0 or 1"));
             }
             ([Step::Name(base), Step::Index(list)], None) => match self.indices(list, context) {
                 Ok(indices) => (base, Some(indices)),
@@ -122,9 +118,9 @@ impl<'a> World<'a> {
             },
             _ => {
                 let error = Diagnostic::new(name.span, "this is no name of a part");
-                return self.report.push_once(
-                    error.help("a part is called `left`, one of an array `leg[2]`"),
-                );
+                return self
+                    .report
+                    .push_once(error.help("a part is called `left`, one of an array `leg[2]`"));
             }
         };
         let outer = &self.scopes[context.scope];
@@ -142,7 +138,7 @@ impl<'a> World<'a> {
             name: String::new(),
             span: name.span,
         };
-        let before = self.report.len();
+        let first = !self.has_part(base, indices.as_ref(), context.scope);
         self.register(base, indices, "", thing, context.scope);
         self.scopes.push(Scope {
             prefix,
@@ -151,7 +147,7 @@ impl<'a> World<'a> {
             bindings,
             ..Scope::default()
         });
-        if self.report.len() > before {
+        if !first {
             return;
         }
         let context = Context {
@@ -160,6 +156,19 @@ impl<'a> World<'a> {
             by: delta,
         };
         self.statements(&component.items, &context);
+    }
+
+    /// Whether a scope has a part of this name.
+    fn has_part(&self, base: &str, indices: Option<&Vec<i64>>, scope: usize) -> bool {
+        let scope = &self.scopes[scope];
+        let thing = match indices {
+            None => scope.plain.get(base),
+            Some(indices) => {
+                let array = scope.arrays.get(&(base.to_owned(), String::new()));
+                array.and_then(|array| array.get(indices))
+            }
+        };
+        thing.is_some_and(|thing| matches!(thing.kind, Kind::Part(_)))
     }
 
     /// The arguments of a part, by the parameters of its component.
@@ -176,11 +185,13 @@ impl<'a> World<'a> {
         let usage = || {
             let list: Vec<String> = parameters
                 .iter()
-                .map(|parameter| match (parameter.frame, parameter.default.is_some()) {
-                    (true, _) => format!("{}: frame", parameter.name.name),
-                    (false, false) => parameter.name.name.clone(),
-                    (false, true) => format!("{} = …", parameter.name.name),
-                })
+                .map(
+                    |parameter| match (parameter.frame, parameter.default.is_some()) {
+                        (true, _) => format!("{}: frame", parameter.name.name),
+                        (false, false) => parameter.name.name.clone(),
+                        (false, true) => format!("{} = …", parameter.name.name),
+                    },
+                )
                 .collect();
             format!("it is `{}({})`", component.name.name, list.join(", "))
         };
@@ -238,7 +249,10 @@ impl<'a> World<'a> {
             };
             if let Some(first) = given.insert(&parameter.name.name, argument) {
                 let message = format!("`{}` is given twice", parameter.name.name);
-                let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
+                let place = argument
+                    .name
+                    .as_ref()
+                    .map_or(argument.value.span, |n| n.span);
                 self.report.push_once(
                     Diagnostic::new(at(place), message)
                         .help("remove one of the two")
@@ -296,7 +310,8 @@ impl<'a> World<'a> {
                 continue;
             }
             if !used {
-                let warning = Diagnostic::new(span, format!("the component `{name}` is never used"));
+                let warning =
+                    Diagnostic::new(span, format!("the component `{name}` is never used"));
                 warnings.push(warning.help(format!("remove it, or call it `_{name}`")));
                 continue;
             }
@@ -314,4 +329,3 @@ impl<'a> World<'a> {
         warnings
     }
 }
-

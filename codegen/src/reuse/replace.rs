@@ -35,7 +35,10 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> (Vec<Ite
             level: 0,
         };
         if let ItemKind::Function(function) = &item.kind {
-            let names = function.parameters.iter().map(|(name, _)| name.name.clone());
+            let names = function
+                .parameters
+                .iter()
+                .map(|(name, _)| name.name.clone());
             replacing.locals = names.collect();
         }
         if let ItemKind::Frame { name, .. } = &mut item.kind
@@ -47,7 +50,7 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> (Vec<Ite
         items.push(item);
     }
     for error in report.finish().err().unwrap_or_default() {
-        super::report_once(&mut world.report, error);
+        world.report.push_once(error);
     }
     (items, known.mentioned)
 }
@@ -58,7 +61,9 @@ struct Known {
     /// By scope and parameter: the expression with its depth and its size; none where it is wrong.
     arguments: BTreeMap<(usize, String), Option<(Expr, usize, usize)>>,
     mentioned: Mentioned,
+    /// How much was written out, and whether that was too much.
     written: usize,
+    full: bool,
 }
 
 /// Every argument is looked at once, also where its parameter is not used.
@@ -161,10 +166,11 @@ fn no_more(path: &[Step], taken: usize, span: Span) -> Diagnostic {
         _ => "",
     };
     match path.get(taken) {
-        Some(Step::Name(part)) => {
-            Diagnostic::new(span, format!("this name goes no further than before `.{part}`"))
-                .help("parts that components make have names of their own: `left.knee`")
-        }
+        Some(Step::Name(part)) => Diagnostic::new(
+            span,
+            format!("this name goes no further than before `.{part}`"),
+        )
+        .help("parts that components make have names of their own: `left.knee`"),
         _ => Diagnostic::new(span, format!("`{name}` is no array"))
             .help("an array is declared with its index, as in `frame link[0] = world;`"),
     }
@@ -270,7 +276,8 @@ impl<'w, 'a> Replacing<'w, 'a> {
             let frame = thing.kind == Kind::Frame && *taken == path.len();
             if !frame && !matches!(thing.kind, Kind::Part(_)) {
                 let error = wrong(name.span, format!("`{}` is none", name.name));
-                self.report.push_once(error.note(thing.span, "declared here"));
+                self.report
+                    .push_once(error.note(thing.span, "declared here"));
                 return false;
             }
         }
@@ -316,7 +323,9 @@ impl<'w, 'a> Replacing<'w, 'a> {
                 (Some(number), 1)
             }
             Ok(Found::Parameter(scope, name, binding)) => {
-                let component = self.world.scopes[scope].part.map(|(component, _)| component);
+                let component = self.world.scopes[scope]
+                    .part
+                    .map(|(component, _)| component);
                 if let Some(component) = component {
                     let key = (component.name.name.clone(), name.to_owned());
                     self.known.mentioned.insert(key);
@@ -368,15 +377,19 @@ impl<'w, 'a> Replacing<'w, 'a> {
     }
 
     fn is_too_large(&mut self, depth: usize, size: usize, span: Span) -> bool {
+        if self.known.full {
+            // Reported where it was crossed.
+            return true;
+        }
         self.known.written += size;
-        let deep = self.level + depth > MOST_LEVELS;
-        if deep || self.known.written > MOST_WRITTEN {
+        self.known.full = self.known.written > MOST_WRITTEN;
+        let large = self.known.full || self.level + depth > MOST_LEVELS;
+        if large {
             let error = Diagnostic::new(span, "arguments make this expression too large");
             self.report
                 .push_once(error.help("name what they have in common with `let`"));
-            return true;
         }
-        false
+        large
     }
 }
 

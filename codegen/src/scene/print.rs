@@ -4,8 +4,9 @@
 //! an equal scene.
 
 use crate::syntax::ast::{
-    About, Acting, Body, Component, Components, Conserved, CoordKind, Counter, Declaration, End, Expr, Ident, Item,
-    ItemKind, Joint, JointKind, Load, Part, Repeat, ShapeKind, Source, System, Table, Target,
+    About, Acting, Body, Component, Components, Conserved, CoordKind, Counter, Declaration, End,
+    Expr, Ident, Item, ItemKind, Joint, JointKind, Load, Part, Repeat, ShapeKind, Source, System,
+    Table, Target,
 };
 use crate::syntax::written::{conditions, equation, list, written};
 use crate::syntax::{joint_field, joint_kind};
@@ -176,7 +177,11 @@ fn component(component: &Component) -> String {
         let frame = if parameter.frame { ": frame" } else { "" };
         let default = parameter.default.as_ref();
         let default = default.map(|value| format!(" = {}", written(value)));
-        format!("{}{frame}{}", parameter.name.name, default.unwrap_or_default())
+        format!(
+            "{}{frame}{}",
+            parameter.name.name,
+            default.unwrap_or_default()
+        )
     });
     let (name, items) = (&component.name.name, block(&component.items));
     format!("component {name}({parameters}) {items}")
@@ -190,7 +195,10 @@ fn part_of(part: &Part) -> String {
     });
     let index = part.counter.as_ref().map(|i| format!("[{}]", counter(i)));
     let (name, of) = (&part.name.name, &part.component.name);
-    format!("part {name}{} = {of}({arguments})", index.unwrap_or_default())
+    format!(
+        "part {name}{} = {of}({arguments})",
+        index.unwrap_or_default()
+    )
 }
 
 fn table(table: &Table) -> String {

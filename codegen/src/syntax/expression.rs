@@ -19,8 +19,8 @@ use proc_macro2::Delimiter;
 
 use super::ast::{BinaryOp, Expr, ExprKind, Ident, Span};
 use super::cursor::{Cursor, Parsed, check_name, shown};
-use super::{number, path};
 use super::tokens::Kind;
+use super::{number, path};
 use crate::diagnostics::Diagnostic;
 
 /// The most operands that operators of one precedence join.

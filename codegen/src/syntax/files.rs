@@ -98,7 +98,8 @@ impl Reader<'_, '_> {
         if self.within.len() >= MOST_NESTED {
             let message = format!("files include one another more than {MOST_NESTED} deep");
             return Err(vec![
-                Diagnostic::new(span, message).help("include the files that are needed side by side"),
+                Diagnostic::new(span, message)
+                    .help("include the files that are needed side by side"),
             ]);
         }
         if self.known.iter().any(|known| known == name) {
@@ -115,7 +116,9 @@ impl Reader<'_, '_> {
         };
         let Some(start) = start else {
             let error = Diagnostic::new(span, "the included texts are too long");
-            return Err(vec![error.help(format!("they may have {MOST_BYTES} bytes"))]);
+            return Err(vec![
+                error.help(format!("they may have {MOST_BYTES} bytes")),
+            ]);
         };
         self.known.push(name.to_owned());
         let items = statements(&text, start)?;
@@ -170,7 +173,10 @@ fn statements(text: &str, start: usize) -> Result<Vec<Item>, Vec<Diagnostic>> {
     let mut errors = scanned.errors;
     for error in &mut errors {
         error.span = error.span.later(start);
-        error.notes.iter_mut().for_each(|(span, _)| *span = span.later(start));
+        error
+            .notes
+            .iter_mut()
+            .for_each(|(span, _)| *span = span.later(start));
     }
     let mut items = Vec::new();
     if let Some(readable) = scanned.readable {
@@ -207,7 +213,9 @@ fn place(tokens: &mut [Token], text: &str, start: usize) {
     let mut docs = 0_usize;
     for index in 0..tokens.len() {
         let opens_docs = matches!(tokens[index].kind, Kind::Punct('#'))
-            && tokens.get(index + 3).is_some_and(|token| token.kind == Kind::Punct('='))
+            && tokens
+                .get(index + 3)
+                .is_some_and(|token| token.kind == Kind::Punct('='))
             && skipped(text, at, false).is_some_and(|at| !text[at..].starts_with('#'));
         if opens_docs {
             docs = 6;
@@ -235,7 +243,10 @@ fn skipped(text: &str, from: usize, docs: bool) -> Option<usize> {
     let mut at = from;
     loop {
         let rest = text.get(at..)?;
-        let blank = rest.len() - rest.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}').len();
+        let blank = rest.len()
+            - rest
+                .trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}')
+                .len();
         at += blank;
         let rest = &rest[blank..];
         let doc = rest.starts_with("///") && !rest.starts_with("////")

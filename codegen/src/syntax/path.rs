@@ -7,7 +7,7 @@ use proc_macro2::{Delimiter, TokenStream};
 
 use super::ast::{Expr, ExprKind, Ident, Span};
 use super::cursor::{Cursor, Parsed};
-use super::expression::{expression, indices};
+use super::expression::{expression as value, indices};
 use super::tokens::{Kind, of_stream};
 use super::written::written;
 use crate::diagnostics::Diagnostic;
@@ -99,6 +99,33 @@ pub fn of_expression(expr: &Expr) -> Option<Ident> {
     named.then_some(Ident { name, span })
 }
 
+/// A name with indices or parts as descriptions spell it; any other text as it is.
+pub fn spelling(name: &str) -> String {
+    if !name.contains('[') {
+        return name.to_owned();
+    }
+    let parsed = read(name, |cursor| path(cursor, "anything"));
+    parsed.map_or_else(|| name.to_owned(), |name| name.name)
+}
+
+/// The expression that a name with indices or parts is; none where the text is none.
+pub fn expression(name: &str) -> Option<Expr> {
+    if !name.contains(['[', '.']) {
+        return None;
+    }
+    let expr = read(name, value)?;
+    of_expression(&expr).map(|_| expr)
+}
+
+/// All of a text as one thing.
+fn read<T>(text: &str, one: impl FnOnce(&mut Cursor<'_>) -> Parsed<T>) -> Option<T> {
+    let mut tokens = of_stream(text.parse().ok()?).0;
+    tokens.iter_mut().for_each(|token| token.span = Span::NOWHERE);
+    let mut cursor = Cursor::new(&tokens);
+    let parsed = one(&mut cursor).ok()?;
+    (cursor.peek().kind == Kind::End).then_some(parsed)
+}
+
 /// The steps of a name as written, all of them at its place; none where it is no such name.
 pub fn steps(name: &Ident) -> Vec<Step> {
     let plain = |text: &str| !text.contains(['[', '.']);
@@ -121,13 +148,17 @@ pub fn steps(name: &Ident) -> Vec<Step> {
                 let text = token.text.clone();
                 cursor.bump();
                 let ending = matches!(steps.last(), Some(Step::Index(_)));
-                steps.push(if ending { Step::Ending(text) } else { Step::Name(text) });
+                steps.push(if ending {
+                    Step::Ending(text)
+                } else {
+                    Step::Name(text)
+                });
             }
             Kind::Open(Delimiter::Bracket, _) => {
                 cursor.bump();
                 let mut list = Vec::new();
                 while !cursor.is_end() {
-                    let Ok(index) = expression(&mut cursor) else {
+                    let Ok(index) = value(&mut cursor) else {
                         return Vec::new();
                     };
                     list.push(index);

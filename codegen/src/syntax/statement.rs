@@ -293,6 +293,10 @@ fn no_statement(cursor: &Cursor<'_>) -> Diagnostic {
 
 fn unknown(cursor: &Cursor<'_>, word: &Ident) -> Diagnostic {
     let name = shown(&word.name);
+    if word.name == "system" {
+        return Diagnostic::new(word.span, "a `system` inside of another")
+            .help("what a system has several of is a `component`, with a `part` for each");
+    }
     if let Some(close) = closest(&word.name, statements()) {
         return Diagnostic::new(word.span, format!("unknown statement `{name}`"))
             .help(format!("did you mean `{close}`?"));

@@ -42,11 +42,7 @@ enum Origin {
     /// An included text.
     Text(Arc<Included>),
     /// A copy of what stands from a place on, made by a statement.
-    Copy {
-        of: usize,
-        by: Span,
-        label: String,
-    },
+    Copy { of: usize, by: Span, label: String },
 }
 
 /// A text that a description includes.
@@ -141,7 +137,9 @@ impl Origins {
 
     fn region(&self, span: Span) -> Option<&Region> {
         let at = span.range()?.start;
-        let after = self.regions.partition_point(|region| region.range.start <= at);
+        let after = self
+            .regions
+            .partition_point(|region| region.range.start <= at);
         let region = self.regions.get(after.checked_sub(1)?)?;
         region.range.contains(&at).then_some(region)
     }
@@ -224,10 +222,9 @@ impl Origins {
         let mut all = Vec::new();
         for error in errors {
             let copied = self.source(error.span).range() != error.span.range();
-            let shape: String = {
-                let parts = error.message.split('`');
-                parts.step_by(2).collect()
-            };
+            // What is quoted, and numbers, may differ between copies.
+            let said: String = error.message.split('`').step_by(2).collect();
+            let shape = said.replace(|c: char| c.is_ascii_digit(), "");
             let error = self.located(error);
             let place = error.span.range().map(|range| (range.start, range.end));
             if !copied || seen.insert((place, shape)) {

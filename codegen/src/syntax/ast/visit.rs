@@ -128,7 +128,11 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
                 Components::Frame(frame) => to.uses(frame),
             }
         }
-        ItemKind::Push { force, from, to: end } => {
+        ItemKind::Push {
+            force,
+            from,
+            to: end,
+        } => {
             to.expr(force);
             ends(from, end, to);
         }
