@@ -1,11 +1,17 @@
-//! The build script's front end: every model of `models/`, `models/multibody/` and `models/tabled/` becomes a module of this crate.
+//! The build script's front end: every model of `models/`, `models/multibody/`, `models/reuse/` and `models/tabled/`
+//! becomes a module of this crate.
 
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=models");
     let mut paths: Vec<PathBuf> = Vec::new();
-    for folder in ["models", "models/multibody", "models/tabled"] {
+    for folder in [
+        "models",
+        "models/multibody",
+        "models/reuse",
+        "models/tabled",
+    ] {
         for entry in std::fs::read_dir(folder)? {
             paths.push(entry?.path());
         }

@@ -17,6 +17,7 @@
 mod check;
 mod columns;
 mod compare;
+mod constants;
 mod eigenvalues;
 mod emit;
 mod eval;

@@ -1,4 +1,4 @@
-//! Options for robots in URDF, which every command takes that takes descriptions.
+//! Options for robots in URDF, and for descriptions, which every command takes that takes descriptions.
 
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
@@ -28,6 +28,9 @@ pub struct RobotOptions {
     /// the largest of their vector or matrix are 0; default 1e-9, 0 keeps every digit.
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     rounding: Option<f64>,
+    /// Another value of a constant of the description, such as the length of a chain; once for each constant.
+    #[arg(long = "const", value_name = "NAME=VALUE", value_parser = constant, help_heading = "Descriptions")]
+    pub constants: Vec<(String, String)>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -43,6 +46,13 @@ fn lock(text: &str) -> Result<(String, String), String> {
         .rsplit_once('=')
         .ok_or("write JOINT=VALUE, as in `--lock finger_joint=0.04`")?;
     Ok((joint.to_string(), value.to_string()))
+}
+
+fn constant(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("write NAME=VALUE, as in `--const n=100`")?;
+    Ok((name.trim().to_string(), value.trim().to_string()))
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -1,5 +1,6 @@
 //! A description's file: reading and deriving it, with errors and warnings shown in its text.
 
+use crate::constants;
 use crate::failure::{self, Failure};
 use crate::progress;
 use crate::robot::{Robot, RobotOptions};
@@ -9,7 +10,7 @@ use hamel_codegen::generate::{Generated, at_some_point, available_in, from_file}
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
-use hamel_codegen::syntax;
+use hamel_codegen::syntax::{self, ast::System};
 use hamel_codegen::urdf;
 use std::cell::Cell;
 use std::io::Read;
@@ -83,9 +84,17 @@ impl Source {
 
     /// Reads a description, or a robot in URDF.
     pub fn open(path: &Path, options: &RobotOptions) -> Result<Self, Failure> {
-        let source = Source::read(path)?;
+        let mut source = Source::read(path)?;
         if urdf::is_urdf(path) || source.text.trim_start().starts_with('<') {
+            if !options.constants.is_empty() {
+                let message = format!("{} is a robot: --const is for descriptions", source.path);
+                return Err(Failure::usage(message));
+            }
             return source.robot(options);
+        }
+        for (name, value) in &options.constants {
+            source.text = constants::given(&source.text, name, value)
+                .map_err(|why| Failure::usage(format!("--const {name}={value}: {why}")))?;
         }
         if options.given() {
             return Err(Failure::usage(format!(
@@ -107,18 +116,24 @@ impl Source {
         })
     }
 
-    /// The text of a table that stands in a file, by its path from the description.
-    fn table(&self, name: &str) -> std::io::Result<String> {
+    /// The text of a file that the description names, by its path from there.
+    fn file(&self, name: &str) -> std::io::Result<String> {
         let folder = Path::new(&self.path).parent();
         std::fs::read_to_string(folder.unwrap_or(Path::new("")).join(name))
     }
 
+    /// The description with what it has in other files.
+    fn system(&self) -> Result<System, Failure> {
+        let system = syntax::parse_text(&self.text).and_then(|mut system| {
+            syntax::read_files(&mut system, &mut |name| self.file(name))?;
+            Ok(system)
+        });
+        system.map_err(|errors| self.refused(&errors))
+    }
+
     /// What the description says, not derived yet.
     pub fn model(&self) -> Result<Model, Failure> {
-        let model = syntax::parse_text(&self.text).and_then(|mut system| {
-            syntax::read_tables(&mut system, &mut |table| self.table(table))?;
-            lower::build(&system)
-        });
+        let model = lower::build(&self.system()?);
         let model = model.map_err(|errors| self.refused(&errors))?;
         self.warn(&model);
         Ok(model)
@@ -135,11 +150,7 @@ impl Source {
         &self,
         derive: impl Fn(Model) -> Result<T, Vec<Diagnostic>>,
     ) -> Result<T, Failure> {
-        let system = syntax::parse_text(&self.text).and_then(|mut system| {
-            syntax::read_tables(&mut system, &mut |table| self.table(table))?;
-            Ok(system)
-        });
-        let system = system.map_err(|errors| self.refused(&errors))?;
+        let system = self.system()?;
         let derived = progress::during(DERIVING, || {
             at_some_point(&system, |model| {
                 self.warn(&model);
@@ -178,7 +189,7 @@ impl Source {
             return Ok(generated);
         }
         let derived = progress::during(DERIVING, || {
-            from_file(&self.text, &mut |table| self.table(table))
+            from_file(&self.text, &mut |name| self.file(name))
         });
         let derived = derived.map_err(|errors| self.refused(&errors))?;
         self.warn(&derived.model);

@@ -144,10 +144,10 @@ fn generate_file(path: &Path, kind: &Kind, target: &Path) -> Result<(), String> 
         Kind::Description => {
             let refused = |errors: Vec<Diagnostic>| render(&errors, &shown, &text, false);
             let folder = path.parent().unwrap_or(Path::new(""));
-            let open = &mut |table: &str| {
-                let table = folder.join(table);
-                println!("cargo:rerun-if-changed={}", table.display());
-                std::fs::read_to_string(table)
+            let open = &mut |name: &str| {
+                let file = folder.join(name);
+                println!("cargo:rerun-if-changed={}", file.display());
+                std::fs::read_to_string(file)
             };
             let generated = from_file(&text, open).map_err(refused)?;
             warn(&warnings(&generated.model.warnings, &shown, &text, false));

@@ -1,6 +1,6 @@
 //! Placed errors, collected so that one build reports all of them; placed warnings have the same form.
 
-use crate::syntax::ast::Span;
+use crate::syntax::ast::{Span, Texts};
 
 /// One error or warning: where, what is wrong, and what to do about it.
 #[derive(Clone, Debug)]
@@ -13,6 +13,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Other places involved, each with a short label.
     pub notes: Vec<(Span, String)>,
+    /// The included texts that these places are in.
+    pub texts: Texts,
     /// Whether only functions with M⁻¹ in them are in the way: all else can be derived.
     pub inverse: bool,
     /// Whether a proof failed: a fault of the generator, or of the point that was read at.
@@ -27,6 +29,7 @@ impl Diagnostic {
             message: message.into(),
             help: None,
             notes: Vec::new(),
+            texts: Texts::default(),
             inverse: false,
             unproved: false,
         }
@@ -93,6 +96,11 @@ impl Report {
                 None
             }
         }
+    }
+
+    /// How many errors there are.
+    pub fn len(&self) -> usize {
+        self.errors.len()
     }
 
     /// Whether nothing was reported.

@@ -10,14 +10,14 @@ use std::path::PathBuf;
 /// The macro refuses larger programs: rustc handles their text better as a file, in chunks.
 pub const MACRO_STATEMENTS: usize = 10_000;
 
-/// The expansion of `rigid_eom! { … }`. The paths of tables start at the folder of the package; what was read is
+/// The expansion of `rigid_eom! { … }`. The paths of included files and of tables start at the folder of the package; what was read is
 /// included once more, so that the compiler knows of it.
 pub fn expand(input: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let folder = folder.unwrap_or_default();
     let mut read = TokenStream::new();
-    let open = &mut |table: &str| {
-        let path = folder.join(table);
+    let open = &mut |name: &str| {
+        let path = folder.join(name);
         let text = std::fs::read_to_string(&path)?;
         let path = path.to_string_lossy();
         read.extend(quote::quote!(

@@ -32,8 +32,8 @@ pub struct Generated {
 /// Points that are tried after the first.
 const READINGS: u64 = 6;
 
-/// Derives the description in a stream of tokens; errors are at places of these. Tables in files are opened as
-/// `open` says.
+/// Derives the description in a stream of tokens; errors are at places of these. What it includes and tables in files
+/// are opened as `open` says.
 pub fn from_tokens(
     tokens: TokenStream,
     open: &mut Open<'_>,
@@ -41,8 +41,8 @@ pub fn from_tokens(
     let canonical = syntax::canonical(&tokens);
     let (places, system) = syntax::parse_tokens(tokens);
     let generated = system.and_then(|mut system| {
-        let tables = syntax::read_tables(&mut system, open)?;
-        derive(&system, fingerprint(&(canonical + &tables.concat())))
+        let texts = syntax::read_files(&mut system, open)?;
+        derive(&system, fingerprint(&(canonical + &texts.concat())))
     });
     (places, generated)
 }
@@ -50,12 +50,12 @@ pub fn from_tokens(
 /// Gives the text of a file by the name that a description has for it.
 pub type Open<'a> = dyn FnMut(&str) -> std::io::Result<String> + 'a;
 
-/// Derives the description in a text whose tables are opened as `open` says.
+/// Derives the description in a text; what it includes and its tables in files are opened as `open` says.
 #[cfg(feature = "files")]
 pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagnostic>> {
     let mut system = syntax::parse_text(text)?;
-    let tables = syntax::read_tables(&mut system, open)?;
-    derive(&system, fingerprint(&(canonical(text) + &tables.concat())))
+    let texts = syntax::read_files(&mut system, open)?;
+    derive(&system, fingerprint(&(canonical(text) + &texts.concat())))
 }
 
 /// The same but for functions with M⁻¹ in them, where M is not positive definite; then the error that they would have is
@@ -169,6 +169,12 @@ impl Generated {
     }
 
     fn with(model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {
+        let origins = model.origins.clone();
+        let generated = Generated::proved(model, hash, linearized);
+        generated.map_err(|errors| origins.located_all(errors))
+    }
+
+    fn proved(model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {
         let reduction = reduce(&model).map_err(|error| vec![error])?;
         let program = assemble(&model, reduction.as_ref(), linearized);
         let program = program.map_err(|error| vec![error])?;

@@ -8,6 +8,7 @@
 //! | module | owns |
 //! |---|---|
 //! | [`syntax`] | grammar and spans |
+//! | [`reuse`] | components, parts and repetition, written out |
 //! | [`algebra`] | expression graph, polynomials, normal forms; no mechanics |
 //! | [`mod@lower`] | from a description to a model: names, shapes, every semantic error |
 //! | [`model`] | a mechanical system as expressions of a graph |
@@ -33,6 +34,7 @@ pub mod model;
 pub mod program;
 pub mod proof;
 pub mod render;
+pub mod reuse;
 #[cfg(feature = "files")]
 pub mod scene;
 pub mod syntax;

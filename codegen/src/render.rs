@@ -36,10 +36,21 @@ pub fn to_compile_warnings(list: &[Diagnostic], places: &Places) -> TokenStream 
 
 /// `::core::compile_error! { "message" }`; the compiler underlines from the span of its first token to that of its last.
 fn compile_error(error: &Diagnostic, places: &Places) -> [TokenTree; 8] {
-    let (first, last) = places.ends(error.span);
+    let mut message = error.message.clone();
+    let mut span = error.span;
+    // What is wrong in an included file is shown where it is included.
+    while let Some((text, range)) = error.texts.find(span) {
+        let (line, column) = text.line(range.start);
+        message = match span.range() == error.span.range() {
+            true => format!("{}:{line}:{column}: {message}", text.name),
+            false => format!("{message}\nincluded at {}:{line}:{column}", text.name),
+        };
+        span = text.by;
+    }
+    let (first, last) = places.ends(span);
     let text = match &error.help {
-        Some(help) => format!("{}\nhelp: {help}", error.message),
-        None => error.message.clone(),
+        Some(help) => format!("{message}\nhelp: {help}"),
+        None => message,
     };
     let punct = |c: char, spacing: Spacing| {
         let mut punct = Punct::new(c, spacing);
@@ -95,19 +106,17 @@ mod text {
 
     fn listed(list: &[Diagnostic], level: Level, path: &str, source: &str, color: bool) -> String {
         let renderer = renderer(color);
-        let mut placed: Vec<_> = list
-            .iter()
-            .map(|error| (place(error.span, source), error))
-            .collect();
-        placed.sort_by_key(|(range, _)| {
-            range
-                .as_ref()
+        let mut placed: Vec<&Diagnostic> = list.iter().collect();
+        placed.sort_by_key(|error| {
+            error
+                .span
+                .range()
                 .map_or((0, 0), |range| (range.start, range.end))
         });
 
         let mut rendered = String::new();
-        for (range, error) in placed {
-            rendered.push_str(&renderer.render(&[group(error, level, range, path, source)]));
+        for error in placed {
+            rendered.push_str(&renderer.render(&[group(error, level, path, source)]));
             rendered.push_str("\n\n");
         }
         rendered
@@ -178,39 +187,49 @@ mod text {
         rendered
     }
 
-    fn group<'a>(
+    /// A region of the description, or of a text that it includes: the name of the text, the text, its bytes.
+    fn found<'a>(
+        span: Span,
         error: &'a Diagnostic,
-        level: Level,
-        range: Option<Range<usize>>,
         path: &'a str,
         source: &'a str,
-    ) -> Group<'a> {
-        let group = level.title().primary_title(error.message.as_str());
+    ) -> Option<(&'a str, &'a str, Range<usize>)> {
+        if let Some((text, range)) = error.texts.find(span) {
+            return Some((&text.name, &text.text, within(range, &text.text)));
+        }
+        Some((path, source, place(span, source)?))
+    }
+
+    fn group<'a>(error: &'a Diagnostic, level: Level, path: &'a str, source: &'a str) -> Group<'a> {
+        let title = level.title().primary_title(error.message.as_str());
+        let mut group = Group::with_title(title);
         let mut messages = Vec::new();
-        let group =
-            match range {
-                None => {
-                    messages.extend(
-                        error.notes.iter().map(|(_, label)| {
-                            annotate_snippets::Level::NOTE.message(label.as_str())
-                        }),
-                    );
-                    group.element(Origin::path(path).line(1).char_column(1))
-                }
-                Some(range) => {
-                    let mut places = vec![(AnnotationKind::Primary, range, "")];
-                    for (span, label) in &error.notes {
-                        match place(*span, source) {
-                            Some(range) => {
-                                places.push((AnnotationKind::Context, range, label.as_str()))
-                            }
-                            None => messages
-                                .push(annotate_snippets::Level::NOTE.message(label.as_str())),
-                        }
-                    }
-                    group.element(snippet(places, path, source))
-                }
+        let primary = found(error.span, error, path, source);
+        let notes = error.notes.iter().map(|(span, label)| {
+            let place = primary.as_ref().and(found(*span, error, path, source));
+            (AnnotationKind::Context, place, label.as_str())
+        });
+        let none = primary.is_none();
+        let primary = primary.clone().map(Some).into_iter();
+        let primary = primary.map(|place| (AnnotationKind::Primary, place, ""));
+        // One snippet a text, that of the error first.
+        let mut snippets: Vec<(&str, &str, Vec<_>)> = Vec::new();
+        for (kind, place, label) in primary.chain(notes) {
+            let Some((name, text, range)) = place else {
+                messages.push(annotate_snippets::Level::NOTE.message(label));
+                continue;
             };
+            match snippets.iter_mut().find(|(known, ..)| *known == name) {
+                Some((_, _, places)) => places.push((kind, range, label)),
+                None => snippets.push((name, text, vec![(kind, range, label)])),
+            }
+        }
+        if none {
+            group = group.element(Origin::path(path).line(1).char_column(1));
+        }
+        for (name, text, places) in snippets {
+            group = group.element(snippet(places, name, text));
+        }
         if let Some(help) = &error.help {
             messages.push(annotate_snippets::Level::HELP.message(help.as_str()));
         }
@@ -273,10 +292,12 @@ mod text {
     /// The bytes of a region, `None` where its tokens have no place in a text.
     fn place(span: Span, source: &str) -> Option<Range<usize>> {
         let range = span.range()?;
-        if range.start > source.len() {
-            return None;
-        }
-        let mut start = range.start;
+        (range.start <= source.len()).then(|| within(range, source))
+    }
+
+    /// The region that ends where characters of the text begin.
+    fn within(range: Range<usize>, source: &str) -> Range<usize> {
+        let mut start = range.start.min(source.len());
         while !source.is_char_boundary(start) {
             start -= 1;
         }
@@ -284,6 +305,6 @@ mod text {
         while !source.is_char_boundary(end) {
             end += 1;
         }
-        Some(start..end)
+        start..end
     }
 }

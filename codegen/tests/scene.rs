@@ -2,15 +2,20 @@
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::scene::{
-    Body, CoordKind, Element, Expr, Extrapolation, Interpolation, Joint, Load, Point, Scene,
-    SceneError, ShapeKind, WORLD, call, cos, diagonal, if_less, in_axes, pose, shifted, sin,
+    Body, CoordKind, Element, Expr, Extrapolation, Interpolation, Joint, Load, Parameter, Point,
+    Scene, SceneError, ShapeKind, WORLD, call, cos, diagonal, if_less, in_axes, pose, shifted, sin,
 };
 use std::path::Path;
 
 /// All descriptions of the repository that are right.
 fn descriptions() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let folders = ["tests/models", "examples/models", "examples"];
+    let folders = [
+        "tests/models",
+        "tests/models/reuse",
+        "examples/models",
+        "examples",
+    ];
     let files = folders
         .iter()
         .flat_map(|folder| std::fs::read_dir(root.join(folder)));
@@ -102,6 +107,20 @@ system Everything {
     invariant l = angular_momentum;
     invariant i_0 = (-m)^2 + -m^2 - (-2);
     generate accel, energy;
+    include \"parts/leg.eom\";
+    component Foot { body on sole[2] { mass 1; } }
+    component Leg(mount: frame = world, side = -1, l) {
+        joint knee[1]: revolute [0, side, 0] on mount moves shin[1];
+        for i in 1..2 * n { for k in i - 1..3 { param a[i, k] = l * i^2; } }
+        part foot[2] = Foot();
+    }
+    part left = Leg(f, l = 2 - (1 - m));
+    part leg[i in 1..n - 1] = Leg(left.shin[1], l = left.a[i, 2] * leg[2].foot[2].x[1]);
+    start leg[n - 1].knee[1] = 1, leg[2].knee[1]_dot = 2, left.X.p = 1;
+    output tip[2] = leg[2].knee[1]_r[1] + left.knee[1]_dot;
+    spring stiffness 1 from left.shin[1] to m on leg[2].shin[1];
+    invariant k = linear_momentum of leg[1].shin[1] when left.F[2] = 0;
+    generate left.tip, tip[2];
 }";
 
 #[test]
@@ -211,6 +230,93 @@ fn what_is_built_is_what_the_text_says() {
 
 /// A disk that rolls, in coordinates of one's own: rates, a nonholonomic constraint, a circle.
 /// Choices and tables, built and as text.
+/// Repetition and components, built as the text has them.
+#[test]
+fn components_are_built() {
+    let mut arm = Scene::builder("Arm");
+    let n = arm.constant("n", 3);
+    arm.component(
+        "Link",
+        [
+            Parameter::frame("base"),
+            Parameter::value("l"),
+            Parameter::value("m").or(1),
+        ],
+        |link| {
+            let rod = link.joint(Joint::revolute("q", [0, 1, 0]).on("base").moves("rod"));
+            let (l, m) = (Expr::name("l"), Expr::name("m"));
+            link.frame("end", &rod, shifted([l.clone(), 0.into(), 0.into()]));
+            link.body(Body::on(&rod).mass(m).com([l / 2, 0.into(), 0.into()]));
+        },
+    );
+    arm.frame("place[0]", WORLD, Expr::name("world"));
+    arm.repeat("i", 1, &n, |round| {
+        let base = [("base", Expr::name("place[i - 1]")), ("l", 0.5.into())];
+        round.part("link[i]", "Link", base);
+        let end = Expr::name("link[ i ].end");
+        round.frame("place[i]", WORLD, end);
+    });
+    arm.parts(
+        "further",
+        ("k", 1, 2),
+        "Link",
+        [
+            ("base", Expr::name("link[k].end")),
+            ("l", Expr::name("k") / 2),
+            ("m", 2.into()),
+        ],
+    );
+    arm.gravity([0.0, 0.0, -9.81]);
+    arm.start("link[2].q", 0.5);
+    arm.output("speed", Expr::name("further[1].q_dot"));
+    arm.load(Load::force([0.0, 0.0, 1.0], "link[n].rod"));
+    let scene = arm.build().expect("a scene");
+    assert_eq!(
+        Scene::parse(&scene.to_string()).expect("it was printed"),
+        scene
+    );
+    let generated = scene.generate().expect("correct");
+    let names = generated
+        .model
+        .joints
+        .iter()
+        .map(|joint| joint.name.as_str());
+    let names: Vec<&str> = names.collect();
+    assert_eq!(
+        names,
+        [
+            "link_1_q",
+            "link_2_q",
+            "link_3_q",
+            "further_1_q",
+            "further_2_q"
+        ]
+    );
+    // Errors are at the component, with the part.
+    arm.part(
+        "wrong",
+        "Link",
+        [
+            ("base", Expr::name("world")),
+            ("l", call("sin", [[1].into()])),
+        ],
+    );
+    let scene = arm.build().expect("a scene");
+    let error = scene.generate().expect_err("an angle is no vector");
+    assert_eq!(messages(&error), ["`sin` cannot take a vector of 1"]);
+    // Files have no folder here.
+    arm.include("legs.eom");
+    let error = arm
+        .build()
+        .expect("a scene")
+        .generate()
+        .expect_err("no folder");
+    assert_eq!(
+        messages(&error),
+        ["nothing says in which folder `legs.eom` is"]
+    );
+}
+
 #[test]
 fn branches_are_built() {
     let mut scene = Scene::builder("Contact");

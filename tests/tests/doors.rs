@@ -95,3 +95,36 @@ fn a_table_in_a_file_is_the_same_through_every_front_end() {
     let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
     assert!(errors[0].message.contains("in which folder"));
 }
+
+/// What a description includes is the same through every front end: its path starts at the description, from the macro
+/// at the package, and the compiler knows of the file.
+#[test]
+fn an_included_file_is_the_same_through_every_front_end() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/reuse");
+    let text = std::fs::read_to_string(folder.join("hexapod.eom")).expect("readable");
+    let open = &mut |name: &str| std::fs::read_to_string(folder.join(name));
+    let generated = hamel_codegen::generate::from_file(&text, open).expect("correct");
+    let built = hamel_codegen::builder::written(&generated, "hexapod.eom").expect("Rust");
+    assert_eq!(
+        include_str!(concat!(env!("OUT_DIR"), "/hexapod.rs")),
+        built,
+        "the build script"
+    );
+    let here = text
+        .replace("parts/leg.eom", "models/reuse/parts/leg.eom")
+        .replacen("gravity", "generate accel, reach; gravity", 1);
+    let open = &mut |name: &str| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        std::fs::read_to_string(root.join(name))
+    };
+    let generated = hamel_codegen::generate::from_file(&here, open).expect("correct");
+    let built = hamel_codegen::builder::written(&generated, "hexapod.eom").expect("Rust");
+    let expanded = hamel_codegen::expand(here.parse().expect("tokens"));
+    let mut file: syn::File = syn::parse2(expanded).expect("items");
+    let noted = file.items.pop().expect("items");
+    assert!(matches!(noted, syn::Item::Const(_)));
+    assert_eq!(prettyplease::unparse(&file).trim(), items(&built).trim());
+    // Without a folder there is no file.
+    let errors = hamel_codegen::generate::from_text(&text).expect_err("no folder");
+    assert!(errors[0].message.contains("in which folder"));
+}

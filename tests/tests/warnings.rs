@@ -3,23 +3,25 @@
 use hamel_codegen::lower::build;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::warnings;
-use hamel_codegen::syntax::{parse_text, read_tables};
+use hamel_codegen::syntax::{parse_text, read_files};
 use hamel_codegen::urdf::{Options, import};
 use std::path::{Path, PathBuf};
 
 fn read(text: &str, folder: &Path) -> Model {
     let mut system = parse_text(text).expect("a description");
     let open = &mut |name: &str| std::fs::read_to_string(folder.join(name));
-    read_tables(&mut system, open).expect("tables");
+    read_files(&mut system, open).expect("files");
     build(&system).expect("a correct description")
 }
 
-/// All files below a folder with an ending.
+/// All files below a folder with an ending, but those that others include, in folders `parts`.
 fn below(folder: &str, ending: &str) -> Vec<PathBuf> {
     let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
     let mut found = Vec::new();
     while let Some(path) = open.pop() {
-        if path.is_dir() {
+        if path.ends_with("parts") {
+            continue;
+        } else if path.is_dir() {
             let entries = std::fs::read_dir(path).expect("a folder");
             open.extend(entries.map(|entry| entry.expect("an entry").path()));
         } else if path.extension().is_some_and(|end| end == ending) {

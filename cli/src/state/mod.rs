@@ -16,6 +16,7 @@ pub mod strict;
 #[cfg(test)]
 mod tests;
 mod values;
+mod written;
 
 pub use values::State;
 

@@ -15,7 +15,8 @@ use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::closure::Closure;
 use crate::model::{Model, class, samples};
-use crate::syntax::ast::{ItemKind, System};
+use crate::reuse;
+use crate::syntax::ast::{ItemKind, Origins, System};
 
 /// Points are chosen anew this often when a square root has no value there.
 const ATTEMPTS: u64 = 8;
@@ -30,10 +31,22 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
 
 /// The same at other points of the variety, by their number.
 pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
+    let written = reuse::expand(system)?;
+    let origins = &written.system.origins;
+    let mut model = read(&written.system, number).map_err(|errors| origins.located_all(errors))?;
+    let mut warnings = unused::warnings(&written.system, &written.used);
+    warnings.append(&mut model.warnings);
+    model.warnings = origins.located_all(warnings);
+    model.warnings.extend(written.warnings);
+    model.origins = origins.clone();
+    Ok(model)
+}
+
+/// Reads a description without components and repetition.
+fn read(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
     let own = SEED + number * ATTEMPTS;
     let mut first = Report::new();
-    let mut warnings = unused::warnings(system);
-    let written = system;
+    let described = system;
     let system = &joints::expand(system, &mut first);
     let system = &time::expand(system, &mut first);
     let mut variety = Variety::read(system, own, &mut first);
@@ -64,8 +77,7 @@ pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> 
             Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
-                warnings.extend(strange::warnings(written, &model));
-                model.warnings = warnings;
+                model.warnings = strange::warnings(described, &model);
                 return Ok(model);
             }
             Err((errors, _)) => return Err(errors),
@@ -291,6 +303,7 @@ impl<'a> Reading<'a> {
             start_z: states.start,
             asked: dynamics.asked,
             span: system.name.span,
+            origins: Origins::default(),
             warnings: Vec::new(),
         })
     }

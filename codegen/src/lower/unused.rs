@@ -6,16 +6,23 @@
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
     Acting, Components, Conserved, Declaration, End, Expr, ExprKind, Ident, Item, ItemKind, Load,
-    Source, System, Table,
+    Origins, Source, Span, System, Table,
 };
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// A warning for every declaration whose name occurs nowhere else, in the order of the text.
-pub fn warnings(system: &System) -> Vec<Diagnostic> {
+/// A warning for every declaration whose name occurs nowhere else, in the order of the text; `used` are further names
+/// that are used. What stands in several copies is used where one of them is, and what is included need not be.
+pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
     let mut uses = Uses::default();
+    uses.origins = Some(&system.origins);
+    uses.names.extend(used.iter().map(String::as_str));
     system.items.iter().for_each(|item| uses.item(item));
-    let mut warnings = Vec::new();
+    let mut found = Vec::new();
     let mut placed = BTreeSet::new();
+    let mut frames: BTreeMap<&str, usize> = BTreeMap::new();
+    for name in system.items.iter().filter_map(frame) {
+        *frames.entry(name).or_default() += 1;
+    }
     for item in &system.items {
         let (list, kind) = match &item.kind {
             ItemKind::Param(list) => (list, "parameter"),
@@ -24,27 +31,35 @@ pub fn warnings(system: &System) -> Vec<Diagnostic> {
             ItemKind::Input(list) => (list, "input"),
             ItemKind::Frame { name, .. } => {
                 // A frame of two statements is the one that relates them.
-                let frames = system.items.iter().filter_map(frame);
-                let statements = frames.filter(|other| *other == name.name).count();
-                if statements == 1 && placed.insert(&name.name) {
-                    warnings.extend(uses.unused(name, "frame"));
+                let statements = frames.get(name.name.as_str());
+                if statements == Some(&1) && placed.insert(&name.name) {
+                    found.push(uses.unused(name, "frame"));
                 }
                 continue;
             }
             ItemKind::Table(table) => {
-                warnings.extend(uses.unused(&table.name, "table"));
+                found.push(uses.unused(&table.name, "table"));
                 continue;
             }
             ItemKind::Function(function) => {
-                warnings.extend(uses.unused(&function.name, "function"));
+                found.push(uses.unused(&function.name, "function"));
                 continue;
             }
             _ => continue,
         };
         let names = list.iter().map(|declaration| &declaration.name);
-        warnings.extend(names.filter_map(|name| uses.unused(name, kind)));
+        found.extend(names.map(|name| uses.unused(name, kind)));
     }
-    warnings
+    let origins = &system.origins;
+    let place = |span: Span| origins.source(span).range().map(|at| (at.start, at.end));
+    let used = found.iter().filter_map(|one| one.as_ref().err());
+    let mut seen: BTreeSet<_> = used.filter_map(|span| place(*span)).collect();
+    let unused = found.into_iter().filter_map(Result::ok);
+    let first = |warning: &Diagnostic| {
+        let place = place(warning.span);
+        !origins.is_included(warning.span) && place.is_none_or(|place| seen.insert(place))
+    };
+    unused.filter(first).collect()
 }
 
 /// The name on the left of a `frame` statement.
@@ -59,16 +74,25 @@ fn frame(item: &Item) -> Option<&str> {
 #[derive(Default)]
 struct Uses<'a> {
     names: BTreeSet<&'a str>,
+    /// How names are written.
+    origins: Option<&'a Origins>,
 }
 
 impl<'a> Uses<'a> {
-    fn unused(&self, name: &Ident, kind: &str) -> Option<Diagnostic> {
+    /// A warning, or the place of what is used.
+    fn unused(&self, name: &Ident, kind: &str) -> Result<Diagnostic, Span> {
         let Ident { name, span } = name;
-        if name.starts_with('_') || self.names.contains(name.as_str()) {
-            return None;
+        let written = self.origins.and_then(|origins| origins.written(name));
+        let last = written.map(|name| name.rsplit_once('.').map_or(name, |(_, last)| last));
+        let begins = last.unwrap_or(name).starts_with('_');
+        if begins || self.names.contains(name.as_str()) {
+            return Err(*span);
         }
         let warning = Diagnostic::new(*span, format!("the {kind} `{name}` is never used"));
-        Some(warning.help(format!("remove it, or call it `_{name}`")))
+        Ok(match written {
+            None => warning.help(format!("remove it, or call it `_{name}`")),
+            Some(_) => warning.help("remove it, or let its name begin with `_`"),
+        })
     }
 
     fn name(&mut self, name: &'a Ident) {
@@ -226,6 +250,11 @@ impl<'a> Uses<'a> {
                 self.all(when.iter().flat_map(|set| [&set.target, &set.value]));
             }
             ItemKind::Generate(_) => {}
+            // Written out already.
+            ItemKind::Include(..)
+            | ItemKind::Component(_)
+            | ItemKind::Part(_)
+            | ItemKind::Repeat(_) => {}
         }
     }
 
@@ -256,7 +285,7 @@ mod tests {
             "system A {{ coord q; velocity w; rate q = w; kinetic w^2 / 2; {statements} }}"
         );
         let system = parse_text(&text).expect("a description");
-        let list = warnings(&system).into_iter();
+        let list = warnings(&system, &Default::default()).into_iter();
         list.map(|warning| warning.message).collect()
     }
 

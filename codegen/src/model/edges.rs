@@ -131,7 +131,7 @@ fields!(Model {
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, whole;
     name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, clock,
-    joints, start_x, start_xi, start_z, asked, span, warnings, independent
+    joints, start_x, start_xi, start_z, asked, span, origins, warnings, independent
 });
 
 impl Edges for Along {

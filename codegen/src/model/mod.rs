@@ -25,7 +25,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};
 use crate::diagnostics::Diagnostic;
 use crate::functions::Asked;
-use crate::syntax::ast::{Axes, CoordKind, ShapeKind, Span};
+use crate::syntax::ast::{Axes, CoordKind, Origins, ShapeKind, Span};
 use completion::Completion;
 use elements::Elements;
 use layout::Block;
@@ -278,6 +278,8 @@ pub struct Model {
     pub asked: Asked,
     /// The statements that the start is about, for errors found later.
     pub span: Span,
+    /// Where statements come from that do not stand in the description itself.
+    pub origins: Origins,
     /// What is legal and looks like a mistake.
     pub warnings: Vec<Diagnostic>,
 }

@@ -6,7 +6,7 @@ use super::{Scene, SceneError, print};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
     Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, Function, Item, ItemKind,
-    Shape, ShapeKind, Source, Span, System, Table, Target,
+    Origins, Shape, ShapeKind, Source, Span, System, Table, Target,
 };
 use crate::syntax::parse_text;
 
@@ -27,13 +27,21 @@ impl SceneBuilder {
                 public: true,
                 name: ident(name),
                 items: Vec::new(),
+                origins: Origins::default(),
             },
         }
     }
 
-    fn add(&mut self, kind: ItemKind) {
+    pub(super) fn add(&mut self, kind: ItemKind) {
         let span = Span::NOWHERE;
         self.system.items.push(Item { kind, span });
+    }
+
+    /// Statements that stand inside of another one.
+    pub(super) fn inner(&self, statements: impl FnOnce(&mut SceneBuilder)) -> Vec<Item> {
+        let mut inner = SceneBuilder::new(&self.system.name.name);
+        statements(&mut inner);
+        inner.system.items
     }
 
     /// Adds a line to the documentation of the generated type.
@@ -396,14 +404,14 @@ fn declared(name: &str, shape: ShapeKind, value: Option<Expr>) -> Declaration {
     }
 }
 
-/// `R`, `X.p`
+/// `R`, `X.p`, `leg[3].knee`
 fn target(text: &str) -> Target {
-    match text.split_once('.') {
-        Some((name, field)) => Target {
+    match text.rsplit_once('.') {
+        Some((name, field)) if !field.contains('[') => Target {
             name: ident(name),
             field: Some(ident(field)),
         },
-        None => Target {
+        _ => Target {
             name: ident(text),
             field: None,
         },

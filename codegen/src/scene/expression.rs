@@ -1,6 +1,7 @@
 //! Expressions written in Rust: numbers, arrays, operators and the functions of the language.
 
 use crate::syntax::ast::{BinaryOp, Choice, Comparison, Expr, ExprKind, Ident, Span};
+use crate::syntax::path;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::Signed;
@@ -8,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub(super) fn ident(name: &str) -> Ident {
     Ident {
-        name: name.to_string(),
+        name: path::spelling(name),
         span: Span::NOWHERE,
     }
 }
@@ -106,9 +107,10 @@ pub fn diagonal(entries: [impl Into<Expr>; 3]) -> Expr {
 }
 
 impl Expr {
-    /// What a name stands for: a parameter, a coordinate, a velocity, an input, a frame.
+    /// What a name stands for: a parameter, a coordinate, a velocity, an input, a frame; also with indices and parts,
+    /// as in `leg[i + 1].knee`.
     pub fn name(name: &str) -> Expr {
-        expr(ExprKind::Name(name.to_string()))
+        path::expression(name).unwrap_or_else(|| expr(ExprKind::Name(name.to_string())))
     }
 
     /// A part: `c` and `s` of a circle, `R` and `p` of a pose, `T` of a matrix.

@@ -38,6 +38,7 @@ mod build;
 mod expression;
 mod parts;
 mod print;
+mod reuse;
 
 use crate::diagnostics::Diagnostic;
 use crate::emit;
@@ -53,6 +54,7 @@ pub use crate::syntax::ast::{
 pub use build::SceneBuilder;
 pub use expression::{call, cos, diagonal, if_less, in_axes, pose, shifted, sin, sqrt};
 pub use parts::{Between, Body, Element, Frame, Joint, Load, Point, WORLD};
+pub use reuse::Parameter;
 
 /// A description of a mechanical system.
 ///

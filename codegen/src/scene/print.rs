@@ -4,8 +4,9 @@
 //! an equal scene.
 
 use crate::syntax::ast::{
-    About, Acting, Body, Components, Conserved, CoordKind, Declaration, End, Expr, Ident, Item,
-    ItemKind, Joint, JointKind, Load, ShapeKind, Source, System, Table, Target,
+    About, Acting, Body, Component, Components, Conserved, CoordKind, Counter, Declaration, End,
+    Expr, Ident, Item, ItemKind, Joint, JointKind, Load, Part, Repeat, ShapeKind, Source, System,
+    Table, Target,
 };
 use crate::syntax::written::{conditions, equation, list, written};
 use crate::syntax::{joint_field, joint_kind};
@@ -20,7 +21,9 @@ pub fn text(system: &System) -> String {
     let public = if system.public { "pub " } else { "" };
     text.push_str(&format!("{public}system {} {{\n", system.name.name));
     for item in &system.items {
-        text.push_str(&format!("    {}\n", statement(item)));
+        for line in statement(item).lines() {
+            text.push_str(&format!("    {line}\n"));
+        }
     }
     text.push_str("}\n");
     text
@@ -150,8 +153,57 @@ pub fn statement(item: &Item) -> String {
         ItemKind::Generate(names) => {
             format!("generate {}", each(names, |name| name.name.clone()))
         }
+        ItemKind::Include(name, _) => format!("include {name:?}"),
+        ItemKind::Part(description) => part_of(description),
+        ItemKind::Component(description) => return component(description),
+        ItemKind::Repeat(Repeat { counter: i, items }) => {
+            return format!("for {} {}", counter(i), block(items));
+        }
     };
     line + ";"
+}
+
+/// Statements in braces, a step further to the right.
+fn block(items: &[Item]) -> String {
+    let lines: Vec<String> = items.iter().map(statement).collect();
+    let lines = lines.iter().flat_map(|statement| statement.lines());
+    let lines: String = lines.map(|line| format!("    {line}\n")).collect();
+    format!("{{\n{lines}}}")
+}
+
+/// `i in 1..n`
+fn counter(counter: &Counter) -> String {
+    let (first, last) = (written(&counter.first), written(&counter.last));
+    format!("{} in {first}..{last}", counter.name.name)
+}
+
+fn component(component: &Component) -> String {
+    let parameters = each(&component.parameters, |parameter| {
+        let frame = if parameter.frame { ": frame" } else { "" };
+        let default = parameter.default.as_ref();
+        let default = default.map(|value| format!(" = {}", written(value)));
+        format!(
+            "{}{frame}{}",
+            parameter.name.name,
+            default.unwrap_or_default()
+        )
+    });
+    let (name, items) = (&component.name.name, block(&component.items));
+    format!("component {name}({parameters}) {items}")
+}
+
+fn part_of(part: &Part) -> String {
+    let arguments = each(&part.arguments, |argument| {
+        let name = argument.name.as_ref();
+        let name = name.map(|name| format!("{} = ", name.name));
+        name.unwrap_or_default() + &written(&argument.value)
+    });
+    let index = part.counter.as_ref().map(|i| format!("[{}]", counter(i)));
+    let (name, of) = (&part.name.name, &part.component.name);
+    format!(
+        "part {name}{} = {of}({arguments})",
+        index.unwrap_or_default()
+    )
 }
 
 fn table(table: &Table) -> String {

@@ -2,18 +2,23 @@
 
 mod expression;
 mod joint;
+mod origins;
+mod reuse;
 mod span;
 mod table;
+pub mod visit;
 
 pub use expression::{BinaryOp, Choice, Comparison, Expr, ExprKind};
 pub use joint::{Joint, JointField, JointKind};
+pub use origins::{Included, Origins, Texts};
+pub use reuse::{Argument, Component, Counter, Parameter, Part, Repeat};
 pub use span::Span;
 pub use table::{Between, Beyond, Source, Table};
 
 /// A name with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ident {
-    /// The name as written.
+    /// The name as written: `knee`, but also `left.knee`, `link[i-1]` until components are written out.
     pub name: String,
     /// Where it stands.
     pub span: Span,
@@ -30,6 +35,8 @@ pub struct System {
     pub name: Ident,
     /// The statements, in source order.
     pub items: Vec<Item>,
+    /// Where statements come from that do not stand in the text itself.
+    pub origins: Origins,
 }
 
 /// A shape annotation: `vec3`, `mat3`, `sym3`, or nothing for a scalar.
@@ -415,4 +422,12 @@ pub enum ItemKind {
     },
     /// `generate accel, energy;`
     Generate(Vec<Ident>),
+    /// `include "leg.eom";` the statements of a file, with the place of its name.
+    Include(String, Span),
+    /// `component Leg(mount: frame, side = 1) { … }`
+    Component(Component),
+    /// `part left = Leg(hip, side = -1);`
+    Part(Part),
+    /// `for i in 1..n { … }`
+    Repeat(Repeat),
 }

@@ -6,6 +6,7 @@ use super::ast::{About, Body, ItemKind, Span};
 use super::blocks::fields;
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
+use super::path;
 use super::suggest::closest;
 use crate::diagnostics::Diagnostic;
 
@@ -26,7 +27,7 @@ pub(super) fn particle(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     cursor.expect_word("at")?;
     let at = expression(cursor)?;
     let on = if cursor.eat_word("on") {
-        Some(cursor.name("a frame")?)
+        Some(path::path(cursor, "a frame")?)
     } else {
         None
     };
@@ -36,7 +37,7 @@ pub(super) fn particle(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 /// `on f { mass m; com s; inertia J about origin; }`, each in any order and at most once.
 pub(super) fn body(cursor: &mut Cursor<'_>) -> Parsed<Body> {
     cursor.expect_word("on")?;
-    let frame = cursor.name("a frame")?;
+    let frame = path::path(cursor, "a frame")?;
     if !cursor.eat_open(Delimiter::Brace) {
         return Err(cursor.unexpected("`{`"));
     }

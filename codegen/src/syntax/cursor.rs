@@ -105,6 +105,31 @@ impl<'a> Cursor<'a> {
         matches!(self.ahead(1).kind, Kind::Open(Delimiter::Parenthesis, _))
     }
 
+    /// Whether the token after the next opens a bracket.
+    pub fn is_indexed(&self) -> bool {
+        matches!(self.ahead(1).kind, Kind::Open(Delimiter::Bracket, _))
+    }
+
+    /// Whether a name with a counter in brackets is next: `leg[i in`.
+    pub fn starts_array(&self) -> bool {
+        let [counter, word] = [self.ahead(2), self.ahead(3)];
+        self.is_indexed() && counter.kind == Kind::Word && word.text == "in"
+    }
+
+    /// A word that begins with `_`, where it is next.
+    pub fn next_ending(&self) -> Option<&'a str> {
+        let token = self.peek();
+        let begins = token.text.len() > 1 && token.text.starts_with('_');
+        (token.kind == Kind::Word && begins).then_some(token.text.as_str())
+    }
+
+    /// Takes a word that begins with `_`, where it is next.
+    pub fn ending(&mut self) -> Option<&'a str> {
+        let ending = self.next_ending();
+        self.at += usize::from(ending.is_some());
+        ending
+    }
+
     /// Whether the token after the next is one of these characters or words.
     pub fn is_followed_by(&self, characters: &[char], words: &[&str]) -> bool {
         let token = self.ahead(1);

@@ -3,6 +3,7 @@
 use super::ast::{CoordKind, Declaration, Function, Ident, Shape, ShapeKind, Span};
 use super::cursor::{Cursor, Parsed, shown};
 use super::expression::expression;
+use super::path;
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -57,7 +58,7 @@ fn without_value(cursor: &mut Cursor<'_>, of: &str, help: &str) -> Parsed<Declar
 /// `r: R3, R: SO3, q`
 pub(super) fn coordinates(cursor: &mut Cursor<'_>) -> Parsed<Vec<(Ident, CoordKind)>> {
     separated(cursor, |cursor| {
-        let name = cursor.name("a coordinate")?;
+        let name = path::declared(cursor, "a coordinate")?;
         let kind = if cursor.eat_punct(':') {
             coordinate_kind(cursor)?
         } else {
@@ -79,7 +80,11 @@ pub(super) fn function(cursor: &mut Cursor<'_>) -> Parsed<Function> {
     if !cursor.eat_open(Delimiter::Parenthesis) {
         return Err(cursor.unexpected("`(` and the names of its parameters"));
     }
-    let parameters = separated(cursor, |cursor| head(cursor, "a parameter"))?;
+    let parameters = separated(cursor, |cursor| {
+        let name = cursor.name("a parameter")?;
+        let shape = after(cursor, &name)?;
+        Ok((name, shape))
+    })?;
     cursor.expect_close(Delimiter::Parenthesis, false)?;
     cursor.assign()?;
     Ok(Function {
@@ -103,16 +108,20 @@ fn separated<T>(
 
 /// A name and its shape, a scalar where none is written.
 fn head(cursor: &mut Cursor<'_>, of: &str) -> Parsed<(Ident, Shape)> {
-    let name = cursor.name(of)?;
-    let shape = if cursor.eat_punct(':') {
-        shape(cursor)?
-    } else {
-        Shape {
+    let name = path::declared(cursor, of)?;
+    let shape = after(cursor, &name)?;
+    Ok((name, shape))
+}
+
+/// The shape after a name, a scalar where none is written.
+fn after(cursor: &mut Cursor<'_>, name: &Ident) -> Parsed<Shape> {
+    match cursor.eat_punct(':') {
+        true => shape(cursor),
+        false => Ok(Shape {
             kind: ShapeKind::Scalar,
             span: name.span,
-        }
-    };
-    Ok((name, shape))
+        }),
+    }
 }
 
 fn shape(cursor: &mut Cursor<'_>) -> Parsed<Shape> {

@@ -1,8 +1,9 @@
 //! Springs and dampers, and the two points that they act between.
 
-use super::ast::{Acting, End, Expr, ExprKind, Ident, ItemKind};
+use super::ast::{Acting, End, ItemKind};
 use super::cursor::{Cursor, Parsed};
 use super::expression::expression;
+use super::path;
 
 /// `stiffness k [length l] from … to …`, or `… on q2 - q1`
 pub(super) fn spring(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
@@ -54,17 +55,11 @@ fn end(cursor: &mut Cursor<'_>) -> Parsed<End> {
     if cursor.eat_word("on") {
         return Ok(End {
             at: Some(point),
-            frame: cursor.name("a frame")?,
+            frame: path::path(cursor, "a frame")?,
         });
     }
-    match point {
-        Expr {
-            kind: ExprKind::Name(name),
-            span,
-        } => Ok(End {
-            at: None,
-            frame: Ident { name, span },
-        }),
-        _ => Err(cursor.unexpected("`on` and the frame of this point")),
+    match path::of_expression(&point) {
+        Some(frame) => Ok(End { at: None, frame }),
+        None => Err(cursor.unexpected("`on` and the frame of this point")),
     }
 }

@@ -19,8 +19,8 @@ use proc_macro2::Delimiter;
 
 use super::ast::{BinaryOp, Expr, ExprKind, Ident, Span};
 use super::cursor::{Cursor, Parsed, check_name, shown};
-use super::number;
 use super::tokens::Kind;
+use super::{number, path};
 use crate::diagnostics::Diagnostic;
 
 /// The most operands that operators of one precedence join.
@@ -37,8 +37,8 @@ struct Node {
 
 /// A list of expressions and the depth of the deepest.
 #[derive(Default)]
-struct List {
-    entries: Vec<Expr>,
+pub(super) struct List {
+    pub entries: Vec<Expr>,
     depth: usize,
 }
 
@@ -126,7 +126,9 @@ fn postfix(cursor: &mut Cursor<'_>) -> Parsed<Node> {
     let mut value = primary(cursor)?;
     loop {
         let span = value.expr.span;
-        let (part, depth) = if cursor.eat_punct('.') {
+        // Of a range, `1..n`, the first dot ends the expression.
+        let range = cursor.is_punct('.') && cursor.is_followed_by(&['.'], &[]);
+        let (part, depth) = if !range && cursor.eat_punct('.') {
             let field = field(cursor)?;
             if let ExprKind::Number(_) = value.expr.kind {
                 return Err(no_part(span.to(field.span)));
@@ -137,10 +139,20 @@ fn postfix(cursor: &mut Cursor<'_>) -> Parsed<Node> {
                 return Err(no_part(cursor.here()));
             }
             let indices = indices(cursor)?;
-            (
-                ExprKind::Index(Box::new(value.expr), indices.entries),
-                value.depth.max(indices.depth),
-            )
+            let indexed = ExprKind::Index(Box::new(value.expr), indices.entries);
+            let end = cursor.before();
+            let expr = Expr {
+                kind: indexed,
+                span: span.to(end),
+            };
+            let named = cursor.next_ending();
+            let named = named.and_then(|ending| path::with_ending(&expr, ending, cursor.here()));
+            if let Some(expr) = named {
+                cursor.bump();
+                value.expr = expr;
+                continue;
+            }
+            (expr.kind, value.depth.max(indices.depth))
         } else {
             return Ok(value);
         };
@@ -164,7 +176,8 @@ fn field(cursor: &mut Cursor<'_>) -> Parsed<Ident> {
     cursor.word("the name of a part")
 }
 
-fn indices(cursor: &mut Cursor<'_>) -> Parsed<List> {
+/// One index or two, with their brackets.
+pub(super) fn indices(cursor: &mut Cursor<'_>) -> Parsed<List> {
     let open = cursor.here();
     cursor.bump();
     let indices = list(cursor, Delimiter::Bracket)?;

@@ -1,8 +1,10 @@
 //! Claims that something is constant along the motion.
 
-use super::ast::{Condition, Conserved, ExprKind, Ident, ItemKind};
+use super::ast::{Condition, Conserved, Ident, ItemKind};
 use super::cursor::{Cursor, Parsed};
 use super::expression::expression;
+use super::path;
+use super::reuse::is_name;
 use crate::diagnostics::Diagnostic;
 
 /// What has a name of its own.
@@ -19,7 +21,7 @@ pub(super) fn invariant(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
         };
         (name, built_in(cursor)?)
     } else {
-        let name = cursor.name("an invariant")?;
+        let name = path::declared(cursor, "an invariant")?;
         cursor.assign()?;
         let conserved = if is_built_in(cursor) {
             built_in(cursor)?
@@ -53,7 +55,7 @@ fn built_in(cursor: &mut Cursor<'_>) -> Parsed<Conserved> {
         return Ok(Conserved::Energy);
     }
     let of = if cursor.eat_word("of") {
-        Some(cursor.name("a frame")?)
+        Some(path::path(cursor, "a frame")?)
     } else {
         None
     };
@@ -78,12 +80,7 @@ fn after(cursor: &mut Cursor<'_>, word: &str) -> Parsed<Option<super::ast::Expr>
 /// `F = 0`, `s[1] = 0`
 fn condition(cursor: &mut Cursor<'_>) -> Parsed<Condition> {
     let target = expression(cursor)?;
-    let named = match &target.kind {
-        ExprKind::Name(_) => true,
-        ExprKind::Index(base, _) => matches!(base.kind, ExprKind::Name(_)),
-        _ => false,
-    };
-    if !named {
+    if !is_name(&target) {
         return Err(Diagnostic::new(
             target.span,
             "a claim can set inputs and parameters, or entries of them",

@@ -6,6 +6,7 @@ use super::ast::{Expr, Ident, Joint, JointField, JointKind, Span};
 use super::blocks::fields;
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
+use super::path;
 use super::suggest::closest;
 use crate::diagnostics::Diagnostic;
 
@@ -102,13 +103,26 @@ pub(crate) fn kind_name(kind: JointKind) -> &'static str {
         .map_or("spherical", |(name, ..)| name)
 }
 
+/// What the names of the coordinates and of the velocities of a joint have behind the name of the joint.
+pub(crate) fn endings(joint: &Joint) -> (&'static [&'static str], &'static [&'static str]) {
+    match joint.kind.0 {
+        JointKind::Fixed => (&[], &[]),
+        _ if joint.follows.is_some() => (&[], &[]),
+        JointKind::Free => (&["_r", "_R"], &["_v", "_w"]),
+        JointKind::Planar => (&["_r", ""], &["_r_dot", "_dot"]),
+        JointKind::Universal => (&["_1", "_2"], &["_1_dot", "_2_dot"]),
+        JointKind::Cylindrical => (&["", "_d"], &["_dot", "_d_dot"]),
+        _ => (&[""], &["_dot"]),
+    }
+}
+
 /// `j: revolute [0, 0, 1] on f at P moves g follows e { damping d; }`
 pub(super) fn joint(cursor: &mut Cursor<'_>) -> Parsed<Joint> {
-    let name = cursor.name("a joint")?;
+    let name = path::declared(cursor, "a joint")?;
     cursor.expect_punct(':')?;
     let (kind, axes) = kind(cursor)?;
     let on = if cursor.eat_word("on") {
-        Some(cursor.name("a frame")?)
+        Some(path::path(cursor, "a frame")?)
     } else {
         None
     };
@@ -125,7 +139,7 @@ pub(super) fn joint(cursor: &mut Cursor<'_>) -> Parsed<Joint> {
                 shown(&name.name)
             )));
     }
-    let moves = cursor.name("a frame")?;
+    let moves = path::declared(cursor, "a frame")?;
     let follows = if cursor.eat_word("follows") {
         Some(expression(cursor)?)
     } else {

@@ -6,6 +6,7 @@ use super::ast::{Components, Expr, ItemKind, Load};
 use super::cursor::{Cursor, Parsed};
 use super::element::ends;
 use super::expression::expression;
+use super::path;
 
 /// `force F [at p] on f in body`, or `force F from p on f to q on g`
 pub(super) fn force(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
@@ -48,9 +49,9 @@ fn at(cursor: &mut Cursor<'_>) -> Parsed<Option<Expr>> {
 /// `on f [from g] in body`
 fn applied(cursor: &mut Cursor<'_>, load: Load) -> Parsed<ItemKind> {
     cursor.expect_word("on")?;
-    let frame = cursor.name("a frame")?;
+    let frame = path::path(cursor, "a frame")?;
     let from = if cursor.eat_word("from") {
-        Some(cursor.name("a frame")?)
+        Some(path::path(cursor, "a frame")?)
     } else {
         None
     };
@@ -63,7 +64,7 @@ fn applied(cursor: &mut Cursor<'_>, load: Load) -> Parsed<ItemKind> {
     } else if cursor.eat_word("world") {
         Components::World
     } else {
-        Components::Frame(cursor.name("a frame")?)
+        Components::Frame(path::path(cursor, "a frame")?)
     };
     Ok(ItemKind::Load {
         load,

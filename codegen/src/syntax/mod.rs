@@ -14,6 +14,8 @@
 //! | `blocks` | what stands between braces, doc comments |
 //! | `parse` | the system, statement after statement, and recovery |
 //! | `statement`, `declaration`, `table`, `body`, `joint`, `load` | the statements |
+//! | `reuse`, `path` | statements that stand for others, and the names that these have |
+//! | `files` | included texts, and tables in files |
 //! | `expression`, `number` | values |
 //! | `words` | the words of the language |
 //! | `suggest` | the word that was probably meant |
@@ -29,12 +31,14 @@ mod cursor;
 mod declaration;
 mod element;
 mod expression;
+mod files;
 mod invariant;
 mod joint;
 mod load;
 mod number;
 mod parse;
-#[cfg(feature = "files")]
+pub mod path;
+mod reuse;
 mod scan;
 mod statement;
 pub mod suggest;
@@ -46,14 +50,21 @@ pub mod written;
 #[cfg(all(test, feature = "files"))]
 mod tests;
 
+pub use files::read_files;
 pub use tokens::Places;
 
-pub(crate) use joint::{field_name as joint_field, kind_name as joint_kind};
+pub(crate) use joint::{
+    endings as joint_endings, field_name as joint_field, kind_name as joint_kind,
+};
 
 /// Parses a description given as tokens; places in it are places of these tokens.
 pub fn parse_tokens(tokens: TokenStream) -> (Places, Result<ast::System, Vec<Diagnostic>>) {
     let (tokens, places) = tokens::of_stream(tokens);
-    (places, parse(&tokens))
+    let mut parsed = parse(&tokens);
+    if let Ok(system) = &mut parsed {
+        system.origins = ast::Origins::behind(tokens.len());
+    }
+    (places, parsed)
 }
 
 fn parse(tokens: &[tokens::Token]) -> Result<ast::System, Vec<Diagnostic>> {
@@ -72,48 +83,16 @@ pub fn parse_text(text: &str) -> Result<ast::System, Vec<Diagnostic>> {
             Err(error) => Err(vec![scan::unreadable(&error)]),
         };
         match parsed {
-            Ok(system) if errors.is_empty() => return Ok(system),
+            Ok(mut system) if errors.is_empty() => {
+                system.origins = ast::Origins::behind(text.len());
+                return Ok(system);
+            }
             Ok(_) => {}
             Err(more) => errors.extend(more),
         }
     }
     errors.truncate(cursor::MAX_ERRORS);
     Err(errors)
-}
-
-/// Reads the tables that stand in files, in the place of their names: `open` gives the text of a file by its name in
-/// the description. The texts are returned in the order of the tables.
-pub fn read_tables(
-    system: &mut ast::System,
-    open: &mut dyn FnMut(&str) -> std::io::Result<String>,
-) -> Result<Vec<String>, Vec<Diagnostic>> {
-    let (mut texts, mut errors) = (Vec::new(), Vec::new());
-    for item in &mut system.items {
-        let ast::ItemKind::Table(found) = &mut item.kind else {
-            continue;
-        };
-        let ast::Source::File(name, span) = &found.source else {
-            continue;
-        };
-        let (name, span) = (name.clone(), *span);
-        let read = open(&name).map_err(|error| {
-            Diagnostic::new(span, format!("cannot read `{name}`: {error}"))
-                .help("the path of a table starts at the folder of its description")
-        });
-        let points = read.and_then(|text| {
-            let points = table::read(&text, &name, span)?;
-            texts.push(text);
-            Ok(points)
-        });
-        match points {
-            Ok(points) => found.source = ast::Source::Points(points, span),
-            Err(error) => errors.push(error),
-        }
-    }
-    match errors.is_empty() {
-        true => Ok(texts),
-        false => Err(errors),
-    }
 }
 
 /// One spelling for all sources of the same tokens, to be hashed: the tokens joined by single spaces.

@@ -1,11 +1,10 @@
 //! A system, statement after statement.
 
-use super::ast::{Item, System};
+use super::ast::{Item, Origins, System};
 use super::blocks::docs;
 use super::cursor::{Cursor, MAX_ERRORS, Parsed, quoted};
-use super::statement::statement;
+use super::reuse::items;
 use super::tokens::{Kind, Token};
-use super::words::form;
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -53,36 +52,8 @@ fn header(cursor: &mut Cursor<'_>) -> Parsed<System> {
         public,
         name,
         items: Vec::new(),
+        origins: Origins::default(),
     })
-}
-
-/// The statements up to the closing brace; faulty ones are reported and left out.
-fn items(cursor: &mut Cursor<'_>) -> Vec<Item> {
-    let mut items = Vec::new();
-    while cursor.errors.len() < MAX_ERRORS {
-        let mark = cursor.mark();
-        if let Err(error) = docs(cursor) {
-            cursor.errors.push(error);
-            cursor.recover(mark);
-            continue;
-        }
-        if cursor.is_end() {
-            break;
-        }
-        let mark = cursor.mark();
-        let word = cursor.peek();
-        match statement(cursor) {
-            Ok(list) => items.extend(list),
-            Err(error) => {
-                cursor.errors.push(match form(&word.text) {
-                    Some(form) => with_form(error, form),
-                    None => error,
-                });
-                cursor.recover(mark);
-            }
-        }
-    }
-    items
 }
 
 fn nothing_else(cursor: &Cursor<'_>) -> Parsed<()> {
@@ -110,5 +81,21 @@ fn with_form(error: Diagnostic, form: &str) -> Diagnostic {
         error
     } else {
         error.help(form)
+    }
+}
+
+/// Parses statements without a system around them: those of an included text.
+pub(super) fn statements(tokens: &[Token]) -> Result<Vec<Item>, Vec<Diagnostic>> {
+    let mut cursor = Cursor::new(tokens);
+    if cursor.is_word("system") || cursor.is_word("pub") {
+        let error = Diagnostic::new(cursor.here(), "a whole description is included");
+        return Err(vec![error.help(
+            "an included file has statements alone: leave out `system … {` and its `}`",
+        )]);
+    }
+    let items = items(&mut cursor);
+    match cursor.errors.is_empty() {
+        true => Ok(items),
+        false => Err(cursor.errors),
     }
 }

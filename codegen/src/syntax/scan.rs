@@ -73,11 +73,12 @@ pub(super) fn scan(text: &str) -> Scan {
 
 /// The error for a text that passed the scan, and yet cannot be cut into tokens.
 pub(super) fn unreadable(error: &LexError) -> Diagnostic {
-    Diagnostic::new(
-        Span::new(error.span().byte_range()),
-        "the text cannot be read from here",
-    )
-    .help("check the spelling of what stands here")
+    #[cfg(feature = "files")]
+    let place = Span::new(error.span().byte_range());
+    #[cfg(not(feature = "files"))]
+    let place = (Span::NOWHERE, error).0;
+    Diagnostic::new(place, "the text cannot be read from here")
+        .help("check the spelling of what stands here")
 }
 
 /// The walk along the text.

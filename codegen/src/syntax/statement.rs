@@ -7,7 +7,7 @@ use super::expression::expression;
 use super::suggest::closest;
 use super::tokens::Kind;
 use super::words::statements;
-use super::{body, declaration, element, invariant, joint, load, table};
+use super::{body, declaration, element, invariant, joint, load, path, reuse, table};
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -45,6 +45,20 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         "start" => return list(cursor, start, starting),
         "output" => return list(cursor, start, output),
         "frame" => return list(cursor, start, frame),
+        "include" => reuse::include(cursor)?,
+        // End with their braces, or take their `;`.
+        "component" => {
+            let kind = reuse::component(cursor)?;
+            return Ok(reuse::ended(kind, start, cursor));
+        }
+        "for" => {
+            let kind = reuse::repeat(cursor)?;
+            return Ok(reuse::ended(kind, start, cursor));
+        }
+        "part" => {
+            let kind = reuse::part(cursor)?;
+            return Ok(reuse::ended(kind, start, cursor));
+        }
         // Ends with its braces.
         "body" => {
             let kind = ItemKind::Body(body::body(cursor)?);
@@ -92,6 +106,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
             | "spring"
             | "damper"
             | "generate"
+            | "include"
     );
     cursor.end(!names)?;
     let span = since(start, cursor);
@@ -208,7 +223,7 @@ fn generalized(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 
 /// `speed = norm(v)`
 fn output(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
-    let name = cursor.name("an output")?;
+    let name = path::declared(cursor, "an output")?;
     cursor.assign()?;
     Ok(ItemKind::Output {
         name,
@@ -216,15 +231,24 @@ fn output(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     })
 }
 
-/// `R`, `X.p`
+/// `R`, `X.p`, `leg[3].knee`: its last word is the field, until it is known what the others stand for.
 fn target(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Target> {
-    let name = cursor.name(of)?;
-    let field = if cursor.eat_punct('.') {
-        Some(cursor.word("the name of a part")?)
-    } else {
-        None
-    };
-    Ok(Target { name, field })
+    let name = path::path(cursor, of)?;
+    let last = cursor.before();
+    let Ident { name: text, span } = &name;
+    Ok(match text.rsplit_once('.') {
+        Some((before, field)) if !field.contains('[') => Target {
+            name: Ident {
+                name: before.to_owned(),
+                span: *span,
+            },
+            field: Some(Ident {
+                name: field.to_owned(),
+                span: last,
+            }),
+        },
+        _ => Target { name, field: None },
+    })
 }
 
 /// `q`, `v`, `rate(v)`
@@ -253,9 +277,9 @@ fn kept(cursor: &mut Cursor<'_>) -> Parsed<(Expr, Expr, Option<Expr>)> {
 
 /// `f [on g] = pose(R, p)`, or `f [on g] at [x, y, z]`
 fn frame(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
-    let name = cursor.name("a frame")?;
+    let name = path::declared(cursor, "a frame")?;
     let on = if cursor.eat_word("on") {
-        Some(cursor.name("a frame")?)
+        Some(path::path(cursor, "a frame")?)
     } else {
         None
     };
@@ -271,11 +295,19 @@ fn frame(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 
 /// `generate accel, energy`
 fn functions(cursor: &mut Cursor<'_>) -> Parsed<Vec<Ident>> {
-    let mut names = vec![cursor.word("the name of a function")?];
+    let mut names = vec![function(cursor)?];
     while cursor.eat_punct(',') {
-        names.push(cursor.word("the name of a function")?);
+        names.push(function(cursor)?);
     }
     Ok(names)
+}
+
+/// `energy`, `leg[3].reach`
+fn function(cursor: &mut Cursor<'_>) -> Parsed<Ident> {
+    match cursor.is_followed_by(&['.'], &[]) || cursor.is_indexed() {
+        true => path::path(cursor, "a function"),
+        false => cursor.word("the name of a function"),
+    }
 }
 
 fn no_statement(cursor: &Cursor<'_>) -> Diagnostic {
@@ -292,6 +324,10 @@ fn no_statement(cursor: &Cursor<'_>) -> Diagnostic {
 
 fn unknown(cursor: &Cursor<'_>, word: &Ident) -> Diagnostic {
     let name = shown(&word.name);
+    if word.name == "system" {
+        return Diagnostic::new(word.span, "a `system` inside of another")
+            .help("what a system has several of is a `component`, with a `part` for each");
+    }
     if let Some(close) = closest(&word.name, statements()) {
         return Diagnostic::new(word.span, format!("unknown statement `{name}`"))
             .help(format!("did you mean `{close}`?"));

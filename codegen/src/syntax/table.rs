@@ -63,7 +63,13 @@ fn point(cursor: &mut Cursor<'_>) -> Parsed<(Expr, Expr)> {
 
 /// `"file.csv"`
 fn file(cursor: &mut Cursor<'_>) -> Parsed<Source> {
-    let (token, span) = (cursor.peek(), cursor.here());
+    let span = cursor.here();
+    Ok(Source::File(quoted(cursor)?, span))
+}
+
+/// A text in quotes, which names a file.
+pub(super) fn quoted(cursor: &mut Cursor<'_>) -> Parsed<String> {
+    let token = cursor.peek();
     let literal = (token.kind == Kind::Literal).then(|| token.text.parse::<Literal>().ok());
     let text = literal.flatten().and_then(|literal| {
         let tokens = TokenStream::from(proc_macro2::TokenTree::Literal(literal));
@@ -73,7 +79,7 @@ fn file(cursor: &mut Cursor<'_>) -> Parsed<Source> {
         return Err(cursor.unexpected("the name of a file in quotes"));
     };
     cursor.bump();
-    Ok(Source::File(text.value(), span))
+    Ok(text.value())
 }
 
 /// The place of the next word in a list.

@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 35] = [
+const STATEMENTS: [(&str, &str); 39] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -111,6 +111,22 @@ const STATEMENTS: [(&str, &str); 35] = [
     (
         "generate",
         "a selection of functions is written `generate accel, energy;`",
+    ),
+    (
+        "include",
+        "statements of a file are included by `include \"leg.eom\";`",
+    ),
+    (
+        "component",
+        "a component is written `component Leg(mount: frame, side = 1) { … }`",
+    ),
+    (
+        "part",
+        "a part is written `part left = Leg(hip, side = -1);` or `part leg[i in 1..6] = Leg(mount[i]);`",
+    ),
+    (
+        "for",
+        "a repetition is written `for i in 1..n { … }`, both ends included",
     ),
 ];
 

@@ -109,6 +109,16 @@ const WORDS: &[&str] = &[
     "constraint",
     "invariant",
     "joint",
+    "include",
+    "component",
+    "part",
+    "for",
+    "frame",
+    "i",
+    "n",
+    "_dot",
+    "..",
+    "5000",
     "pub",
     "system",
     "c",
@@ -150,6 +160,7 @@ pub fn tokens(text: &str) -> Vec<String> {
     let mut tokens: Vec<String> = Vec::new();
     for line in text.lines() {
         let code = line.split("//").next().unwrap_or_default();
+        let code = code.replace("..", " .. ");
         let mut word = String::new();
         for letter in code.chars().chain([' ']) {
             let number = word.starts_with(|c: char| c.is_ascii_digit());

@@ -22,7 +22,8 @@ use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::scope::Scope;
 use crate::model::joints::Joint;
-use crate::syntax::ast::{self, Ident, ItemKind, JointField, JointKind, System};
+use crate::syntax::ast::{self, Ident, ItemKind, JointField, System};
+use crate::syntax::joint_endings;
 use written::Writer;
 
 pub(super) use fields::armature;
@@ -55,15 +56,7 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, report: &mut Repo
 
 /// The names of the coordinates and of the velocities of a joint.
 fn names(joint: &ast::Joint) -> (Vec<String>, Vec<String>) {
-    let (coordinates, velocities): (&[&str], &[&str]) = match joint.kind.0 {
-        JointKind::Fixed => (&[], &[]),
-        _ if joint.follows.is_some() => (&[], &[]),
-        JointKind::Free => (&["_r", "_R"], &["_v", "_w"]),
-        JointKind::Planar => (&["_r", ""], &["_r_dot", "_dot"]),
-        JointKind::Universal => (&["_1", "_2"], &["_1_dot", "_2_dot"]),
-        JointKind::Cylindrical => (&["", "_d"], &["_dot", "_d_dot"]),
-        _ => (&[""], &["_dot"]),
-    };
+    let (coordinates, velocities) = joint_endings(joint);
     let named = |endings: &[&str]| {
         let of = |ending: &&str| format!("{}{ending}", joint.name.name);
         endings.iter().map(of).collect()

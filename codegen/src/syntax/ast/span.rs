@@ -33,6 +33,14 @@ impl Span {
         somewhere.then(|| self.start as usize..self.end.max(self.start) as usize)
     }
 
+    /// The region as many places later.
+    pub fn later(self, by: usize) -> Self {
+        match self.range() {
+            Some(range) if by > 0 => Span::new(range.start + by..range.end + by),
+            _ => self,
+        }
+    }
+
     /// The region from the start of this one to the end of another.
     pub fn to(self, other: Span) -> Self {
         match (self.range(), other.range()) {

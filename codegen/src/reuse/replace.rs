@@ -1,0 +1,444 @@
+//! The second walk: names as written are replaced by those that things have in the end, counters by numbers, and
+//! parameters of components by their arguments.
+
+use super::copies::moved;
+use super::names::{Binding, Context, Found, Kind, World};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::syntax::ast::visit::{Visit, parts, visit};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Item, ItemKind, Span, Target};
+use crate::syntax::path::{Step, of_expression, steps};
+use num_rational::BigRational;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The deepest expression, arguments written out: what one expression of a text can have.
+const MOST_LEVELS: usize = 600;
+
+/// The most operations that arguments have where they are written out.
+const MOST_WRITTEN: usize = 1_000_000;
+
+/// Parameters of components that expressions mention.
+type Mentioned = BTreeSet<(String, String)>;
+
+/// The statements with the names that they have in the end.
+pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> (Vec<Item>, Mentioned) {
+    let mut report = Report::new();
+    let mut known = Known::default();
+    check_arguments(world, &mut known, &mut report);
+    let mut items = Vec::with_capacity(pending.len());
+    for (mut item, context) in pending {
+        let mut replacing = Replacing {
+            world,
+            context: &context,
+            report: &mut report,
+            known: &mut known,
+            locals: BTreeSet::new(),
+            level: 0,
+        };
+        if let ItemKind::Function(function) = &item.kind {
+            let names = function
+                .parameters
+                .iter()
+                .map(|(name, _)| name.name.clone());
+            replacing.locals = names.collect();
+        }
+        if let ItemKind::Frame { name, .. } = &mut item.kind
+            && world.is_parameter(name, &context)
+        {
+            replacing.uses(name);
+        }
+        visit(&mut item, &mut replacing);
+        items.push(item);
+    }
+    for error in report.finish().err().unwrap_or_default() {
+        world.report.push_once(error);
+    }
+    (items, known.mentioned)
+}
+
+/// What arguments are found to be, each once.
+#[derive(Default)]
+struct Known {
+    /// By scope and parameter: the expression with its depth and its size; none where it is wrong.
+    arguments: BTreeMap<(usize, String), Option<(Expr, usize, usize)>>,
+    mentioned: Mentioned,
+    /// How much was written out, and whether that was too much.
+    written: usize,
+    full: bool,
+}
+
+/// Every argument is looked at once, also where its parameter is not used.
+fn check_arguments(world: &World<'_>, known: &mut Known, report: &mut Report) {
+    for scope in 0..world.scopes.len() {
+        for (name, binding) in &world.scopes[scope].bindings {
+            let mut replacing = Replacing {
+                world,
+                context: &binding.context,
+                report,
+                known,
+                locals: BTreeSet::new(),
+                level: 0,
+            };
+            replacing.argument(scope, name, binding);
+        }
+    }
+}
+
+struct Replacing<'w, 'a> {
+    world: &'w World<'a>,
+    context: &'w Context,
+    report: &'w mut Report,
+    known: &'w mut Known,
+    /// Parameters of the function whose value this is.
+    locals: BTreeSet<String>,
+    /// How deep the expression around is.
+    level: usize,
+}
+
+impl Visit for Replacing<'_, '_> {
+    fn declares(&mut self, _: &mut Ident, _: bool) {}
+
+    fn uses(&mut self, name: &mut Ident) {
+        let path = steps(name);
+        match self.named(&path, name.span) {
+            Ok(None) => {}
+            Ok(Some((found, taken))) if taken == path.len() => name.name = found,
+            Ok(Some((_, taken))) => {
+                let error = no_more(&path, taken, name.span);
+                self.report.push_once(error);
+            }
+            Err(error) => self.report.push_once(error),
+        }
+    }
+
+    fn target(&mut self, target: &mut Target) {
+        let whole = Ident {
+            name: match &target.field {
+                Some(field) => format!("{}.{}", target.name.name, field.name),
+                None => target.name.name.clone(),
+            },
+            span: target.name.span,
+        };
+        let path = steps(&whole);
+        match (self.named(&path, whole.span), target.field.is_some()) {
+            (Ok(None), _) => {}
+            (Ok(Some((found, taken))), true) if taken + 1 == path.len() => {
+                target.name.name = found;
+                let last = target.field.as_ref().map(|field| field.span);
+                // The name is what stands before the field.
+                target.name.span = before(target.name.span, last);
+            }
+            (Ok(Some((found, taken))), _) if taken == path.len() => {
+                target.name.name = found;
+                target.field = None;
+            }
+            (Ok(Some((_, taken))), _) => {
+                let error = no_more(&path, taken, whole.span);
+                self.report.push_once(error);
+            }
+            (Err(error), _) => self.report.push_once(error),
+        }
+    }
+
+    fn expr(&mut self, expr: &mut Expr) {
+        self.level += 1;
+        self.replaced(expr);
+        self.level -= 1;
+    }
+
+    fn place(&mut self, _: &mut Span) {}
+}
+
+/// A region up to the one of its last word, where that is in it.
+fn before(span: Span, last: Option<Span>) -> Span {
+    let ends = span.range().zip(last.and_then(Span::range));
+    match ends {
+        Some((whole, last)) if whole.start + 1 < last.start => {
+            Span::new(whole.start..last.start - 1)
+        }
+        _ => span,
+    }
+}
+
+/// The error for steps beyond a name.
+fn no_more(path: &[Step], taken: usize, span: Span) -> Diagnostic {
+    let name = match path.first() {
+        Some(Step::Name(name)) => name.as_str(),
+        _ => "",
+    };
+    match path.get(taken) {
+        Some(Step::Name(part)) => Diagnostic::new(
+            span,
+            format!("this name goes no further than before `.{part}`"),
+        )
+        .help("parts that components make have names of their own: `left.knee`"),
+        _ => Diagnostic::new(span, format!("`{name}` is no array"))
+            .help("an array is declared with its index, as in `frame link[0] = world;`"),
+    }
+}
+
+impl<'w, 'a> Replacing<'w, 'a> {
+    /// The name of the thing that steps lead to, with how many of them do; none where nothing here has it.
+    fn named(&mut self, path: &[Step], span: Span) -> Result<Option<(String, usize)>, Diagnostic> {
+        let shown = || match path.first() {
+            Some(Step::Name(name)) => name.clone(),
+            _ => String::new(),
+        };
+        match self.world.find(path, span, self.context)? {
+            Found::Unknown if path.len() == 1 => Ok(None),
+            Found::Unknown => match path.get(1) {
+                // A part of a coordinate that does not exist is reported with the coordinate.
+                Some(Step::Name(_)) if path.len() == 2 => Ok(None),
+                _ => {
+                    let error = Diagnostic::new(span, format!("unknown name `{}`", shown()));
+                    Err(error.help("declare it, or check its spelling"))
+                }
+            },
+            Found::Number(value) => {
+                let message = format!("`{}` is the number {value} here, no name", shown());
+                Err(Diagnostic::new(span, message)
+                    .help("a name is wanted: with the counter as its index, `link[i]`"))
+            }
+            Found::Parameter(scope, name, binding) => {
+                if !binding.frame {
+                    let message = format!("`{name}` is an expression here, no name");
+                    return Err(Diagnostic::new(span, message)
+                        .help(format!("a frame is declared as one: `{name}: frame`")));
+                }
+                let argument = self.argument(scope, name, binding);
+                Ok(argument.and_then(|(expr, ..)| match expr.kind {
+                    ExprKind::Name(name) => Some((name, 1)),
+                    _ => None,
+                }))
+            }
+            Found::Thing(thing, taken) => match thing.kind {
+                Kind::Part(scope) => Err(self.is_part(scope, span)),
+                _ => Ok(Some((thing.name.clone(), taken))),
+            },
+        }
+    }
+
+    fn is_part(&self, scope: usize, span: Span) -> Diagnostic {
+        let part = self.world.scopes[scope].written.trim_end_matches('.');
+        Diagnostic::new(span, format!("`{part}` is a part")).help(self.world.parts_of(scope))
+    }
+
+    /// The argument that a parameter stands for, with its depth and size.
+    fn argument(
+        &mut self,
+        scope: usize,
+        name: &str,
+        binding: &Binding<'a>,
+    ) -> Option<(Expr, usize, usize)> {
+        let key = (scope, name.to_owned());
+        if let Some(known) = self.known.arguments.get(&key) {
+            return known.clone();
+        }
+        // What is made of itself has no value.
+        self.known.arguments.insert(key.clone(), None);
+        let mut expr = binding.value.clone();
+        moved(&mut expr, binding.context.by);
+        let mut inner = Replacing {
+            world: self.world,
+            context: &binding.context,
+            report: self.report,
+            known: self.known,
+            locals: BTreeSet::new(),
+            level: 0,
+        };
+        let sound = match binding.frame {
+            true => inner.frame(&mut expr, name),
+            false => {
+                let before = inner.report.len();
+                inner.expr(&mut expr);
+                inner.report.len() == before
+            }
+        };
+        let (depth, size) = measure(&mut expr);
+        let found = sound.then_some((expr, depth, size));
+        self.known.arguments.insert(key, found.clone());
+        found
+    }
+
+    /// Replaces an expression that has to name a frame; whether it does.
+    fn frame(&mut self, expr: &mut Expr, parameter: &str) -> bool {
+        let wrong = |span: Span, what: String| {
+            Diagnostic::new(span, format!("`{parameter}` has to be a frame, {what}"))
+                .help("give the name of a frame, as in `mount[2]` or `left.foot`; a place on one is a `frame` of its own")
+        };
+        let Some(mut name) = of_expression(expr) else {
+            let error = wrong(expr.span, "this is an expression".into());
+            self.report.push_once(error);
+            return false;
+        };
+        let path = steps(&name);
+        let found = self.world.find(&path, name.span, self.context);
+        if let Ok(Found::Thing(thing, taken)) = &found {
+            let frame = thing.kind == Kind::Frame && *taken == path.len();
+            if !frame && !matches!(thing.kind, Kind::Part(_)) {
+                let error = wrong(name.span, format!("`{}` is none", name.name));
+                self.report
+                    .push_once(error.note(thing.span, "declared here"));
+                return false;
+            }
+        }
+        if let (Ok(Found::Unknown), true) = (&found, name.name != "world") {
+            let error = Diagnostic::new(name.span, format!("unknown frame `{}`", name.name));
+            let error = error.help("declare it with `frame` or `moves`, or check its spelling");
+            self.report.push_once(error);
+            return false;
+        }
+        let before = self.report.len();
+        self.uses(&mut name);
+        expr.kind = ExprKind::Name(name.name);
+        self.report.len() == before
+    }
+
+    fn replaced(&mut self, expr: &mut Expr) {
+        let Some(path) = spine(expr) else {
+            if let ExprKind::Call(function, _) = &mut expr.kind
+                && !self.locals.contains(&function.name)
+            {
+                self.called(function);
+            }
+            parts(expr).into_iter().for_each(|part| self.expr(part));
+            return;
+        };
+        let local = matches!(path.first(), Some(Step::Name(name)) if self.locals.contains(name));
+        let found = match local {
+            true => Ok(Found::Unknown),
+            false => self.world.find(&path, expr.span, self.context),
+        };
+        let layers = layers(expr);
+        let base = path.len() - layers;
+        let (value, taken) = match found {
+            Err(error) => return self.report.push_once(error),
+            Ok(Found::Unknown) if base > 1 => {
+                let error = Diagnostic::new(expr.span, "unknown name");
+                let help = "behind an index stands what a joint's coordinates and velocities end in, as in `j[2]_dot`";
+                return self.report.push_once(error.help(help));
+            }
+            Ok(Found::Unknown) => (None, base),
+            Ok(Found::Number(value)) => {
+                let number = ExprKind::Number(BigRational::from_integer(value.into()));
+                (Some(number), 1)
+            }
+            Ok(Found::Parameter(scope, name, binding)) => {
+                let component = self.world.scopes[scope]
+                    .part
+                    .map(|(component, _)| component);
+                if let Some(component) = component {
+                    let key = (component.name.name.clone(), name.to_owned());
+                    self.known.mentioned.insert(key);
+                }
+                let Some((argument, depth, size)) = self.argument(scope, name, binding) else {
+                    return;
+                };
+                if self.is_too_large(depth, size, expr.span) {
+                    return;
+                }
+                (Some(argument.kind), 1)
+            }
+            Ok(Found::Thing(thing, taken)) => match thing.kind {
+                Kind::Part(scope) => {
+                    let error = self.is_part(scope, expr.span);
+                    return self.report.push_once(error);
+                }
+                _ => (Some(ExprKind::Name(thing.name.clone())), taken),
+            },
+        };
+        if taken < base {
+            let error = no_more(&path, taken, expr.span);
+            return self.report.push_once(error);
+        }
+        let mut node = expr;
+        for _ in 0..layers - (taken - base) {
+            node = match &mut node.kind {
+                ExprKind::Index(inner, list) => {
+                    list.iter_mut().for_each(|index| self.expr(index));
+                    inner
+                }
+                ExprKind::Field(inner, _) => inner,
+                _ => return,
+            };
+        }
+        if let Some(value) = value {
+            // A number with a sign is what is written with one.
+            node.kind = signed(value, node.span);
+        }
+    }
+
+    fn called(&mut self, function: &mut Ident) {
+        let path = [Step::Name(function.name.clone())];
+        if let Ok(Found::Thing(thing, 1)) = self.world.find(&path, function.span, self.context)
+            && thing.kind == Kind::Other
+        {
+            function.name.clone_from(&thing.name);
+        }
+    }
+
+    fn is_too_large(&mut self, depth: usize, size: usize, span: Span) -> bool {
+        if self.known.full {
+            // Reported where it was crossed.
+            return true;
+        }
+        self.known.written += size;
+        self.known.full = self.known.written > MOST_WRITTEN;
+        let large = self.known.full || self.level + depth > MOST_LEVELS;
+        if large {
+            let error = Diagnostic::new(span, "arguments make this expression too large");
+            self.report
+                .push_once(error.help("name what they have in common with `let`"));
+        }
+        large
+    }
+}
+
+/// A negative number as the text of one: a sign and what follows it.
+fn signed(value: ExprKind, span: Span) -> ExprKind {
+    match value {
+        ExprKind::Number(number) if number < BigRational::from_integer(0.into()) => {
+            let kind = ExprKind::Number(-number);
+            ExprKind::Neg(Box::new(Expr { kind, span }))
+        }
+        other => other,
+    }
+}
+
+/// The steps of an expression that is a name with indices and parts.
+fn spine(expr: &Expr) -> Option<Vec<Step>> {
+    match &expr.kind {
+        ExprKind::Name(name) => {
+            let (name, span) = (name.clone(), expr.span);
+            Some(steps(&Ident { name, span }))
+        }
+        ExprKind::Field(base, field) => {
+            let mut path = spine(base)?;
+            path.push(Step::Name(field.name.clone()));
+            Some(path)
+        }
+        ExprKind::Index(base, list) => {
+            let mut path = spine(base)?;
+            path.push(Step::Index(list.clone()));
+            Some(path)
+        }
+        _ => None,
+    }
+}
+
+/// How many indices and parts stand behind the name that an expression begins with.
+fn layers(mut expr: &Expr) -> usize {
+    let mut layers = 0;
+    while let ExprKind::Field(base, _) | ExprKind::Index(base, _) = &expr.kind {
+        layers += 1;
+        expr = base;
+    }
+    layers
+}
+
+/// The depth of an expression and the number of its nodes.
+fn measure(expr: &mut Expr) -> (usize, usize) {
+    let inner: Vec<(usize, usize)> = parts(expr).into_iter().map(measure).collect();
+    let depth = inner.iter().map(|(depth, _)| *depth).max().unwrap_or(0);
+    let size: usize = inner.iter().map(|(_, size)| *size).sum();
+    (depth + 1, size + 1)
+}

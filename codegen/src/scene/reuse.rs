@@ -1,0 +1,121 @@
+//! Statements of a scene that stand for others: repetition, components and their parts, included files.
+
+use super::build::SceneBuilder;
+use super::expression::ident;
+use crate::syntax::ast::{self, Argument, Component, Counter, Expr, ItemKind, Part, Repeat, Span};
+
+/// A parameter of a component.
+#[derive(Clone, Debug)]
+pub struct Parameter(ast::Parameter);
+
+impl Parameter {
+    fn new(name: &str, frame: bool) -> Parameter {
+        Parameter(ast::Parameter {
+            name: ident(name),
+            frame,
+            default: None,
+        })
+    }
+
+    /// Stands for a frame.
+    pub fn frame(name: &str) -> Parameter {
+        Parameter::new(name, true)
+    }
+
+    /// Stands for an expression.
+    pub fn value(name: &str) -> Parameter {
+        Parameter::new(name, false)
+    }
+
+    /// What it is where a part does not say.
+    pub fn or(mut self, default: impl Into<Expr>) -> Parameter {
+        self.0.default = Some(default.into());
+        self
+    }
+}
+
+/// Names with the index of a counter are written as in texts: `link[i - 1]`.
+impl SceneBuilder {
+    /// The statements of a file. A scene that includes files has no folder: it can be printed, and is
+    /// derived where its text stands.
+    pub fn include(&mut self, path: &str) {
+        self.add(ItemKind::Include(path.to_string(), Span::NOWHERE));
+    }
+
+    /// Statements for every value of a counter, from a first one to a last one.
+    pub fn repeat(
+        &mut self,
+        counter: &str,
+        first: impl Into<Expr>,
+        last: impl Into<Expr>,
+        statements: impl FnOnce(&mut SceneBuilder),
+    ) {
+        let counter = self::counter(counter, first, last);
+        let items = self.inner(statements);
+        self.add(ItemKind::Repeat(Repeat { counter, items }));
+    }
+
+    /// A component: statements with names of their own for every part that is one.
+    pub fn component(
+        &mut self,
+        name: &str,
+        parameters: impl IntoIterator<Item = Parameter>,
+        statements: impl FnOnce(&mut SceneBuilder),
+    ) {
+        let items = self.inner(statements);
+        self.add(ItemKind::Component(Component {
+            name: ident(name),
+            parameters: parameters.into_iter().map(|one| one.0).collect(),
+            items,
+        }));
+    }
+
+    /// A part of the mechanism that is a component, with the parameters of that by their names. What it declares is
+    /// called `NAME.knee`.
+    pub fn part(
+        &mut self,
+        name: &str,
+        component: &str,
+        arguments: impl IntoIterator<Item = (&'static str, Expr)>,
+    ) {
+        self.add(made(name, None, component, arguments));
+    }
+
+    /// An array of parts, with a counter that the arguments mention; the parts are `NAME[1]` and so on.
+    pub fn parts(
+        &mut self,
+        name: &str,
+        (counter, first, last): (&str, impl Into<Expr>, impl Into<Expr>),
+        component: &str,
+        arguments: impl IntoIterator<Item = (&'static str, Expr)>,
+    ) {
+        let counter = self::counter(counter, first, last);
+        self.add(made(name, Some(counter), component, arguments));
+    }
+}
+
+fn counter(name: &str, first: impl Into<Expr>, last: impl Into<Expr>) -> Counter {
+    Counter {
+        name: ident(name),
+        first: first.into(),
+        last: last.into(),
+    }
+}
+
+fn made(
+    name: &str,
+    counter: Option<Counter>,
+    component: &str,
+    arguments: impl IntoIterator<Item = (&'static str, Expr)>,
+) -> ItemKind {
+    let arguments = arguments.into_iter().map(|(name, value)| Argument {
+        name: Some(ident(name)),
+        value,
+    });
+    ItemKind::Part(Part {
+        name: ident(name),
+        counter,
+        component: ident(component),
+        arguments: arguments.collect(),
+    })
+}
