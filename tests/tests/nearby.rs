@@ -141,7 +141,9 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
                 |random: &mut Random| (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
             (0..count).map(|_| one(&mut random)).collect()
         };
-        let (n, m) = (program.n, program.m);
+        // States of first order stand behind the velocities.
+        let (n, m, n_z) = (program.n, program.m, program.n_z);
+        let moving = n + n_z;
         let at = At::new(&generated, numbers(m));
         let mut x = program.start_x.clone();
         // Off the start, where that is a matter of charts alone.
@@ -149,12 +151,12 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
             let there = numbers(n);
             x = at.moved(&x, &there, 0.4);
         }
-        let xi = along(&program.start_xi, &numbers(n), 0.7);
+        let xi = along(&program.start_xi, &numbers(moving), 0.7);
         let linearize = program.function("linearize").expect("generated");
         let linearize = Interpreter::new(program, linearize, &program.defaults);
         let found = linearize.call(&x, &xi, &at.u, &[]).expect("M is regular");
-        let columns = 2 * n + m;
-        assert_eq!(found.len(), 2 * n * columns);
+        let columns = n + moving + m;
+        assert_eq!(found.len(), (n + moving) * columns);
         let size = found
             .iter()
             .fold(1.0, |size: f64, entry| size.max(entry.abs()));
@@ -169,7 +171,7 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
         };
         for j in 0..columns {
             let column = |row: usize| found[row * columns + j];
-            let lower: Vec<f64> = (n..2 * n).map(column).collect();
+            let lower: Vec<f64> = (n..n + moving).map(column).collect();
             let upper: Vec<f64> = (0..n).map(column).collect();
             let (slope, moved) = if j < n {
                 let unit = at.unit(j);
@@ -178,13 +180,15 @@ fn linearize_is_the_difference_of_neighbouring_motions() {
                 let ahead = difference(|h| at.rate(&at.displaced(&x, &unit, h), &xi));
                 let swept = difference(|h| at.linear(&at.moved(&x, &xi, h), &unit));
                 (slope, along(&ahead, &swept, -1.0))
-            } else if j < 2 * n {
-                let unit = at.unit(j - n);
+            } else if j < n + moving {
+                let unit: Vec<f64> = (0..moving)
+                    .map(|k| f64::from(u8::from(k == j - n)))
+                    .collect();
                 let slope = difference(|h| at.accel(&x, &along(&xi, &unit, h), &at.u));
-                (slope, at.linear(&x, &unit))
+                (slope, at.linear(&x, &unit[..n]))
             } else {
                 let unit: Vec<f64> = (0..m)
-                    .map(|k| f64::from(u8::from(k == j - 2 * n)))
+                    .map(|k| f64::from(u8::from(k == j - n - moving)))
                     .collect();
                 let slope = difference(|h| at.accel(&x, &xi, &along(&at.u, &unit, h)));
                 (slope, vec![0.0; x.len()])
