@@ -145,16 +145,6 @@ fn what_cannot_be_meant_is_said() {
             "input t; torque [t, 0, 0] on hand in body;".into(),
         ),
         (
-            "frame bolt on cart at [0, 0, 1]; force 3 from bolt to [0, 1, 0] on cart;".into(),
-            "this force can never do work: the distance of its points never changes [force 3 from bolt to [0, 1, 0] on cart;]",
-            "frame bolt on cart at [0, 0, 1]; force 3 from bolt to [0, 1, 0] on hand;".into(),
-        ),
-        (
-            "spring stiffness 3 from [0, 0, 1] on cart to [0, 1, 0] on cart;".into(),
-            "this spring can never do work: the distance of its points never changes [spring stiffness 3 from [0, 0, 1] on cart to [0, 1, 0] on cart;]",
-            "spring stiffness 3 from [0, 0, 1] on cart to [0, 1, 0] on hand;".into(),
-        ),
-        (
             "joint turn: revolute [0, 0, 1] moves disk { limit 0.5 to 2; } body on disk { mass 1; inertia identity(3) about com; }".into(),
             "the start of `turn` is 0, beyond its limits 0.5 to 2 [turn]",
             "joint turn: revolute [0, 0, 1] moves disk { limit 0.5 to 2; } body on disk { mass 1; inertia identity(3) about com; } start turn = 0.5;".into(),

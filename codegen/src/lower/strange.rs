@@ -4,42 +4,23 @@
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate;
 use crate::diagnostics::Diagnostic;
-use crate::model::elements::Along;
 use crate::model::states::states;
 use crate::model::twists::{Moving, Placed, apply, back, cross, dot};
 use crate::model::{Model, Wrench};
-use crate::syntax::ast::{self, Acting, Axes, Ident, ItemKind, Span, System};
+use crate::syntax::ast::{self, Axes, Ident, ItemKind, Span, System};
 
 /// Smaller parts of what they are compared with are roundings.
 const ROUNDING: f64 = 1e-9;
 
 /// Warnings about a description that is correct, in the order of the text.
 pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
-    let wanted = |item: &ast::Item| {
-        matches!(
-            item.kind,
-            ItemKind::Body(_)
-                | ItemKind::Load { .. }
-                | ItemKind::Push { .. }
-                | ItemKind::Spring {
-                    acting: Acting::Between(..),
-                    ..
-                }
-                | ItemKind::Damper {
-                    acting: Acting::Between(..),
-                    ..
-                }
-        )
-    };
+    let wanted = |item: &ast::Item| matches!(item.kind, ItemKind::Body(_) | ItemKind::Load { .. });
     let mut warnings = limits(system, model);
     if !system.items.iter().any(wanted) || model.defaults.iter().any(|number| number.is_nan()) {
         return warnings;
     }
     let seen = Seen::new(model);
     let (mut bodies, mut wrenches) = (0, 0);
-    let mut pushes = model.elements.pushes.iter().map(|push| &push.along);
-    let mut springs = model.elements.springs.iter().map(|spring| &spring.along);
-    let mut dampers = model.elements.dampers.iter().map(|damper| &damper.along);
     for item in &system.items {
         warnings.extend(match &item.kind {
             ItemKind::Body(body) => {
@@ -52,22 +33,6 @@ pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
                 let load = model.elements.wrenches.get(wrenches - count..wrenches);
                 load.and_then(|load| seen.load(load, frame, item.span))
             }
-            ItemKind::Push { .. } => pushes
-                .next()
-                .and_then(|along| seen.line(along, item.span, "force")),
-            // Those of joints act on scalars.
-            ItemKind::Spring {
-                acting: Acting::Between(..),
-                ..
-            } => springs
-                .find(|along| matches!(along, Along::Line { .. }))
-                .and_then(|along| seen.line(along, item.span, "spring")),
-            ItemKind::Damper {
-                acting: Acting::Between(..),
-                ..
-            } => dampers
-                .find(|along| matches!(along, Along::Line { .. }))
-                .and_then(|along| seen.line(along, item.span, "damper")),
             _ => None,
         });
     }
@@ -113,7 +78,6 @@ fn limits(system: &System, model: &Model) -> Vec<Diagnostic> {
 /// A system at some states.
 struct Seen<'a> {
     model: &'a Model,
-    moving: Moving<'a>,
     states: Vec<(Vec<f64>, Vec<Placed>)>,
 }
 
@@ -134,11 +98,7 @@ impl<'a> Seen<'a> {
             (numbers, frames)
         };
         let states = states(&free).into_iter().map(at).collect();
-        Seen {
-            model,
-            moving,
-            states,
-        }
+        Seen { model, states }
     }
 
     fn body(&self, index: usize, text: &ast::Body, span: Span) -> Option<Diagnostic> {
@@ -168,7 +128,7 @@ impl<'a> Seen<'a> {
                 .iter()
                 .map(|twist| back(&frame.rotation, twist.spin))
         });
-        let axes = Axes3::of(spins);
+        let axes = Turns::of(spins);
         let place = text
             .inertia
             .as_ref()
@@ -182,9 +142,9 @@ impl<'a> Seen<'a> {
             ""
         };
         let (message, help) = match axes {
-            Axes3::None => return None,
+            Turns::None => return None,
             // Of a body that turns about one axis, only the moment about it takes part.
-            Axes3::One(axis) => {
+            Turns::One(axis) => {
                 let moment = dot(&axis, &apply(&inertia, axis));
                 let positive = moment >= -ROUNDING * largest(&inertia);
                 let message =
@@ -194,7 +154,7 @@ impl<'a> Seen<'a> {
                     "about its centre of mass it is at least 0: check the numbers, and `about`",
                 ))?
             }
-            Axes3::Several => {
+            Turns::Several => {
                 let trace = inertia[0][0] + inertia[1][1] + inertia[2][2];
                 let second = std::array::from_fn(|i| {
                     std::array::from_fn(|j| f64::from(i == j) * trace / 2.0 - inertia[i][j])
@@ -257,49 +217,17 @@ impl<'a> Seen<'a> {
         );
         Some(Diagnostic::new(span, message).help("check its frame, its axes and its direction"))
     }
-
-    /// What acts along a line between points whose distance never changes.
-    fn line(&self, along: &Along, span: Span, what: &str) -> Option<Diagnostic> {
-        let Along::Line { from, to, .. } = along else {
-            return None;
-        };
-        for (numbers, _) in &self.states {
-            let directions = self.moving.directions(numbers);
-            let ends: Vec<Edge> = from.iter().chain(to).copied().collect();
-            let ends =
-                crate::algebra::slopes::slopes(&self.model.graph, &ends, numbers, &directions);
-            for direction in 0..self.model.n() {
-                let (mut rate, mut size) = (0.0, 0.0);
-                for k in 0..3 {
-                    let way = ends[3 + k].value - ends[k].value;
-                    let (a, b) = (ends[k].slope(direction), ends[3 + k].slope(direction));
-                    rate += way * (b - a);
-                    size += way.abs() * (a.abs() + b.abs());
-                }
-                // What is no number says nothing.
-                if rate.is_nan() || rate.abs() > ROUNDING * size {
-                    return None;
-                }
-            }
-        }
-        let message =
-            format!("this {what} can never do work: the distance of its points never changes");
-        Some(
-            Diagnostic::new(span, message)
-                .help("name points of two frames that move against one another"),
-        )
-    }
 }
 
 /// The axes that a body turns about, in its own axes.
-enum Axes3 {
+enum Turns {
     None,
     One([f64; 3]),
     Several,
 }
 
-impl Axes3 {
-    fn of(spins: impl Iterator<Item = [f64; 3]>) -> Axes3 {
+impl Turns {
+    fn of(spins: impl Iterator<Item = [f64; 3]>) -> Turns {
         let mut axis: Option<[f64; 3]> = None;
         for spin in spins {
             let length = dot(&spin, &spin).sqrt();
@@ -312,12 +240,12 @@ impl Axes3 {
                 Some(axis) => {
                     let across = cross(axis, unit);
                     if dot(&across, &across) > ROUNDING {
-                        return Axes3::Several;
+                        return Turns::Several;
                     }
                 }
             }
         }
-        axis.map_or(Axes3::None, Axes3::One)
+        axis.map_or(Turns::None, Turns::One)
     }
 }
 

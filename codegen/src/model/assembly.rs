@@ -23,7 +23,7 @@ const NEIGHBOURS: usize = 240;
 /// The most of them.
 const MOST: usize = 40;
 /// How far away the farthest of these neighbours are (rad, m).
-const AWAY: f64 = 2.0;
+const AWAY: f64 = 3.0;
 /// What is added to the metric, relative to its largest entry, so that it is positive definite.
 const REGULAR: f64 = 1e-9;
 
