@@ -18,13 +18,19 @@ pub fn given(text: &str, name: &str, value: &str) -> Result<String, String> {
     let place = found.and_then(|constant| constant.value.as_ref().and_then(place));
     let Some(place) = place else {
         let names: Vec<&str> = constants(&system).map(|c| c.name.name.as_str()).collect();
-        return Err(match (closest(name, names.iter().copied()), names.as_slice()) {
-            (Some(meant), _) => format!("no such constant; did you mean `{meant}`?"),
-            (None, []) => "the description has no constants".into(),
-            (None, names) => format!("no such constant; there are {}", names.join(", ")),
-        });
+        return Err(
+            match (closest(name, names.iter().copied()), names.as_slice()) {
+                (Some(meant), _) => format!("no such constant; did you mean `{meant}`?"),
+                (None, []) => "the description has no constants".into(),
+                (None, names) => format!("no such constant; there are {}", names.join(", ")),
+            },
+        );
     };
-    Ok(format!("{}{value}{}", &text[..place.start], &text[place.end..]))
+    Ok(format!(
+        "{}{value}{}",
+        &text[..place.start],
+        &text[place.end..]
+    ))
 }
 
 /// The constants of the description itself, not of its components.

@@ -16,8 +16,8 @@
 
 mod check;
 mod columns;
-mod constants;
 mod compare;
+mod constants;
 mod eigenvalues;
 mod emit;
 mod eval;

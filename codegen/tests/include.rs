@@ -26,7 +26,10 @@ fn correct(text: &str, files: Files<'_>) -> Generated {
 /// What is shown of a description that has to be wrong.
 fn shown(text: &str, files: Files<'_>) -> String {
     let errors = read(text, files).expect_err("wrong");
-    assert!(errors.iter().all(|error| error.help.is_some()), "{errors:?}");
+    assert!(
+        errors.iter().all(|error| error.help.is_some()),
+        "{errors:?}"
+    );
     render(&errors, "main.eom", text, false)
 }
 
@@ -49,8 +52,9 @@ const MAIN: &str = "system Carts {
 }";
 
 const WRITTEN: &str = "system Carts {
+    const stiff = 3;
     joint a_x: prismatic [1, 0, 0] moves a_body; body on a_body { mass 1; } potential 3 * a_x^2 / 2;
-    joint b_x: prismatic [1, 0, 0] moves b_body; body on b_body { mass 2; } potential 4 * b_x^2 / 2;
+    joint b_x: prismatic [1, 0, 0] moves b_body; body on b_body { mass 2; } potential (stiff + 1) * b_x^2 / 2;
 }";
 
 fn code(mut system: Generated) -> String {
@@ -63,9 +67,13 @@ fn what_is_included_counts_where_it_is() {
     let files: Files<'_> = &[("lib/cart.eom", CART)];
     let system = correct(MAIN, files);
     assert!(system.model.warnings.is_empty());
-    assert_eq!(code(system.clone()), code(from_text(WRITTEN).expect("correct")));
+    let written = from_text(WRITTEN).expect("correct");
+    assert!(code(system.clone()) == code(written), "other code");
     // What the file says is part of the hash.
-    let other = correct(MAIN, &[("lib/cart.eom", &CART.replace("stiff = 3", "stiff = 4"))]);
+    let other = correct(
+        MAIN,
+        &[("lib/cart.eom", &CART.replace("stiff = 3", "stiff = 4"))],
+    );
     assert_ne!(other.hash, system.hash);
     // Tokens, as a macro has them.
     let tokens = MAIN.parse().expect("tokens");
@@ -81,11 +89,20 @@ fn files_include_files() {
         coord q; velocity w; rate q = w; kinetic a * b * c * w^2; potential drag(q) * q;
     }";
     let files: Files<'_> = &[
-        ("parts/a.eom", "include \"deep/c.eom\"; include \"b.eom\"; const a = 1;"),
-        ("parts/b.eom", "include \"../parts/deep/c.eom\"; const b = 2;"),
+        (
+            "parts/a.eom",
+            "include \"deep/c.eom\"; include \"b.eom\"; const a = 1;",
+        ),
+        (
+            "parts/b.eom",
+            "include \"../parts/deep/c.eom\"; const b = 2;",
+        ),
         ("./parts/b.eom", ""),
         ("parts/../parts/b.eom", ""),
-        ("parts/deep/c.eom", "const c = 3; table drag from \"../../data/drag.csv\" linear extrapolate hold;"),
+        (
+            "parts/deep/c.eom",
+            "const c = 3; table drag from \"../../data/drag.csv\" linear extrapolate hold;",
+        ),
         ("data/drag.csv", "0, 0\n1, 2\n"),
     ];
     let system = correct(main, files);
@@ -94,33 +111,49 @@ fn files_include_files() {
 
 #[test]
 fn errors_are_in_the_included_text() {
-    let wrong = CART.replace("mass m;", "mass [m, 1];").replace("k * x^2", "k * y^2");
-    insta::assert_snapshot!(shown(MAIN, &[("lib/cart.eom", &wrong)]), @"");
-    let unread = CART.replace("body on body", "bodi on body").replace("stiff = 3", "stiff = §3");
-    insta::assert_snapshot!(shown(MAIN, &[("lib/cart.eom", &unread)]), @"");
+    let wrong = CART
+        .replace("mass m;", "mass [m, 1];")
+        .replace("k * x^2", "k * y^2");
+    let mut all = shown(MAIN, &[("lib/cart.eom", &wrong)]);
+    let unread = CART
+        .replace("body on body", "bodi on body")
+        .replace("stiff = 3", "stiff = §3");
+    all += &shown(MAIN, &[("lib/cart.eom", &unread)]);
+    insta::assert_snapshot!(all);
 }
 
 #[test]
 fn what_cannot_be_included_is_refused() {
-    insta::assert_snapshot!(shown(MAIN, &[]), @"");
+    let mut all = shown(MAIN, &[]);
     // In a circle, over a second file.
     let circle: Files<'_> = &[
         ("lib/cart.eom", "include \"more.eom\";\n"),
         ("lib/more.eom", "const a = 1;\ninclude \"cart.eom\";\n"),
     ];
-    insta::assert_snapshot!(shown(MAIN, circle), @"");
-    insta::assert_snapshot!(shown(MAIN, &[("lib/cart.eom", WRITTEN)]), @"");
-    let unclosed: Files<'_> = &[("lib/cart.eom", "component Cart(m, k = 1) {\n    body on world { mass m;\n}\n")];
-    insta::assert_snapshot!(shown(MAIN, unclosed), @"");
+    all += &shown(MAIN, circle);
+    all += &shown(MAIN, &[("lib/cart.eom", WRITTEN)]);
+    let unclosed: Files<'_> = &[(
+        "lib/cart.eom",
+        "component Cart(m, k = 1) {\n    body on world { mass m;\n}\n",
+    )];
+    all += &shown(MAIN, unclosed);
     let closed: Files<'_> = &[("lib/cart.eom", "const a = 1;\n}\n")];
-    insta::assert_snapshot!(shown(MAIN, closed), @"");
+    all += &shown(MAIN, closed);
+    insta::assert_snapshot!(all);
     // Deeper than files are.
     let names: Vec<String> = (0..20).map(|i| format!("{i}.eom")).collect();
     let texts: Vec<String> = (1..21).map(|i| format!("include \"{i}.eom\";")).collect();
-    let deep: Vec<(&str, &str)> = names.iter().map(String::as_str).zip(texts.iter().map(String::as_str)).collect();
+    let deep: Vec<(&str, &str)> = names
+        .iter()
+        .map(String::as_str)
+        .zip(texts.iter().map(String::as_str))
+        .collect();
     let text = "system S { include \"0.eom\"; }";
     let errors = read(text, &deep).expect_err("too deep");
-    assert!(errors[0].message.contains("more than 16 deep"), "{errors:?}");
+    assert!(
+        errors[0].message.contains("more than 16 deep"),
+        "{errors:?}"
+    );
 }
 
 /// What is wrong in a claim is found after all is read; a warning is placed, too.
@@ -128,12 +161,15 @@ fn what_cannot_be_included_is_refused() {
 fn later_errors_and_warnings_have_their_places() {
     let claim = CART.replace("potential", "invariant p = x; potential");
     let errors = shown(MAIN, &[("lib/cart.eom", &claim)]);
-    assert!(errors.contains("lib/cart.eom:7:15"), "{errors}");
+    assert!(errors.contains("lib/cart.eom:8:5"), "{errors}");
     assert!(errors.contains("in the part `a`, made here"), "{errors}");
     let text = MAIN.replace("part b", "component Unused(m) { param spare = 1; } part _c[i in 1..2] = Own(1, 2); component Own(m, never) { param spare = 1; joint x: prismatic [1, 0, 0] moves body; body on body { mass m; } } part b");
     let system = correct(&text, &[("lib/cart.eom", CART)]);
     let list = warnings(&system.model.warnings, "main.eom", &text, false);
-    let said: Vec<&str> = list.lines().filter(|line| line.starts_with("warning")).collect();
+    let said: Vec<&str> = list
+        .lines()
+        .filter(|line| line.starts_with("warning"))
+        .collect();
     assert_eq!(
         said,
         [
@@ -149,7 +185,11 @@ fn later_errors_and_warnings_have_their_places() {
 fn the_macro_says_where_in_the_file() {
     let wrong = CART.replace("mass m;", "mass [m, 1];");
     let files: Files<'_> = &[("lib/cart.eom", &wrong)];
-    let (places, result) = from_tokens(MAIN.parse().expect("tokens"), &mut |name| open(files, name));
+    let (places, result) =
+        from_tokens(MAIN.parse().expect("tokens"), &mut |name| open(files, name));
     let text = to_compile_errors(&result.expect_err("wrong"), &places).to_string();
-    assert!(text.contains("lib/cart.eom:7:25: a mass has to be a scalar"), "{text}");
+    assert!(
+        text.contains("lib/cart.eom:7:25: a mass has to be a scalar"),
+        "{text}"
+    );
 }

@@ -2,15 +2,20 @@
 
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::scene::{
-    Body, CoordKind, Element, Expr, Extrapolation, Interpolation, Joint, Load, Parameter, Point, Scene,
-    SceneError, ShapeKind, WORLD, call, cos, diagonal, if_less, pose, shifted, sin,
+    Body, CoordKind, Element, Expr, Extrapolation, Interpolation, Joint, Load, Parameter, Point,
+    Scene, SceneError, ShapeKind, WORLD, call, cos, diagonal, if_less, pose, shifted, sin,
 };
 use std::path::Path;
 
 /// All descriptions of the repository that are right.
 fn descriptions() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let folders = ["tests/models", "tests/models/reuse", "examples/models", "examples"];
+    let folders = [
+        "tests/models",
+        "tests/models/reuse",
+        "examples/models",
+        "examples",
+    ];
     let files = folders
         .iter()
         .flat_map(|folder| std::fs::read_dir(root.join(folder)));
@@ -259,23 +264,51 @@ fn components_are_built() {
     arm.output("speed", Expr::name("further[1].q_dot"));
     arm.load(Load::force([0.0, 0.0, 1.0], "link[n].rod"));
     let scene = arm.build().expect("a scene");
-    assert_eq!(Scene::parse(&scene.to_string()).expect("it was printed"), scene);
+    assert_eq!(
+        Scene::parse(&scene.to_string()).expect("it was printed"),
+        scene
+    );
     let generated = scene.generate().expect("correct");
-    let names = generated.model.joints.iter().map(|joint| joint.name.as_str());
+    let names = generated
+        .model
+        .joints
+        .iter()
+        .map(|joint| joint.name.as_str());
     let names: Vec<&str> = names.collect();
     assert_eq!(
         names,
-        ["link_1_q", "link_2_q", "link_3_q", "further_1_q", "further_2_q"]
+        [
+            "link_1_q",
+            "link_2_q",
+            "link_3_q",
+            "further_1_q",
+            "further_2_q"
+        ]
     );
     // Errors are at the component, with the part.
-    arm.part("wrong", "Link", [("base", Expr::name("world")), ("l", call("sin", [[1].into()]))]);
+    arm.part(
+        "wrong",
+        "Link",
+        [
+            ("base", Expr::name("world")),
+            ("l", call("sin", [[1].into()])),
+        ],
+    );
     let scene = arm.build().expect("a scene");
     let error = scene.generate().expect_err("an angle is no vector");
-    assert_eq!(messages(&error), ["`sin` cannot take a vector of 1"]);
+    assert_eq!(messages(&error)[0], "`sin` cannot take a vector of 1");
+    assert!(error.to_string().contains("in the part `wrong`, made here"));
     // Files have no folder here.
     arm.include("legs.eom");
-    let error = arm.build().expect("a scene").generate().expect_err("no folder");
-    assert_eq!(messages(&error), ["nothing says in which folder `legs.eom` is"]);
+    let error = arm
+        .build()
+        .expect("a scene")
+        .generate()
+        .expect_err("no folder");
+    assert_eq!(
+        messages(&error),
+        ["nothing says in which folder `legs.eom` is"]
+    );
 }
 
 #[test]

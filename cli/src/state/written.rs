@@ -32,8 +32,7 @@ mod tests {
     #[test]
     fn names_are_written_with_indices() {
         let given = json!({"coord": {"leg[3].knee": 1, "node[1, 2]": [2], "q": 3}, "samples": [{"j[2]_dot": 4}]});
-        let wanted =
-            json!({"coord": {"leg_3_knee": 1, "node_1_2": [2], "q": 3}, "samples": [{"j_2_dot": 4}]});
+        let wanted = json!({"coord": {"leg_3_knee": 1, "node_1_2": [2], "q": 3}, "samples": [{"j_2_dot": 4}]});
         assert_eq!(plainly(given), Ok(wanted));
         let twice = plainly(json!({"velocity": {"a_1": 1, "a[1]": 2}}));
         assert!(twice.is_err_and(|error| error.contains("given twice")));

@@ -16,6 +16,9 @@ const MOST_LEVELS: usize = 600;
 /// The most operations that arguments have where they are written out.
 const MOST_WRITTEN: usize = 1_000_000;
 
+/// With more errors than this, no more statements are looked at.
+const MOST_ERRORS: usize = 200;
+
 /// Parameters of components that expressions mention.
 type Mentioned = BTreeSet<(String, String)>;
 
@@ -26,6 +29,9 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> (Vec<Ite
     check_arguments(world, &mut known, &mut report);
     let mut items = Vec::with_capacity(pending.len());
     for (mut item, context) in pending {
+        if report.len() > MOST_ERRORS {
+            break;
+        }
         let mut replacing = Replacing {
             world,
             context: &context,

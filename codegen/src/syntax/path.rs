@@ -120,7 +120,9 @@ pub fn expression(name: &str) -> Option<Expr> {
 /// All of a text as one thing.
 fn read<T>(text: &str, one: impl FnOnce(&mut Cursor<'_>) -> Parsed<T>) -> Option<T> {
     let mut tokens = of_stream(text.parse().ok()?).0;
-    tokens.iter_mut().for_each(|token| token.span = Span::NOWHERE);
+    tokens
+        .iter_mut()
+        .for_each(|token| token.span = Span::NOWHERE);
     let mut cursor = Cursor::new(&tokens);
     let parsed = one(&mut cursor).ok()?;
     (cursor.peek().kind == Kind::End).then_some(parsed)
