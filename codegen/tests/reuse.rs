@@ -387,9 +387,11 @@ fn what_is_repeated_is_what_is_written_out() {
                  frame tip on rod = pose(identity(3), [1, 0, 0]);
                  body on rod { mass 1; com [0.5, 0, 0]; inertia diag(0, 1, 1) / 12 about com; }
              }
-             joint q: revolute [0, 1, 0] moves end;
+             joint q: revolute [0, 1, 0] moves knee;
+             frame end on knee = pose(identity(3), [0, 0, 0]);
              part one = Rod(end);
-             joint p: planar [0, 1, 0] moves free;
+             joint p: planar [0, 1, 0] moves loose;
+             frame free on loose = pose(identity(3), [0, 0, 0]);
              part two = Rod(tip = free);
              spring stiffness 3 from one.rod to [0.5, 0, 0] on two.rod;
              damper coefficient 2 from [1, 0, 0] on one.rod to two.rod;
@@ -397,10 +399,12 @@ fn what_is_repeated_is_what_is_written_out() {
              force F at [0.2, 0, 0] on two.rod from one.rod in one.rod;
              torque F on one.rod in two.rod;
              output v = velocity(two.rod, [0, 1, 0], one.rod) + two.rod.R * one.rod.p;",
-            "joint q: revolute [0, 1, 0] moves end;
+            "joint q: revolute [0, 1, 0] moves knee;
+             frame end on knee = pose(identity(3), [0, 0, 0]);
              frame end on one_rod = pose(identity(3), [1, 0, 0]);
              body on one_rod { mass 1; com [0.5, 0, 0]; inertia diag(0, 1, 1) / 12 about com; }
-             joint p: planar [0, 1, 0] moves free;
+             joint p: planar [0, 1, 0] moves loose;
+             frame free on loose = pose(identity(3), [0, 0, 0]);
              frame free on two_rod = pose(identity(3), [1, 0, 0]);
              body on two_rod { mass 1; com [0.5, 0, 0]; inertia diag(0, 1, 1) / 12 about com; }
              spring stiffness 3 from one_rod to [0.5, 0, 0] on two_rod;
@@ -500,7 +504,8 @@ fn the_readme_shows_a_description() {
     let text = block.split("```").next().expect("its text");
     let system = generated(text);
     assert_eq!(system.program.n, 8);
-    assert!(system.model.warnings.is_empty());
+    let warnings = &system.model.warnings;
+    assert!(warnings.is_empty(), "{warnings:?}");
     let name = |at: usize| system.model.joints[at].name.as_str();
     assert_eq!((name(0), name(5)), ("rope_1_q_1", "rope_2_q_2"));
 }
