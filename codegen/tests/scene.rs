@@ -303,7 +303,8 @@ fn components_are_built() {
     );
     let scene = arm.build().expect("a scene");
     let error = scene.generate().expect_err("an angle is no vector");
-    assert_eq!(messages(&error), ["`sin` cannot take a vector of 1"]);
+    assert_eq!(messages(&error)[0], "`sin` cannot take a vector of 1");
+    assert!(error.to_string().contains("in the part `wrong`, made here"));
     // Files have no folder here.
     arm.include("legs.eom");
     let error = arm

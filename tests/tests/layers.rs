@@ -66,6 +66,20 @@ fn syntax_resolves_nothing() {
 }
 
 #[test]
+fn components_are_written_out_before_anything_is_resolved() {
+    forbid(
+        "codegen/src/reuse",
+        &[
+            "crate::lower",
+            "crate::model",
+            "crate::algebra",
+            "crate::derive",
+            "crate::scene",
+        ],
+    );
+}
+
+#[test]
 fn the_model_knows_no_text() {
     forbid(
         "codegen/src/model",

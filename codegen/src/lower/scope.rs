@@ -140,7 +140,12 @@ pub struct Scope {
     pub tables: BTreeMap<String, Option<Curve>>,
     /// How many calls of them have been written out.
     pub calls: Cell<usize>,
+    /// How many names were found to be unknown.
+    misspelt: Cell<usize>,
 }
+
+/// Misspelt names for which a close one is looked for.
+const MOST_MISSPELT: usize = 50;
 
 impl Scope {
     /// No names yet, but the knowledge of which ones will come.
@@ -199,6 +204,7 @@ impl Scope {
             functions: BTreeMap::new(),
             tables: BTreeMap::new(),
             calls: Cell::new(0),
+            misspelt: Cell::new(0),
         }
     }
 
@@ -312,6 +318,10 @@ impl Scope {
                 Diagnostic::new(span, format!("{wanted} is called `{name}`"))
             }
         };
+        self.misspelt.set(self.misspelt.get() + 1);
+        if self.misspelt.get() > MOST_MISSPELT {
+            return error.help("define it, or check its spelling");
+        }
         if let Some(near) = closest(name, known().filter(|&near| near != name)) {
             return error.help(format!("did you mean `{near}`?"));
         }

@@ -9,10 +9,13 @@ use crate::syntax::path::{Step, steps};
 use std::rc::Rc;
 
 /// The most statements and rounds of a description.
-const MOST_STATEMENTS: usize = 20_000;
+const MOST_STATEMENTS: usize = 10_000;
 
 /// The most rounds of one counter.
-const MOST_ROUNDS: i64 = 5_000;
+const MOST_ROUNDS: i64 = 1_000;
+
+/// With more errors than this, no more statements are copied.
+const MOST_ERRORS: usize = 200;
 
 impl<'a> World<'a> {
     /// Copies statements as often as they stand here.
@@ -52,7 +55,7 @@ impl<'a> World<'a> {
             let error = Diagnostic::new(span, message);
             self.report.push(error.help("let ranges be shorter"));
         }
-        self.size < MOST_STATEMENTS
+        self.size < MOST_STATEMENTS && self.report.len() < MOST_ERRORS
     }
 
     /// The values of a counter.

@@ -46,8 +46,8 @@ pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
     world.statements(&system.items, &Context::default());
     world.frames_after_on();
     let pending = std::mem::take(&mut world.pending);
-    let (items, uses) = replace::replace(&mut world, pending);
-    let mut warnings = world.unused(&uses);
+    let items = replace::replace(&mut world, pending);
+    let mut warnings = world.unused();
     let used = std::mem::take(&mut world.used).into_inner();
     let (mut origins, report) = world.finish();
     if let Err(errors) = report.finish() {

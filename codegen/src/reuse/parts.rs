@@ -5,7 +5,7 @@ use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{Argument, Component, Ident, Part, Span};
 use crate::syntax::path::{Step, plain, steps};
 use crate::syntax::suggest::closest;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// The deepest nesting of parts.
@@ -301,7 +301,7 @@ impl<'a> World<'a> {
     }
 
     /// Warnings for components that no part is one of, and for parameters that a component does not mention.
-    pub fn unused(&self, mentioned: &BTreeSet<(String, String)>) -> Vec<Diagnostic> {
+    pub fn unused(&self) -> Vec<Diagnostic> {
         let mut warnings = Vec::new();
         let parameters = self.parameters.borrow();
         for (name, (component, _, used)) in &self.components {
@@ -318,7 +318,7 @@ impl<'a> World<'a> {
             for parameter in &component.parameters {
                 let Ident { name: own, span } = &parameter.name;
                 let key = ((*name).to_owned(), own.clone());
-                if own.starts_with('_') || mentioned.contains(&key) || parameters.contains(&key) {
+                if own.starts_with('_') || parameters.contains(&key) {
                     continue;
                 }
                 let message = format!("the parameter `{own}` of `{name}` is never used");

@@ -16,16 +16,19 @@ const MOST_LEVELS: usize = 600;
 /// The most operations that arguments have where they are written out.
 const MOST_WRITTEN: usize = 1_000_000;
 
-/// Parameters of components that expressions mention.
-type Mentioned = BTreeSet<(String, String)>;
+/// With more errors than this, no more statements are looked at.
+const MOST_ERRORS: usize = 200;
 
 /// The statements with the names that they have in the end.
-pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> (Vec<Item>, Mentioned) {
+pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> Vec<Item> {
     let mut report = Report::new();
     let mut known = Known::default();
     check_arguments(world, &mut known, &mut report);
     let mut items = Vec::with_capacity(pending.len());
     for (mut item, context) in pending {
+        if report.len() > MOST_ERRORS {
+            break;
+        }
         let mut replacing = Replacing {
             world,
             context: &context,
@@ -52,7 +55,7 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> (Vec<Ite
     for error in report.finish().err().unwrap_or_default() {
         world.report.push_once(error);
     }
-    (items, known.mentioned)
+    items
 }
 
 /// What arguments are found to be, each once.
@@ -60,7 +63,6 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> (Vec<Ite
 struct Known {
     /// By scope and parameter: the expression with its depth and its size; none where it is wrong.
     arguments: BTreeMap<(usize, String), Option<(Expr, usize, usize)>>,
-    mentioned: Mentioned,
     /// How much was written out, and whether that was too much.
     written: usize,
     full: bool,
@@ -199,6 +201,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
                     .help("a name is wanted: with the counter as its index, `link[i]`"))
             }
             Found::Parameter(scope, name, binding) => {
+                self.world.mention(scope, name);
                 if !binding.frame {
                     let message = format!("`{name}` is an expression here, no name");
                     return Err(Diagnostic::new(span, message)
@@ -323,13 +326,7 @@ impl<'w, 'a> Replacing<'w, 'a> {
                 (Some(number), 1)
             }
             Ok(Found::Parameter(scope, name, binding)) => {
-                let component = self.world.scopes[scope]
-                    .part
-                    .map(|(component, _)| component);
-                if let Some(component) = component {
-                    let key = (component.name.name.clone(), name.to_owned());
-                    self.known.mentioned.insert(key);
-                }
+                self.world.mention(scope, name);
                 let Some((argument, depth, size)) = self.argument(scope, name, binding) else {
                     return;
                 };

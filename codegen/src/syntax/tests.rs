@@ -7,6 +7,7 @@ mod joints;
 mod refused;
 mod refused_expressions;
 mod rendered;
+mod reuse;
 
 use super::ast::{Acting, BinaryOp, End, Expr, ExprKind, ItemKind, System, Target};
 use super::parse_text;
@@ -291,6 +292,33 @@ fn told(kind: &ItemKind) -> String {
             let when = super::written::conditions(when);
             format!("invariant {} {} when {when}", name.name, kept(conserved))
         }
+        Include(name, _) => format!("include {name}"),
+        Component(component) => {
+            let items = component.items.iter().map(|item| told(&item.kind));
+            let parameters = component.parameters.iter().map(|parameter| {
+                let frame = if parameter.frame { ": frame" } else { "" };
+                let (name, default) = (&parameter.name.name, maybe(&parameter.default));
+                format!("{name}{frame} = {default}")
+            });
+            let parameters = parameters.collect::<Vec<_>>().join("; ");
+            let items = items.collect::<Vec<_>>().join(" | ");
+            format!("component {}({parameters}): {items}", component.name.name)
+        }
+        Part(part) => {
+            let arguments = part.arguments.iter().map(|argument| {
+                let name = argument.name.as_ref().map(|name| &name.name);
+                format!("{name:?} {}", spelled(&argument.value))
+            });
+            let arguments = arguments.collect::<Vec<_>>().join("; ");
+            let counter = part.counter.as_ref().map(counts);
+            let (name, of) = (&part.name.name, &part.component.name);
+            format!("part {name} {counter:?} of {of}: {arguments}")
+        }
+        Repeat(repeat) => {
+            let items = repeat.items.iter().map(|item| told(&item.kind));
+            let items = items.collect::<Vec<_>>().join(" | ");
+            format!("for {}: {items}", counts(&repeat.counter))
+        }
         Generate(names) => {
             format!(
                 "generate {}",
@@ -302,4 +330,9 @@ fn told(kind: &ItemKind) -> String {
             )
         }
     }
+}
+
+fn counts(counter: &super::ast::Counter) -> String {
+    let (first, last) = (spelled(&counter.first), spelled(&counter.last));
+    format!("{} from {first} to {last}", counter.name.name)
 }

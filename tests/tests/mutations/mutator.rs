@@ -118,7 +118,6 @@ const WORDS: &[&str] = &[
     "n",
     "_dot",
     "..",
-    "5000",
     "pub",
     "system",
     "c",
