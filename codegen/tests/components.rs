@@ -5,11 +5,13 @@ mod common;
 
 use common::{generated, value};
 
+/// A constraint, the rates of x, y, z, their start, and ξ̇ there.
+type Case = (&'static str, [&'static str; 3], [&'static str; 3], [f64; 2]);
+
 /// Lines, planes and a cylinder in one equation: the slope of the potential y along each velocity, M = I.
 #[test]
 fn the_component_of_the_start_is_meant() {
-    // The constraint, the rates of x, y, z, the start, and ξ̇ = −∂y there.
-    let cases: [(&str, [&str; 3], [&str; 3], [f64; 2]); 12] = [
+    let cases: [Case; 12] = [
         (
             "x^2 - y^2 = 0",
             ["v", "v", "w"],
