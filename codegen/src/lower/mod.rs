@@ -12,6 +12,7 @@ mod branch;
 mod build;
 mod choice;
 mod completion;
+mod component;
 mod curve;
 mod curves;
 mod declare;

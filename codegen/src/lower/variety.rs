@@ -4,7 +4,7 @@ use super::declare::{Declared, declare, size};
 use super::expression::Evaluator;
 use super::names::Names;
 use super::scope::Scope;
-use super::{branch, defaults, start};
+use super::{branch, component, defaults, start};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::topoly::is_polynomial;
@@ -126,6 +126,9 @@ impl Variety {
             read,
         };
         variety.collect(&declared, &rows);
+        if let Some(near) = variety.near.clone().filter(|_| complete) {
+            component::separate(&mut variety.points, &variety.phi, &near);
+        }
         variety
     }
 
@@ -221,7 +224,10 @@ impl Variety {
                     .help("write it without what other constraints make zero or unit"),
                 );
             } else if self.origins.contains(&Origin::Statement(index))
-                && !a.zip(&b, |x, y| graph.sub(x, y)).is_zero(graph)
+                && a.zip(&b, |x, y| graph.sub(x, y))
+                    .entries()
+                    .iter()
+                    .any(|&edge| !graph.value(edge).is_zero())
             {
                 report.push(
                     Diagnostic::new(span, "this constraint does not hold where it was solved")

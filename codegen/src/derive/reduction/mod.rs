@@ -24,6 +24,10 @@ use std::sync::Arc;
 /// Rows whose part across those before is smaller than this, relative to the largest, are redundant.
 const REDUNDANT: f64 = 1e-8;
 
+/// A factor is no pivot where another one of its row or its velocity is so many times larger at the start: what is
+/// solved with it loses the digits of that ratio twice. A row without pivots gets a multiplier.
+const LONGEST: f64 = 30.0;
+
 /// ξ = C ξₐ + c, in the graph of the full model.
 #[derive(Clone, Debug)]
 pub struct Section {
@@ -163,14 +167,38 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
             .iter()
             .any(|(place, _)| *place == velocity)
     };
+    let sizes = |graph: &Graph, row: &[Edge]| -> Vec<f64> {
+        let values = evaluate(graph, row, &numbers);
+        values.into_iter().map(f64::abs).collect()
+    };
+    let mut at_start: Vec<Vec<f64>> = rows.iter().map(|row| sizes(graph, row)).collect();
     loop {
+        // The largest entry of each column in the rows that are left.
+        let open = (0..rows.len()).filter(|i| solved.iter().all(|&(row, _)| row != *i));
+        let tallest = open.fold(vec![0.0_f64; model.xi.len()], |most, i| {
+            let pairs = most.iter().zip(&at_start[i]);
+            pairs.map(|(most, size)| most.max(*size)).collect()
+        });
         let mut best = None;
         for (i, constraint) in constraints.iter().enumerate() {
             if constraint.stabilized.is_some() || solved.iter().any(|&(row, _)| row == i) {
                 continue;
             }
+            // The two largest entries of the row: beside a single one, nothing is lost.
+            let moving = at_start[i].iter().enumerate();
+            let moving = moving.filter(|&(k, _)| !is_time(k));
+            let [top, second] =
+                moving.fold([(0, 0.0); 2], |[top, second], (k, &size)| match size {
+                    size if size > top.1 => [(k, size), top],
+                    size if size > second.1 => [top, (k, size)],
+                    _ => [top, second],
+                });
             for (j, &entry) in rows[i].iter().enumerate() {
                 if entry == zero || is_time(j) || stays(j) || !graph.is_free(entry.node()) {
+                    continue;
+                }
+                let beside = if j == top.0 { second.1 } else { top.1 };
+                if beside > 0.0 && at_start[i][j] * LONGEST < beside.max(tallest[j]) {
                     continue;
                 }
                 let effort = match graph.as_rational(entry) {
@@ -201,6 +229,7 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
                 let product = graph.mul(factor, pivot);
                 *entry = graph.sub(*entry, product);
             }
+            at_start[other] = sizes(graph, entries);
         }
         solved.push((row, velocity));
     }
