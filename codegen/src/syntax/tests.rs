@@ -141,10 +141,6 @@ fn told(kind: &ItemKind) -> String {
         Const(all) => format!("const {}", declared(all)),
         Let(all) => format!("let {}", declared(all)),
         Velocity(all) => format!("velocity {}", declared(all)),
-        Include(name, _) => format!("include {name}"),
-        Component(component) => format!("{component:?}"),
-        Part(part) => format!("{part:?}"),
-        Repeat(repeat) => format!("{repeat:?}"),
         Input(all) => format!("input {}", declared(all)),
         State(all) => format!("state {}", declared(all)),
         Coord(all) => {
