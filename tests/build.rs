@@ -6,7 +6,12 @@ use std::path::PathBuf;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=models");
     let mut paths: Vec<PathBuf> = Vec::new();
-    for folder in ["models", "models/multibody", "models/reuse", "models/tabled"] {
+    for folder in [
+        "models",
+        "models/multibody",
+        "models/reuse",
+        "models/tabled",
+    ] {
         for entry in std::fs::read_dir(folder)? {
             paths.push(entry?.path());
         }

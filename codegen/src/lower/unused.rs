@@ -13,8 +13,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A warning for every declaration whose name occurs nowhere else, in the order of the text; `used` are further names
 /// that are used. What stands in several copies is used where one of them is, and what is included need not be.
 pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
-    let mut uses = Uses::default();
-    uses.origins = Some(&system.origins);
+    let mut uses = Uses {
+        origins: Some(&system.origins),
+        ..Uses::default()
+    };
     uses.names.extend(used.iter().map(String::as_str));
     system.items.iter().for_each(|item| uses.item(item));
     let mut found = Vec::new();
