@@ -58,14 +58,14 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> Vec<Item
     items
 }
 
-/// An expression with its depth and its size.
-type Measured = (Expr, usize, usize);
+/// An argument with its depth and its size.
+type Written = (Expr, usize, usize);
 
 /// What arguments are found to be, each once.
 #[derive(Default)]
 struct Known {
-    /// By scope and parameter; none where it is wrong.
-    arguments: BTreeMap<(usize, String), Option<Measured>>,
+    /// By scope and parameter: the expression with its depth and its size; none where it is wrong.
+    arguments: BTreeMap<(usize, String), Option<Written>>,
     /// How much was written out, and whether that was too much.
     written: usize,
     full: bool,
