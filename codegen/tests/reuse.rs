@@ -426,10 +426,10 @@ fn what_is_repeated_is_what_is_written_out() {
              }
              start a[2]_r = [1, 2, 3], b[1]_2 = 0.5, c[2].c = 0.6, c[2].s = 0.8, a[1]_w = [1, 0, 0];
              generalized force b[2]_1_dot = -b[2]_1_dot * c[1].s;
-             invariant p = a[1]_v[2] * 0 when g = 0;
-             param g = 1;
-             potential g * a[1]_r[3] + g * a[2]_R[1, 2];
-             prescribe rate(c[1]_dot) = g;
+             output p = a[1]_v[2] * pull;
+             param pull = 1;
+             potential pull * a[1]_r[3] + pull * a[2]_R[1, 2];
+             prescribe rate(c[1]_dot) = pull;
              generate accel, p;",
             "joint a_1: free moves f_1;
              joint b_1: universal [1, 0, 0], [0, 1, 0] on f_1 moves g_1;
@@ -445,10 +445,10 @@ fn what_is_repeated_is_what_is_written_out() {
              body on g_2 { mass 2; inertia diag(1, 2, 3); }
              start a_2_r = [1, 2, 3], b_1_2 = 0.5, c_2.c = 0.6, c_2.s = 0.8, a_1_w = [1, 0, 0];
              generalized force b_2_1_dot = -b_2_1_dot * c_1.s;
-             invariant p = a_1_v[2] * 0 when g = 0;
-             param g = 1;
-             potential g * a_1_r[3] + g * a_2_R[1, 2];
-             prescribe rate(c_1_dot) = g;
+             output p = a_1_v[2] * pull;
+             param pull = 1;
+             potential pull * a_1_r[3] + pull * a_2_R[1, 2];
+             prescribe rate(c_1_dot) = pull;
              generate accel, p;",
         ),
         (

@@ -137,7 +137,7 @@ fn what_cannot_be_meant_is_said() {
         (
             "force [0, 0, 1] on cart in world;".into(),
             "this load can never do work: nothing that moves `cart` yields to it [force [0, 0, 1] on cart in world;]",
-            "force [0, 0, 1] on hand in world; force [1, 0, 0] on cart in world;".into(),
+            "force [0, 0, 1] at [0, 0, 1] on hand in world; force [1, 0, 0] on cart in world;".into(),
         ),
         (
             "input t; torque [t, 0, 0] on cart in body;".into(),

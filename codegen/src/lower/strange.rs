@@ -164,7 +164,7 @@ impl<'a> Seen<'a> {
                         "the inertia of this body is not positive",
                         "about its centre of mass no moment is negative: check the numbers, and `about`",
                     )
-                } else if !not_negative(&second) {
+                } else if !not_negative(&second) && !is_rotor(&inertia) {
                     (
                         "the inertia of this body violates the triangle inequality",
                         "of the three principal moments about the centre of mass none is larger than the sum of the other two: check the numbers, and `about`",
@@ -247,6 +247,18 @@ impl Turns {
         }
         axis.map_or(Turns::None, Turns::One)
     }
+}
+
+/// Whether there is a moment about one axis alone, as of a wheel or a drum whose other moments are left out.
+fn is_rotor(m: &[[f64; 3]; 3]) -> bool {
+    let size = largest(m);
+    let pairs = [(0, 1), (0, 2), (1, 2)];
+    let minor =
+        |(i, j): (usize, usize), (k, l): (usize, usize)| m[i][k] * m[j][l] - m[i][l] * m[j][k];
+    let mut minors = pairs
+        .iter()
+        .flat_map(|&a| pairs.iter().map(move |&b| (a, b)));
+    minors.all(|(a, b)| minor(a, b).abs() <= ROUNDING * size * size)
 }
 
 fn largest(m: &[[f64; 3]; 3]) -> f64 {

@@ -274,10 +274,12 @@ macro_rules! models {
 
 models! {
     actuated_pendulum::ActuatedPendulum,
+    aircraft_euler::AircraftEuler,
     benchmark_top::BenchmarkTop,
     body_with_rotor::BodyWithRotor,
     cart_pole::CartPole,
     cart_rods::CartRods,
+    coupled_pendulums::CoupledPendulums,
     double_pendulum_angles::DoublePendulum,
     double_pendulum_circles::CircleDoublePendulum,
     double_spherical_pendulum::DoubleSphericalPendulum,
@@ -328,6 +330,7 @@ models! {
     suspended_body::SuspendedBody,
     tricopter::Tricopter,
     two_bodies::TwoBodies,
+    vane::Vane,
 }
 
 #[test]
@@ -352,6 +355,9 @@ fn no_model_is_left_out() {
         })
         .map(|path| path.file_stem().expect("a name").to_string_lossy().into())
         .collect();
+    // A rope of eight light links moves faster than differences follow; it is compared with Newton and Euler, and with
+    // its text written out, in the tests of the generator.
+    stems.retain(|stem| stem != "rope");
     stems.sort();
     assert_eq!(stems, MODELS);
 }
