@@ -11,7 +11,9 @@ pub fn given(text: &str, name: &str, value: &str) -> Result<String, String> {
         return Ok(text.to_string());
     };
     let number = parse_text(&format!("system S {{ const c = {value}; }}"));
-    if !number.is_ok_and(|system| constants(&system).count() == 1) {
+    // One statement with one constant, and nothing behind it.
+    let alone = |system: System| system.items.len() == 1 && constants(&system).count() == 1;
+    if !number.is_ok_and(alone) {
         return Err("the value is no expression".into());
     }
     let found = constants(&system).find(|constant| constant.name.name == name);

@@ -79,7 +79,9 @@ fn a_velocity_without_inertia_is_named() {
         assert_eq!(output.status.code(), Some(1), "{command}: {errors}");
         assert!(errors.contains(named), "{command}: {errors}");
     }
-    let arguments = ["simulate", &file, "--until", "2", "--step", "0.25"];
+    let arguments = [
+        "simulate", &file, "--until", "2", "--step", "0.25", "--method", "rkmk4",
+    ];
     let errors = text(&hamel(&arguments, "").stderr);
     assert!(
         errors.contains(named) && errors.contains("ends at t = "),
