@@ -186,7 +186,7 @@ pub fn parameters(emitter: &Emitter) -> String {
         .collect();
     let of = &emitter.names.type_name;
     let symmetric = |group: &Group| matches!(group.shape, ShapeKind::Symmetric(_));
-    let mut lines = vec![format!("The parameters of [`{of}`], by name.")];
+    let mut lines = vec![format!("The parameters of `{of}`, by name.")];
     if program.params.iter().any(symmetric) {
         lines.extend([
             String::new(),
@@ -221,7 +221,7 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
     let view = View {
         name: name.clone(),
         docs: docs::comment(&[format!(
-            "A state of [`{of}`]: coordinates and velocities by name."
+            "A state of `{of}`: coordinates and velocities by name."
         )]),
         default: "The start of the description.",
         fields: &fields,
@@ -262,7 +262,7 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
         .collect();
     text.push_str(&format!(
         "{}impl<S: ::hamel::Scalar> {name}<S> {{\n{ranges}/// The state that x and ξ are.\n#[must_use]\npub fn from_arrays(x: &[S; {nu}], xi: &[S; {n}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
-         /// x and ξ, as the functions of [`{of}`] take them.\n#[must_use]\npub fn to_arrays(&self) -> ([S; {nu}], [S; {n}]) {{\n([{}], [{}])\n}}\n}}\n\n",
+         /// x and ξ, as the functions of `{of}` take them.\n#[must_use]\npub fn to_arrays(&self) -> ([S; {nu}], [S; {n}]) {{\n([{}], [{}])\n}}\n}}\n\n",
         super::structure::ALLOW,
         values.join(", "),
         entries("x"),
@@ -288,7 +288,7 @@ pub fn inputs(emitter: &Emitter) -> String {
     let name = format!("{of}Inputs");
     let view = View {
         name: name.clone(),
-        docs: docs::comment(&[format!("The inputs of [`{of}`], by name.")]),
+        docs: docs::comment(&[format!("The inputs of `{of}`, by name.")]),
         default: "No input: zeros.",
         fields: &fields,
     };
@@ -302,7 +302,7 @@ pub fn inputs(emitter: &Emitter) -> String {
     let values: Vec<String> = values.collect();
     text.push_str(&format!(
         "{}impl<S: ::hamel::Scalar> {name}<S> {{\n/// The inputs that u is.\n#[must_use]\npub fn from_array(u: &[S; {m}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
-         /// u, as the functions of [`{of}`] take it.\n#[must_use]\npub fn to_array(&self) -> [S; {m}] {{\n[{}]\n}}\n}}\n\n",
+         /// u, as the functions of `{of}` take it.\n#[must_use]\npub fn to_array(&self) -> [S; {m}] {{\n[{}]\n}}\n}}\n\n",
         super::structure::ALLOW,
         values.join(", "),
         entries.join(", "),

@@ -5,8 +5,8 @@
 //! `leg_3_knee`, and the velocity `j[2]_dot` of a joint `j[2]` is `j_2_dot`. A name depends on nothing but itself, so
 //! that it stays when something else is added; two that would be one are refused.
 //!
-//! First all statements are [copied](copies), and what they declare is noted; then names in them are
-//! [replaced](replace). Nothing after this stage knows of components: places of copies are regions of their own, and
+//! First all statements are copied (`copies`), and what they declare is noted; then names in them are
+//! replaced (`replace`). Nothing after this stage knows of components: places of copies are regions of their own, and
 //! [`Origins`](crate::syntax::ast::Origins) says of each which statement made it.
 
 mod copies;
