@@ -81,6 +81,16 @@ impl<const K: usize> Residue<K> {
         Some(numerator * Self::from_integer(value.denom()).inv()?)
     }
 
+    /// a and b as they are stored, for [`of_parts`](Self::of_parts).
+    pub(crate) fn parts(self) -> [u64; 2] {
+        [self.0, self.1]
+    }
+
+    /// The element of such parts.
+    pub(crate) fn of_parts([a, b]: [u64; 2]) -> Self {
+        Self(a, b)
+    }
+
     /// 64 bits that depend on a and b, for random streams.
     pub fn bits(self) -> u64 {
         self.0 ^ self.1.wrapping_mul(0x9e37_79b9_7f4a_7c15)

@@ -10,6 +10,8 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
+use rustc_hash::FxHashMap;
+use std::cell::RefCell;
 
 /// Primes below this are split off; what is left is a square or one more free choice.
 const LARGEST_PRIME: u32 = 1 << 12;
@@ -22,8 +24,33 @@ pub fn of_rational<const K: usize>(c: &BigRational) -> Option<Residue<K>> {
     Some(of_integer(c.numer()) * of_integer(c.denom()).inv()?)
 }
 
+thread_local! {
+    /// Roots of long numbers in both fields: points are tried by the thousand, with the same numbers under roots.
+    static LONG: RefCell<FxHashMap<(BigInt, usize), [u64; 2]>> = RefCell::default();
+}
+/// Roots that are remembered at most.
+const REMEMBERED: usize = 10_000;
+
 /// √n for n > 0, the product of the roots of its primes.
 fn of_integer<const K: usize>(n: &BigInt) -> Residue<K> {
+    if n.bits() <= 64 {
+        return by_primes(n);
+    }
+    let key = (n.clone(), K);
+    if let Some(known) = LONG.with_borrow(|known| known.get(&key).copied()) {
+        return Residue::of_parts(known);
+    }
+    let root = by_primes(n);
+    LONG.with_borrow_mut(|known| {
+        if known.len() == REMEMBERED {
+            known.clear();
+        }
+        known.insert(key, root.parts());
+    });
+    root
+}
+
+fn by_primes<const K: usize>(n: &BigInt) -> Residue<K> {
     let (mut rest, mut root) = (n.clone(), Residue::ONE);
     let mut prime = 2;
     while prime < LARGEST_PRIME && !rest.is_one() {

@@ -6,6 +6,8 @@ use crate::algebra::lane::Lane;
 pub const POINTS: u64 = 4;
 /// Points tried: roots have values at some of them only.
 const TRIES: u64 = 400;
+/// Points that are nowhere to be found, each looked for thousands of times, after which there are none.
+const MISSING: u64 = 2;
 
 /// Why a comparison said nothing or ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,9 +24,16 @@ pub fn at_fresh_points<E>(
     lane: impl Fn(u64) -> Option<Lane>,
     mut at: impl FnMut(&Lane, u64) -> Option<Result<(), E>>,
 ) -> Result<(), Unequal<E>> {
-    let mut compared = 0;
+    let (mut compared, mut missing) = (0, 0);
     for number in 1..=TRIES {
-        match lane(number).and_then(|lane| at(&lane, number)) {
+        let Some(lane) = lane(number) else {
+            missing += 1;
+            match missing {
+                MISSING => break,
+                _ => continue,
+            }
+        };
+        match at(&lane, number) {
             None => continue,
             Some(Ok(())) => compared += 1,
             Some(Err(what)) => return Err(Unequal::Differs(what)),
@@ -38,7 +47,7 @@ pub fn at_fresh_points<E>(
 
 #[cfg(test)]
 mod tests {
-    use super::{POINTS, Unequal, at_fresh_points};
+    use super::{MISSING, POINTS, Unequal, at_fresh_points};
     use crate::algebra::lane::Lane;
 
     #[test]
@@ -50,6 +59,16 @@ mod tests {
             at_fresh_points(lane, some(POINTS - 1)),
             Err(Unequal::Nowhere)
         );
+        let looked = std::cell::Cell::new(0);
+        let nowhere = |number| {
+            looked.set(number);
+            None
+        };
+        assert_eq!(
+            at_fresh_points(nowhere, some(POINTS)),
+            Err(Unequal::Nowhere)
+        );
+        assert_eq!(looked.get(), MISSING);
         let last = |_: &Lane, number| Some(if number < POINTS { Ok(()) } else { Err(number) });
         assert_eq!(at_fresh_points(lane, last), Err(Unequal::Differs(POINTS)));
     }
