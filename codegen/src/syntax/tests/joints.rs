@@ -47,8 +47,8 @@ fn what_is_missing_is_said() {
         "joint j: revolute a moves g { damping d }",
     ];
     insta::assert_snapshot!(cases.map(line).join("\n"), @r#"
-    2:16 expected `:`, found `[` <[>
-      a joint is written `joint j: revolute [0, 0, 1] on f at pose(R, p) moves g;`, or with `{ damping d; }` before its `;`
+    2:16 expected one index or two <[0, 0, 1]>
+      components are written `v[i]` and `M[i, j]`, numbered from 1
     2:10 unknown kind of joint `revolut` <revolut>
       did you mean `revolute`?
     2:10 unknown kind of joint `bushing` <bushing>

@@ -303,8 +303,7 @@ fn equations() {
       a constraint is written `constraint a = b;`
     2:7 expected `=`, found `;` <;>
       a rate is written `rate r = R * v;`
-    2:7 expected `=`, found `[` <[>
-      a rate is written `rate r = R * v;`
+    accepted
     2:13 expected `;` after `V`, found `=` <=>
       a potential is written `potential m * g * z;`
     2:13 expected `force`, found `w` <w>
