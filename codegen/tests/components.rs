@@ -130,3 +130,54 @@ fn a_parallelogram_stays_one() {
         );
     }
 }
+
+/// What is nearly a line, a circle or a pair of lines near the start, and is none farther off: ẋ = A ξ against the
+/// derivative of x as a function of y and z.
+#[test]
+fn what_holds_near_the_start_alone_is_no_equation() {
+    let state = [0.7, 0.95];
+    for power in [8, 12, 18, 24, 30] {
+        for small in [1.0, 1e-2, 1e-5] {
+            for (constraint, square) in [
+                ("x = 2 * y", false),
+                ("x^2 = y^2", true),
+                ("x^2 = 1 - y^2", true),
+            ] {
+                let curved = format!("{constraint} + {small:e} * z^{power}");
+                // x or x² as a function of y and z, and its slopes.
+                let at = |[y, z]: [f64; 2]| {
+                    let bent = small * z.powi(power);
+                    let slope = small * f64::from(power) * z.powi(power - 1);
+                    match constraint {
+                        "x = 2 * y" => (2.0 * y + bent, [2.0, slope]),
+                        "x^2 = y^2" => (y * y + bent, [2.0 * y, slope]),
+                        _ => (1.0 - y * y + bent, [-2.0 * y, slope]),
+                    }
+                };
+                let x_of = |state: [f64; 2]| {
+                    let (x, [along_y, along_z]) = at(state);
+                    match square {
+                        false => (x, [along_y, along_z]),
+                        true => (x.sqrt(), [along_y, along_z].map(|s| s / 2.0 / x.sqrt())),
+                    }
+                };
+                let start = x_of([0.6, 0.1]).0;
+                let of = generated(&format!(
+                    "system A {{ coord x, y, z; velocity v = rate(y), w = rate(z);
+                        constraint {curved}; particle mass 1 at [x, y, z];
+                        start x = {start}, y = 0.6, z = 0.1; }}"
+                ));
+                let (x, slopes) = x_of(state);
+                let x = [x, state[0], state[1]];
+                for (i, slope) in slopes.into_iter().enumerate() {
+                    let xi: [f64; 2] = std::array::from_fn(|j| f64::from(u8::from(i == j)));
+                    let found = value(&of, "rate", [&x, &xi, &[], &[]])[0];
+                    assert!(
+                        (found - slope).abs() < 1e-12 * slope.abs().max(1.0),
+                        "{curved}: {found}, expected {slope}"
+                    );
+                }
+            }
+        }
+    }
+}

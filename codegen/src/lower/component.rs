@@ -3,7 +3,8 @@
 //!
 //! Points of X are followed from the start in small steps, parameters moving along. Equations of low degree that
 //! hold at all of them, but not everywhere on X, join the constraints, so that the points of the proofs are on that
-//! component. Emitted are the constraints as they were written.
+//! component. What holds near the start alone, as x = 2 y where x = 2 y + z²⁰, ceases to hold little by little on the
+//! way from there; at a crossing of components it ceases at once. Emitted are the constraints as they were written.
 
 use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Function, Graph, Node};
@@ -30,6 +31,15 @@ const DENOMINATORS: i64 = 64;
 const APART: f64 = 1e-3;
 /// Points of X that are looked at elsewhere.
 const ELSEWHERE: usize = 24;
+/// Walks away from the start, and the steps of each.
+const WALKS: usize = 16;
+const STEPS: usize = 40;
+/// A walk ends where the rows of φ are nearer to depending on one another than so many times less at the start: there
+/// components meet.
+const MEETING: f64 = 0.05;
+/// What an equation that holds is on such a walk at most; and what one is before that ceases to hold little by little.
+const HOLDS: f64 = 1e-7;
+const CEASING: f64 = 1e-10;
 
 /// A term: a product of symbols, by their numbers.
 type Term = Vec<usize>;
@@ -60,6 +70,11 @@ pub fn separate(points: &mut Points, phi: &[(Edge, String)], near: &[f64]) {
         if found.is_empty() {
             continue;
         }
+        let walks = walk.away(near);
+        let found: Vec<_> = found
+            .into_iter()
+            .filter(|equation| !walks.iter().any(|walk| ceases(equation, walk)))
+            .collect();
         let elsewhere = walk.elsewhere(near);
         let mut tells = false;
         for equation in found {
@@ -174,6 +189,35 @@ impl Walk<'_> {
         None
     }
 
+    /// Walks on X from the start towards points that may be off it.
+    fn away(&mut self, start: &[f64]) -> Vec<Vec<Vec<f64>>> {
+        let (first, dimension) = self.coordinates;
+        let least = MEETING * self.equations.volume(start);
+        let walk = |walk: &mut Self| {
+            let target: Vec<f64> = (0..dimension).map(|_| 2.0 * walk.number()).collect();
+            let mut at = start.to_vec();
+            let mut path = Vec::new();
+            for _ in 0..STEPS {
+                let mut guess = at.clone();
+                for (x, target) in guess[first..first + dimension].iter_mut().zip(&target) {
+                    *x += (target - *x).clamp(-STEP, STEP);
+                }
+                let Some(next) = walk.close(guess) else {
+                    break;
+                };
+                let moved = next.iter().zip(&at).map(|(a, b)| (a - b).abs());
+                let apart = walk.equations.volume(&next) > least;
+                if moved.fold(0.0, f64::max) > JUMP || !apart {
+                    break;
+                }
+                at.clone_from(&next);
+                path.push(next);
+            }
+            path
+        };
+        (0..WALKS).map(|_| walk(self)).collect()
+    }
+
     /// Points of X anywhere.
     fn elsewhere(&mut self, start: &[f64]) -> Vec<Vec<f64>> {
         let (first, dimension) = self.coordinates;
@@ -283,6 +327,13 @@ fn value(equation: &[(Number, &Term)], at: &[f64]) -> f64 {
     terms
         .map(|(number, term)| number.value() * term.iter().map(|&i| at[i]).product::<f64>())
         .sum()
+}
+
+/// Whether an equation ceases to hold little by little on a walk, and not at once, as it does beyond a crossing.
+fn ceases(equation: &[(Number, &Term)], walk: &[Vec<f64>]) -> bool {
+    let sizes: Vec<f64> = walk.iter().map(|at| value(equation, at).abs()).collect();
+    let first = sizes.windows(2).find(|pair| pair[1] > HOLDS);
+    first.is_some_and(|pair| pair[0] > CEASING)
 }
 
 fn written(graph: &mut Graph, equation: &[(Number, &Term)]) -> Edge {

@@ -94,6 +94,30 @@ impl Equations {
         (residual <= CLOSE).then_some(x)
     }
 
+    /// √det(∂φ/∂x ∂φ/∂xᵀ) where all symbols have these values: 0 where rows depend on one another, as they do where
+    /// components of X meet.
+    pub fn volume(&self, numbers: &[f64]) -> f64 {
+        let slopes = evaluate(&self.graph, &self.slopes, numbers);
+        let mut rows: Vec<Vec<f64>> = slopes
+            .chunks(self.dimension.max(1))
+            .map(<[f64]>::to_vec)
+            .collect();
+        let mut volume = 1.0;
+        // Gram and Schmidt.
+        for i in 0..rows.len() {
+            let (before, rest) = rows.split_at_mut(i);
+            let row = &mut rest[0];
+            for unit in before {
+                let along = dot(unit, row);
+                row.iter_mut().zip(unit).for_each(|(a, b)| *a -= along * *b);
+            }
+            let length = dot(row, row).sqrt();
+            volume *= length;
+            row.iter_mut().for_each(|a| *a /= length);
+        }
+        volume
+    }
+
     fn at(&self, edges: &[Edge], numbers: &[f64], x: &[f64]) -> Vec<f64> {
         let mut numbers = numbers.to_vec();
         numbers[self.first..self.first + x.len()].copy_from_slice(x);
