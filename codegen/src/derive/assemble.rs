@@ -115,14 +115,14 @@ impl Builder<'_> {
         let guards = self.guards();
         let route = format!("Route: {}.", self.chosen.route);
         let mut rates = self.chosen.xi_dot.clone();
-        rates.extend(self.state_rates());
+        let stateful = !self.model.states.is_empty();
+        if stateful {
+            rates.extend(self.state_rates());
+        }
         self.push_guarded(FunctionId::Accel, rates, guards);
-        if let Some(accel) = self.functions.last_mut()
-            && !self.model.states.is_empty()
-        {
-            accel
-                .docs
-                .push("The rates ż of the states follow ξ̇.".into());
+        if let (Some(accel), true) = (self.functions.last_mut(), stateful) {
+            let text = "The rates ż of the states follow ξ̇.";
+            accel.docs.push(text.into());
         }
         if let Some(accel) = self.functions.last_mut() {
             accel.docs.push(route);

@@ -125,8 +125,8 @@ pub fn with_states(
     let one = graph.one();
     let width = n + model.n() + model.u.len();
     let moved = &model.xi.iter().chain(&model.u);
-    let slopes: Vec<Vec<Edge>> = (0..width)
-        .map(|j| {
+    let slopes: Vec<Edge> = (0..width)
+        .flat_map(|j| {
             let mut seeds: Vec<(NodeId, Edge)> = match j.checked_sub(n) {
                 None => model
                     .x
@@ -143,11 +143,18 @@ pub fn with_states(
             };
             let rows = model.xi_dot.iter().zip(&rows[n..]);
             seeds.extend(rows.map(|(rate, row)| (rate.node(), row[j])));
-            let slopes = Derivation::new(seeds).all(graph, &rates);
-            with_accelerations(graph, &slopes, xi_dot)
+            Derivation::new(seeds).all(graph, &rates)
         })
         .collect();
-    let below = (0..rates.len()).map(|i| slopes.iter().map(|column| column[i]).collect());
+    let slopes = with_accelerations(graph, &slopes, xi_dot);
+    let below = (0..rates.len()).map(|i| {
+        slopes
+            .iter()
+            .skip(i)
+            .step_by(rates.len())
+            .copied()
+            .collect()
+    });
     let mut all: Vec<Vec<Edge>> = rows.into_iter().chain(below).collect();
     let inputs = n + model.n()..n + model.n() + model.m();
     for row in &mut all {
