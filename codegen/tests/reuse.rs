@@ -45,8 +45,8 @@ fn rope(n: usize) -> String {
         "/// A rope of `n` links that hangs from the ceiling, swings in a plane, and is stiff in bending.
 pub system Rope {
     const n = {n};
-    param m = 0.05, l = 0.12, g = 9.81;
-    param k = 0.02, d = 0.0004;
+    param m = 0.3, l = 0.6, g = 9.81;
+    param k = 2, d = 0.05;
     frame link_0 = pose(identity(3), [0, 0, l]);
 ",
     )
