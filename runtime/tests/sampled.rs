@@ -2,72 +2,17 @@
 
 use hamel::adaptive::Adaptive;
 use hamel::methods::General;
-use hamel::{Block, Sampled, Singular, State, StepError, System};
+use hamel::{Sampled, State, StepError};
+use oscillator::Oscillator;
 
-/// q̈ = −w² q + u.
-struct Oscillator(f64);
-
-impl System for Oscillator {
-    type Scalar = f64;
-    type Coordinates = [f64; 1];
-    type Velocities = [f64; 1];
-    type Chart = [f64; 1];
-    type Inputs = [f64; 1];
-
-    fn blocks(&self) -> &[Block] {
-        &[Block::Flat(1)]
-    }
-
-    fn zero_coordinates(&self) -> [f64; 1] {
-        [0.0]
-    }
-
-    fn zero_velocities(&self) -> [f64; 1] {
-        [0.0]
-    }
-
-    fn zero_chart(&self) -> [f64; 1] {
-        [0.0]
-    }
-
-    fn zero_inputs(&self) -> [f64; 1] {
-        [0.0]
-    }
-
-    fn start(&self) -> ([f64; 1], [f64; 1]) {
-        ([1.0], [-0.3])
-    }
-
-    fn rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] {
-        *xi
-    }
-
-    fn chart_rate(&self, _: &[f64; 1], xi: &[f64; 1]) -> [f64; 1] {
-        *xi
-    }
-
-    fn accel(&self, x: &[f64; 1], _: &[f64; 1], u: &[f64; 1]) -> Result<[f64; 1], Singular> {
-        Ok([u[0] - self.0 * self.0 * x[0]])
-    }
-
-    fn correction(&self, _: &[f64; 1]) -> [f64; 1] {
-        [0.0]
-    }
-
-    fn constraint_norm(&self, _: &[f64; 1]) -> f64 {
-        0.0
-    }
-
-    fn kinetic_energy(&self, _: &[f64; 1], xi: &[f64; 1]) -> f64 {
-        0.5 * xi[0] * xi[0]
-    }
-
-    fn potential_energy(&self, x: &[f64; 1]) -> f64 {
-        0.5 * self.0 * self.0 * x[0] * x[0]
-    }
-}
+#[path = "common/oscillator.rs"]
+mod oscillator;
 
 const W: f64 = 1.7;
+const FREE: Oscillator = Oscillator {
+    frequency: W,
+    damping: 0.0,
+};
 const PERIOD: f64 = 0.25;
 
 /// u = −k (q + integral), the integral by the controller's own sums.
@@ -78,7 +23,7 @@ fn law(integral: &mut f64, q: f64, rate: f64) -> f64 {
 
 /// The state after a number of periods, each solved in closed form, the last one shortened.
 fn exact(until: f64) -> (f64, f64) {
-    let (mut q, mut rate, mut integral, mut t) = (1.0_f64, -0.3_f64, 0.0, 0.0);
+    let (mut q, mut rate, mut integral, mut t) = (1.0_f64, 0.0_f64, 0.0, 0.0);
     while until - t > 1e-12 {
         let u = law(&mut integral, q, rate);
         let h = PERIOD.min(until - t);
@@ -102,7 +47,7 @@ fn methods_keep_their_orders() {
         let order = hamel::Method::<Oscillator>::order(&method);
         // Periods are cut in so many steps; the last one is shorter.
         let errors = [1.0, 2.0, 4.0].map(|parts| {
-            let system = Oscillator(W);
+            let system = FREE;
             let mut state = State::start(&system);
             let (mut integral, mut calls, mut seen) = (0.0, 0, Vec::new());
             let mut controller = Sampled::new(PERIOD, |state: &State<Oscillator>| {
@@ -137,7 +82,7 @@ fn methods_keep_their_orders() {
 
 #[test]
 fn error_control_meets_no_jump() {
-    let system = Oscillator(W);
+    let system = FREE;
     let mut state = State::start(&system);
     let mut integral = 0.0;
     let mut controller = Sampled::new(PERIOD, |state: &State<Oscillator>| {
@@ -157,7 +102,7 @@ fn error_control_meets_no_jump() {
 
 #[test]
 fn periods_are_positive_and_finite() {
-    let system = Oscillator(W);
+    let system = FREE;
     for (period, until) in [
         (0.0, 1.0),
         (-1.0, 1.0),

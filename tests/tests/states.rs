@@ -1,49 +1,20 @@
 //! States of first order against closed forms, against Newton and Euler by hand, and against the same mechanism with
 //! inputs in the place of its states.
 
+use described::{CLOSE, assert_near, generated, states, text, value};
 use hamel::adaptive::Adaptive;
 use hamel::methods::General;
 use hamel::{State, System};
-use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::generate::Generated;
 use hamel_codegen::program::FunctionId;
 use hamel_codegen::program::count::count;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::proof::check::{Verdict, check};
-use hamel_codegen::render::render;
 use hamel_tests::dc_pendulum::{DcPendulum, DcPendulumParameters};
 use hamel_tests::lagging_drone::{LaggingDrone, LaggingDroneParameters};
 use hamel_tests::reference::run;
 use hamel_tests::wheel_motors::{WheelMotors, WheelMotorsParameters};
-use std::path::Path;
-
-/// Rounding of a few hundred operations.
-const CLOSE: f64 = 1e-11;
-
-#[track_caller]
-fn assert_near(what: &str, found: f64, expected: f64, bound: f64) {
-    let apart = (found - expected).abs() / expected.abs().max(1.0);
-    assert!(apart <= bound, "{what}: {found}, expected {expected}");
-}
-
-fn text(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.eom"));
-    std::fs::read_to_string(path).expect("the model is in the repository")
-}
-
-fn generated(text: &str) -> Generated {
-    from_text(text).unwrap_or_else(|errors| panic!("{}", render(&errors, "states", text, false)))
-}
-
-fn value(of: &Generated, name: &str, [x, xi, u]: [&[f64]; 3]) -> Vec<f64> {
-    let function = of.program.function(name).expect("it is generated");
-    let compiled = Interpreter::new(&of.program, function, &of.program.defaults);
-    compiled.call(x, xi, u, &[]).expect("no pivot vanishes")
-}
-
-/// Numbers without a pattern, the same on every machine.
-fn states<const N: usize>() -> impl Iterator<Item = [f64; N]> {
-    (1..8).map(|k| std::array::from_fn(|i| (1.7 * (k * (i + 2)) as f64).sin() * 1.3))
-}
+mod described;
 
 /// (m l² + J n²) ẇ = n k i − m g l sin q − d w, L di/dt = V − R i − n k w; and what the supply gives is in the coil,
 /// in heat and in the motion.
@@ -320,16 +291,10 @@ fn a_state_costs_its_expression() {
 #[test]
 fn methods_keep_their_orders() {
     // No gear: the current does not feel the pendulum.
-    let system = DcPendulum::new(DcPendulumParameters {
-        m: 0.5,
-        l: 0.3,
-        g: 9.81,
-        j: 2e-5,
+    let system = DcPendulum::<f64>::new(DcPendulumParameters {
         n: 0.0,
-        k: 0.03,
-        r: 1.2,
         l_upper: 0.8,
-        d: 0.002,
+        ..Default::default()
     })
     .expect("a motor");
     let start = State {
@@ -367,16 +332,10 @@ fn methods_keep_their_orders() {
 /// Error control follows a state that is faster than the motion.
 #[test]
 fn error_control_sees_states() {
-    let system = DcPendulum::new(DcPendulumParameters {
-        m: 0.5,
-        l: 0.3,
-        g: 9.81,
-        j: 2e-5,
+    let system = DcPendulum::<f64>::new(DcPendulumParameters {
         n: 0.0,
-        k: 0.03,
-        r: 1.2,
         l_upper: 1e-3,
-        d: 0.002,
+        ..Default::default()
     })
     .expect("a motor");
     let (x, xi) = system.start();

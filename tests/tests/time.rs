@@ -1,51 +1,20 @@
 //! Time, prescribed motion and moving frames against closed forms, against the same mechanism described otherwise, and
 //! against inverse dynamics.
 
+use described::{CLOSE, assert_near, generated, states, text, value};
 use hamel::methods::General;
 use hamel::{State, System};
-use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
-use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::proof::check::{Verdict, check};
-use hamel_codegen::render::render;
 use hamel_tests::belt_sleigh::{BeltSleigh, BeltSleighParameters};
 use hamel_tests::driven_hoop::{DrivenHoop, DrivenHoopParameters};
 use hamel_tests::kapitza::{Kapitza, KapitzaParameters};
 use hamel_tests::reference::run;
 use hamel_tests::turntable_ball::{TurntableBall, TurntableBallParameters};
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
 
-/// Rounding of a few hundred operations.
-const CLOSE: f64 = 1e-11;
-
-#[track_caller]
-fn assert_near(what: &str, found: f64, expected: f64, bound: f64) {
-    let apart = (found - expected).abs() / expected.abs().max(1.0);
-    assert!(apart <= bound, "{what}: {found}, expected {expected}");
-}
-
-fn text(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.eom"));
-    std::fs::read_to_string(path).expect("the model is in the repository")
-}
-
-fn generated(text: &str) -> Generated {
-    from_text(text).unwrap_or_else(|errors| panic!("{}", render(&errors, "time", text, false)))
-}
-
-fn value(of: &Generated, name: &str, [x, xi, u]: [&[f64]; 3]) -> Vec<f64> {
-    let function = of.program.function(name).expect("it is generated");
-    let compiled = Interpreter::new(&of.program, function, &of.program.defaults);
-    compiled
-        .call(x, xi, u, &vec![0.0; xi.len()])
-        .expect("no pivot vanishes")
-}
-
-/// States of a few numbers, the same on every machine.
-fn states<const N: usize>() -> impl Iterator<Item = [f64; N]> {
-    (1..8).map(|k| std::array::from_fn(|i| (1.7 * (k * (i + 2)) as f64).sin() * 1.3))
-}
+mod described;
 
 /// q̈ = −(g + ÿ) sin q / l with the pivot at y = a cos Ω t.
 #[test]
