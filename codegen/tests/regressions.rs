@@ -283,3 +283,37 @@ fn roots_of_squares_may_turn_out_to_be_known() {
         }
     }
 }
+
+/// Roots of velocities that constraints with a root of no square modulo the primes give, or that proofs move to where
+/// constraints hold: they lie outside the prime fields, and so does what is under the roots. For M = I and one
+/// constraint b ξ = 0, ξ̇ = f − b (b f) / (b b).
+#[test]
+fn roots_of_velocities_outside_the_prime_fields() {
+    for square in [0.99999999_f64, 0.43, 0.47, 0.59, 0.1009] {
+        let scale = square.sqrt();
+        let of = generated(&format!(
+            "system A {{ coord x, y, z; velocity u, v, w; rate x = u; rate y = v; rate z = w;
+                kinetic (u^2 + v^2 + w^2) / 2; nonholonomic u - sqrt({square}) * v - cos(z) * w = 0;
+                generalized force u = -u * sqrt(u^2 + v^2 + 1e-7); generalized force w = -sqrt(w^2 + v^2 + 1); }}"
+        ));
+        let (z, v, w) = (0.4_f64, 0.3, -0.7);
+        let u = scale * v + z.cos() * w;
+        let f = [
+            -u * (u * u + v * v + 1e-7).sqrt(),
+            0.0,
+            -(w * w + v * v + 1.0_f64).sqrt(),
+        ];
+        let b = [1.0, -scale, -z.cos()];
+        // d/dt (b ξ) = b ξ̇ + sin z w² = 0.
+        let push = b.iter().zip(&f).map(|(b, f)| b * f).sum::<f64>() + z.sin() * w * w;
+        let along = push / b.iter().map(|b| b * b).sum::<f64>();
+        let expected = [f[1] - b[1] * along, f[2] - b[2] * along];
+        let found = value(&of, "accel", [&[0.1, 0.2, z], &[v, w], &[], &[]]);
+        for (found, expected) in found.iter().zip(expected) {
+            assert!(
+                (found - expected).abs() < 1e-13 * expected.abs().max(1.0),
+                "{square}: {found} {expected}"
+            );
+        }
+    }
+}

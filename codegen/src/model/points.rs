@@ -330,7 +330,12 @@ impl Points {
 
     fn lane_of(&self, values: &[Fp], seed: u64) -> Lane {
         let mut lane = Lane::new(seed);
-        lane.roots = self.roots;
+        // What follows from other values may lie outside F_p, and what is added to it is no square there.
+        let outside = |value: &Fp| !(value.0.is_prime() && value.1.is_prime());
+        lane.roots = match self.roots {
+            Roots::OfSquares if values.iter().any(outside) => Roots::Extended,
+            roots => roots,
+        };
         for &value in values {
             lane.push_symbol(value);
         }
