@@ -25,10 +25,10 @@ use super::graph::{Edge, Function, Graph, Node, NodeId};
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive};
 use rustc_hash::FxHashMap;
-use std::collections::BTreeMap;
+use std::rc::Rc;
 
 /// What is divided by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Divisor {
     /// The numerator of a node.
     Node(NodeId),
@@ -40,41 +40,63 @@ enum Divisor {
     Power(NodeId),
 }
 
-/// A node as N / Π d^m.
+/// Powers m other than 0 of divisors, by their numbers in order.
+type Powers = Vec<(u32, f64)>;
+
+/// A node as N / Π d^m; many nodes have the same denominator.
 #[derive(Clone, Debug, Default)]
 struct Fraction {
     degree: f64,
-    powers: BTreeMap<Divisor, f64>,
+    powers: Rc<Powers>,
+}
+
+impl Fraction {
+    /// A polynomial.
+    fn of_degree(degree: f64) -> Self {
+        Fraction {
+            degree,
+            ..Fraction::default()
+        }
+    }
 }
 
 /// Bounds of degrees of nodes of a graph.
 pub struct Degrees<'a> {
     graph: &'a Graph,
-    /// The group that a symbol belongs to, by its index: those of a coordinate kind with a norm.
-    group: &'a dyn Fn(usize) -> Option<usize>,
+    /// The groups that symbols belong to, by their indices: those of a coordinate kind with a norm.
+    groups: Vec<Option<usize>>,
     fractions: FxHashMap<NodeId, Fraction>,
-    divisors: BTreeMap<Divisor, f64>,
-    roots: u32,
+    /// The divisors by their numbers, and their degrees.
+    numbers: FxHashMap<Divisor, u32>,
+    degrees: Vec<f64>,
 }
 
-/// The degree of a difference of sums of products of the expressions of a graph: N over a denominator
-/// that is common to all of them. Coordinates of a kind with a norm have a group.
-pub fn bound(graph: &Graph, roots: &[Edge], group: &dyn Fn(usize) -> Option<usize>) -> f64 {
-    let mut degrees = Degrees {
-        graph,
-        group,
-        fractions: FxHashMap::default(),
-        divisors: BTreeMap::new(),
-        roots: 0,
-    };
-    for id in graph.reachable(roots) {
-        let fraction = degrees.fraction(id);
-        degrees.fractions.insert(id, fraction);
+impl<'a> Degrees<'a> {
+    /// Coordinates of a kind with a norm have a group; symbols beyond the end of the list have none.
+    pub fn new(graph: &'a Graph, groups: Vec<Option<usize>>) -> Self {
+        Degrees {
+            graph,
+            groups,
+            fractions: FxHashMap::default(),
+            numbers: FxHashMap::default(),
+            degrees: Vec::new(),
+        }
     }
-    degrees.common(roots) * 4f64.powi(degrees.roots as i32)
-}
 
-impl Degrees<'_> {
+    /// The degree of a difference of sums of products of expressions: N over a denominator that is common
+    /// to all of them.
+    pub fn bound(&mut self, expressions: &[Edge]) -> f64 {
+        let mut roots = 0;
+        for id in self.graph.reachable(expressions) {
+            roots += i32::from(self.graph.node(id).is_root());
+            if !self.fractions.contains_key(&id) {
+                let fraction = self.fraction(id);
+                self.fractions.insert(id, fraction);
+            }
+        }
+        self.common(expressions) * 4f64.powi(roots)
+    }
+
     fn read(&self, edge: Edge) -> Fraction {
         self.fractions
             .get(&edge.node())
@@ -85,40 +107,33 @@ impl Degrees<'_> {
     fn fraction(&mut self, id: NodeId) -> Fraction {
         match self.graph.node(id) {
             Node::Constant(_) => Fraction::default(),
-            Node::Symbol(index) => match (self.group)(index as usize) {
+            Node::Symbol(index) => match self.groups.get(index as usize).copied().flatten() {
                 Some(group) => self.over([(Divisor::Group(group), 1.0)]),
-                None => Fraction {
-                    degree: 1.0,
-                    ..Fraction::default()
-                },
+                None => Fraction::of_degree(1.0),
             },
             Node::Add(a, b) => self.sum(&self.read(a), &self.read(b)),
-            Node::Mul(a, b) => product(self.read(a), &self.read(b), 1.0),
+            Node::Mul(a, b) => product(&self.read(a), &self.read(b)),
             Node::Div(a, b) => {
-                let below = self.read(b);
-                let divisor = Divisor::Node(b.node());
-                self.divisors.insert(divisor, below.degree);
-                let inverse = Fraction {
-                    degree: 0.0,
-                    powers: below.powers,
-                };
-                let mut quotient = product(self.read(a), &inverse, -1.0);
-                *quotient.powers.entry(divisor).or_default() += 1.0;
-                quotient
+                let (above, below) = (self.read(a), self.read(b));
+                let divisor = self.number(Divisor::Node(b.node()), below.degree);
+                let inverse = below.powers.iter().map(|&(d, m)| (d, -m)).collect();
+                let once = vec![(divisor, 1.0)];
+                Fraction {
+                    degree: above.degree,
+                    powers: Rc::new(merged(
+                        &above.powers,
+                        &merged(&inverse, &once, |m, n| m + n),
+                        |m, n| m + n,
+                    )),
+                }
             }
             Node::Apply(function, a) => self.apply(function, a),
             Node::Select(_, a, b) => {
-                let side = Fraction {
-                    degree: 1.0,
-                    ..Fraction::default()
-                };
-                let [a, b] = [a, b].map(|edge| product(self.read(edge), &side, 1.0));
-                self.sum(&a, &b)
+                let mut fraction = self.sum(&self.read(a), &self.read(b));
+                fraction.degree += 1.0;
+                fraction
             }
-            Node::Atan2(..) => Fraction {
-                degree: 1.0,
-                ..Fraction::default()
-            },
+            Node::Atan2(..) => Fraction::of_degree(1.0),
         }
     }
 
@@ -145,17 +160,10 @@ impl Degrees<'_> {
                 let angles: Vec<(Divisor, f64)> = angles.collect();
                 self.over(angles)
             }
-            Law::Power => Fraction {
-                degree: form().iter().map(|(_, c)| count(c)).sum(),
-                ..Fraction::default()
-            },
+            Law::Power => Fraction::of_degree(form().iter().map(|(_, c)| count(c)).sum()),
             Law::Radical => {
                 let below = self.read(argument);
-                self.roots += 1;
-                Fraction {
-                    degree: (self.whole(&below) / 2.0).ceil(),
-                    ..Fraction::default()
-                }
+                Fraction::of_degree((self.whole(&below) / 2.0).ceil())
             }
             // A random number that belongs to the value of a, and may be a factor of a.
             Law::Side => {
@@ -163,82 +171,137 @@ impl Degrees<'_> {
                 fraction.degree += 1.0;
                 fraction
             }
-            Law::Free => Fraction {
-                degree: 1.0,
-                ..Fraction::default()
-            },
+            Law::Free => Fraction::of_degree(1.0),
         }
+    }
+
+    /// The number of a divisor, of this degree.
+    fn number(&mut self, divisor: Divisor, degree: f64) -> u32 {
+        let next = self.degrees.len() as u32;
+        let number = *self.numbers.entry(divisor).or_insert(next);
+        if number == next {
+            self.degrees.push(degree);
+        }
+        number
     }
 
     /// Products of coordinates of norms.
     fn over(&mut self, norms: impl IntoIterator<Item = (Divisor, f64)>) -> Fraction {
-        let mut fraction = Fraction::default();
+        let (mut degree, mut powers) = (0.0, Powers::new());
         for (divisor, power) in norms {
-            self.divisors.insert(divisor, 2.0);
-            fraction.degree += 2.0 * power;
-            *fraction.powers.entry(divisor).or_default() += power;
+            let number = self.number(divisor, 2.0);
+            degree += 2.0 * power;
+            powers = merged(&powers, &vec![(number, power)], |m, n| m + n);
         }
-        fraction
+        Fraction {
+            degree,
+            powers: Rc::new(powers),
+        }
     }
 
-    fn degree(&self, divisor: &Divisor) -> f64 {
-        self.divisors.get(divisor).copied().unwrap_or(0.0)
+    /// Σ |m| deg d.
+    fn below(&self, powers: &Powers) -> f64 {
+        let degrees = powers
+            .iter()
+            .map(|&(d, m)| m.abs() * self.degrees[d as usize]);
+        degrees.sum()
     }
 
     /// N and denominator together.
     fn whole(&self, fraction: &Fraction) -> f64 {
-        let powers = fraction.powers.iter();
-        fraction.degree + powers.map(|(d, m)| m.abs() * self.degree(d)).sum::<f64>()
+        fraction.degree + self.below(&fraction.powers)
     }
 
     fn sum(&self, a: &Fraction, b: &Fraction) -> Fraction {
-        let mut powers = a.powers.clone();
-        // A divisor that one side lacks has the power 0 there.
-        for divisor in a.powers.keys().chain(b.powers.keys()) {
-            let of = |f: &Fraction| f.powers.get(divisor).copied().unwrap_or(0.0);
-            powers.insert(*divisor, of(a).max(of(b)));
+        if Rc::ptr_eq(&a.powers, &b.powers) {
+            return Fraction {
+                degree: a.degree.max(b.degree),
+                powers: a.powers.clone(),
+            };
         }
+        // A divisor that one side lacks has the power 0 there.
+        let powers = merged(&a.powers, &b.powers, f64::max);
+        // One with a negative power lacks it in the sum.
         let raised = |f: &Fraction| {
-            let more = powers.iter().map(|(divisor, power)| {
-                let own = f.powers.get(divisor).copied().unwrap_or(0.0);
-                (power - own) * self.degree(divisor)
+            let mut degree = f.degree;
+            merge(&powers, &f.powers, |number, all, own| {
+                degree += (all - own) * self.degrees[number as usize];
             });
-            f.degree + more.sum::<f64>()
+            degree
         };
         Fraction {
             degree: raised(a).max(raised(b)),
-            powers,
+            powers: if powers == *a.powers {
+                a.powers.clone()
+            } else {
+                Rc::new(powers)
+            },
         }
     }
 
     /// The largest numerator of the roots over their common denominator, with that.
     fn common(&self, roots: &[Edge]) -> f64 {
-        let mut powers: BTreeMap<Divisor, f64> = BTreeMap::new();
+        let mut powers = Powers::new();
         let mut most: f64 = 0.0;
         for root in roots {
             let fraction = self.read(*root);
             most = most.max(self.whole(&fraction));
-            for (divisor, power) in fraction.powers {
-                let known = powers.entry(divisor).or_default();
-                *known = known.max(power.abs());
-            }
+            powers = merged(&powers, &fraction.powers, |m, n| m.max(n.abs()));
         }
-        most + powers.iter().map(|(d, m)| m * self.degree(d)).sum::<f64>()
+        most + self.below(&powers)
     }
 }
 
-fn product(mut a: Fraction, b: &Fraction, sign: f64) -> Fraction {
-    a.degree += b.degree;
-    for (divisor, power) in &b.powers {
-        *a.powers.entry(*divisor).or_default() += sign * power;
+/// Each divisor of either with its powers in both; 0 where a side has none.
+fn merge(a: &Powers, b: &Powers, mut each: impl FnMut(u32, f64, f64)) {
+    let take = |side: &Powers, place: &mut usize, number: u32| match side.get(*place) {
+        Some(&(known, power)) if known == number => {
+            *place += 1;
+            power
+        }
+        _ => 0.0,
+    };
+    let (mut in_a, mut in_b) = (0, 0);
+    loop {
+        let next = [a.get(in_a), b.get(in_b)].into_iter().flatten();
+        let Some(number) = next.map(|(number, _)| *number).min() else {
+            return;
+        };
+        each(
+            number,
+            take(a, &mut in_a, number),
+            take(b, &mut in_b, number),
+        );
     }
-    a.powers.retain(|_, power| *power != 0.0);
-    a
+}
+
+/// The powers that a function makes of those of both.
+fn merged(a: &Powers, b: &Powers, by: impl Fn(f64, f64) -> f64) -> Powers {
+    let mut all = Powers::with_capacity(a.len().max(b.len()));
+    merge(a, b, |number, m, n| {
+        let power = by(m, n);
+        if power != 0.0 {
+            all.push((number, power));
+        }
+    });
+    all
+}
+
+fn product(a: &Fraction, b: &Fraction) -> Fraction {
+    let powers = match (a.powers.is_empty(), b.powers.is_empty()) {
+        (_, true) => a.powers.clone(),
+        (true, _) => b.powers.clone(),
+        _ => Rc::new(merged(&a.powers, &b.powers, |m, n| m + n)),
+    };
+    Fraction {
+        degree: a.degree + b.degree,
+        powers,
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::bound;
+    use super::Degrees;
     use crate::fp::Random;
     use crate::graph::{Function, Graph};
 
@@ -247,11 +310,10 @@ mod tests {
         let mut graph = Graph::new(5, 1);
         let mut random = Random::new(6);
         let [a, b, c] = ["a", "b", "c"].map(|name| graph.symbol(name, 2, random.element()));
-        let free = |_: usize| None;
         let product = graph.mul(a, b);
         let cubic = graph.mul(product, c);
         let sum = graph.add(cubic, a);
-        assert_eq!(bound(&graph, &[sum], &free), 3.0);
+        assert_eq!(Degrees::new(&graph, Vec::new()).bound(&[sum]), 3.0);
         // 1/(a b c + a) + 1/b: numerator of degree 3, denominator of degree 4; the sum of both, and the
         // denominator once more for sums with others.
         let one = graph.one();
@@ -260,21 +322,29 @@ mod tests {
             graph.div(one, b).expect("not 0"),
         );
         let both = graph.add(x, y);
-        assert_eq!(bound(&graph, &[both], &free), 3.0 + 4.0 + 4.0);
+        assert_eq!(
+            Degrees::new(&graph, Vec::new()).bound(&[both]),
+            3.0 + 4.0 + 4.0
+        );
         // (a b c + a)/(a b c + a + 1) · (a b c + a + 1) never grows.
         let more = graph.add(sum, one);
         let quotient = graph.div(sum, more).expect("not 0");
         let inverse = graph.div(one, quotient).expect("not 0");
         let back = graph.div(b, inverse).expect("not 0");
-        assert!(bound(&graph, &[back], &free) <= 4.0 + 3.0 + 3.0 + 6.0);
+        assert!(Degrees::new(&graph, Vec::new()).bound(&[back]) <= 4.0 + 3.0 + 3.0 + 6.0);
+        // b/((a b c + a)/(a b c + a + 1)) + a: what the first is multiplied by raises its numerator.
+        let over = graph.div(b, quotient).expect("not 0");
+        let raised = graph.add(over, a);
+        let mut degrees = Degrees::new(&graph, Vec::new());
+        assert_eq!(degrees.bound(&[raised]), 4.0 + 3.0 + 3.0);
         // A coordinate of a circle, the sine of 3 a, and a root.
-        let circle = |index: usize| (index == 0).then_some(0);
-        assert_eq!(bound(&graph, &[a], &circle), 2.0 + 2.0 + 2.0);
+        let circle = vec![Some(0)];
+        assert_eq!(Degrees::new(&graph, circle).bound(&[a]), 2.0 + 2.0 + 2.0);
         let three = graph.ratio(3, 1);
         let triple = graph.mul(three, a);
         let sine = graph.apply(Function::Sin, triple);
-        assert_eq!(bound(&graph, &[sine], &free), 36.0 * 6.0);
+        assert_eq!(Degrees::new(&graph, Vec::new()).bound(&[sine]), 36.0 * 6.0);
         let root = graph.apply(Function::Sqrt, sum);
-        assert_eq!(bound(&graph, &[root], &free), 2.0 * 4.0);
+        assert_eq!(Degrees::new(&graph, Vec::new()).bound(&[root]), 2.0 * 4.0);
     }
 }

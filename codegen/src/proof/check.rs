@@ -4,7 +4,7 @@
 //! enough they are derived once more in the graph with free coordinates, where nothing is merged
 //! modulo φ, expanded over the rationals, and compared by normal forms modulo φ ("proved").
 
-use super::confidence::Confidence;
+use super::confidence::{Compared, Confidence};
 use super::forms::Symbols;
 use super::points::{POINTS, Unequal, at_fresh_points};
 use super::verdict::Sides;
@@ -59,6 +59,7 @@ fn verdicts(
         all.extend(motion::emitted(&mut symbols, program));
     }
     let graph = &symbols.geometry.model.graph;
+    let mut compared = Compared::new(model, graph);
     let mut identities: Vec<Identity> = all
         .iter()
         .enumerate()
@@ -67,7 +68,7 @@ fn verdicts(
             let verdict = match at_points(model, graph, sides) {
                 Some(difference) => Verdict::Failed(difference),
                 None if proved() => Verdict::Proved,
-                None => Verdict::Checked(confidence(model, graph, sides)),
+                None => Verdict::Checked(confidence(&mut compared, graph, sides)),
             };
             Identity {
                 label: sides.label,
@@ -354,15 +355,15 @@ fn flat(table: &[Vec<Vec<Edge>>]) -> Vec<Edge> {
 }
 
 /// What agreement of both sides at all points says.
-fn confidence(model: &Model, graph: &Graph, sides: &Sides) -> Confidence {
+fn confidence(compared: &mut Compared<'_>, graph: &Graph, sides: &Sides) -> Confidence {
     let merged = |(left, right): (&Edge, &Edge)| left == right && left.abs() != graph.zero();
     let mut pairs = sides.left.iter().zip(&sides.right);
     if pairs.any(merged) {
         // The graph found them equal at its own point; what it merged is a sum or product of its nodes.
-        return Confidence::of_merging(model, graph);
+        return compared.merging();
     }
     let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
-    Confidence::new(model, &[(graph, &roots)], 1, POINTS, sides.left.len())
+    compared.at_points(&roots, POINTS, sides.left.len())
 }
 
 /// Where both sides differ at a point of X, if they do.

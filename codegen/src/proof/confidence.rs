@@ -6,7 +6,7 @@
 //! Coordinates that solve constraints of degrees d₁, d₂, … multiply D by Π dᵢ (Bézout); sums and
 //! solutions in numbers of what was evaluated multiply it by the number of their terms.
 
-use crate::algebra::degree::bound;
+use crate::algebra::degree::Degrees;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::prime::PRIMES;
 use crate::model::Model;
@@ -25,8 +25,7 @@ pub struct Confidence {
 impl Confidence {
     /// Of the merging of all nodes of a graph: each pair of them could be equal at its point by chance.
     pub fn of_merging(model: &Model, graph: &Graph) -> Self {
-        let all: Vec<Edge> = (0..graph.len() as u32).map(Edge::of).collect();
-        Confidence::new(model, &[(graph, &all)], 2, 1, all.len() * all.len())
+        Compared::new(model, graph).merging()
     }
 
     /// Of sums of `terms` products of expressions of graphs, compared `comparisons` times at each point.
@@ -37,28 +36,14 @@ impl Confidence {
         points: u64,
         comparisons: usize,
     ) -> Self {
-        // The group of each coordinate: its block, where that has a norm.
-        let mut groups: Vec<Option<usize>> = Vec::new();
-        for (index, block) in model.points.blocks.iter().enumerate() {
-            let group = (!matches!(block, Block::Flat(_))).then_some(index);
-            groups.extend(std::iter::repeat_n(group, block.len()));
-        }
-        let first = model.points.first;
-        let group = |symbol: usize| {
-            let coordinate = symbol.checked_sub(first)?;
-            groups.get(coordinate).copied().flatten()
-        };
-        let plain = |_: usize| None;
-        let solved: f64 = model
-            .points
-            .constraints
+        let degree = expressions
             .iter()
-            .map(|&row| bound(&model.points.free, &[row], &plain).max(1.0))
-            .product();
-        let degree: f64 = expressions
-            .iter()
-            .map(|(graph, roots)| bound(graph, roots, &group))
+            .map(|(graph, roots)| Degrees::new(graph, groups(model)).bound(roots))
             .sum();
+        Confidence::of_degree(degree, solved(model), terms, points, comparisons)
+    }
+
+    fn of_degree(degree: f64, solved: f64, terms: usize, points: u64, comparisons: usize) -> Self {
         let degree = 2.0 * degree.max(1.0) * solved * terms.max(1) as f64;
         let one: f64 = PRIMES
             .iter()
@@ -70,6 +55,61 @@ impl Confidence {
             exponent: all.max(0.0) as u32,
         }
     }
+}
+
+/// Many comparisons of expressions of one graph.
+pub struct Compared<'a> {
+    graph: &'a Graph,
+    degrees: Degrees<'a>,
+    solved: f64,
+    merging: Option<Confidence>,
+}
+
+impl<'a> Compared<'a> {
+    /// Of no expression yet.
+    pub fn new(model: &Model, graph: &'a Graph) -> Self {
+        Compared {
+            graph,
+            degrees: Degrees::new(graph, groups(model)),
+            solved: solved(model),
+            merging: None,
+        }
+    }
+
+    /// Of the merging of all nodes, see [`Confidence::of_merging`].
+    pub fn merging(&mut self) -> Confidence {
+        *self.merging.get_or_insert_with(|| {
+            let all: Vec<Edge> = (0..self.graph.len() as u32).map(Edge::of).collect();
+            let degree = self.degrees.bound(&all);
+            Confidence::of_degree(degree, self.solved, 2, 1, all.len() * all.len())
+        })
+    }
+
+    /// Of expressions that are compared so many times at each of some points.
+    pub fn at_points(&mut self, roots: &[Edge], points: u64, comparisons: usize) -> Confidence {
+        let degree = self.degrees.bound(roots);
+        Confidence::of_degree(degree, self.solved, 1, points, comparisons)
+    }
+}
+
+/// The group of each coordinate: its block, where that has a norm; of symbols before them none.
+fn groups(model: &Model) -> Vec<Option<usize>> {
+    let mut groups = vec![None; model.points.first];
+    for (index, block) in model.points.blocks.iter().enumerate() {
+        let group = (!matches!(block, Block::Flat(_))).then_some(index);
+        groups.extend(std::iter::repeat_n(group, block.len()));
+    }
+    groups
+}
+
+/// The product of the degrees of the constraints that coordinates solve.
+fn solved(model: &Model) -> f64 {
+    let constraints = model.points.constraints.iter();
+    let degrees = constraints.map(|&row| {
+        let mut degrees = Degrees::new(&model.points.free, Vec::new());
+        degrees.bound(&[row]).max(1.0)
+    });
+    degrees.product()
 }
 
 impl fmt::Display for Confidence {
