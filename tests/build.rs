@@ -3,6 +3,26 @@
 
 use std::path::PathBuf;
 
+/// Models of every kind of coordinates, constraints and states whose steps are differentiated.
+const LINEAR: &[&str] = &[
+    "bicycle",
+    "cart_pole",
+    "drone",
+    "five_bar",
+    "four_bar_loop",
+    "heavy_top",
+    "heavy_top_quaternion",
+    "kapitza",
+    "lagging_drone",
+    "pendulum_circle",
+    "rolling_disk",
+    "satellite",
+    "sleigh",
+    "spherical_angles",
+    "spring_chain",
+    "two_wheeled_robot",
+];
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=models");
     let mut paths: Vec<PathBuf> = Vec::new();
@@ -32,8 +52,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ));
         builder = builder.file(path);
     }
-    builder.generate()?;
     let out_dir = std::env::var("OUT_DIR")?;
+    // Some of them once more, with their linearisation and with it the slopes of steps.
+    let mut linear = String::new();
+    for stem in LINEAR {
+        let text = std::fs::read_to_string(format!("models/{stem}.eom"))?;
+        let (body, _) = text.rsplit_once('}').ok_or("a system ends with a brace")?;
+        let path = PathBuf::from(&out_dir).join(format!("linear_{stem}.eom"));
+        std::fs::write(&path, format!("{body}    generate all, linearize;\n}}\n"))?;
+        linear.push_str(&format!(
+            "/// Generated from `{stem}.eom`, linearised.\npub mod {stem} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/linear_{stem}.rs\"));\n}}\n"
+        ));
+        builder = builder.file(path);
+    }
+    modules.push_str(&format!("/// Models with their linearisation.\npub mod linear {{\n{linear}}}\n"));
+    builder.generate()?;
     std::fs::write(PathBuf::from(out_dir).join("models.rs"), modules)?;
     Ok(())
 }

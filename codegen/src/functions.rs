@@ -25,6 +25,8 @@ pub enum Serves {
     System,
     /// The trait `Split`: it comes along with `splitting`.
     Split,
+    /// The trait `Tangent`: it comes along with `linearize`.
+    Tangent,
     /// Users who call it.
     Callers,
     /// Users who ask for it by its name.
@@ -162,6 +164,12 @@ table! {
         "The linearisation in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,",
         "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).",
     ]
+    DisplacementFrame "displacement_frame" (Coordinates) Linear Tangent false false [
+        "A(x) without what is there for the time, by rows: displacements h move coordinates by δx = A h (KR18 (5)).",
+    ]
+    DisplacementCoframe "displacement_coframe" (Coordinates) Linear Tangent false false [
+        "Y(x) with Y A = I, by rows: the displacements h = Y δx (KR18 (6)).",
+    ]
     Splitting "splitting" () Vector Split true true []
     Centre "centre" (Coordinates) Vector Split true false [
         "Coordinates with plain ones moved to centres of mass, y = r + R s.",
@@ -255,9 +263,10 @@ impl Asked {
         let along = match row.serves {
             Serves::System => self.names(FunctionId::Accel) || self.names(FunctionId::Linearize),
             Serves::Split => self.names(FunctionId::Splitting),
+            Serves::Tangent => self.names(FunctionId::Linearize),
             Serves::Callers | Serves::Asked => false,
         };
-        let whole = self.everything && row.serves != Serves::Asked;
+        let whole = self.everything && !matches!(row.serves, Serves::Asked | Serves::Tangent);
         self.names(id) || along || (whole && (self.inverse || !row.inverse))
     }
 
@@ -294,7 +303,7 @@ mod tests {
     fn a_type_that_is_linearised_can_be_simulated() {
         let asked = Asked::only(&[FunctionId::Linearize]);
         for &id in FunctionId::ALL {
-            let system = id.row().serves == Serves::System;
+            let system = matches!(id.row().serves, Serves::System | Serves::Tangent);
             assert_eq!(
                 asked.wants(id),
                 system || id == FunctionId::Linearize,

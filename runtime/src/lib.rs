@@ -70,6 +70,7 @@
 pub mod adapter;
 pub mod adaptive;
 mod canonical;
+mod dual;
 #[cfg(feature = "nalgebra")]
 pub mod edge;
 #[cfg(feature = "ensemble")]
@@ -86,6 +87,7 @@ pub mod s1;
 pub mod s3;
 mod sampled;
 mod scalar;
+mod slopes;
 pub mod so3;
 mod split;
 mod state;
@@ -96,6 +98,7 @@ mod trig;
 pub mod wide;
 
 pub use canonical::Canonical;
+pub use dual::Dual;
 pub use error::{Singular, StepError};
 #[cfg(feature = "macros")]
 pub use hamel_macros::rigid_eom;
@@ -108,7 +111,8 @@ pub use nalgebra;
 pub use rotor::Rotor;
 pub use sampled::Sampled;
 pub use scalar::Scalar;
+pub use slopes::{Tangent, step_slopes};
 pub use split::Split;
 pub use state::State;
-pub use store::Store;
+pub use store::{Store, Table};
 pub use system::{Block, System};

@@ -13,6 +13,43 @@ impl<S: Scalar, const N: usize> Store<S> for [S; N] {}
 #[cfg(feature = "std")]
 impl<S: Scalar> Store<S> for Vec<S> {}
 
+/// A matrix by rows whose size is fixed by the system: `[[S; COLUMNS]; ROWS]`.
+pub trait Table<S>: Clone + Debug {
+    /// Zeros.
+    fn zero() -> Self;
+
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
+    /// Row `i`; empty beyond the last.
+    fn row(&self, i: usize) -> &[S];
+
+    /// Row `i`, to be written; empty beyond the last.
+    fn row_mut(&mut self, i: usize) -> &mut [S];
+}
+
+impl<S: Scalar, const ROWS: usize, const COLUMNS: usize> Table<S> for [[S; COLUMNS]; ROWS] {
+    #[inline]
+    fn zero() -> Self {
+        [[S::default(); COLUMNS]; ROWS]
+    }
+
+    #[inline]
+    fn rows(&self) -> usize {
+        ROWS
+    }
+
+    #[inline]
+    fn row(&self, i: usize) -> &[S] {
+        self.get(i).map_or(&[], |row| row)
+    }
+
+    #[inline]
+    fn row_mut(&mut self, i: usize) -> &mut [S] {
+        self.get_mut(i).map_or(&mut [], |row| row)
+    }
+}
+
 /// y ← y + a x, element by element.
 #[inline]
 pub(crate) fn add_scaled<S: Scalar>(y: &mut [S], a: S, x: &[S]) {

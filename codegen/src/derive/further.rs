@@ -154,6 +154,25 @@ impl Builder<'_> {
                 );
             }
         }
+        self.displacements(full, reduction);
+    }
+
+    /// What displacements are measured along and read by.
+    fn displacements(&mut self, full: &Model, reduction: Option<&Reduction>) {
+        let Some(Displacements { a, y, .. }) = Displacements::new(full, reduction, &mut self.graph)
+        else {
+            return;
+        };
+        for (id, rows) in [
+            (FunctionId::DisplacementFrame, a),
+            (FunctionId::DisplacementCoframe, y),
+        ] {
+            self.push(id, rows.concat());
+            if let Some(function) = self.functions.last_mut() {
+                let columns = rows.first().map_or(0, Vec::len);
+                function.shape = Shape::Matrix(rows.len(), columns);
+            }
+        }
     }
 
     /// What is claimed to be constant, as functions that watch it.

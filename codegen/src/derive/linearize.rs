@@ -70,7 +70,9 @@ impl Linear {
 /// The frame that displacements are measured in, as edges of the graph of F.
 pub struct Displacements {
     /// A of the full frame, ν rows of n; without the column of ξ⁰.
-    a: Vec<Vec<Edge>>,
+    pub a: Vec<Vec<Edge>>,
+    /// Y of the full frame, n rows of ν; without the row of ξ⁰.
+    pub y: Vec<Vec<Edge>>,
     /// The places of the displacements in ξ: all but that of ξ⁰, as the time is not displaced.
     places: Vec<usize>,
     /// ξ = C ξₐ.
@@ -97,6 +99,7 @@ impl Displacements {
         let displaced = |row: &Vec<Edge>| places.iter().map(|&i| row[i]).collect::<Vec<_>>();
         Some(Displacements {
             a: own.a.iter().map(|row| carry(&displaced(row))).collect(),
+            y: places.iter().map(|&i| carry(&rows[i])).collect(),
             places: places.clone(),
             xi: carry(&own.xi),
             gamma: gamma

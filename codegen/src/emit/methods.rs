@@ -1,11 +1,14 @@
-//! `impl hamel::Split` and `impl hamel::Canonical`, where all that they consist of was generated.
+//! `impl hamel::Split`, `hamel::Canonical` and `hamel::Tangent`, where all that they consist of was generated.
 
-use super::{Emitter, structure};
+use super::{Emitter, names, structure};
+use crate::program::{FunctionId, Shape};
+use crate::syntax::ast::ShapeKind;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
 
 /// The implementations for a type that implements `System`.
 pub fn implementations(emitter: &Emitter) -> String {
-    split(emitter).unwrap_or_default() + &canonical(emitter).unwrap_or_default()
+    let all = [split(emitter), canonical(emitter), tangent(emitter)];
+    all.into_iter().flatten().collect()
 }
 
 /// The generated name of a function.
@@ -109,4 +112,50 @@ fn canonical(emitter: &Emitter) -> Option<String> {
          fn velocity_from_momentum(&self, x: &Self::Coordinates, p: &Self::Velocities) -> ::core::result::Result<Self::Velocities, ::hamel::Singular> {{\n{call}\n}}\n",
     );
     Some(head(emitter, "Canonical", &body))
+}
+
+/// Steps with slopes: the system in dual numbers, and the frame of displacements.
+fn tangent(emitter: &Emitter) -> Option<String> {
+    let program = emitter.program;
+    let matrix = |id: FunctionId| match program.function(id)?.shape {
+        Shape::Matrix(rows, columns) => Some((rows, columns)),
+        _ => None,
+    };
+    let (rows, columns) = matrix(FunctionId::Linearize)?;
+    let call = |id: FunctionId| -> Option<(String, String)> {
+        let index = program.functions.iter().position(|f| f.id == Some(id))?;
+        let arguments = &program.functions[index].arguments;
+        let given = arguments.iter().map(|&argument| names::argument(argument));
+        let given = given.collect::<Vec<_>>().join(", ");
+        let x = if arguments.is_empty() { "_" } else { "x" };
+        let name = &emitter.names.functions[index];
+        Some((x.to_string(), format!("self.{name}({given})")))
+    };
+    let table = |id: FunctionId, of: &str, name: &str| {
+        let ((x, call), (rows, columns)) = (call(id)?, matrix(id)?);
+        Some([
+            format!("type {of} = [[S; {columns}]; {rows}];\n"),
+            format!("\nfn {name}(&self, {x}: &Self::Coordinates) -> Self::{of} {{\n{call}\n}}\n"),
+        ])
+    };
+    let [frame, frame_of] = table(FunctionId::DisplacementFrame, "Frame", "frame")?;
+    let [coframe, coframe_of] = table(FunctionId::DisplacementCoframe, "Coframe", "coframe")?;
+    let constant = "::hamel::Dual::constant";
+    let fields = program.params.iter().zip(&emitter.names.fields);
+    let fields = fields.map(|(group, field)| match group.shape {
+        ShapeKind::Scalar => format!("{field}: {constant}(self.{field}),\n"),
+        ShapeKind::Vector(_) => format!("{field}: self.{field}.map({constant}),\n"),
+        _ => format!("{field}: self.{field}.map(|row| row.map({constant})),\n"),
+    });
+    let mut fields: String = fields.collect();
+    if structure::has_kept(emitter) {
+        let kept = &emitter.names.kept;
+        fields += &format!("{kept}: self.{kept}.map({constant}),\n");
+    }
+    let name = &emitter.names.type_name;
+    let body = format!(
+        "type Number = ::hamel::Dual<S, {columns}>;\ntype Dual = {name}<::hamel::Dual<S, {columns}>>;\n{frame}{coframe}\
+         type Slopes = [[S; {columns}]; {rows}];\n\nfn dual(&self) -> Self::Dual {{\n{name} {{\n{fields}}}\n}}\n{frame_of}{coframe_of}"
+    );
+    Some(head(emitter, "Tangent", &body))
 }

@@ -22,7 +22,7 @@ pub const ALLOW_TRAIT: &str = r#"#[rustfmt::skip]
 "#;
 
 /// Whether there is a field of constants: the type has at least one field.
-fn has_kept(emitter: &Emitter) -> bool {
+pub fn has_kept(emitter: &Emitter) -> bool {
     !emitter.kept.is_empty() || emitter.program.params.is_empty()
 }
 

@@ -1,7 +1,7 @@
 //! A method for any system, chosen at run time.
 
 use crate::error::StepError;
-use crate::methods::{BackwardEuler, Cf4, Method, Rk4, Rkmk4, Rkmk8, Rkmk54};
+use crate::methods::{BackwardEuler, Cf4, Method, Rk4, Rkmk4, Rkmk8, Rkmk54, SemiImplicitEuler};
 use crate::state::State;
 use crate::system::System;
 
@@ -72,6 +72,8 @@ general! {
     Rkmk8 "rkmk8",
     /// [`BackwardEuler`]
     BackwardEuler "backward-euler",
+    /// [`SemiImplicitEuler`]
+    SemiImplicitEuler "semi-implicit-euler",
 }
 
 impl General {

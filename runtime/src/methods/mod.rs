@@ -17,6 +17,7 @@
 //! | [`Gauss4`], [`Gauss6`] | 4, 6 | long runs of systems with M(x) ([`Canonical`](crate::Canonical)); implicit |
 //! | [`Rk4`] | 4 | starts off the manifold, which the stabilising term leads back; on the coordinates x |
 //! | [`BackwardEuler`] | 1 | implicit: damps whatever is fast, and all else as well |
+//! | [`SemiImplicitEuler`] | 1 | short steps of controllers; one evaluation |
 //!
 //! [`Adaptive`](crate::adaptive::Adaptive) chooses the steps of [`Rkmk54`] and [`Rkmk8`] itself.
 
@@ -32,6 +33,7 @@ mod rkmk4;
 pub mod rkmk54;
 pub mod rkmk8;
 mod scheme;
+mod semi_implicit_euler;
 mod splitting;
 pub mod tableau;
 
@@ -46,6 +48,7 @@ pub use rkmk4::Rkmk4;
 pub use rkmk8::Rkmk8;
 pub use rkmk54::Rkmk54;
 pub use scheme::Scheme;
+pub use semi_implicit_euler::SemiImplicitEuler;
 pub use splitting::Splitting;
 
 use crate::error::StepError;

@@ -1,0 +1,263 @@
+//! Dual numbers: a number with its slopes along N directions, which every function here and every generated one
+//! carries along exactly.
+//!
+//! a + Σ aᵢ εᵢ with εᵢ εⱼ = 0: f(a + Σ aᵢ εᵢ) = f(a) + f′(a) Σ aᵢ εᵢ. A system in such numbers has the slopes of
+//! whatever is computed with it: of a step ([`step_slopes`](crate::step_slopes)), of a run with respect to
+//! parameters, of an output. Source: W. K. Clifford, *Preliminary sketch of biquaternions*, Proc. London Math. Soc.
+//! 4 (1873); A. Griewank, A. Walther, *Evaluating Derivatives*, SIAM (2008), chapter 3.
+
+use core::array::from_fn;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use crate::scalar::Scalar;
+
+/// A number and its slopes along N directions.
+///
+/// Choices go by the value: a slope at a jump or a corner is that of the side taken. √0 and |0| have the slope 0, as
+/// lengths at rest have in generated code. Tests of convergence ([`largest_lane`](Scalar::largest_lane)) see slopes
+/// and value alike.
+///
+/// ```
+/// use hamel::{Dual, Scalar};
+///
+/// // d/dx (x² sin x) at 2, and the same by another parameter that is not there.
+/// let x = Dual::<f64, 2>::along(2.0, 0);
+/// let y = x * x * x.sin_cos().0;
+/// let slope = 4.0 * 2.0_f64.sin() + 4.0 * 2.0_f64.cos();
+/// assert!((y.slopes[0] - slope).abs() < 1e-15 && y.slopes[1] == 0.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<S, const N: usize> {
+    /// a
+    pub value: S,
+    /// a₁, …, a_N
+    pub slopes: [S; N],
+}
+
+impl<S: Scalar, const N: usize> Dual<S, N> {
+    /// A number that does not vary.
+    #[inline]
+    pub fn constant(value: S) -> Self {
+        Dual {
+            value,
+            slopes: [S::default(); N],
+        }
+    }
+
+    /// A number that varies with slope 1 along one direction; a direction from N on is none.
+    #[inline]
+    pub fn along(value: S, direction: usize) -> Self {
+        let mut dual = Dual::constant(value);
+        if let Some(slope) = dual.slopes.get_mut(direction) {
+            *slope = S::from_f64(1.0);
+        }
+        dual
+    }
+
+    /// f(a) of a function with this value and slope at a.
+    #[inline]
+    fn chain(self, value: S, slope: S) -> Self {
+        Dual {
+            value,
+            slopes: self.slopes.map(|own| slope * own),
+        }
+    }
+
+    /// Each part chosen by the value.
+    #[inline]
+    fn chosen(choose: impl Fn(S, S) -> S, one: Self, other: Self) -> Self {
+        Dual {
+            value: choose(one.value, other.value),
+            slopes: from_fn(|i| choose(one.slopes[i], other.slopes[i])),
+        }
+    }
+}
+
+impl<S: Scalar, const N: usize> Default for Dual<S, N> {
+    fn default() -> Self {
+        Dual::constant(S::default())
+    }
+}
+
+impl<S: Scalar, const N: usize> Add for Dual<S, N> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Dual {
+            value: self.value + other.value,
+            slopes: from_fn(|i| self.slopes[i] + other.slopes[i]),
+        }
+    }
+}
+
+impl<S: Scalar, const N: usize> Sub for Dual<S, N> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Dual {
+            value: self.value - other.value,
+            slopes: from_fn(|i| self.slopes[i] - other.slopes[i]),
+        }
+    }
+}
+
+impl<S: Scalar, const N: usize> Mul for Dual<S, N> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Dual {
+            value: self.value * other.value,
+            slopes: from_fn(|i| {
+                self.value
+                    .mul_add(other.slopes[i], self.slopes[i] * other.value)
+            }),
+        }
+    }
+}
+
+impl<S: Scalar, const N: usize> Div for Dual<S, N> {
+    type Output = Self;
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let inverse = S::from_f64(1.0) / other.value;
+        Dual {
+            value,
+            slopes: from_fn(|i| inverse * (-value).mul_add(other.slopes[i], self.slopes[i])),
+        }
+    }
+}
+
+impl<S: Scalar, const N: usize> Neg for Dual<S, N> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Dual {
+            value: -self.value,
+            slopes: self.slopes.map(|slope| -slope),
+        }
+    }
+}
+
+macro_rules! assign {
+    ($($trait:ident $function:ident $operation:ident,)*) => {$(
+        impl<S: Scalar, const N: usize> $trait for Dual<S, N> {
+            #[inline]
+            fn $function(&mut self, other: Self) {
+                *self = self.$operation(other);
+            }
+        }
+    )*};
+}
+assign!(AddAssign add_assign add, SubAssign sub_assign sub, MulAssign mul_assign mul, DivAssign div_assign div,);
+
+impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
+    const EPSILON: f64 = S::EPSILON;
+
+    #[inline]
+    fn from_f64(value: f64) -> Self {
+        Dual::constant(S::from_f64(value))
+    }
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, S::from_f64(0.5) * root.inverse_of_length())
+    }
+
+    #[inline]
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        self.chain(value, value)
+    }
+
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), S::from_f64(1.0) / self.value)
+    }
+
+    #[inline]
+    fn sinh(self) -> Self {
+        self.chain(self.value.sinh(), self.value.cosh())
+    }
+
+    #[inline]
+    fn cosh(self) -> Self {
+        self.chain(self.value.cosh(), self.value.sinh())
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        let value = self.value.tanh();
+        self.chain(value, (-value).mul_add(value, S::from_f64(1.0)))
+    }
+
+    /// d atan2(y, x) = (x dy − y dx)/(x² + y²), 0 at the origin.
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let length = (self.value * self.value + x.value * x.value).sqrt();
+        let inverse = length.inverse_of_length();
+        let (along, across) = (x.value * inverse, self.value * inverse);
+        Dual {
+            value: self.value.atan2(x.value),
+            slopes: from_fn(|i| inverse * (along * self.slopes[i] - across * x.slopes[i])),
+        }
+    }
+
+    #[inline]
+    fn abs(self) -> Self {
+        self.chain(self.value.abs(), self.value.sign())
+    }
+
+    #[inline]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Dual {
+            value: self.value.mul_add(a.value, b.value),
+            slopes: from_fn(|i| {
+                self.value
+                    .mul_add(a.slopes[i], self.slopes[i].mul_add(a.value, b.slopes[i]))
+            }),
+        }
+    }
+
+    #[inline]
+    fn max(self, other: Self) -> Self {
+        let larger = |one, two| other.value.select_lt(self.value, one, two);
+        Dual {
+            value: self.value.max(other.value),
+            ..Dual::chosen(larger, self, other)
+        }
+    }
+
+    #[inline]
+    fn select_lt(self, limit: Self, then: Self, otherwise: Self) -> Self {
+        Dual::chosen(
+            |one, two| self.value.select_lt(limit.value, one, two),
+            then,
+            otherwise,
+        )
+    }
+
+    #[inline]
+    fn is_positive(self) -> bool {
+        self.value.is_positive()
+    }
+
+    #[inline]
+    fn is_finite(self) -> bool {
+        self.value.is_finite() && self.slopes.iter().all(|slope| slope.is_finite())
+    }
+
+    #[inline]
+    fn largest_lane(self) -> f64 {
+        let slopes = self.slopes.iter();
+        let largest = slopes.fold(self.value.abs(), |largest, slope| largest.max(slope.abs()));
+        largest.largest_lane()
+    }
+}

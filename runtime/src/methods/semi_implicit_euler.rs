@@ -1,0 +1,50 @@
+//! The semi-implicit Euler method: velocities first, coordinates along the new ones.
+//!
+//! ξ⁺ = ξ + h ξ̇(x, ξ, u), and x moved along the chart vector h w with the chart rate w at (x, ξ⁺). One evaluation of ξ̇
+//! a step: what simulators of contact and model-predictive control step with. In the plane of one coordinate and its
+//! momentum, forces of x alone, it is the symplectic Euler method. Source: E. Hairer, C. Lubich, G. Wanner, *Geometric
+//! Numerical Integration*, Springer (2006), I.1.2.
+
+use crate::error::StepError;
+use crate::integrate::acceleration;
+use crate::manifold;
+use crate::methods::{Method, arrive};
+use crate::scalar::Scalar;
+use crate::state::State;
+use crate::store::{add_scaled, scale};
+use crate::system::System;
+
+/// Order 1, one evaluation of ξ̇ a step; for any system.
+///
+/// Local error O(h²). x stays on its manifold to rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SemiImplicitEuler;
+
+impl<Sys: System + ?Sized> Method<Sys> for SemiImplicitEuler {
+    fn order(&self) -> u32 {
+        1
+    }
+
+    #[inline]
+    fn step<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        state.check_shape(system)?;
+        let length = Sys::Scalar::from_f64(h);
+        let f = acceleration(system, state.t, 0.0, &state.x, &state.xi, inputs)?;
+        let mut xi = state.xi.clone();
+        add_scaled(xi.as_mut(), length, f.as_ref());
+        let mut u = system.chart_rate(&state.x, &xi);
+        scale(u.as_mut(), length);
+        let mut x = state.x.clone();
+        manifold::retract(system.blocks(), x.as_mut(), u.as_ref());
+        arrive(system, state, h, x, xi)
+    }
+}
