@@ -65,7 +65,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ));
         builder = builder.file(path);
     }
-    modules.push_str(&format!("/// Models with their linearisation.\npub mod linear {{\n{linear}}}\n"));
+    modules.push_str(&format!(
+        "/// Models with their linearisation.\npub mod linear {{\n{linear}}}\n"
+    ));
     builder.generate()?;
     std::fs::write(PathBuf::from(out_dir).join("models.rs"), modules)?;
     Ok(())

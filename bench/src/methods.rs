@@ -2,12 +2,11 @@
 
 use hamel::adaptive::Adaptive;
 use hamel::methods::{
-    BackwardEuler, Cf4, Gauss4, Gauss6, Lgvi, Rk4, Rkmk4, Rkmk8, Rkmk54, Scheme, Splitting, free,
+    BackwardEuler, Cf4, Gauss4, Gauss6, Lgvi, Rk4, Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler,
+    Splitting, free,
 };
 use hamel::{Canonical, Split, System};
-use hamel_report::baselines::{
-    Buss, ForwardEuler, Rk4Added, Rk4Projected, SemiImplicitEuler, Slide,
-};
+use hamel_report::baselines::{Buss, ForwardEuler, Rk4Added, Rk4Projected, Slide};
 use hamel_report::data::Kind;
 use hamel_report::entry::{Entry, Outcome, Watch};
 use hamel_report::problem::Problem;

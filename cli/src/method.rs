@@ -63,7 +63,7 @@ const METHODS: &[Entry] = entries! {
     "gauss6" Method Momenta |_| Stepper::Gauss6, "the same; order 6";
     "euler" Baseline Any |_| Stepper::Baseline(Baseline::ForwardEuler), "baseline; order 1";
     "backward-euler" Baseline Any |_| Stepper::General(General::BackwardEuler), "baseline; implicit, order 1";
-    "semi-implicit-euler" Baseline Any |_| Stepper::Baseline(Baseline::SemiImplicitEuler), "baseline; order 1, as game engines step";
+    "semi-implicit-euler" Baseline Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as game engines step";
     "rk4" Baseline Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, led back at the rate --lambda";
     "rk4-projected" Baseline Any |_| Stepper::Baseline(Baseline::Rk4Projected), "baseline; the same, projected after each step";
     "slide" Baseline Split |_| Stepper::Slide, "baseline; order 1, keeps angular momentum";

@@ -1,9 +1,9 @@
 //! `impl hamel::Split`, `hamel::Canonical` and `hamel::Tangent`, where all that they consist of was generated.
 
 use super::{Emitter, names, structure};
+use crate::program::structure::{Inertia, RotorForm, Symmetry};
 use crate::program::{FunctionId, Shape};
 use crate::syntax::ast::ShapeKind;
-use crate::program::structure::{Inertia, RotorForm, Symmetry};
 
 /// The implementations for a type that implements `System`.
 pub fn implementations(emitter: &Emitter) -> String {
