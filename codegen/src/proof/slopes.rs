@@ -123,6 +123,9 @@ impl Slopes {
                 return Some(Err("an invariant".into()));
             }
         }
+        if !measured_at(&self.model, program, [lane, lane])? {
+            return Some(Err(MEASURE.into()));
+        }
         match &self.source {
             None => Some(Ok(())),
             Some(Source::Emitted) => self.emitted_at(program, lane),
@@ -187,7 +190,41 @@ impl Slopes {
     }
 }
 
+/// Whether displacements are measured by A, all of it but what is there for the time, and read by a Y with Y A = I:
+/// A of the full model at its point, what is emitted at that of the program.
+pub(super) fn measured_at(
+    full: &Model,
+    program: &Program,
+    [point, inner]: [&Lane; 2],
+) -> Option<bool> {
+    let emitted = |id: FunctionId| match program.function(id) {
+        Some(function) => {
+            evaluate_at(&program.graph, &function.outputs, &mut inner.clone()).map(Some)
+        }
+        None => Some(None),
+    };
+    let frame = emitted(FunctionId::DisplacementFrame)?;
+    let coframe = emitted(FunctionId::DisplacementCoframe)?;
+    let (Some(frame), Some(coframe)) = (frame, coframe) else {
+        return Some(true);
+    };
+    let a = evaluate_at(&full.graph, &full.a.concat(), &mut point.clone())?;
+    let time = full.clock.map(|clock| clock.xi);
+    let moved = (0..a.len()).filter(|place| Some(place % full.n()) != time);
+    let moved: Vec<Fp> = moved.map(|place| a[place]).collect();
+    let (n, nu) = (moved.len() / full.nu(), full.nu());
+    let identity = (0..n * n).all(|place| {
+        let (i, j) = (place / n, place % n);
+        let sum = (0..nu).fold(Fp::ZERO, |sum, k| {
+            sum + coframe[i * nu + k] * frame[k * n + j]
+        });
+        sum == if i == j { Fp::ONE } else { Fp::ZERO }
+    });
+    Some(frame == moved && identity)
+}
+
 /// What is broken where a part of the linearisation is wrong.
+const MEASURE: &str = "Y A = I for the emitted frame of displacements";
 const KINEMATIC: &str = "ḣ of the linearisation";
 const DYNAMIC: &str = "δξ̇ of the linearisation";
 

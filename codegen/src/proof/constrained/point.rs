@@ -11,6 +11,7 @@ use crate::derive::reduction::Reduction;
 use crate::model::class;
 use crate::program::{FunctionId, Program};
 use crate::proof::kernel::places;
+use crate::proof::slopes::measured_at;
 
 /// A point with ξ = C ξₐ, and the same for the reduced model.
 pub(super) struct At<'a> {
@@ -205,6 +206,9 @@ impl<'a> At<'a> {
         };
         let reduced = &self.full.reduced;
         let full = &self.full.reference.model;
+        if !measured_at(full, self.program, [&self.point, &self.inner])? {
+            return Some(false);
+        }
         let (all, na, nu) = (full.n(), reduced.n(), full.nu());
         // The time is not displaced.
         let time = full.clock.map(|clock| clock.xi);
