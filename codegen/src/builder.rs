@@ -10,7 +10,7 @@
 //! and in the crate `include!(concat!(env!("OUT_DIR"), "/free_body.rs"));`.
 
 use crate::diagnostics::Diagnostic;
-use crate::emit;
+use crate::emit::{self, c::Precision};
 use crate::generate::{Generated, from_file, from_text};
 use crate::render::{render, warnings};
 use std::collections::BTreeMap;
@@ -194,4 +194,26 @@ pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnost
         ..Default::default()
     };
     emit::file(&generated.program, &options).map_err(|error| vec![generated.fault(&error)])
+}
+
+/// The C99 of what was derived already; `name` stands in the command that it shows, `stem` is what its files are called
+/// before `.h` and `.c`, where they have a name.
+pub fn written_in_c(
+    generated: &Generated,
+    name: &str,
+    stem: Option<&str>,
+    precision: Precision,
+) -> emit::c::Files {
+    let numbers = match precision {
+        Precision::Double => "",
+        Precision::Float => " --precision float",
+    };
+    let out = stem.map_or_else(String::new, |stem| format!(" -o {stem}"));
+    let options = emit::c::Options {
+        source_hash: generated.hash,
+        command: format!("hamel emit --language c{numbers} {name}{out}"),
+        header: format!("{}.h", stem.unwrap_or_default()),
+        precision,
+    };
+    emit::c::files(&generated.program, &options)
 }
