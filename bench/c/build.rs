@@ -21,7 +21,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     Builder::new()
         .file("../../tests/models/free_body.eom")
-        .urdf(robots.join("ur_description/urdf/ur5_robot.urdf"), Options::default())
+        .urdf(
+            robots.join("ur_description/urdf/ur5_robot.urdf"),
+            Options::default(),
+        )
         .urdf(robots.join("solo_description/robots/solo12.urdf"), floating)
         .c_files(folder("HAMEL_C")?, Precision::Double)
         .generate()?;

@@ -87,7 +87,7 @@ fn row<S: System<Scalar = f64>>(
     if status != 0 {
         return Err(format!("{prefix}: status {status}").into());
     }
-    let mut out = inputs[0].xi;
+    let mut out = system.zero_velocities();
     let call = |accel: Accel, input: &Input<S>, out: &mut S::Velocities| {
         let [x, xi, u] = [input.x.as_ref(), input.xi.as_ref(), input.u.as_ref()];
         // SAFETY: lengths are those of the header, which come from the same program as the Rust.
@@ -104,15 +104,23 @@ fn row<S: System<Scalar = f64>>(
     for input in &inputs {
         let wanted = system.accel(&input.x, &input.xi, &input.u)?;
         let status = call(*accel, input, &mut out);
-        let scale = wanted.as_ref().iter().fold(1.0, |most: f64, v| most.max(v.abs()));
+        let scale = wanted
+            .as_ref()
+            .iter()
+            .fold(1.0, |most: f64, v| most.max(v.abs()));
         let mut pairs = wanted.as_ref().iter().zip(out.as_ref());
         if status != 0 || !pairs.all(|(a, b)| (a - b).abs() <= AGREEMENT * scale) {
-            return Err(format!("{prefix}: {:?} of Rust, {:?} of C", wanted.as_ref(), out.as_ref()).into());
+            return Err(format!(
+                "{prefix}: {:?} of Rust, {:?} of C",
+                wanted.as_ref(),
+                out.as_ref()
+            )
+            .into());
         }
     }
     let c = |count: u32| {
         let accel = black_box(*accel);
-        let mut out = inputs[0].xi;
+        let mut out = system.zero_velocities();
         for _ in 0..count {
             for input in &inputs {
                 call(accel, input, &mut out);

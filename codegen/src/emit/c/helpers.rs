@@ -14,14 +14,44 @@ const FUSED: &str = "\
 #endif
 ";
 
-/// When `fma` is one instruction: compilers say it in different ways.
-const FAST: [&str; 2] = [
-    "defined(FP_FAST_FMA) || defined(__FMA__) || defined(__aarch64__)",
-    "defined(FP_FAST_FMAF) || defined(__FMA__) || defined(__aarch64__) || defined(__ARM_FEATURE_FMA)",
+/// What is of numbers; `@FAST` tells whether `fma` is one instruction, which compilers say in different ways.
+const DOUBLE: &[(&str, &str)] = &[
+    (
+        "@FAST",
+        "defined(FP_FAST_FMA) || defined(__FMA__) || defined(__aarch64__)",
+    ),
+    ("@SHORTEST", "1e-100"),
+    ("@DIGITS", "DBL_MANT_DIG == 53"),
+    ("@BITS", "uint64_t"),
+    ("@INFINITY", "UINT64_C(0x7FF0000000000000)"),
+    ("@LARGEST", "DBL_MAX"),
+];
+const FLOAT: &[(&str, &str)] = &[
+    (
+        "@FAST",
+        "defined(FP_FAST_FMAF) || defined(__FMA__) || defined(__aarch64__) || defined(__ARM_FEATURE_FMA)",
+    ),
+    ("@SHORTEST", "1e-12f"),
+    ("@DIGITS", "FLT_MANT_DIG == 24"),
+    ("@BITS", "uint32_t"),
+    ("@INFINITY", "UINT32_C(0x7F800000)"),
+    ("@LARGEST", "FLT_MAX"),
 ];
 
-/// What follows the functions.
-const END: &str = "#undef FUSED\n";
+/// What compilers are told of sine and cosine, undefined again by [`END`].
+const HINTS: &str = "\
+/* What follows is worth its room in every place, or hardly ever runs. */
+#if defined(__GNUC__) && !defined(__OPTIMIZE_SIZE__)
+#define INLINE static inline __attribute__((always_inline))
+#define RARE static __attribute__((cold, noinline))
+#else
+#define INLINE static inline
+#define RARE static
+#endif
+";
+
+/// What follows the functions, where they need it.
+const END: [&str; 2] = ["#undef FUSED\n", "#undef INLINE\n#undef RARE\n"];
 
 /// Name and text of the others; `@_` stands for the prefix, `@REAL` for the type of numbers, `@F` for what literals and
 /// functions of `<math.h>` end in. Those further up are called by those further down.
@@ -43,6 +73,22 @@ static inline @REAL @_sign(@REAL a)
 static inline @REAL @_select(@REAL c, @REAL a, @REAL b)
 {
     return c > 0.0@F ? a : c <= 0.0@F ? b : c;
+}
+",
+    ),
+    (
+        "is_positive",
+        "\
+/* Whether a pivot is positive and finite: by one comparison of bits where numbers are those of IEEE 754. */
+static inline int @_is_positive(@REAL a)
+{
+#if FLT_RADIX == 2 && @DIGITS
+    @BITS bits;
+    memcpy(&bits, &a, sizeof bits);
+    return bits - 1u < @INFINITY - 1u;
+#else
+    return a > 0.0@F && a <= @LARGEST;
+#endif
 }
 ",
     ),
@@ -75,8 +121,15 @@ const TURN_DOUBLE: &str = "\
  * Polynomials and the parts of pi/2 are those of fdlibm (k_sin.c, k_cos.c, e_rem_pio2.c; (c) 1993 Sun
  * Microsystems, Inc., permission to use, copy, modify and distribute is freely granted).
  */
-static inline void @_sin_cos(double angle, double *sine, double *cosine)
+RARE void @_far(double angle, double *sine, double *cosine)
 {
+    *sine = sin(angle);
+    *cosine = cos(angle);
+}
+
+INLINE void @_sin_cos(double angle, double *sine, double *cosine)
+{
+    double far_sine, far_cosine;
 #if FLT_EVAL_METHOD == 0 && !defined(__FAST_MATH__)
     /* sin = a sin r + b cos r, cos = c cos r + d sin r after 0 to 3 quarter turns. */
     static const double turned[4][4] = {
@@ -115,8 +168,10 @@ static inline void @_sin_cos(double angle, double *sine, double *cosine)
         return;
     }
 #endif
-    *sine = sin(angle);
-    *cosine = cos(angle);
+    /* Numbers of their own, so that those above need no places in memory. */
+    @_far(angle, &far_sine, &far_cosine);
+    *sine = far_sine;
+    *cosine = far_cosine;
 }
 ";
 
@@ -152,14 +207,16 @@ static inline @REAL @_cos(@REAL angle)
 pub fn around(functions: &str, names: &Identifiers, precision: Precision) -> [String; 2] {
     let called = |text: &str, name: &str| text.contains(&format!("{}(", names.own(name)));
     let spelled = |text: &str| {
-        let (shortest, fast) = match precision {
-            Precision::Double => ("1e-100", FAST[0]),
-            Precision::Float => ("1e-12f", FAST[1]),
+        let words = match precision {
+            Precision::Double => DOUBLE,
+            Precision::Float => FLOAT,
         };
+        let mut text = text.to_string();
+        for (word, spelling) in words {
+            text = text.replace(word, spelling);
+        }
         let suffix = precision.suffix();
-        text.replace("@SHORTEST", shortest)
-            .replace("@FAST", fast)
-            .replace("@F", suffix)
+        text.replace("@F", suffix)
             .replace("@REAL", &names.real())
             .replace("@_", &format!("{}_", names.prefix))
     };
@@ -186,9 +243,18 @@ pub fn around(functions: &str, names: &Identifiers, precision: Precision) -> [St
     for (_, text) in halves() {
         push(&mut before, text);
     }
-    if functions.contains("FUSED(") || before.contains("FUSED(") {
-        [spelled(FUSED) + "\n" + &before, format!("\n{END}")]
-    } else {
-        [before, String::new()]
+    let mut after = String::new();
+    let uses = |before: &str, word: &str| functions.contains(word) || before.contains(word);
+    if uses(&before, "INLINE ") {
+        before = format!("{}\n{before}", spelled(HINTS));
+        after = END[1].into();
     }
+    if uses(&before, "FUSED(") {
+        before = format!("{}\n{before}", spelled(FUSED));
+        after = format!("{}{after}", END[0]);
+    }
+    if !after.is_empty() {
+        after = format!("\n{after}");
+    }
+    [before, after]
 }

@@ -34,14 +34,6 @@ impl Precision {
         }
     }
 
-    /// The largest number.
-    pub(super) fn largest(self) -> &'static str {
-        match self {
-            Precision::Double => "DBL_MAX",
-            Precision::Float => "FLT_MAX",
-        }
-    }
-
     /// The shortest literal that reads as this number.
     pub(super) fn literal(self, value: f64) -> String {
         let (digits, infinity) = match self {
@@ -157,10 +149,9 @@ impl Language for C<'_> {
     }
 
     fn check(&self, pivot: &Operand, kinematic: Option<usize>, number: usize) -> String {
-        let (pivot, largest) = (pivot.signed(), self.precision.largest());
-        let status = self.names.status(kinematic, number);
-        let zero = self.zero();
-        format!("if (!({pivot} > {zero} && {pivot} <= {largest})) {{\n    return {status};\n}}\n")
+        let positive = self.names.own("is_positive");
+        let (pivot, status) = (pivot.signed(), self.names.status(kinematic, number));
+        format!("if (!{positive}({pivot})) {{\n    return {status};\n}}\n")
     }
 }
 

@@ -68,6 +68,8 @@ const OWN: &[&str] = &[
     "sign",
     "select",
     "inverse_of_length",
+    "is_positive",
+    "far",
 ];
 
 /// Another name in the place of a reserved one.

@@ -3,6 +3,7 @@
 use super::header::{prototype, prototypes};
 use super::{C, Texts, draw, helpers, returns_number};
 use crate::emit::function::{Drawing, Spec, statements};
+use crate::emit::lower::Body;
 use crate::emit::names::argument;
 use crate::emit::parameters;
 use crate::syntax::ast::ShapeKind;
@@ -30,9 +31,10 @@ pub fn text(texts: &Texts) -> String {
     let [before, after] = helpers::around(&functions, names, texts.precision);
     let everything = format!("{before}{functions}");
     let headers: String = [
-        ("float.h", ["_MAX", "FLT_EVAL"].as_slice()),
+        ("float.h", ["FLT_RADIX", "FLT_EVAL"].as_slice()),
         ("math.h", &["("]),
-        ("stdint.h", &["uint32_t"]),
+        ("stdint.h", &["uint32_t", "uint64_t"]),
+        ("string.h", &["memcpy"]),
     ]
     .iter()
     .filter(|(_, words)| words.iter().any(|word| everything.contains(word)))
@@ -63,10 +65,15 @@ fn indented(text: &str) -> String {
 fn body(texts: &Texts, drawing: &Drawing, spec: &Spec) -> String {
     let mut printer = drawing.printer();
     let mut text = String::new();
+    // Pivots are looked at last: gcc keeps fewer values in memory where no function ends in its middle.
+    let (values, checks): (Vec<_>, Vec<_>) =
+        (drawing.body.statements.iter().copied()).partition(|statement| statement.is_let());
+    let body = Body {
+        statements: [values, checks].concat(),
+        outputs: drawing.body.outputs.clone(),
+    };
     for part in &drawing.plan.parts {
-        text.push_str(&statements(&mut printer, drawing.body, part, |_, _| {
-            String::new()
-        }));
+        text.push_str(&statements(&mut printer, &body, part, |_, _| String::new()));
     }
     let mut results = String::new();
     let number = returns_number(spec.shape, spec.fallible);
