@@ -48,7 +48,7 @@ pub trait Language {
     /// a where c > 0, else b; operands c, a, b.
     fn select(&self, operands: &[Operand; 3]) -> String;
     /// f(a)
-    fn apply(&self, function: Function, operand: &Operand) -> String;
+    fn function(&self, function: Function, operand: &Operand) -> String;
     /// Leaves the function unless a pivot is positive: a pivot of [Y; Φ], by its number among these, or of the
     /// mass matrix, by its number among the pivots.
     fn check(&self, pivot: &Operand, kinematic: Option<usize>, number: usize) -> String;
@@ -96,7 +96,7 @@ impl Language for Rust {
         format!("{}.{method}({}, {})", c.receiver(), a.signed(), b.signed())
     }
 
-    fn apply(&self, function: Function, operand: &Operand) -> String {
+    fn function(&self, function: Function, operand: &Operand) -> String {
         format!("{}.{}", operand.receiver(), function.row().rust)
     }
 

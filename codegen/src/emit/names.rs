@@ -231,7 +231,7 @@ impl Unique {
 
 /// The words that values of a function cannot be called.
 #[derive(Clone, Debug)]
-pub struct Words {
+pub(crate) struct Words {
     /// Names that are taken in every function.
     pub locals: Unique,
     /// Another name in the place of a reserved word; names in snake case are none of Rust's.
@@ -275,7 +275,7 @@ impl Names {
     }
 
     /// The same where more names are taken than those of methods.
-    pub fn beside(program: &Program, taken: &[&str]) -> Self {
+    pub(crate) fn beside(program: &Program, taken: &[&str]) -> Self {
         let mut methods = Unique::new(&[METHODS, taken].concat());
         let known = FunctionId::ALL.iter();
         methods.taken.extend(known.map(|id| id.name().to_string()));

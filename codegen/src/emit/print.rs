@@ -177,7 +177,7 @@ impl Printer<'_> {
             }
             Operation::Apply(function, a) => {
                 let operand = self.operand(a);
-                self.language.apply(function, &operand)
+                self.language.function(function, &operand)
             }
             // Statements of their own.
             Operation::SinCos(a) | Operation::Check(_, a) => self.signed(a),

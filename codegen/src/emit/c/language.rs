@@ -136,7 +136,7 @@ impl Language for C<'_> {
         format!("{select}({}, {}, {})", c.signed(), a.signed(), b.signed())
     }
 
-    fn apply(&self, function: Function, operand: &Operand) -> String {
+    fn function(&self, function: Function, operand: &Operand) -> String {
         let suffix = self.precision.suffix();
         let name = match function {
             Function::Sign => self.names.own("sign"),
