@@ -1,36 +1,66 @@
-//! `hamel emit`: the generated Rust.
+//! `hamel emit`: the generated Rust, or C99.
 
 use crate::failure::{Failure, print, update};
 use crate::robot::RobotOptions;
 use crate::source::Source;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use hamel_codegen::builder;
-use std::path::PathBuf;
+use hamel_codegen::emit::c::Precision;
+use hamel_codegen::generate::Generated;
+use std::path::{Path, PathBuf};
 
-/// Writes the generated Rust.
+/// Writes the generated Rust, or C99.
 ///
 /// The text is the same, byte for byte, as that of a build script.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel emit heavy_top.eom                          to the terminal
   hamel emit heavy_top.eom -o src/heavy_top.rs      to a file
-  hamel emit heavy_top.eom -o src/heavy_top.rs --check    in CI: is the file up to date?")]
+  hamel emit heavy_top.eom -o src/heavy_top.rs --check    in CI: is the file up to date?
+  hamel emit --language c heavy_top.eom -o src/heavy_top  C99: src/heavy_top.h and src/heavy_top.c
+  hamel emit --language c --precision float drone.eom -o drone    the same of `float`
+C to the terminal is the header and what belongs to it in one: a source that compiles alone.")]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Where to write; default standard output.
+    /// Where to write; default standard output. For C the files are OUT.h and OUT.c; where OUT ends in `.h` or `.c`,
+    /// that is left out first.
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,
     /// Write nothing; status 1 where OUT is not what would be written.
     #[arg(long, requires = "out")]
     check: bool,
+    /// What to write.
+    #[arg(long, value_enum, default_value_t = Language::Rust)]
+    language: Language,
+    /// The numbers of C: `double` or `float`; default `double`. Rust is generic over them.
+    #[arg(long, value_name = "NUMBERS")]
+    precision: Option<Precision>,
     #[command(flatten)]
     robot: RobotOptions,
 }
 
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Language {
+    /// A type of Rust, in one file.
+    Rust,
+    /// C99, which is C++17 as well, in a header and a source.
+    C,
+}
+
 /// Emits, or compares.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.language == Language::Rust && arguments.precision.is_some() {
+        return Err(Failure::usage(
+            "`--precision` is for `--language c`: the Rust is generic over its numbers",
+        ));
+    }
+    let stem = match (arguments.language, &arguments.out) {
+        (Language::C, Some(out)) => Some(stem(out)?),
+        _ => None,
+    };
     let source = Source::open(&arguments.file, &arguments.robot)?;
     let name = arguments
         .file
@@ -43,21 +73,87 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let name = name.to_string_lossy();
     let generated = source.derive()?;
-    let code = builder::written(&generated, &name).map_err(|errors| source.refused(&errors))?;
-    let Some(out) = &arguments.out else {
-        return print(&code);
-    };
-    if !arguments.check {
-        return update(out, &code);
+    match arguments.language {
+        Language::Rust => {
+            let code =
+                builder::written(&generated, &name).map_err(|errors| source.refused(&errors))?;
+            match &arguments.out {
+                Some(out) => write(arguments, out, &code),
+                None => print(&code),
+            }
+        }
+        Language::C => emit_c(arguments, &generated, &name, stem.as_deref()),
     }
-    match hamel_files::holds(out, &code) {
-        Ok(true) => Ok(()),
-        Ok(false) => Err(Failure::failed(format!(
-            "{} is stale; write it again with `hamel emit {} -o {}`",
-            out.display(),
-            arguments.file.display(),
+}
+
+/// Header and source to their files, or both as one source to the terminal.
+fn emit_c(
+    arguments: &Arguments,
+    generated: &Generated,
+    name: &str,
+    stem: Option<&str>,
+) -> Result<(), Failure> {
+    let precision = arguments.precision.unwrap_or_default();
+    let files = builder::written_in_c(generated, name, stem, precision);
+    let (Some(out), Some(stem)) = (&arguments.out, stem) else {
+        return print(&format!("{}\n{}", files.header, files.rest));
+    };
+    let header = write(
+        arguments,
+        &out.with_file_name(format!("{stem}.h")),
+        &files.header,
+    );
+    let source = write(
+        arguments,
+        &out.with_file_name(format!("{stem}.c")),
+        &files.source,
+    );
+    match (header, source) {
+        (Err(first), Err(second)) => Err(first.and(second)),
+        (header, source) => header.and(source),
+    }
+}
+
+/// What the files of C are called before their endings: it stands in `#include` as well.
+fn stem(out: &Path) -> Result<String, Failure> {
+    let name = out.file_name().and_then(|name| name.to_str());
+    let stem = name.map(|name| {
+        let stem = name.strip_suffix(".h").or_else(|| name.strip_suffix(".c"));
+        stem.unwrap_or(name)
+    });
+    let strange = |letter: char| letter.is_control() || matches!(letter, '"' | '\\' | '?');
+    match stem {
+        Some(stem) if !stem.is_empty() && !stem.contains(strange) => Ok(stem.into()),
+        _ => Err(Failure::usage(format!(
+            "{}: no name that C can include; name the files without their ending, as in `-o src/arm`",
             out.display()
         ))),
+    }
+}
+
+/// Writes a file, or tells whether it is what would be written.
+fn write(arguments: &Arguments, out: &Path, code: &str) -> Result<(), Failure> {
+    if !arguments.check {
+        return update(out, code);
+    }
+    match hamel_files::holds(out, code) {
+        Ok(true) => Ok(()),
+        Ok(false) => {
+            let language = match arguments.language {
+                Language::Rust => "",
+                Language::C => "--language c ",
+            };
+            let precision = match arguments.precision {
+                Some(precision) => format!("--precision {precision} "),
+                None => String::new(),
+            };
+            Err(Failure::failed(format!(
+                "{} is stale; write it again with `hamel emit {language}{precision}{} -o {}`",
+                out.display(),
+                arguments.file.display(),
+                arguments.out.as_deref().unwrap_or(out).display()
+            )))
+        }
         Err(error) => Err(Failure::usage(format!(
             "cannot read {}: {error}",
             out.display()

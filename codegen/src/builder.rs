@@ -10,7 +10,7 @@
 //! and in the crate `include!(concat!(env!("OUT_DIR"), "/free_body.rs"));`.
 
 use crate::diagnostics::Diagnostic;
-use crate::emit;
+use crate::emit::{self, c::Precision};
 use crate::generate::{Generated, from_file, from_text};
 use crate::render::{render, warnings};
 use std::collections::BTreeMap;
@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 pub struct Builder {
     files: Vec<(PathBuf, Kind)>,
     out_dir: Option<PathBuf>,
+    c: Option<(PathBuf, Precision)>,
 }
 
 /// What a file holds.
@@ -87,6 +88,12 @@ impl Builder {
         self
     }
 
+    /// Writes C99 as well: `stem.h` and `stem.c` for every file, into this folder, which exists.
+    pub fn c_files(mut self, folder: impl Into<PathBuf>, precision: Precision) -> Self {
+        self.c = Some((folder.into(), precision));
+        self
+    }
+
     /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before anything is reported;
     /// files whose bytes would not change are not touched. What a description declares and does not use becomes
     /// a warning of the package.
@@ -118,7 +125,7 @@ impl Builder {
                 ));
                 continue;
             }
-            if let Err(error) = generate_file(path, kind, &out_dir.join(format!("{stem}.rs"))) {
+            if let Err(error) = self.generate_file(path, kind, &out_dir, &stem) {
                 errors.push(error);
             }
         }
@@ -136,42 +143,72 @@ fn name(path: &Path) -> String {
         .unwrap_or_default()
 }
 
-fn generate_file(path: &Path, kind: &Kind, target: &Path) -> Result<(), String> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    let shown = path.display().to_string();
-    let code = match kind {
-        Kind::Description => {
-            let refused = |errors: Vec<Diagnostic>| render(&errors, &shown, &text, false);
-            let folder = path.parent().unwrap_or(Path::new(""));
-            let open = &mut |name: &str| {
-                let file = folder.join(name);
-                println!("cargo:rerun-if-changed={}", file.display());
-                std::fs::read_to_string(file)
-            };
-            let generated = from_file(&text, open).map_err(refused)?;
-            warn(&warnings(&generated.model.warnings, &shown, &text, false));
-            written(&generated, &name(path)).map_err(refused)
-        }
-        #[cfg(feature = "urdf")]
-        Kind::Urdf(options) => {
-            use crate::generate::available_in;
-            use crate::urdf::{import, refused, warnings};
-            let imported = import(&text, options, &shown, false)?;
-            warn(&warnings(&imported, &shown, &text, false));
-            let description = name(&path.with_extension("eom"));
-            let refused =
-                |errors: Vec<Diagnostic>| refused(&errors, &imported, &shown, &text, false);
-            let (generated, singular) = available_in(&imported.text).map_err(refused)?;
-            if let Some(Diagnostic { message, .. }) = singular {
-                warn(&format!(
-                    "{shown}: {message}; what needs its inverse is left out"
-                ));
+impl Builder {
+    fn generate_file(
+        &self,
+        path: &Path,
+        kind: &Kind,
+        out_dir: &Path,
+        stem: &str,
+    ) -> Result<(), String> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        let shown = path.display().to_string();
+        let files = match kind {
+            Kind::Description => {
+                let refused = |errors: Vec<Diagnostic>| render(&errors, &shown, &text, false);
+                let folder = path.parent().unwrap_or(Path::new(""));
+                let open = &mut |name: &str| {
+                    let file = folder.join(name);
+                    println!("cargo:rerun-if-changed={}", file.display());
+                    std::fs::read_to_string(file)
+                };
+                let generated = from_file(&text, open).map_err(refused)?;
+                warn(&warnings(&generated.model.warnings, &shown, &text, false));
+                self.texts(&generated, &name(path), stem).map_err(refused)
             }
-            written(&generated, &description).map_err(refused)
+            #[cfg(feature = "urdf")]
+            Kind::Urdf(options) => {
+                use crate::generate::available_in;
+                use crate::urdf::{import, refused, warnings};
+                let imported = import(&text, options, &shown, false)?;
+                warn(&warnings(&imported, &shown, &text, false));
+                let description = name(&path.with_extension("eom"));
+                let refused =
+                    |errors: Vec<Diagnostic>| refused(&errors, &imported, &shown, &text, false);
+                let (generated, singular) = available_in(&imported.text).map_err(refused)?;
+                if let Some(Diagnostic { message, .. }) = singular {
+                    warn(&format!(
+                        "{shown}: {message}; what needs its inverse is left out"
+                    ));
+                }
+                self.texts(&generated, &description, stem).map_err(refused)
+            }
+        }?;
+        for (file, text) in files {
+            let file = out_dir.join(file);
+            hamel_files::update(&file, &text).map_err(|error| error.to_string())?;
         }
-    }?;
-    hamel_files::update(target, &code).map_err(|error| error.to_string())
+        Ok(())
+    }
+
+    /// The files of what was derived: names below the folder of the Rust, or whole paths, and texts.
+    fn texts(
+        &self,
+        generated: &Generated,
+        name: &str,
+        stem: &str,
+    ) -> Result<Vec<(PathBuf, String)>, Vec<Diagnostic>> {
+        let mut files = vec![(format!("{stem}.rs").into(), written(generated, name)?)];
+        if let Some((folder, precision)) = &self.c {
+            // The Rust stands elsewhere.
+            let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
+            let c = written_in_c(generated, name, Some(stem), *precision);
+            files.push((folder.join(format!("{stem}.h")), c.header));
+            files.push((folder.join(format!("{stem}.c")), c.source));
+        }
+        Ok(files)
+    }
 }
 
 /// Cargo shows these lines as warnings of the package.
@@ -194,4 +231,26 @@ pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnost
         ..Default::default()
     };
     emit::file(&generated.program, &options).map_err(|error| vec![generated.fault(&error)])
+}
+
+/// The C99 of what was derived already; `name` stands in the command that it shows, `stem` is what its files are called
+/// before `.h` and `.c`, where they have a name.
+pub fn written_in_c(
+    generated: &Generated,
+    name: &str,
+    stem: Option<&str>,
+    precision: Precision,
+) -> emit::c::Files {
+    let numbers = match precision {
+        Precision::Double => "",
+        Precision::Float => " --precision float",
+    };
+    let out = stem.map_or_else(String::new, |stem| format!(" -o {stem}"));
+    let options = emit::c::Options {
+        source_hash: generated.hash,
+        command: format!("hamel emit --language c{numbers} {name}{out}"),
+        header: format!("{}.h", stem.unwrap_or_default()),
+        precision,
+    };
+    emit::c::files(&generated.program, &options)
 }

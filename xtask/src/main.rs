@@ -45,6 +45,7 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files",
     "bash tests/robots/install.sh",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --bin hamel --test states --test emitted --test shaken",
+    "HAMEL_ATTACK=full cargo test --locked -p hamel-tests-c99",
     // Not optimised, and a fifth at a time: compiling is all of the work.
     "HAMEL_ATTACK=full HAMEL_PART=0 cargo test --locked -p hamel-tests-emitted",
     "HAMEL_ATTACK=full HAMEL_PART=1 cargo test --locked -p hamel-tests-emitted compiled",

@@ -60,8 +60,30 @@ pub fn operations(count: Count, end: &str) -> String {
     }
 }
 
-/// The documentation of a function: what it evaluates, its cost, arguments, result, errors.
+/// The documentation of a function in Rust: what it evaluates, its cost, arguments, result, errors.
 pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
+    let mut lines = described(program, function, nodes);
+    let result = result(function.shape);
+    lines.extend([String::new(), format!("Returns {result}.")]);
+    if function.fallible {
+        lines.extend([String::new(), "# Errors".into()]);
+        lines.push(
+            "`Singular::Inertia` where a pivot of the mass matrix is not positive and finite."
+                .into(),
+        );
+        let kinematic = |guard: &Edge| program.kinematic_pivot(*guard).is_some();
+        if function.guards.iter().any(kinematic) {
+            lines.push(
+                "`Singular::Kinematics` where a pivot of [Y; Φ] has changed sign: the mechanism is at a kinematic singularity."
+                    .into(),
+            );
+        }
+    }
+    lines
+}
+
+/// What a function evaluates, its cost, and its arguments.
+pub fn described(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
     let mut lines = function.docs.clone();
     if lines.is_empty() {
         lines.push(format!("`{}`.", function.name));
@@ -89,28 +111,17 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
             groups(program, argument).join(", ")
         ));
     }
-    let result = match function.shape {
+    lines
+}
+
+/// A shape in words.
+pub fn result(shape: Shape) -> String {
+    match shape {
         Shape::Scalar => "a number".into(),
         Shape::Vector(n) => numbers(n),
         Shape::Matrix(1, columns) => format!("1 row of {}", numbers(columns)),
         Shape::Matrix(rows, columns) => format!("{rows} rows of {}", numbers(columns)),
-    };
-    lines.extend([String::new(), format!("Returns {result}.")]);
-    if function.fallible {
-        lines.extend([String::new(), "# Errors".into()]);
-        lines.push(
-            "`Singular::Inertia` where a pivot of the mass matrix is not positive and finite."
-                .into(),
-        );
-        let kinematic = |guard: &Edge| program.kinematic_pivot(*guard).is_some();
-        if function.guards.iter().any(kinematic) {
-            lines.push(
-                "`Singular::Kinematics` where a pivot of [Y; Φ] has changed sign: the mechanism is at a kinematic singularity."
-                    .into(),
-            );
-        }
     }
-    lines
 }
 
 fn numbers(n: usize) -> String {

@@ -2,6 +2,7 @@
 
 use super::chunk::{Part, Plan, plan};
 use super::docs;
+use super::language::{Language, Rust};
 use super::locals::Locals;
 use super::lower::{Body, Operation};
 use super::places::Time;
@@ -37,7 +38,7 @@ pub struct Spec<'a> {
 
 /// The statements of a function, and the names that the user gave to values of it.
 pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
-    let locals = Locals::new(&emitter.program.names, &spec.nodes);
+    let locals = Locals::new(&emitter.words, &emitter.program.names, &spec.nodes);
     let named = locals.named();
     let places = &emitter.places;
     let body = super::lower::lower(
@@ -51,8 +52,27 @@ pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
     (locals, body)
 }
 
-/// The function as text, its parts before it.
+/// The function as Rust, its parts before it.
 pub fn text(emitter: &Emitter, spec: &Spec) -> String {
+    let parameters =
+        super::parameters::expressions(emitter.program, &emitter.names.fields, "self.");
+    draw(emitter, spec, &Rust, &parameters, |drawing| {
+        if drawing.plan.whole {
+            drawing.whole()
+        } else {
+            drawing.split()
+        }
+    })
+}
+
+/// A function with its statements, names and parts, for the text of a language.
+pub fn draw(
+    emitter: &Emitter,
+    spec: &Spec,
+    language: &dyn Language,
+    parameters: &[String],
+    text: impl FnOnce(&Drawing) -> String,
+) -> String {
     let (mut locals, body) = lower(emitter, spec);
     let read = body
         .statements
@@ -61,20 +81,15 @@ pub fn text(emitter: &Emitter, spec: &Spec) -> String {
     let numbers = read.chain(body.outputs.iter().copied()).map(Edge::node);
     locals.fill(&body.statements, numbers, &emitter.places);
     let plan = plan(&body, &emitter.places, spec.time, emitter.chunk);
-    let parameters = super::parameters::expressions(emitter, "self");
-    let drawing = Drawing {
+    text(&Drawing {
         emitter,
         spec,
+        language,
         locals: &locals,
         body: &body,
         plan: &plan,
-        parameters: &parameters,
-    };
-    if plan.whole {
-        drawing.whole()
-    } else {
-        drawing.split()
-    }
+        parameters,
+    })
 }
 
 /// The type of a result or of an argument.
@@ -92,6 +107,8 @@ pub struct Drawing<'a> {
     pub emitter: &'a Emitter<'a>,
     /// The function.
     pub spec: &'a Spec<'a>,
+    /// What it is printed in.
+    pub language: &'a dyn Language,
     /// Names of its values.
     pub locals: &'a Locals,
     /// Its statements.
@@ -106,6 +123,7 @@ impl Drawing<'_> {
     /// A printer that has printed nothing.
     pub fn printer(&self) -> Printer<'_> {
         Printer {
+            language: self.language,
             program: self.emitter.program,
             places: &self.emitter.places,
             time: self.spec.time,

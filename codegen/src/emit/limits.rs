@@ -7,35 +7,60 @@ use crate::model::joints::Joint;
 use crate::program::Program;
 use crate::syntax::ast::JointKind;
 
-/// `pub const ELBOW_LIMIT: [f64; 2] = [-2.0, 2.0];` and the like.
-pub fn constants(program: &Program) -> String {
+/// A documented constant of a joint.
+pub struct Limit {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub title: String,
+    /// One number, or the smallest and the largest.
+    pub values: Vec<f64>,
+}
+
+/// All limits of a program, in the order of its joints.
+pub fn limits(program: &Program) -> Vec<Limit> {
     let mut names = Unique::default();
-    let mut text = String::new();
+    let mut all = Vec::new();
     for joint in &program.joints {
-        let mut constant = |ending: &str, what: String, kind: &str, value: String| {
+        let mut push = |ending: &str, what: String, values: Vec<f64>| {
             let wanted = format!("{}_{ending}", snake(&joint.name)).to_ascii_uppercase();
-            let name = names.claim(&wanted);
-            let title = format!("Joint `{}`: {what}.", joint.name);
-            text.push_str(&format!(
-                "/// {title}\npub const {name}: {kind} = {value};\n\n"
-            ));
+            all.push(Limit {
+                name: names.claim(&wanted),
+                title: format!("Joint `{}`: {what}.", joint.name),
+                values,
+            });
         };
         let [place, speed, force] = units(joint);
         if let Some([lower, upper]) = joint.limit {
-            let value = format!("[{}, {}]", literal(lower), literal(upper));
             let what = format!("its smallest and largest coordinate ({place})");
-            constant("LIMIT", what, "[f64; 2]", value);
+            push("LIMIT", what, vec![lower, upper]);
         }
         if let Some(most) = joint.max_speed {
             let what = format!("the largest size of its velocity ({speed})");
-            constant("MAX_SPEED", what, "f64", literal(most));
+            push("MAX_SPEED", what, vec![most]);
         }
         if let Some(most) = joint.max_force {
             let what = format!("the largest size of its force ({force})");
-            constant("MAX_FORCE", what, "f64", literal(most));
+            push("MAX_FORCE", what, vec![most]);
         }
     }
-    text
+    all
+}
+
+/// `pub const ELBOW_LIMIT: [f64; 2] = [-2.0, 2.0];` and the like.
+pub fn constants(program: &Program) -> String {
+    let constant = |limit: Limit| {
+        let (kind, value) = match limit.values.as_slice() {
+            &[lower, upper] => (
+                "[f64; 2]",
+                format!("[{}, {}]", literal(lower), literal(upper)),
+            ),
+            values => ("f64", values.iter().map(|&value| literal(value)).collect()),
+        };
+        let Limit { name, title, .. } = limit;
+        format!("/// {title}\npub const {name}: {kind} = {value};\n\n")
+    };
+    limits(program).into_iter().map(constant).collect()
 }
 
 /// Units of the coordinate, the velocity and the force of a joint.

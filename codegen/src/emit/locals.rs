@@ -1,7 +1,7 @@
 //! Names of the values of one function.
 
 use super::lower::{Operation, Statement};
-use super::names::{Unique, snake};
+use super::names::{Unique, Words, snake};
 use super::number;
 use super::places::{Place, Places};
 use crate::algebra::graph::{Edge, NodeId};
@@ -11,15 +11,17 @@ use rustc_hash::{FxHashMap, FxHashSet};
 #[derive(Clone, Debug)]
 pub struct Locals {
     scope: Unique,
+    legal: fn(String) -> String,
     names: FxHashMap<NodeId, String>,
 }
 
 impl Locals {
     /// Gives the user's names to those of his expressions that are computed here.
-    pub fn new(named: &[(String, Edge)], nodes: &[NodeId]) -> Self {
+    pub fn new(words: &Words, named: &[(String, Edge)], nodes: &[NodeId]) -> Self {
         let here: FxHashSet<NodeId> = nodes.iter().copied().collect();
         let mut locals = Locals {
-            scope: Unique::locals(),
+            scope: words.locals.clone(),
+            legal: words.legal,
             names: FxHashMap::default(),
         };
         for (name, edge) in named {
@@ -108,7 +110,7 @@ impl Locals {
     }
 
     fn claim(&mut self, node: NodeId, wanted: &str) {
-        let name = self.scope.claim(wanted);
+        let name = self.scope.claim(&(self.legal)(wanted.into()));
         self.names.insert(node, name);
     }
 }

@@ -1,4 +1,4 @@
-//! From a program to Rust text. No algebra here: what is computed, and in which order, is given.
+//! From a program to text: Rust, and C99 in [`c`]. No algebra here: what is computed, and in which order, is given.
 //!
 //! | file | owns |
 //! |---|---|
@@ -9,7 +9,8 @@
 //! | `sums` | sums as chains of fused products |
 //! | `chunk` | statements to functions of bounded size, values that cross them to slots |
 //! | `locals` | names of the values of one function |
-//! | `print` | a statement as text |
+//! | `print` | a statement as text, in any language |
+//! | `language` | what languages spell differently; Rust's way |
 //! | `function` | one generated function with its parts |
 //! | `docs` | doc comments |
 //! | `lines` | the text without its short lines, parsed |
@@ -21,15 +22,18 @@
 //! | `system` | `impl hamel::System` |
 //! | `views` | parameters, states and inputs by name |
 //! | `methods` | `impl hamel::Split`, `impl hamel::Canonical` |
+//! | [`c`] | the same program as C99 |
 //!
 //! Text is built first and parsed second, so that all front ends share every byte. What is no Rust is an
 //! error, and does not leave the generator.
 
+pub mod c;
 mod chunk;
 mod docs;
 #[cfg(feature = "files")]
 mod format;
 mod function;
+mod language;
 mod limits;
 #[cfg_attr(
     not(feature = "files"),
@@ -53,12 +57,12 @@ mod system;
 mod tests;
 mod views;
 
-use crate::algebra::graph::Edge;
+use crate::algebra::graph::{Edge, NodeId};
 use crate::program::schedule::Schedule;
 use crate::program::{Function, Program};
 use function::Spec;
 pub use lines::NotRust;
-use names::Names;
+use names::{Names, Words};
 use places::{Places, Time};
 use proc_macro2::TokenStream;
 
@@ -92,11 +96,27 @@ struct Emitter<'a> {
     /// Constants kept in the field `k`, in order; pivots of a constant mass matrix among them.
     kept: Vec<Edge>,
     names: Names,
+    words: Words,
+    document: Document,
     chunk: usize,
 }
 
+/// How a function is documented, whose nodes are given.
+type Document = fn(&Program, &Function, &[NodeId]) -> Vec<String>;
+
 impl<'a> Emitter<'a> {
     fn new(program: &'a Program, chunk: usize) -> Self {
+        let names = Names::new(program);
+        Emitter::with(program, chunk, names, Words::rust(), docs::function)
+    }
+
+    fn with(
+        program: &'a Program,
+        chunk: usize,
+        names: Names,
+        words: Words,
+        document: Document,
+    ) -> Self {
         let schedule = Schedule::of(program);
         let places = Places::new(program, &schedule.kept);
         let kept = places.kept();
@@ -105,7 +125,9 @@ impl<'a> Emitter<'a> {
             places,
             schedule,
             kept,
-            names: Names::new(program),
+            names,
+            words,
+            document,
             chunk,
         }
     }
@@ -143,7 +165,7 @@ impl<'a> Emitter<'a> {
         Spec {
             name: self.names.functions[index].clone(),
             public: true,
-            docs: docs::function(self.program, function, &nodes),
+            docs: (self.document)(self.program, function, &nodes),
             arguments: &function.arguments,
             shape: function.shape,
             outputs: function.outputs.clone(),

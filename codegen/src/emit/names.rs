@@ -197,11 +197,6 @@ impl Unique {
         }
     }
 
-    /// The scope of a function body.
-    pub fn locals() -> Self {
-        Unique::new(LOCALS)
-    }
-
     /// The wanted name where it is free, or the first free one of `name_2`, `name_3` ….
     pub fn claim(&mut self, wanted: &str) -> String {
         self.claim_where(wanted, |_| true)
@@ -234,6 +229,25 @@ impl Unique {
     }
 }
 
+/// The words that values of a function cannot be called.
+#[derive(Clone, Debug)]
+pub(crate) struct Words {
+    /// Names that are taken in every function.
+    pub locals: Unique,
+    /// Another name in the place of a reserved word; names in snake case are none of Rust's.
+    pub legal: fn(String) -> String,
+}
+
+impl Words {
+    /// Those of Rust.
+    pub fn rust() -> Self {
+        Words {
+            locals: Unique::new(LOCALS),
+            legal: |name| name,
+        }
+    }
+}
+
 /// The names of a program's type, fields and methods.
 #[derive(Clone, Debug)]
 pub struct Names {
@@ -257,7 +271,12 @@ pub struct Names {
 impl Names {
     /// Names for all that is public, then for what is private.
     pub fn new(program: &Program) -> Self {
-        let mut methods = Unique::new(METHODS);
+        Names::beside(program, &[])
+    }
+
+    /// The same where more names are taken than those of methods.
+    pub(crate) fn beside(program: &Program, taken: &[&str]) -> Self {
+        let mut methods = Unique::new(&[METHODS, taken].concat());
         let known = FunctionId::ALL.iter();
         methods.taken.extend(known.map(|id| id.name().to_string()));
         let mut fields = Unique::default();

@@ -1,8 +1,10 @@
 //! Parameters: their shapes, their accessors, and the constants that are kept for them.
 
-use super::print::check;
-use super::{Emitter, docs, number};
+use super::language::{Language, Operand, Rust};
+use super::{Emitter, docs};
+use crate::algebra::graph::Edge;
 use crate::model::Group;
+use crate::program::Program;
 use crate::program::schedule::is_hoisted;
 use crate::syntax::ast::ShapeKind;
 
@@ -31,13 +33,13 @@ pub fn indices(shape: ShapeKind) -> Vec<String> {
     }
 }
 
-/// All parameters as expressions, in the order of their symbols.
-pub fn expressions(emitter: &Emitter, owner: &str) -> Vec<String> {
-    let groups = emitter.program.params.iter().zip(&emitter.names.fields);
+/// All parameters as expressions, in the order of their symbols; `owner` stands before the names of their fields.
+pub fn expressions(program: &Program, fields: &[String], owner: &str) -> Vec<String> {
+    let groups = program.params.iter().zip(fields);
     let of = |(group, field): (&Group, &String)| -> Vec<String> {
         let indices = indices(group.shape).into_iter();
         indices
-            .map(|index| format!("{owner}.{field}{index}"))
+            .map(|index| format!("{owner}{field}{index}"))
             .collect()
     };
     groups.flat_map(of).collect()
@@ -126,31 +128,46 @@ fn update(emitter: &Emitter) -> String {
             names.kept, names.constants
         ));
     }
-    let graph = &emitter.program.graph;
-    let parameters = expressions(emitter, "self");
-    for (pivot, guard) in emitter.program.constant_guards.iter().enumerate() {
-        let node = guard.node();
-        let value = match is_hoisted(graph, node) {
-            true => emitter
-                .kept
-                .iter()
-                .position(|edge| edge.node() == node)
-                .map(|i| format!("self.{}[{i}]", names.kept)),
-            false => emitter
-                .places
-                .parameter(node)
-                .map(|index| parameters[index].clone()),
-        };
-        let value = value.unwrap_or_else(|| number::of(graph, node));
-        let value = if guard.is_negative() {
-            format!("(-{value})")
-        } else {
-            value
-        };
-        body.push_str(&check(emitter.program, *guard, &value, pivot));
-    }
+    let kept = format!("self.{}", names.kept);
+    body.push_str(&checks(
+        emitter,
+        &Rust,
+        &kept,
+        &expressions(emitter.program, &names.fields, "self."),
+    ));
     format!(
         "/// Brings the kept constants in step with the parameters.\nfn {}(&mut self) -> {RESULT} {{\n{body}Ok(())\n}}\n\n",
         names.update
     )
+}
+
+/// The checks of the pivots that depend on parameters alone, in the order of their numbers.
+pub fn checks(
+    emitter: &Emitter,
+    language: &dyn Language,
+    kept: &str,
+    parameters: &[String],
+) -> String {
+    let program = emitter.program;
+    let graph = &program.graph;
+    let check = |(pivot, guard): (usize, &Edge)| {
+        let node = guard.node();
+        let value = match is_hoisted(graph, node) {
+            true => {
+                let place = emitter.kept.iter().position(|edge| edge.node() == node);
+                place.map(|index| format!("{kept}[{index}]"))
+            }
+            false => {
+                let index = emitter.places.parameter(node);
+                index.map(|index| parameters[index].clone())
+            }
+        };
+        let operand = Operand {
+            value: value.unwrap_or_else(|| language.literal(graph, node)),
+            negative: guard.is_negative(),
+        };
+        language.check(&operand, program.kinematic_pivot(*guard), pivot)
+    };
+    let guards = program.constant_guards.iter().enumerate();
+    guards.map(check).collect()
 }

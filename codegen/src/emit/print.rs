@@ -1,11 +1,11 @@
-//! Statements as text.
+//! Statements as text: what all languages share, where values are found, and signs.
 
+use super::language::{Language, Operand};
 use super::locals::Locals;
 use super::lower::{Operation, Statement};
 use super::names;
-use super::number;
 use super::places::{Place, Places, Time};
-use crate::algebra::graph::{Edge, Function, NodeId};
+use crate::algebra::graph::{Edge, NodeId};
 use crate::program::{Argument, Program};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
@@ -29,6 +29,8 @@ pub struct Used {
 
 /// Prints the statements of one function or part.
 pub struct Printer<'a> {
+    /// How statements are spelled.
+    pub language: &'a dyn Language,
     /// The program.
     pub program: &'a Program,
     /// Where values are found.
@@ -56,7 +58,7 @@ impl Printer<'_> {
             // The value of the function does not depend on it, as was proved, but expressions that are equal
             // are one node. The interpreter takes 0 as well.
             Place::Argument(argument, _) if !self.arguments.contains(&argument) => {
-                number::scalar(0.0)
+                self.language.zero()
             }
             Place::Argument(argument, index) => {
                 self.used.arguments.insert(argument);
@@ -67,14 +69,17 @@ impl Printer<'_> {
                 self.used.kept = true;
                 format!("k[{index}]")
             }
-            Place::Number => self.locals.name(node).into(),
+            Place::Number => {
+                let name = self.locals.name(node);
+                self.language.number(self.places.graph(), node, name)
+            }
             Place::Temporary if self.here.contains(&node) => self.locals.name(node).into(),
             Place::Temporary => match self.slots.get(&node) {
                 Some(slot) => {
                     self.used.reads = true;
                     format!("slots[{slot}]")
                 }
-                // No Rust, so that the text never leaves the generator.
+                // No text of any language, so that it never leaves the generator.
                 None => format!("no value for node {node}"),
             },
         }
@@ -90,13 +95,10 @@ impl Printer<'_> {
         }
     }
 
-    /// A value with its sign, as the receiver of a method.
-    fn receiver(&mut self, edge: Edge) -> String {
-        let value = self.signed(edge);
-        if edge.is_negative() {
-            format!("({value})")
-        } else {
-            value
+    fn operand(&mut self, edge: Edge) -> Operand {
+        Operand {
+            value: self.value(edge.node()),
+            negative: edge.is_negative(),
         }
     }
 
@@ -105,7 +107,8 @@ impl Printer<'_> {
         match self.places.of(edge.node(), self.time) {
             Place::Number => {
                 let sign = if edge.is_negative() { "-" } else { "" };
-                format!("{sign}{}", number::of(self.places.graph(), edge.node()))
+                let literal = self.language.literal(self.places.graph(), edge.node());
+                format!("{sign}{literal}")
             }
             _ => self.signed(edge),
         }
@@ -113,22 +116,31 @@ impl Printer<'_> {
 
     /// The binding of a number.
     pub fn number(&self, node: NodeId) -> String {
-        let literal = number::of(self.places.graph(), node);
-        format!("let {} = {literal};\n", self.locals.name(node))
+        let name = self.locals.name(node);
+        self.language
+            .number_binding(self.places.graph(), node, name)
     }
 
     /// A statement; its values go to their slots at once.
     pub fn statement(&mut self, statement: &Statement) -> String {
         if let Operation::Check(pivot, edge) = statement.operation {
             self.used.checks = true;
-            return check(self.program, edge, &self.receiver(edge), pivot);
+            let kinematic = self.program.kinematic_pivot(edge);
+            let operand = self.operand(edge);
+            return self.language.check(&operand, kinematic, pivot);
         }
-        let expression = self.expression(statement.operation);
-        let name = |node: Option<NodeId>| node.map_or("_", |node| self.locals.name(node));
-        let [first, second] = statement.results.map(name);
+        let name = |node: NodeId| self.locals.name(node);
         let mut text = match statement.operation {
-            Operation::SinCos(_) => format!("let ({first}, {second}) = {expression};\n"),
-            _ => format!("let {first} = {expression};\n"),
+            Operation::SinCos(angle) => {
+                let names = statement.results.map(|node| node.map(name));
+                let angle = self.operand(angle);
+                self.language.pair(names, &angle)
+            }
+            operation => {
+                let name = statement.results[0].map_or("_", name);
+                let expression = self.expression(operation);
+                self.language.binding(name, &expression)
+            }
         };
         for node in statement.defined() {
             self.here.insert(node);
@@ -150,30 +162,25 @@ impl Printer<'_> {
                 format!("{} {sign} {}", self.signed(a), self.value(b.node()))
             }
             Operation::Multiply(a, b) => format!("{} * {}", self.signed(a), self.signed(b)),
-            Operation::Fused(a, b, c) => {
-                let (a, b, c) = (self.receiver(a), self.signed(b), self.signed(c));
-                format!("{a}.mul_add({b}, {c})")
-            }
             Operation::Divide(a, b) => format!("{} / {}", self.signed(a), self.signed(b)),
-            Operation::SinCos(a) => format!("{}.sin_cos()", self.receiver(a)),
-            Operation::Atan2(y, x) => format!("{}.atan2({})", self.receiver(y), self.signed(x)),
+            Operation::Fused(a, b, c) => {
+                let operands = [a, b, c].map(|edge| self.operand(edge));
+                self.language.fused(&operands)
+            }
+            Operation::Atan2(y, x) => {
+                let operands = [y, x].map(|edge| self.operand(edge));
+                self.language.atan2(&operands)
+            }
             Operation::Select(c, a, b) => {
-                let (c, a, b) = (self.receiver(c), self.signed(a), self.signed(b));
-                format!("{c}.{}({a}, {b})", Function::Select.row().rust)
+                let operands = [c, a, b].map(|edge| self.operand(edge));
+                self.language.select(&operands)
             }
             Operation::Apply(function, a) => {
-                format!("{}.{}", self.receiver(a), function.row().rust)
+                let operand = self.operand(a);
+                self.language.function(function, &operand)
             }
-            Operation::Check(_, a) => self.signed(a),
+            // Statements of their own.
+            Operation::SinCos(a) | Operation::Check(_, a) => self.signed(a),
         }
     }
-}
-
-/// Leaves a function unless a pivot is positive: a pivot of [Y; Φ] or of the mass matrix.
-pub fn check(program: &Program, guard: Edge, pivot: &str, index: usize) -> String {
-    let error = match program.kinematic_pivot(guard) {
-        Some(index) => format!("::hamel::Singular::kinematics({index})"),
-        None => format!("::hamel::Singular::inertia({index})"),
-    };
-    format!("if !{pivot}.is_positive() {{ return Err({error}); }}\n")
 }

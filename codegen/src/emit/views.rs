@@ -16,13 +16,17 @@ use crate::program::Program;
 use crate::syntax::ast::{CoordKind, ShapeKind};
 
 /// Some entries of an array, under a name.
-struct Field {
-    name: String,
-    docs: String,
-    shape: ShapeKind,
-    /// The array, and the place of the first entry in it.
-    array: &'static str,
-    offset: usize,
+pub struct Field {
+    /// Its name in the generated text.
+    pub name: String,
+    /// What it is.
+    pub docs: String,
+    /// Its shape.
+    pub shape: ShapeKind,
+    /// The array.
+    pub array: &'static str,
+    /// The place of the first entry in it.
+    pub offset: usize,
 }
 
 impl Field {
@@ -208,15 +212,7 @@ pub fn parameters(emitter: &Emitter) -> String {
 pub fn state(emitter: &Emitter, system: bool) -> String {
     let program = emitter.program;
     let of = &emitter.names.type_name;
-    let mut fields: Vec<(String, Field)> =
-        program.coordinates.iter().flat_map(coordinate).collect();
-    fields.extend(groups(&program.velocities, "Velocity", "xi"));
-    fields.extend(groups(
-        &crate::model::behind(&program.states, program.n),
-        "State",
-        "xi",
-    ));
-    let fields = named(fields);
+    let fields = state_fields(program);
     let name = format!("{of}State");
     let view = View {
         name: name.clone(),
@@ -277,6 +273,24 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
     text
 }
 
+/// The entries of x and ξ by name, states among the latter.
+pub fn state_fields(program: &Program) -> Vec<Field> {
+    let mut fields: Vec<(String, Field)> =
+        program.coordinates.iter().flat_map(coordinate).collect();
+    fields.extend(groups(&program.velocities, "Velocity", "xi"));
+    fields.extend(groups(
+        &crate::model::behind(&program.states, program.n),
+        "State",
+        "xi",
+    ));
+    named(fields)
+}
+
+/// The entries of u by name.
+pub fn input_fields(program: &Program) -> Vec<Field> {
+    named(groups(&program.inputs, "Input", "u"))
+}
+
 /// u by name; nothing where there are no inputs.
 pub fn inputs(emitter: &Emitter) -> String {
     let program = emitter.program;
@@ -284,7 +298,7 @@ pub fn inputs(emitter: &Emitter) -> String {
         return String::new();
     }
     let of = &emitter.names.type_name;
-    let fields = named(groups(&program.inputs, "Input", "u"));
+    let fields = input_fields(program);
     let name = format!("{of}Inputs");
     let view = View {
         name: name.clone(),

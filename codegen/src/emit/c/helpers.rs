@@ -1,0 +1,260 @@
+//! What generated C defines for itself before its functions, each where it is called: the functions that
+//! `<math.h>` does not have, with the values that the Rust runtime gives them.
+
+use super::language::Precision;
+use super::names::Identifiers;
+
+/// a b + c as the machine does it best, undefined again by [`END`].
+const FUSED: &str = "\
+/* a b + c: rounded once where the machine has an instruction for it, twice elsewhere. */
+#if @FAST
+#define FUSED(a, b, c) fma@F((a), (b), (c))
+#else
+#define FUSED(a, b, c) ((a) * (b) + (c))
+#endif
+";
+
+/// What is of numbers; `@FAST` tells whether `fma` is one instruction, which compilers say in different ways.
+const DOUBLE: &[(&str, &str)] = &[
+    (
+        "@FAST",
+        "defined(FP_FAST_FMA) || defined(__FMA__) || defined(__aarch64__)",
+    ),
+    ("@SHORTEST", "1e-100"),
+    ("@DIGITS", "DBL_MANT_DIG == 53"),
+    ("@BITS", "uint64_t"),
+    ("@INFINITY", "UINT64_C(0x7FF0000000000000)"),
+    ("@LARGEST", "DBL_MAX"),
+];
+const FLOAT: &[(&str, &str)] = &[
+    (
+        "@FAST",
+        "defined(FP_FAST_FMAF) || defined(__FMA__) || defined(__aarch64__) || defined(__ARM_FEATURE_FMA)",
+    ),
+    ("@SHORTEST", "1e-12f"),
+    ("@DIGITS", "FLT_MANT_DIG == 24"),
+    ("@BITS", "uint32_t"),
+    ("@INFINITY", "UINT32_C(0x7F800000)"),
+    ("@LARGEST", "FLT_MAX"),
+];
+
+/// What compilers are told of sine and cosine, undefined again by [`END`].
+const HINTS: &str = "\
+/* What follows is worth its room in every place, or hardly ever runs. */
+#if defined(__GNUC__) && !defined(__OPTIMIZE_SIZE__)
+#define INLINE static inline __attribute__((always_inline))
+#define RARE static __attribute__((cold, noinline))
+#else
+#define INLINE static inline
+#define RARE static
+#endif
+";
+
+/// What follows the functions, where they need it.
+const END: [&str; 2] = ["#undef FUSED\n", "#undef INLINE\n#undef RARE\n"];
+
+/// Name and text of the others; `@_` stands for the prefix, `@REAL` for the type of numbers, `@F` for what literals and
+/// functions of `<math.h>` end in. Those further up are called by those further down.
+const HELPERS: &[(&str, &str)] = &[
+    (
+        "sign",
+        "\
+/* 1 with the sign of a, 0 of 0, NaN of NaN. */
+static inline @REAL @_sign(@REAL a)
+{
+    return a > 0.0@F ? 1.0@F : a < 0.0@F ? -1.0@F : a;
+}
+",
+    ),
+    (
+        "select",
+        "\
+/* a where c > 0, else b; NaN where c is. */
+static inline @REAL @_select(@REAL c, @REAL a, @REAL b)
+{
+    return c > 0.0@F ? a : c <= 0.0@F ? b : c;
+}
+",
+    ),
+    (
+        "is_positive",
+        "\
+/* Whether a pivot is positive and finite: by one comparison of bits where numbers are those of IEEE 754. */
+static inline int @_is_positive(@REAL a)
+{
+#if FLT_RADIX == 2 && @DIGITS
+    @BITS bits;
+    memcpy(&bits, &a, sizeof bits);
+    return bits - 1u < @INFINITY - 1u;
+#else
+    return a > 0.0@F && a <= @LARGEST;
+#endif
+}
+",
+    ),
+    (
+        "inverse_of_length",
+        "\
+/* 1/a, but a large number where a is nearly 0: times a sum of products that are 0 there it is 0. */
+static inline @REAL @_inverse_of_length(@REAL a)
+{
+    return 1.0@F / (fabs@F(a) < @SHORTEST ? @SHORTEST : a);
+}
+",
+    ),
+];
+
+/// Sine and cosine of `float`.
+const TURN_FLOAT: &str = "\
+/* Sine and cosine of an angle, rad. */
+static inline void @_sin_cos(float angle, float *sine, float *cosine)
+{
+    *sine = sinf(angle);
+    *cosine = cosf(angle);
+}
+";
+
+/// Sine and cosine of `double`, as `runtime/src/trig.rs` has them.
+const TURN_DOUBLE: &str = "\
+/*
+ * Sine and cosine of an angle, rad, from one reduction and without a call, which nothing else would overlap.
+ * Polynomials and the parts of pi/2 are those of fdlibm (k_sin.c, k_cos.c, e_rem_pio2.c; (c) 1993 Sun
+ * Microsystems, Inc., permission to use, copy, modify and distribute is freely granted).
+ */
+RARE void @_far(double angle, double *sine, double *cosine)
+{
+    *sine = sin(angle);
+    *cosine = cos(angle);
+}
+
+INLINE void @_sin_cos(double angle, double *sine, double *cosine)
+{
+    double far_sine, far_cosine;
+#if FLT_EVAL_METHOD == 0 && !defined(__FAST_MATH__)
+    /* sin = a sin r + b cos r, cos = c cos r + d sin r after 0 to 3 quarter turns. */
+    static const double turned[4][4] = {
+        {1.0, -0.0, 1.0, 0.0}, {0.0, 1.0, 0.0, -1.0}, {-1.0, 0.0, -1.0, 0.0}, {0.0, -1.0, 0.0, 1.0}
+    };
+    if (fabs(angle) <= 1e6) {
+        /* A sum with 3/2 2^52 is rounded to a whole number. */
+        const double turns = FUSED(angle, 0.6366197723675814, 6755399441055744.0) - 6755399441055744.0;
+        const double *const turn = turned[(uint32_t)(int32_t)turns & 3u];
+#if @FAST
+        const double close = FUSED(-turns, 1.5707963267948966, angle);
+        const double r = FUSED(-turns, 6.123233995736766e-17, close);
+        const double lost = FUSED(turns, 6.123233995736766e-17, r - close);
+#else
+        const double part = turns * 6.077100506303966e-11;
+        const double first = angle - turns * 1.5707963267341256;
+        const double close = first - part;
+        const double less = turns * 2.0222662487959506e-21 - ((first - close) - part);
+        const double r = close - less;
+        const double lost = less - (close - r);
+#endif
+        const double z = r * r;
+        const double w = z * z;
+        const double s1 = FUSED(z, 0.00833333333332249, -0.16666666666666632);
+        const double s2 = FUSED(z, 2.7557313707070068e-6, -0.0001984126982985795);
+        const double s3 = FUSED(z, 1.58969099521155e-10, -2.5050760253406863e-8);
+        const double s = r - FUSED(-(z * r), FUSED(FUSED(s3, w, s2), w, s1), lost);
+        const double c1 = FUSED(z, -0.001388888888887411, 0.0416666666666666);
+        const double c2 = FUSED(z, -2.7557314351390663e-7, 2.480158728947673e-5);
+        const double c3 = FUSED(z, -1.1359647557788195e-11, 2.087572321298175e-9);
+        const double most = FUSED(z, -0.5, 1.0);
+        const double rest = FUSED(z, -0.5, 1.0 - most);
+        const double c = FUSED(w, FUSED(FUSED(c3, w, c2), w, c1), FUSED(r, lost, rest)) + most;
+        *sine = FUSED(turn[1], c, turn[0] * s);
+        *cosine = FUSED(turn[3], s, turn[2] * c);
+        return;
+    }
+#endif
+    /* Numbers of their own, so that those above need no places in memory. */
+    @_far(angle, &far_sine, &far_cosine);
+    *sine = far_sine;
+    *cosine = far_cosine;
+}
+";
+
+/// Where one of the two is not read.
+const HALVES: &[(&str, &str)] = &[
+    (
+        "sin",
+        "\
+/* Sine of an angle, rad. */
+static inline @REAL @_sin(@REAL angle)
+{
+    @REAL sine, cosine;
+    @_sin_cos(angle, &sine, &cosine);
+    return sine;
+}
+",
+    ),
+    (
+        "cos",
+        "\
+/* Cosine of an angle, rad. */
+static inline @REAL @_cos(@REAL angle)
+{
+    @REAL sine, cosine;
+    @_sin_cos(angle, &sine, &cosine);
+    return cosine;
+}
+",
+    ),
+];
+
+/// What stands before functions with this text, and behind them.
+pub fn around(functions: &str, names: &Identifiers, precision: Precision) -> [String; 2] {
+    let called = |text: &str, name: &str| text.contains(&format!("{}(", names.own(name)));
+    let spelled = |text: &str| {
+        let words = match precision {
+            Precision::Double => DOUBLE,
+            Precision::Float => FLOAT,
+        };
+        let mut text = text.to_string();
+        for (word, spelling) in words {
+            text = text.replace(word, spelling);
+        }
+        let suffix = precision.suffix();
+        text.replace("@F", suffix)
+            .replace("@REAL", &names.real())
+            .replace("@_", &format!("{}_", names.prefix))
+    };
+    let mut before = String::new();
+    let push = |before: &mut String, text: &str| {
+        before.push_str(&spelled(text));
+        before.push('\n');
+    };
+    for (name, text) in HELPERS {
+        if called(functions, name) {
+            push(&mut before, text);
+        }
+    }
+    let halves = || HALVES.iter().filter(|(name, _)| called(functions, name));
+    if called(functions, "sin_cos") || halves().next().is_some() {
+        push(
+            &mut before,
+            match precision {
+                Precision::Double => TURN_DOUBLE,
+                Precision::Float => TURN_FLOAT,
+            },
+        );
+    }
+    for (_, text) in halves() {
+        push(&mut before, text);
+    }
+    let mut after = String::new();
+    let uses = |before: &str, word: &str| functions.contains(word) || before.contains(word);
+    if uses(&before, "INLINE ") {
+        before = format!("{}\n{before}", spelled(HINTS));
+        after = END[1].into();
+    }
+    if uses(&before, "FUSED(") {
+        before = format!("{}\n{before}", spelled(FUSED));
+        after = format!("{}{after}", END[0]);
+    }
+    if !after.is_empty() {
+        after = format!("\n{after}");
+    }
+    [before, after]
+}

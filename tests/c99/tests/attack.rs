@@ -1,0 +1,150 @@
+//! Generated C against the interpreter: every model, awkward names, and random descriptions, compiled by gcc as C99, by
+//! g++ as C++17 and, where it is installed, by clang, without a warning; `double` within 1e-13 of scale, `float` within
+//! what its rounding makes. `HAMEL_ATTACK=full` compiles 300 random descriptions instead of 20.
+
+#[path = "c99/case.rs"]
+mod case;
+#[path = "../../../codegen/tests/common/mod.rs"]
+mod common;
+#[path = "c99/compile.rs"]
+mod compile;
+#[path = "../../emitted/src/describe.rs"]
+mod describe;
+#[path = "c99/names.rs"]
+mod names;
+
+use case::Case;
+use common::Random;
+use compile::{STRICT, folder, run};
+use hamel_codegen::Builder;
+use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::emit::c::Precision;
+use hamel_codegen::generate::{Generated, from_file, from_text};
+use hamel_codegen::render::render;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// Descriptions in one source of C.
+const TOGETHER: usize = 12;
+
+/// All descriptions below a folder.
+fn descriptions(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(path) = open.pop() {
+        if path.ends_with("parts") {
+            continue;
+        } else if path.is_dir() {
+            let entries = std::fs::read_dir(&path).expect("a folder");
+            open.extend(entries.map(|entry| entry.expect("an entry").path()));
+        } else if path.extension().is_some_and(|ending| ending == "eom") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn read(path: &Path) -> Generated {
+    let text = std::fs::read_to_string(path).expect("readable");
+    let folder = path.parent().expect("a folder");
+    let open = &mut |name: &str| std::fs::read_to_string(folder.join(name));
+    let said = |errors: Vec<Diagnostic>| render(&errors, &path.display().to_string(), &text, false);
+    from_file(&text, open).unwrap_or_else(|errors| panic!("{}", said(errors)))
+}
+
+/// Compiles cases by the dozen, and compares all that they print.
+fn attack(what: &str, cases: Vec<Case>) {
+    let faults: Vec<String> = cases
+        .par_chunks(TOGETHER)
+        .enumerate()
+        .flat_map_iter(|(number, cases)| compile::faults(&format!("{what}{number}"), cases))
+        .collect();
+    assert!(
+        faults.is_empty(),
+        "{} faults:\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
+}
+
+#[test]
+fn models_give_what_the_interpreter_gives() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut paths = descriptions(&root.join("../models"));
+    paths.push(root.join("../../examples/dzhanibekov.eom"));
+    let cases: Vec<Case> = paths
+        .par_iter()
+        .map(|path| {
+            let stem = path.file_stem().expect("a name").to_string_lossy();
+            Case::new(read(path), Some(&stem), 1.0)
+        })
+        .collect();
+    assert!(cases.len() > 60, "{} models", cases.len());
+    attack("models", cases);
+}
+
+#[test]
+fn names_of_c_and_of_the_generated_text_are_names_in_descriptions() {
+    let texts = names::descriptions();
+    // Some names are words of the language in some places.
+    let made = texts.iter().filter_map(|text| from_text(text).ok());
+    let cases: Vec<Case> = made
+        .map(|generated| Case::new(generated, None, 1.5))
+        .collect();
+    assert!(
+        cases.len() * 10 > texts.len() * 9,
+        "{} of {}",
+        cases.len(),
+        texts.len()
+    );
+    attack("names", cases);
+}
+
+#[test]
+fn random_descriptions_give_what_the_interpreter_gives() {
+    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
+    let count = if full { 300 } else { 20 };
+    let cases: Vec<Case> = (0..count)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let text = describe::description(&mut Random::new(70_000 + seed), None);
+            // What is refused is the business of other tests.
+            let generated = from_text(&text).ok()?;
+            Some(Case::new(generated, Some(&format!("random_{seed}")), 1.5))
+        })
+        .collect();
+    assert!(
+        cases.len() as u64 * 10 > count * 7,
+        "{} of {count}",
+        cases.len()
+    );
+    attack("random", cases);
+}
+
+/// By the door of build scripts, without a warning; the program ends with 0 where the pole stands.
+#[test]
+fn the_example_holds_its_pole_upright() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/c");
+    let main = example.join("main.c").display().to_string();
+    for precision in [Precision::Double, Precision::Float] {
+        let folder = folder(&format!("example_{precision}"));
+        let built = Builder::new()
+            .file(example.join("cart_pole.eom"))
+            .out_dir(&folder)
+            .c_files(&folder, precision)
+            .generate();
+        built.unwrap_or_else(|error| panic!("{error}"));
+        let line = format!("gcc -std=c99 -O2 {STRICT} -c cart_pole.c");
+        run(&folder, &line).unwrap_or_else(|error| panic!("{error}"));
+        // The program itself is written with `double`.
+        if precision == Precision::Float {
+            continue;
+        }
+        let line = format!("gcc -std=c99 -O2 {STRICT} -I. {main} cart_pole.o -lm -o cart_pole");
+        run(&folder, &line).unwrap_or_else(|error| panic!("{error}"));
+        let printed = run(&folder, &folder.join("cart_pole").display().to_string());
+        let printed = printed.unwrap_or_else(|error| panic!("{error}"));
+        assert!(printed.contains("the largest force was"), "{printed}");
+    }
+}

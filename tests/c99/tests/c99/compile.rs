@@ -1,0 +1,144 @@
+//! Cases compiled and run.
+
+use crate::case::{Case, Expected, distance};
+use hamel_codegen::emit::c::Precision;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Without a warning.
+pub const STRICT: &str = "-Wall -Wextra -Wpedantic -Wconversion -Werror";
+
+/// A folder of its own for the files of a test.
+pub fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("c99")
+        .join(name);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// Whether a compiler is installed.
+pub fn installed(program: &str) -> bool {
+    let version = Command::new(program).arg("--version").output();
+    version.is_ok_and(|output| output.status.success())
+}
+
+/// Runs a program in a folder; what it printed, or what went wrong.
+pub fn run(folder: &Path, line: &str) -> Result<String, String> {
+    let mut words = line.split_whitespace();
+    let program = words.next().expect("a program");
+    let output = Command::new(program)
+        .args(words)
+        .current_dir(folder)
+        .output()
+        .map_err(|error| format!("`{line}`: {error}"))?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    match output.status.success() && said.is_empty() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => {
+            let said: String = said
+                .lines()
+                .take(40)
+                .map(|line| format!("{line}\n"))
+                .collect();
+            Err(format!(
+                "`{line}` in {}: {}\n{said}",
+                folder.display(),
+                output.status
+            ))
+        }
+    }
+}
+
+/// What is wrong with a few cases in one source.
+pub fn faults(name: &str, cases: &[Case]) -> Vec<String> {
+    let folder = folder(name);
+    let mut faults = Vec::new();
+    for (precision, file) in [(Precision::Double, "double"), (Precision::Float, "float")] {
+        std::fs::write(folder.join(format!("{file}.c")), source(cases, precision))
+            .expect("written");
+        let mut lines = vec![
+            format!("gcc -std=c99 -O1 {STRICT} {file}.c -lm -o {file}"),
+            format!("g++ -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"),
+        ];
+        if installed("clang") {
+            lines.push(format!("clang -std=c99 -fsyntax-only {STRICT} {file}.c"));
+            lines.push(format!(
+                "clang -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"
+            ));
+        }
+        let built: Vec<_> = lines.iter().map(|line| run(&folder, line)).collect();
+        let failed = built.iter().filter_map(|result| result.clone().err());
+        faults.extend(failed);
+        if built[0].is_err() {
+            continue;
+        }
+        match run(&folder, &folder.join(file).display().to_string()) {
+            Ok(printed) => faults.extend(compared(&printed, cases, precision)),
+            Err(error) => faults.push(error),
+        }
+    }
+    faults
+}
+
+/// All cases, and what calls them. Macros that a case leaves behind would show.
+fn source(cases: &[Case], precision: Precision) -> String {
+    let mut text = "#include <stddef.h>\n#include <stdio.h>\n\n".to_string();
+    let real = precision.name();
+    text.push_str(&format!(
+        "static void show(int status, const {real} *values, size_t count)\n{{\n    size_t i;\n    printf(\"%d\", status);\n    for (i = 0; i < count && status == 0; i++) {{\n        printf(\" %.17g\", (double)values[i]);\n    }}\n    printf(\"\\n\");\n}}\n\n"
+    ));
+    let mut runs = String::new();
+    for case in cases {
+        let (generated, calls) = case.text(precision);
+        text.push_str(&format!("{generated}\n{calls}\n"));
+        runs.push_str(&case.run());
+    }
+    format!("{text}int main(void)\n{{\n{runs}    return 0;\n}}\n")
+}
+
+fn compared(printed: &str, cases: &[Case], precision: Precision) -> Vec<String> {
+    let expected: Vec<Expected> = cases.iter().flat_map(Case::expected).collect();
+    let mut faults = Vec::new();
+    let lines: Vec<&str> = printed.lines().collect();
+    if lines.len() != expected.len() {
+        faults.push(format!("{} lines, not {}", lines.len(), expected.len()));
+    }
+    for (line, expected) in lines.iter().zip(&expected) {
+        let mut words = line.split(' ');
+        let status: Option<i64> = words.next().and_then(|word| word.parse().ok());
+        let values: Option<Vec<f64>> = words.map(|word| word.parse().ok()).collect();
+        let fault = match (&values, status) {
+            (Some(values), Some(status)) => wrong(status, values, expected, precision),
+            _ => Some("no numbers".into()),
+        };
+        let fault = fault.map(|fault| format!("{precision}: {}: {fault}: {line}", expected.what));
+        faults.extend(fault);
+    }
+    faults
+}
+
+/// What is wrong with a value, if anything is.
+fn wrong(status: i64, values: &[f64], expected: &Expected, precision: Precision) -> Option<String> {
+    // Rounding may change the sign of a pivot that is nearly 0.
+    let narrow = expected.doubt > 1.0 || expected.narrow && precision == Precision::Float;
+    let wanted = match &expected.value {
+        Ok(wanted) if status == 0 => wanted,
+        Ok(_) => return (!narrow).then(|| "it has a value".into()),
+        Err(wanted) => {
+            let fine = status == *wanted || precision == Precision::Float;
+            return (!fine).then(|| format!("its status is {wanted}"));
+        }
+    };
+    let largest = |list: &[f64]| list.iter().fold(1.0, |most: f64, v| most.max(v.abs()));
+    let scale = largest(wanted);
+    // Where the interpreter is off, another order of the same operations is, too.
+    let [rounding, slope, error] = match precision {
+        Precision::Double => [1e-13, 1e-7, 8.0],
+        Precision::Float => [1e-5, 100.0, 1e10],
+    };
+    let allowed = rounding * scale + slope * expected.doubt + error * expected.error;
+    let apart = distance(wanted, values);
+    (apart > allowed)
+        .then(|| format!("off by {apart:e} of {scale:e}, {allowed:e} allowed: {wanted:?}"))
+}
