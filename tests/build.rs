@@ -19,6 +19,7 @@ const LINEAR: &[&str] = &[
     "satellite",
     "sleigh",
     "spherical_angles",
+    "rod_particles",
     "spring_chain",
     "two_wheeled_robot",
 ];

@@ -6,17 +6,18 @@
 //! (η⁺, δξ⁺, δz⁺) = A_d (η, δξ, δz) + B_d δu
 //!
 //! has no redundant direction, whatever coordinates x are. A_d and B_d are those of the discrete map itself, not of
-//! a truncated variational equation: the step is made in dual numbers. A system without displacements of its own has
-//! none: where x has ν entries and A has n columns, η has n.
+//! a truncated variational equation: the step is made in dual numbers, with the emitted linearisation for the slopes
+//! of ξ̇, which is several times shorter than ξ̇ in such numbers.
 
 use crate::dual::Dual;
-use crate::error::StepError;
+use crate::error::{Singular, StepError};
 use crate::integrate::step;
-use crate::methods::Method;
+use crate::methods::{InChart, Method};
 use crate::scalar::Scalar;
+use crate::split::Split;
 use crate::state::State;
 use crate::store::Table;
-use crate::system::System;
+use crate::system::{Block, System};
 
 /// Dual numbers of any number of directions.
 pub trait Directions: Scalar {
@@ -34,6 +35,9 @@ pub trait Directions: Scalar {
 
     /// Its slopes.
     fn slopes(&self) -> &[Self::Value];
+
+    /// Adds a multiple of the slopes of another number.
+    fn follow(&mut self, factor: Self::Value, other: &Self);
 }
 
 impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
@@ -62,10 +66,21 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
     fn slopes(&self) -> &[S] {
         &self.slopes
     }
+
+    #[inline]
+    fn follow(&mut self, factor: S, other: &Self) {
+        for (own, slope) in self.slopes.iter_mut().zip(&other.slopes) {
+            *own = factor.mul_add(*slope, *own);
+        }
+    }
 }
 
 /// A system whose steps have slopes; generated code implements it where `linearize` is asked for.
-pub trait Tangent: System {
+pub trait Tangent: System + Clone {
+    /// Whether the coordinate kinds alone keep φ(x) = 0: all that a method moves in the chart then lies on the
+    /// manifold, where the linearisation holds.
+    const CHARTED: bool;
+
     /// Numbers with a slope for each entry of η, ξ, z and u, in this order.
     type Number: Directions<Value = Self::Scalar>;
     /// The same system in such numbers.
@@ -74,7 +89,7 @@ pub trait Tangent: System {
     type Frame: Table<Self::Scalar>;
     /// Y(x), a row for each entry of η.
     type Coframe: Table<Self::Scalar>;
-    /// [A_d B_d]: rows of η⁺, ξ⁺ and z⁺, columns of η, ξ, z and u.
+    /// [A B] and [A_d B_d]: rows of η, ξ and z, columns of η, ξ, z and u.
     type Slopes: Table<Self::Scalar>;
 
     /// The system in dual numbers, its parameters constant.
@@ -85,13 +100,195 @@ pub trait Tangent: System {
 
     /// Y(x), by rows: η = Y δx.
     fn coframe(&self, x: &Self::Coordinates) -> Self::Coframe;
+
+    /// [A B] of the motion: d/dt (η, δξ, δz) = A (η, δξ, δz) + B δu.
+    ///
+    /// # Errors
+    /// Those of [`accel`](System::accel).
+    fn slopes(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+        u: &Self::Inputs,
+    ) -> Result<Self::Slopes, Singular>;
+}
+
+/// A system in dual numbers, with the slopes of ξ̇ from its linearisation.
+#[derive(Clone, Debug)]
+pub struct Nearby<Sys: Tangent> {
+    system: Sys,
+    dual: Sys::Dual,
+}
+
+impl<Sys: Tangent> Nearby<Sys> {
+    /// Of a system at its parameters.
+    pub fn new(system: &Sys) -> Self {
+        Nearby {
+            system: system.clone(),
+            dual: system.dual(),
+        }
+    }
+}
+
+/// The values of numbers.
+fn values<N: Directions>(values: &mut [N::Value], numbers: &[N]) {
+    for (value, number) in values.iter_mut().zip(numbers) {
+        *value = number.value();
+    }
+}
+
+impl<Sys: Tangent> System for Nearby<Sys> {
+    type Scalar = Sys::Number;
+    type Coordinates = <Sys::Dual as System>::Coordinates;
+    type Velocities = <Sys::Dual as System>::Velocities;
+    type Chart = <Sys::Dual as System>::Chart;
+    type Inputs = <Sys::Dual as System>::Inputs;
+
+    fn blocks(&self) -> &[Block] {
+        self.dual.blocks()
+    }
+
+    fn zero_coordinates(&self) -> Self::Coordinates {
+        self.dual.zero_coordinates()
+    }
+
+    fn zero_velocities(&self) -> Self::Velocities {
+        self.dual.zero_velocities()
+    }
+
+    fn zero_chart(&self) -> Self::Chart {
+        self.dual.zero_chart()
+    }
+
+    fn zero_inputs(&self) -> Self::Inputs {
+        self.dual.zero_inputs()
+    }
+
+    fn start(&self) -> (Self::Coordinates, Self::Velocities) {
+        self.dual.start()
+    }
+
+    fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates {
+        self.dual.rate(x, xi)
+    }
+
+    fn chart_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {
+        self.dual.chart_rate(x, xi)
+    }
+
+    /// ξ̇ + ∂ξ̇/∂(η, ξ, z, u) of the displacements Y δx and of what ξ, z and u vary by; where coordinates may be off the
+    /// manifold, ξ̇ in dual numbers.
+    fn accel(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+        u: &Self::Inputs,
+    ) -> Result<Self::Velocities, Singular> {
+        if !Sys::CHARTED {
+            return self.dual.accel(x, xi, u);
+        }
+        let system = &self.system;
+        let mut here = system.zero_coordinates();
+        values(here.as_mut(), x.as_ref());
+        let mut velocities = system.zero_velocities();
+        values(velocities.as_mut(), xi.as_ref());
+        let mut inputs = system.zero_inputs();
+        values(inputs.as_mut(), u.as_ref());
+        let rates = system.accel(&here, &velocities, &inputs)?;
+        let table = system.slopes(&here, &velocities, &inputs)?;
+        let coframe = system.coframe(&here);
+        let displacements = table.rows() - rates.as_ref().len();
+        let mut result = self.zero_velocities();
+        for (number, rate) in result.as_mut().iter_mut().zip(rates.as_ref()) {
+            *number = Sys::Number::varying(*rate, &[]);
+        }
+        let mut follow = |column: usize, by: &Sys::Number| {
+            for (i, number) in result.as_mut().iter_mut().enumerate() {
+                if let Some(slope) = table.row(displacements + i).get(column) {
+                    number.follow(*slope, by);
+                }
+            }
+        };
+        for j in 0..displacements {
+            let mut displacement = Sys::Number::default();
+            for (factor, moved) in coframe.row(j).iter().zip(x.as_ref()) {
+                displacement.follow(*factor, moved);
+            }
+            follow(j, &displacement);
+        }
+        for (j, by) in xi.as_ref().iter().chain(u.as_ref()).enumerate() {
+            follow(displacements + j, by);
+        }
+        Ok(result)
+    }
+
+    fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates {
+        self.dual.correction(x)
+    }
+
+    fn project_position(
+        &self,
+        x: &Self::Coordinates,
+    ) -> Result<Option<Self::Velocities>, Singular> {
+        self.dual.project_position(x)
+    }
+
+    fn project_velocity(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+    ) -> Result<Option<Self::Velocities>, Singular> {
+        self.dual.project_velocity(x, xi)
+    }
+
+    fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar {
+        self.dual.constraint_norm(x)
+    }
+
+    fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar {
+        self.dual.kinetic_energy(x, xi)
+    }
+
+    fn potential_energy(&self, x: &Self::Coordinates) -> Self::Scalar {
+        self.dual.potential_energy(x)
+    }
+}
+
+impl<Sys: Tangent<Dual: Split>> Split for Nearby<Sys> {
+    type Rotors = <Sys::Dual as Split>::Rotors;
+
+    const FREE: bool = <Sys::Dual as Split>::FREE;
+
+    fn rotors(&self) -> Self::Rotors {
+        self.dual.rotors()
+    }
+
+    fn centre(&self, x: &Self::Coordinates) -> Self::Coordinates {
+        self.dual.centre(x)
+    }
+
+    fn uncentre(&self, y: &Self::Coordinates) -> Self::Coordinates {
+        self.dual.uncentre(y)
+    }
+
+    fn split_momenta(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {
+        self.dual.split_momenta(x, xi)
+    }
+
+    fn split_velocities(&self, x: &Self::Coordinates, p: &Self::Chart) -> Self::Velocities {
+        self.dual.split_velocities(x, p)
+    }
+
+    fn kick(&self, x: &Self::Coordinates, u: &Self::Inputs) -> Self::Chart {
+        self.dual.kick(x, u)
+    }
 }
 
 /// A step of length `h` from a state at inputs that are held, and its slopes [A_d B_d].
 ///
-/// Every method that runs the system in dual numbers will do; nothing is allocated. Constraints that multipliers keep
-/// are projected on as in [`step`], slopes with them. Implicit methods end where value and slopes have converged as
-/// they do, quadratically. Cost: that of a step in dual numbers of n_η + n + n_z + m directions.
+/// Every method that moves coordinates in the chart will do; nothing is allocated. Constraints that multipliers keep
+/// are projected on as in [`step`], slopes with them. Implicit methods end where slopes have converged, too. A run of
+/// many steps makes [`Nearby`] once and calls [`step_nearby`].
 ///
 /// # Errors
 /// Those of [`step`].
@@ -104,17 +301,35 @@ pub fn step_slopes<Sys, M>(
 ) -> Result<(State<Sys>, Sys::Slopes), StepError>
 where
     Sys: Tangent,
-    M: Method<Sys::Dual>,
+    M: Method<Nearby<Sys>> + InChart,
 {
+    step_nearby(method, &Nearby::new(system), state, u, h)
+}
+
+/// The same of a system that is in dual numbers already.
+///
+/// # Errors
+/// Those of [`step`].
+pub fn step_nearby<Sys, M>(
+    method: &M,
+    nearby: &Nearby<Sys>,
+    state: &State<Sys>,
+    u: &Sys::Inputs,
+    h: f64,
+) -> Result<(State<Sys>, Sys::Slopes), StepError>
+where
+    Sys: Tangent,
+    M: Method<Nearby<Sys>> + InChart,
+{
+    let system = &nearby.system;
     state.check_shape(system)?;
     let mut slopes = Sys::Slopes::zero();
-    let dual = system.dual();
     let frame = system.frame(&state.x);
     let displacements = slopes.rows() - state.xi.as_ref().len();
-    let mut varied = State::<Sys::Dual> {
+    let mut varied = State::<Nearby<Sys>> {
         t: state.t,
-        x: dual.zero_coordinates(),
-        xi: dual.zero_velocities(),
+        x: nearby.zero_coordinates(),
+        xi: nearby.zero_velocities(),
     };
     let x = varied.x.as_mut().iter_mut().zip(state.x.as_ref());
     for (i, (varied, value)) in x.enumerate() {
@@ -124,38 +339,31 @@ where
     for (i, (varied, value)) in xi.enumerate() {
         *varied = Sys::Number::along(*value, displacements + i);
     }
-    let mut held = dual.zero_inputs();
+    let mut held = nearby.zero_inputs();
     let first = slopes.rows();
     for (i, (varied, value)) in held.as_mut().iter_mut().zip(u.as_ref()).enumerate() {
         *varied = Sys::Number::along(*value, first + i);
     }
-    step(&dual, method, &mut varied, h, &|_, _, _| held.clone())?;
-    let next = varied;
+    step(nearby, method, &mut varied, h, &|_, _, _| held.clone())?;
     let mut end = State::<Sys> {
-        t: next.t,
+        t: varied.t,
         x: system.zero_coordinates(),
         xi: system.zero_velocities(),
     };
-    for (value, number) in end.x.as_mut().iter_mut().zip(next.x.as_ref()) {
-        *value = number.value();
-    }
-    for (value, number) in end.xi.as_mut().iter_mut().zip(next.xi.as_ref()) {
-        *value = number.value();
-    }
+    values(end.x.as_mut(), varied.x.as_ref());
+    values(end.xi.as_mut(), varied.xi.as_ref());
     let coframe = system.coframe(&end.x);
     for i in 0..displacements {
-        let row = slopes.row_mut(i);
-        for (factor, number) in coframe.row(i).iter().zip(next.x.as_ref()) {
-            for (sum, slope) in row.iter_mut().zip(number.slopes()) {
-                *sum = factor.mul_add(*slope, *sum);
-            }
+        let mut displacement = Sys::Number::default();
+        for (factor, moved) in coframe.row(i).iter().zip(varied.x.as_ref()) {
+            displacement.follow(*factor, moved);
         }
+        slopes.row_mut(i).copy_from_slice(displacement.slopes());
     }
-    for (i, number) in next.xi.as_ref().iter().enumerate() {
-        let row = slopes.row_mut(displacements + i);
-        row.iter_mut()
-            .zip(number.slopes())
-            .for_each(|(entry, slope)| *entry = *slope);
+    for (i, number) in varied.xi.as_ref().iter().enumerate() {
+        slopes
+            .row_mut(displacements + i)
+            .copy_from_slice(number.slopes());
     }
     Ok((end, slopes))
 }

@@ -1,8 +1,10 @@
 //! Slopes of steps against differences of the steps themselves along the manifold, extrapolated; composition, the
 //! limit of short steps, and the symplectic form.
 
-use hamel::methods::{General, Lgvi, Rkmk4, Rkmk8, Scheme, SemiImplicitEuler, Splitting};
-use hamel::{Block, Method, State, System, Table, Tangent, manifold, step, step_slopes};
+use hamel::methods::{
+    BackwardEuler, Cf4, InChart, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Splitting,
+};
+use hamel::{Block, Method, Nearby, State, System, Table, Tangent, manifold, step, step_slopes};
 use hamel_tests::linear;
 
 /// Differences over steps of 2⁻⁴ … 2⁻⁹, extrapolated: truncation like 2⁻³⁶ of derivatives of order 13, rounding 1e-13.
@@ -138,7 +140,7 @@ fn slope(of: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 fn agree<Sys, M>(name: &str, method: &M, system: &Sys, start: &State<Sys>, u: &[f64], h: f64)
 where
     Sys: Tangent<Scalar = f64>,
-    M: Method<Sys> + Method<Sys::Dual>,
+    M: Method<Sys> + Method<Nearby<Sys>> + InChart,
 {
     let exact = !name.ends_with("backward-euler");
     let close = if exact { DIFFERENCE } else { ITERATED };
@@ -206,16 +208,26 @@ where
     Sys: Tangent<Scalar = f64>,
 {
     let start = under_way(system, u);
-    for method in General::ALL {
-        agree(
-            &format!("{name}, {}", method.name()),
-            method,
-            system,
-            &start,
-            u,
-            0.02,
-        );
-    }
+    agree(
+        &format!("{name}, semi-implicit"),
+        &SemiImplicitEuler,
+        system,
+        &start,
+        u,
+        0.02,
+    );
+    agree(&format!("{name}, rkmk4"), &Rkmk4, system, &start, u, 0.02);
+    agree(&format!("{name}, cf4"), &Cf4, system, &start, u, 0.02);
+    agree(&format!("{name}, rkmk54"), &Rkmk54, system, &start, u, 0.02);
+    agree(&format!("{name}, rkmk8"), &Rkmk8, system, &start, u, 0.02);
+    agree(
+        &format!("{name}, backward-euler"),
+        &BackwardEuler,
+        system,
+        &start,
+        u,
+        0.02,
+    );
 }
 
 macro_rules! fixtures {
@@ -241,6 +253,7 @@ fixtures! {
     a_circle pendulum_circle CirclePendulum [];
     a_rolling_disk rolling_disk RollingDisk [];
     two_bodies satellite Satellite [0.1, -0.2, 0.3];
+    a_constraint_of_the_description rod_particles RodParticles [];
     a_sleigh sleigh Sleigh [];
     angles_with_rates_that_are_none spherical_angles SphericalAngles [];
     a_chain_of_springs spring_chain SpringChain [];
@@ -376,9 +389,19 @@ fn short_steps_have_the_slopes_of_the_motion() {
     let u = [3.0, 3.1, 2.9, 3.0, 0.1, -0.2, 0.05];
     let start = under_way(&drone, &u);
     let linear = drone.linearize(&start.x, &start.xi, &u).expect("regular");
-    for method in General::ALL {
-        let error = |h: f64| {
-            let (_, slopes) = step_slopes(method, &drone, &start, &u, h).expect("a step");
+    let slopes = |h: f64| {
+        let of = |result: Result<(State<_>, _), _>| rows(&result.expect("a step").1);
+        [
+            of(step_slopes(&SemiImplicitEuler, &drone, &start, &u, h)),
+            of(step_slopes(&Rkmk4, &drone, &start, &u, h)),
+            of(step_slopes(&Cf4, &drone, &start, &u, h)),
+            of(step_slopes(&Rkmk54, &drone, &start, &u, h)),
+            of(step_slopes(&Rkmk8, &drone, &start, &u, h)),
+            of(step_slopes(&BackwardEuler, &drone, &start, &u, h)),
+        ]
+    };
+    let errors = |h: f64| {
+        slopes(h).map(|slopes| {
             let mut worst: f64 = 0.0;
             for (i, (slopes, linear)) in slopes.iter().zip(&linear).enumerate() {
                 for (j, (slope, rate)) in slopes.iter().zip(linear).enumerate() {
@@ -387,12 +410,10 @@ fn short_steps_have_the_slopes_of_the_motion() {
                 }
             }
             worst
-        };
-        let (coarse, fine) = (error(1e-3), error(5e-4));
-        assert!(
-            fine < 0.27 * coarse && coarse < 0.1,
-            "{method:?}: {coarse} {fine}"
-        );
+        })
+    };
+    for (coarse, fine) in errors(1e-3).into_iter().zip(errors(5e-4)) {
+        assert!(fine < 0.27 * coarse && coarse < 0.1, "{coarse} {fine}");
     }
 }
 

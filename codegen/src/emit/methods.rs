@@ -2,7 +2,7 @@
 
 use super::{Emitter, names, structure};
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
-use crate::program::{FunctionId, Shape};
+use crate::program::{Argument, FunctionId, Shape};
 use crate::syntax::ast::ShapeKind;
 
 /// The implementations for a type that implements `System`.
@@ -153,9 +153,46 @@ fn tangent(emitter: &Emitter) -> Option<String> {
         fields += &format!("{kept}: self.{kept}.map({constant}),\n");
     }
     let name = &emitter.names.type_name;
+    let slopes = slopes(emitter)?;
+    // What is constant for its coordinate kind, and nothing else.
+    let own: usize = program.blocks.iter().map(|block| block.constraints()).sum();
+    let constraint = program.function(FunctionId::Constraint);
+    let charted = constraint.is_none_or(|phi| phi.outputs.len() == own);
     let body = format!(
-        "type Number = ::hamel::Dual<S, {columns}>;\ntype Dual = {name}<::hamel::Dual<S, {columns}>>;\n{frame}{coframe}\
-         type Slopes = [[S; {columns}]; {rows}];\n\nfn dual(&self) -> Self::Dual {{\n{name} {{\n{fields}}}\n}}\n{frame_of}{coframe_of}"
+        "const CHARTED: bool = {charted};\n\ntype Number = ::hamel::Dual<S, {columns}>;\ntype Dual = {name}<::hamel::Dual<S, {columns}>>;\n{frame}{coframe}\
+         type Slopes = [[S; {columns}]; {rows}];\n\nfn dual(&self) -> Self::Dual {{\n{name} {{\n{fields}}}\n}}\n{frame_of}{coframe_of}{slopes}"
     );
     Some(head(emitter, "Tangent", &body))
+}
+
+/// The linearisation as the trait has it.
+fn slopes(emitter: &Emitter) -> Option<String> {
+    let functions = &emitter.program.functions;
+    let index = functions
+        .iter()
+        .position(|f| f.id == Some(FunctionId::Linearize))?;
+    let function = &functions[index];
+    let argument = |argument: Argument, of: &str| {
+        let name = match function.arguments.contains(&argument) {
+            true => names::argument(argument),
+            false => "_",
+        };
+        format!("{name}: &Self::{of}")
+    };
+    let arguments = [
+        argument(Argument::Coordinates, "Coordinates"),
+        argument(Argument::Velocities, "Velocities"),
+        argument(Argument::Inputs, "Inputs"),
+    ];
+    let given = function.arguments.iter().map(|&a| names::argument(a));
+    let given = given.collect::<Vec<_>>().join(", ");
+    let call = format!("self.{}({given})", emitter.names.functions[index]);
+    let call = match function.fallible {
+        true => call,
+        false => format!("Ok({call})"),
+    };
+    let arguments = arguments.join(", ");
+    Some(format!(
+        "\nfn slopes(&self, {arguments}) -> ::core::result::Result<Self::Slopes, ::hamel::Singular> {{\n{call}\n}}\n"
+    ))
 }

@@ -44,6 +44,15 @@ impl Block {
             Block::Quaternion | Block::Rotation => 3,
         }
     }
+
+    /// Number of its own constraints: the length, or the six of Rᵀ R = I.
+    pub fn constraints(self) -> usize {
+        match self {
+            Block::Flat(_) => 0,
+            Block::Circle | Block::Quaternion => 1,
+            Block::Rotation => 6,
+        }
+    }
 }
 
 /// The blocks of a coordinate.

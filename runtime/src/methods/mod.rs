@@ -104,6 +104,27 @@ pub trait Method<Sys: System + ?Sized> {
     }
 }
 
+/// A method that moves x in the chart alone, so that all that it evaluates lies on the manifold, and that has no
+/// memory: its steps have slopes ([`step_slopes`](crate::step_slopes)). [`Rk4`] moves the entries of x.
+#[diagnostic::on_unimplemented(
+    message = "steps of `{Self}` have no slopes",
+    label = "it evaluates points off the manifold",
+    note = "take `Rkmk4`, or another method that implements `InChart`"
+)]
+pub trait InChart {}
+
+impl InChart for BackwardEuler {}
+impl InChart for Cf4 {}
+impl InChart for Free {}
+impl InChart for Lgvi {}
+impl InChart for Rkmk4 {}
+impl InChart for Rkmk54 {}
+impl InChart for Rkmk8 {}
+impl InChart for SemiImplicitEuler {}
+impl InChart for Splitting {}
+impl<const N: usize> InChart for tableau::Rkmk<N> {}
+impl<M: InChart + ?Sized> InChart for &M {}
+
 impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     fn order(&self) -> u32 {
         (**self).order()
