@@ -38,6 +38,18 @@ pub trait Directions: Scalar {
 
     /// Adds a multiple of the slopes of another number.
     fn follow(&mut self, factor: Self::Value, other: &Self);
+
+    /// Adds to the slope along one direction.
+    fn lean(&mut self, by: Self::Value, direction: usize);
+
+    /// Whether the slopes are 1 along one direction and 0 along all others.
+    fn is_along(&self, direction: usize) -> bool;
+}
+
+/// Whether all lanes are 0.
+#[inline]
+fn is_zero<S: Scalar>(a: S) -> bool {
+    a.abs().largest_lane() == 0.0
 }
 
 impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
@@ -72,6 +84,20 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
         for (own, slope) in self.slopes.iter_mut().zip(&other.slopes) {
             *own = factor.mul_add(*slope, *own);
         }
+    }
+
+    #[inline]
+    fn lean(&mut self, by: S, direction: usize) {
+        if let Some(slope) = self.slopes.get_mut(direction) {
+            *slope += by;
+        }
+    }
+
+    #[inline]
+    fn is_along(&self, direction: usize) -> bool {
+        let one = S::from_f64(1.0);
+        let mut slopes = self.slopes.iter().enumerate();
+        slopes.all(|(i, &slope)| is_zero(if i == direction { slope - one } else { slope }))
     }
 }
 
@@ -135,6 +161,18 @@ fn values<N: Directions>(values: &mut [N::Value], numbers: &[N]) {
     for (value, number) in values.iter_mut().zip(numbers) {
         *value = number.value();
     }
+}
+
+/// A row of Y times δx, without a value.
+#[inline]
+fn displacement<N: Directions>(row: &[N::Value], x: &[N]) -> N {
+    let mut sum = N::default();
+    for (factor, moved) in row.iter().zip(x) {
+        if !is_zero(*factor) {
+            sum.follow(*factor, moved);
+        }
+    }
+    sum
 }
 
 impl<Sys: Tangent> System for Nearby<Sys> {
@@ -203,18 +241,18 @@ impl<Sys: Tangent> System for Nearby<Sys> {
             *number = Sys::Number::varying(*rate, &[]);
         }
         let mut follow = |column: usize, by: &Sys::Number| {
+            // At the start of a step all vary by themselves, and inputs always do.
+            let alone = by.is_along(column);
             for (i, number) in result.as_mut().iter_mut().enumerate() {
-                if let Some(slope) = table.row(displacements + i).get(column) {
-                    number.follow(*slope, by);
+                match table.row(displacements + i).get(column) {
+                    Some(slope) if alone => number.lean(*slope, column),
+                    Some(slope) => number.follow(*slope, by),
+                    None => {}
                 }
             }
         };
         for j in 0..displacements {
-            let mut displacement = Sys::Number::default();
-            for (factor, moved) in coframe.row(j).iter().zip(x.as_ref()) {
-                displacement.follow(*factor, moved);
-            }
-            follow(j, &displacement);
+            follow(j, &displacement(coframe.row(j), x.as_ref()));
         }
         for (j, by) in xi.as_ref().iter().chain(u.as_ref()).enumerate() {
             follow(displacements + j, by);
@@ -354,10 +392,7 @@ where
     values(end.xi.as_mut(), varied.xi.as_ref());
     let coframe = system.coframe(&end.x);
     for i in 0..displacements {
-        let mut displacement = Sys::Number::default();
-        for (factor, moved) in coframe.row(i).iter().zip(varied.x.as_ref()) {
-            displacement.follow(*factor, moved);
-        }
+        let displacement = displacement(coframe.row(i), varied.x.as_ref());
         slopes.row_mut(i).copy_from_slice(displacement.slopes());
     }
     for (i, number) in varied.xi.as_ref().iter().enumerate() {
