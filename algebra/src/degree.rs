@@ -115,7 +115,7 @@ impl Degrees<'_> {
                 let [a, b] = [a, b].map(|edge| product(self.read(edge), &side, 1.0));
                 self.sum(&a, &b)
             }
-            Node::Atan2(..) => Fraction {
+            Node::Atan2(..) | Node::Listed(..) | Node::External(..) => Fraction {
                 degree: 1.0,
                 ..Fraction::default()
             },

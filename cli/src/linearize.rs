@@ -69,7 +69,7 @@ struct Linear {
 
 /// Linearises and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_linearized()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let program = &generated.program;

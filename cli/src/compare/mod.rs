@@ -136,7 +136,7 @@ fn compare(
     arguments: &Arguments,
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
-    let source = Source::open(file, &arguments.robot)?;
+    let source = Source::open(file, &arguments.robot)?.in_numbers();
     let generated = source.derive_all()?;
     let mut state = State::read(&source, &generated, arguments.at.as_deref())?;
     let fields = solution

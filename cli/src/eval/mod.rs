@@ -62,7 +62,7 @@ pub struct Arguments {
 
 /// Evaluates and prints; where something has no value it is `null`, and the command fails.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let at = arguments.at.as_deref();
     let at = at.map(|path| File::read(path, &source)).transpose()?;
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {

@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_all()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let system = Interpreted::new(&generated, &state)?;

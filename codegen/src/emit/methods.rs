@@ -1,6 +1,6 @@
 //! `impl hamel::Split` and `impl hamel::Canonical`, where all that they consist of was generated.
 
-use super::{Emitter, structure};
+use super::{Emitter, externals, structure};
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
 
 /// The implementations for a type that implements `System`.
@@ -17,9 +17,10 @@ fn generated<'a>(emitter: &'a Emitter, name: &str) -> Option<&'a str> {
 
 fn head(emitter: &Emitter, of: &str, body: &str) -> String {
     format!(
-        "{}impl<S: ::hamel::Scalar> ::hamel::{of} for {}<S> {{\n{body}}}\n\n",
+        "{}impl{} ::hamel::{of} for {} {{\n{body}}}\n\n",
         structure::ALLOW_TRAIT,
-        emitter.names.type_name
+        externals::generics(emitter),
+        externals::applied(emitter)
     )
 }
 

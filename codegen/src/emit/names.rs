@@ -11,6 +11,8 @@
 //! | the same where that is taken | `snake_case` + `_output` |
 //! | field of kept constants | `k` |
 //! | private functions | `constants`, `update`, function + `_part1` … |
+//! | functions in Rust: their trait, their field | type + `Functions`, `functions` |
+//! | their methods | `snake_case` of the name as written, the same + `_jacobian` |
 //! | arguments | `x`, `xi`, `u`, `xi_dot`; `slots`, `out` in parts |
 //! | temporaries | the user's name, `t1` …, `sin1`, `sin_q` …, `minus_` + name of a negated one |
 //! | numbers | `zero`, `one`, `two`, `half` …, `c1` … |
@@ -234,6 +236,52 @@ impl Unique {
     }
 }
 
+/// The names of what a program's functions in Rust go by.
+#[derive(Clone, Debug, Default)]
+pub struct ExternalNames {
+    /// The trait of those who have them.
+    pub of: String,
+    /// The type that has them, a parameter of the program's type.
+    pub parameter: String,
+    /// The field in which they are.
+    pub field: String,
+    /// For each function, that of its components and that of its slopes.
+    pub methods: Vec<[String; 2]>,
+    /// Its arguments.
+    pub arguments: Vec<Vec<String>>,
+}
+
+impl ExternalNames {
+    fn new(program: &Program, type_name: &str, fields: &mut Unique) -> Self {
+        let externals = program.graph.externals();
+        if externals.is_empty() {
+            return ExternalNames::default();
+        }
+        let mut methods = Unique::new(METHODS);
+        let written: Vec<&str> = externals.iter().map(|one| one.name.as_str()).collect();
+        let values: Vec<String> = cased(&written)
+            .iter()
+            .map(|wanted| methods.claim(wanted))
+            .collect();
+        let both = values.into_iter().map(|value| {
+            let slopes = methods.claim(&format!("{}_jacobian", value.trim_end_matches('_')));
+            [value, slopes]
+        });
+        let arguments = externals.iter().map(|one| {
+            let mut own = Unique::default();
+            let wanted: Vec<&str> = one.arguments.iter().map(String::as_str).collect();
+            cased(&wanted).iter().map(|name| own.claim(name)).collect()
+        });
+        ExternalNames {
+            of: format!("{type_name}Functions"),
+            parameter: if type_name == "F" { "G" } else { "F" }.into(),
+            field: fields.claim("functions"),
+            methods: both.collect(),
+            arguments: arguments.collect(),
+        }
+    }
+}
+
 /// The names of a program's type, fields and methods.
 #[derive(Clone, Debug)]
 pub struct Names {
@@ -251,6 +299,8 @@ pub struct Names {
     pub constants: String,
     /// The function that computes them and checks pivots.
     pub update: String,
+    /// Functions in Rust.
+    pub externals: ExternalNames,
     methods: Unique,
 }
 
@@ -286,12 +336,16 @@ impl Names {
                 Some(wanted) => methods.claim(&format!("{}_output", wanted.trim_end_matches('_'))),
             });
         }
+        let type_name = type_name(&program.name);
+        let all = params.iter().map(|wanted| fields.claim(wanted)).collect();
+        let kept = fields.claim("k");
         Names {
-            type_name: type_name(&program.name),
+            externals: ExternalNames::new(program, &type_name, &mut fields),
+            type_name,
             functions: named,
-            fields: params.iter().map(|wanted| fields.claim(wanted)).collect(),
+            fields: all,
             accessors,
-            kept: fields.claim("k"),
+            kept,
             constants: methods.claim("constants"),
             update: methods.claim("update"),
             methods,

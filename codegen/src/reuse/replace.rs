@@ -44,6 +44,10 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> Vec<Item
                 .map(|(name, _)| name.name.clone());
             replacing.locals = names.collect();
         }
+        if let ItemKind::External(function) = &item.kind {
+            let names = function.parameters.iter().map(|name| name.name.clone());
+            replacing.locals = names.collect();
+        }
         if let ItemKind::Frame { name, .. } = &mut item.kind
             && world.is_parameter(name, &context)
         {

@@ -42,6 +42,16 @@ pub fn statement(item: &Item) -> String {
             let (name, value) = (&function.name.name, written(&function.value));
             format!("fn {name}({parameters}) = {value}")
         }
+        ItemKind::External(function) => {
+            let parameters = each(&function.parameters, |name| name.name.clone());
+            let (name, count) = (&function.name.name, function.components.0);
+            let stand_in = function.stand_in.as_ref();
+            let stand_in = stand_in.map(|value| format!(" = {}", written(value)));
+            format!(
+                "extern fn {name}({parameters}) -> {count}{}",
+                stand_in.unwrap_or_default()
+            )
+        }
         ItemKind::Table(values) => table(values),
         ItemKind::Coord(list) => format!("coord {}", each(list, coordinate)),
         ItemKind::Velocity(list) => format!("velocity {}", declarations(list)),
