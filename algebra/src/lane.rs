@@ -5,8 +5,8 @@
 //! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
 //! exp is treated likewise, and sinh, cosh and tanh follow from it. Square roots keep the laws of positive numbers (`roots`).
 
-use super::fp::{Fp, Random};
 use super::external::Component;
+use super::fp::{Fp, Random};
 use super::function::Function;
 use super::numbers::{Form, Modular, Numbers, Step};
 use super::prime::Residue;

@@ -10,8 +10,8 @@
 //! | twice the length, with bounds of rounding, beside `f64` | `rounding` |
 //! | real samples, certain bounds | `shadow` |
 
-use super::fp::Fp;
 use super::external::Component;
+use super::fp::Fp;
 use super::function::{Function, Slope};
 use super::node::{Edge, Node};
 use num_rational::BigRational;

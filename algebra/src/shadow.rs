@@ -194,9 +194,9 @@ impl Numbers for Samples<'_> {
                 std::array::from_fn(|sample| c[sample].select(a[sample], b[sample]))
             }
             // One function that these may be: what holds for all functions holds for this one.
-            Step::Listed(rest, a) => {
-                pair(rest, a, |rest, a| rest.times(Real::new(external::WEIGHT, 0.0)).plus(a))
-            }
+            Step::Listed(rest, a) => pair(rest, a, |rest, a| {
+                rest.times(Real::new(external::WEIGHT, 0.0)).plus(a)
+            }),
             Step::External(component, list, _) => {
                 let [constant, factor] = component.likeness().map(|c| Real::new(c, 0.0));
                 list.map(|list| list.times(factor).plus(constant))

@@ -150,11 +150,11 @@ fn compare(
     system.check_parameters(&state.x)?;
     let structure = &generated.program.structure;
     let (methods, missing) = method::fitting(&arguments.methods, &system, structure);
-    let inputs = |_: f64, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
+    let inputs = |t: f64, x: &Vec<f64>, xi: &Vec<f64>| system.inputs(t, x, xi);
     let momenta = |x: &[f64], xi: &[f64]| -> Vec<f64> {
         let values = system.invariants().iter();
         values
-            .flat_map(|claim| system.output(claim, x, xi))
+            .flat_map(|claim| system.output(claim, 0.0, x, xi))
             .collect()
     };
     let mut problem = Problem {

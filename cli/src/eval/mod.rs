@@ -152,7 +152,7 @@ fn motion(
         None => Some(Json::vector(&[])),
     };
     let outputs = system.outputs().iter().map(|output| {
-        let values = system.output(output, x, xi);
+        let values = system.output(output, 0.0, x, xi);
         let value = match output.shape {
             Shape::Scalar => Json::Number(values.first().copied().unwrap_or(f64::NAN)),
             Shape::Vector(_) => Json::vector(&values),

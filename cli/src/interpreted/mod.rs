@@ -4,6 +4,7 @@ mod momenta;
 
 use crate::failure::Failure;
 use crate::names;
+use crate::simulate::inputs::Inputs;
 use crate::singular::Failed;
 use crate::state::State;
 use hamel::{Block, Singular, System};
@@ -20,6 +21,8 @@ pub struct Interpreted {
     blocks: Vec<Block>,
     start: (Vec<f64>, Vec<f64>),
     inputs: Vec<f64>,
+    /// What inputs are, where they do not keep these values.
+    given: Option<Inputs>,
     chart: usize,
     rate: Interpreter,
     chart_rate: Interpreter,
@@ -82,6 +85,7 @@ impl Interpreted {
             blocks: program.blocks.iter().copied().map(block).collect(),
             start: (state.x.clone(), state.xi.clone()),
             inputs: state.u.clone(),
+            given: None,
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
             rate: function("rate")?,
             chart_rate: function("chart_rate")?,
@@ -150,9 +154,18 @@ impl Interpreted {
         self.evaluations.set(self.evaluations.get() + 1);
     }
 
-    /// u, constant in a run.
-    pub fn inputs(&self) -> &[f64] {
-        &self.inputs
+    /// The same with inputs that change.
+    pub fn with(self, given: Option<Inputs>) -> Self {
+        Interpreted { given, ..self }
+    }
+
+    /// u.
+    pub fn inputs(&self, t: f64, x: &[f64], xi: &[f64]) -> Vec<f64> {
+        let kept = self.inputs.clone();
+        match &self.given {
+            Some(given) => given.at(t, x, xi, kept),
+            None => kept,
+        }
     }
 
     /// p = M ξ.
@@ -161,8 +174,8 @@ impl Interpreted {
     }
 
     /// The power of the loads, f ξ.
-    pub fn power(&self, x: &[f64], xi: &[f64]) -> f64 {
-        let force = value(&self.force, x, xi, &self.inputs);
+    pub fn power(&self, t: f64, x: &[f64], xi: &[f64]) -> f64 {
+        let force = value(&self.force, x, xi, &self.inputs(t, x, xi));
         force.iter().zip(xi).map(|(f, v)| f * v).sum()
     }
 
@@ -183,14 +196,15 @@ impl Interpreted {
 
     /// The value of an output, matrices by rows; of accelerations, those of the forward dynamics,
     /// NaN where they have no value.
-    pub fn output(&self, output: &Output, x: &[f64], xi: &[f64]) -> Vec<f64> {
+    pub fn output(&self, output: &Output, t: f64, x: &[f64], xi: &[f64]) -> Vec<f64> {
+        let u = self.inputs(t, x, xi);
         let mut xi_dot = Vec::new();
         if output.accelerated {
             let accel = self.accel.as_ref();
-            let accel = accel.and_then(|accel| accel.call(x, xi, &self.inputs, &[]).ok());
+            let accel = accel.and_then(|accel| accel.call(x, xi, &u, &[]).ok());
             xi_dot = accel.unwrap_or_else(|| vec![f64::NAN; xi.len()]);
         }
-        let value = output.function.call(x, xi, &self.inputs, &xi_dot);
+        let value = output.function.call(x, xi, &u, &xi_dot);
         value.unwrap_or_default()
     }
 }

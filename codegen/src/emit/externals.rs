@@ -87,7 +87,11 @@ pub fn functions(emitter: &Emitter) -> String {
 /// What is said of components and of slopes.
 fn documentation(external: &External) -> [Vec<String>; 2] {
     let given = external.arguments.join(", ");
-    let (name, m, n) = (&external.name, external.components, external.arguments.len());
+    let (name, m, n) = (
+        &external.name,
+        external.components,
+        external.arguments.len(),
+    );
     let call = format!("{name}({given})");
     match m {
         1 => [

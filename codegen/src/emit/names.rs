@@ -151,16 +151,17 @@ pub fn type_name(name: &str) -> String {
 pub fn cased(names: &[&str]) -> Vec<String> {
     let is_lower = |name: &str| !name.chars().any(char::is_uppercase);
     let snakes: Vec<String> = names.iter().map(|name| snake(name)).collect();
-    let lower = |wanted: &String| {
-        let mut all = names.iter().zip(&snakes);
-        all.any(|(name, snake)| snake == wanted && is_lower(name))
-    };
-    let each = names.iter().zip(&snakes);
-    each.map(|(name, snake)| match lower(snake) && !is_lower(name) {
-        true => format!("{}_upper", snake.trim_end_matches('_')),
-        false => snake.clone(),
-    })
-    .collect()
+    let each = || names.iter().zip(&snakes);
+    let lower = each().filter(|(name, _)| is_lower(name));
+    let lower: FxHashSet<&String> = lower.map(|(_, snake)| snake).collect();
+    each()
+        .map(
+            |(name, snake)| match lower.contains(snake) && !is_lower(name) {
+                true => format!("{}_upper", snake.trim_end_matches('_')),
+                false => snake.clone(),
+            },
+        )
+        .collect()
 }
 
 fn spell(letter: char) -> String {
@@ -206,7 +207,9 @@ impl Unique {
 
     /// The wanted name where it is free, or the first free one of `name_2`, `name_3` ….
     pub fn claim(&mut self, wanted: &str) -> String {
-        self.claim_where(wanted, |_| true)
+        let name = self.free_where(wanted, |_| true);
+        self.taken.insert(name.clone());
+        name
     }
 
     /// The name that `claim` would give, without taking it.
@@ -217,12 +220,6 @@ impl Unique {
     /// Whether `claim` would give this very name.
     pub fn is_free(&self, name: &str) -> bool {
         !self.taken.contains(name)
-    }
-
-    fn claim_where(&mut self, wanted: &str, accept: impl Fn(&str) -> bool) -> String {
-        let name = self.free_where(wanted, accept);
-        self.taken.insert(name.clone());
-        name
     }
 
     fn free_where(&self, wanted: &str, accept: impl Fn(&str) -> bool) -> String {
@@ -315,10 +312,10 @@ impl Names {
         let params = cased(&groups.map(|group| group.name.as_str()).collect::<Vec<_>>());
         let mut accessors = Vec::new();
         for wanted in &params {
-            let taken = methods.taken.clone();
-            let free = |name: &str| !taken.contains(&format!("set_{name}"));
-            let accessor = methods.claim_where(wanted, free);
-            methods.claim(&format!("set_{accessor}"));
+            let setter = |name: &str| format!("set_{name}");
+            let accessor = methods.free_where(wanted, |name| methods.is_free(&setter(name)));
+            methods.claim(&accessor);
+            methods.claim(&setter(&accessor));
             accessors.push(accessor);
         }
         let own = program.functions.iter().filter(|f| f.id.is_none());

@@ -154,10 +154,7 @@ pub fn default(emitter: &Emitter) -> String {
     let program = emitter.program;
     let fields = emitter.names.fields.iter();
     let fields = fields.map(|field| format!("{field}: parameters.{field}"));
-    let functions = format!(
-        "{}::default()",
-        emitter.names.externals.parameter
-    );
+    let functions = format!("{}::default()", emitter.names.externals.parameter);
     let value = literal(emitter, fields.collect(), Some(&functions));
     let names = &emitter.names;
     let given = match program.params.is_empty() {

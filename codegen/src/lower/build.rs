@@ -7,8 +7,8 @@ use super::rate::At;
 use super::scope::Scope;
 use super::variety::Variety;
 use super::{
-    defaults, dynamics, externals, invariants, joints, kinematics, pfaffian, prescribe, start, states,
-    staying, strange, time, unused,
+    defaults, dynamics, externals, invariants, joints, kinematics, pfaffian, prescribe, start,
+    states, staying, strange, time, unused,
 };
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;

@@ -133,7 +133,10 @@ impl Evaluator<'_> {
         let (wanted, given) = (function.parameters.len(), arguments.len());
         if wanted != given {
             let plural = if wanted == 1 { "" } else { "s" };
-            let message = format!("`{}` takes {wanted} argument{plural}, not {given}", name.name);
+            let message = format!(
+                "`{}` takes {wanted} argument{plural}, not {given}",
+                name.name
+            );
             let parameters = function.parameters.iter().map(|name| name.name.as_str());
             let parameters: Vec<&str> = parameters.collect();
             let usage = format!("write `{}({})`", name.name, parameters.join(", "));
@@ -163,7 +166,7 @@ impl Evaluator<'_> {
                 "a function in Rust is called while the system moves: let a parameter stand for this value",
             ));
         }
-        let count = function.components.0.min(Component::MOST);
+        let count = function.components.0.clamp(1, Component::MOST);
         let of = |component| Component::new(place, component, given);
         let made = (0..count).map(|k| self.graph.external(of(k), &edges));
         let made: Vec<Edge> = made.collect();
@@ -189,7 +192,9 @@ impl Evaluator<'_> {
         let parameters = function.parameters.iter();
         let written = Function {
             name: function.name.clone(),
-            parameters: parameters.map(|name| (name.clone(), shape(name.span))).collect(),
+            parameters: parameters
+                .map(|name| (name.clone(), shape(name.span)))
+                .collect(),
             value: value.clone(),
         };
         let found = self.applied(&written, arguments, span)?;
@@ -217,6 +222,22 @@ impl Evaluator<'_> {
     }
 }
 
+impl Evaluator<'_> {
+    /// Whether a value depends on no function in Rust; reports it where it does.
+    pub(super) fn inside(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
+        let Some((component, _)) = self.graph.find_external(&value.entries(), 0) else {
+            return Some(());
+        };
+        let functions = self.graph.externals();
+        let name = &functions.get(usize::from(component.function))?.name;
+        let message = format!("{what} cannot depend on `{name}`, a function in Rust");
+        self.error(Diagnostic::new(span, message).help(PLACES))
+    }
+}
+
+/// Where functions in Rust may be called.
+const PLACES: &str = "forces, torques, outputs and rates of states may depend on it; energies, places, constraints and prescribed motions have to be expressions";
+
 /// What is wrong where something other than a load, an output or the rate of a state depends on a function in Rust.
 pub fn misplaced(model: &Model, called: &[(Edge, Span)]) -> Option<Diagnostic> {
     if called.is_empty() {
@@ -236,13 +257,14 @@ pub fn misplaced(model: &Model, called: &[(Edge, Span)]) -> Option<Diagnostic> {
     let (component, list) = model.graph.find_external(&edges, 0)?;
     let lists = |edge: Edge| model.graph.called_with(edge).map(|(_, list)| list);
     let call = called.iter().find(|(edge, _)| lists(*edge) == Some(list));
-    let function = model.graph.externals().get(usize::from(component.function))?;
+    let function = model
+        .graph
+        .externals()
+        .get(usize::from(component.function))?;
     let span = call.map_or(model.span, |(_, span)| *span);
     let message = format!(
         "`{}` takes part in what is no load, and it is a function in Rust",
         function.name
     );
-    Some(Diagnostic::new(span, message).help(
-        "forces, torques, outputs and rates of states may depend on it; energies, places, constraints and prescribed motions have to be expressions",
-    ))
+    Some(Diagnostic::new(span, message).help(PLACES))
 }

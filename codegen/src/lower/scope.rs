@@ -6,7 +6,9 @@ use crate::algebra::function::Function;
 use crate::algebra::graph::{Edge, NodeId};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, External, Function as Defined, Ident, Item, ItemKind, Span, System};
+use crate::syntax::ast::{
+    CoordKind, External, Function as Defined, Ident, Item, ItemKind, Span, System,
+};
 use crate::syntax::suggest::closest;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;

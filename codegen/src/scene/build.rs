@@ -5,8 +5,8 @@ use super::parts::{Body, Element, Frame, Joint, Load};
 use super::{Scene, SceneError, print};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
-    Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, External, Function, Item, ItemKind,
-    Origins, Shape, ShapeKind, Source, Span, System, Table, Target,
+    Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, External, Function, Item,
+    ItemKind, Origins, Shape, ShapeKind, Source, Span, System, Table, Target,
 };
 use crate::syntax::parse_text;
 

@@ -52,6 +52,18 @@ pub enum ShapeKind {
     Symmetric(usize),
 }
 
+impl ShapeKind {
+    /// What stands behind a name: `: vec3`, nothing for a scalar.
+    pub fn annotation(self) -> String {
+        match self {
+            ShapeKind::Scalar => String::new(),
+            ShapeKind::Vector(n) => format!(": vec{n}"),
+            ShapeKind::Matrix(n) => format!(": mat{n}"),
+            ShapeKind::Symmetric(n) => format!(": sym{n}"),
+        }
+    }
+}
+
 /// A shape annotation with its place (the place of the name where none was written).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {

@@ -1,10 +1,10 @@
 //! Statements that declare names: parameters, coordinates, velocities, inputs.
 
 use super::ast::{CoordKind, Declaration, External, Function, Ident, Shape, ShapeKind, Span};
-use super::tokens::Kind;
 use super::cursor::{Cursor, Parsed, shown};
 use super::expression::expression;
 use super::path;
+use super::tokens::Kind;
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -120,7 +120,11 @@ pub(super) fn external(cursor: &mut Cursor<'_>) -> Parsed<External> {
     }
     let span = cursor.here();
     let token = cursor.peek();
-    let count = token.text.parse().ok().filter(|_| token.kind == Kind::Literal);
+    let count = token
+        .text
+        .parse()
+        .ok()
+        .filter(|_| token.kind == Kind::Literal);
     let Some(count) = count else {
         return Err(cursor.unexpected("a whole number").help(HELP));
     };
@@ -168,7 +172,7 @@ fn after(cursor: &mut Cursor<'_>, name: &Ident) -> Parsed<Shape> {
     }
 }
 
-fn shape(cursor: &mut Cursor<'_>) -> Parsed<Shape> {
+pub(super) fn shape(cursor: &mut Cursor<'_>) -> Parsed<Shape> {
     let Ident { name, span } = cursor.word("a shape")?;
     let (family, size) = family(&name);
     let kind: fn(usize) -> ShapeKind = match family {

@@ -171,7 +171,9 @@ impl Atom {
         match self {
             Atom::Name(_) => 1,
             Atom::Sum(terms) => terms.iter().map(Term::weight).sum(),
-            Atom::Call(_, arguments) | Atom::External { arguments, .. } => 1 + arguments.iter().map(Term::weight).sum::<usize>(),
+            Atom::Call(_, arguments) | Atom::External { arguments, .. } => {
+                1 + arguments.iter().map(Term::weight).sum::<usize>()
+            }
         }
     }
 

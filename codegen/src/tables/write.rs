@@ -137,7 +137,9 @@ impl<'a> Writer<'a> {
     fn choose(&mut self, id: NodeId, whole: bool) -> Plan {
         let polynomial = match (self.graph.node(id), self.style) {
             (Node::Constant(_) | Node::Symbol(_), _) => return Plan::Leaf,
-            (Node::Add(..) | Node::Mul(..), Style::Table) if whole => self.simplifier.whole(self.graph, id),
+            (Node::Add(..) | Node::Mul(..), Style::Table) if whole => {
+                self.simplifier.whole(self.graph, id)
+            }
             (Node::Add(..) | Node::Mul(..), Style::Table) => self.simplifier.part(self.graph, id),
             (Node::Add(..) | Node::Mul(..), Style::Route) if self.graph.is_free(id) => {
                 let short = self.simplifier.part(self.graph, id);

@@ -1,8 +1,8 @@
 //! The names, expressions and places of a statement, visited one by one.
 
 use super::{
-    Acting, Body, Choice, Components, Condition, Conserved, Declaration, End, Expr, ExprKind, External,
-    Function, Ident, Item, ItemKind, Joint, Load, Source, Span, Table, Target,
+    Acting, Body, Choice, Components, Condition, Conserved, Declaration, End, Expr, ExprKind,
+    External, Function, Ident, Item, ItemKind, Joint, Load, Source, Span, Table, Target,
 };
 
 /// What is done with the parts of a statement.
