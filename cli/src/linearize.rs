@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;
-    let system = Interpreted::new(&generated, &state)?;
+    let system = Interpreted::new(&generated, &state, source.shown())?;
     let none = |why: String| Failure::failed(format!("there is no linearisation: {why}"));
     let xi_dot = system.motion(x, xi, u).map_err(none)?;
     let flat = function(program, "linearize", params)?

@@ -77,6 +77,14 @@ impl Source {
         self.path == STDIN
     }
 
+    /// The text that messages give lines of: none for a robot, whose description its user has not written.
+    pub fn shown(&self) -> &str {
+        match &self.robot {
+            Some(_) => "",
+            None => &self.text,
+        }
+    }
+
     /// The joints of a robot by their names in its file and in the description; none of a description.
     pub fn joints(&self) -> &[(String, String)] {
         match &self.robot {

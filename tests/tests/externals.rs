@@ -3,7 +3,7 @@
 
 use hamel::methods::Rkmk8;
 use hamel::wide::f64x4;
-use hamel::{Scalar, State, System, integrate};
+use hamel::{Scalar, State, integrate};
 use hamel_tests::glider::{Glider, GliderFunctions, GliderParameters, GliderState};
 
 /// Coefficients that hold at all angles, with their slopes.
@@ -63,7 +63,9 @@ fn glider() -> Glider<f64, Wing> {
 fn forces_are_those_of_the_function() {
     let glider = glider();
     for state @ [pitch, dz, dx, w] in STATES {
-        let found = glider.accel(&[0.3, -2.0, pitch], &[dz, dx, w], &[]);
+        let found = glider
+            .accel(&[0.3, -2.0, pitch], &[dz, dx, w], &[])
+            .expect("a value");
         for (found, wanted) in found.iter().zip(by_hand(state)) {
             assert!(
                 (found - wanted).abs() < 1e-10 * wanted.abs().max(1.0),
@@ -124,8 +126,14 @@ fn slopes_are_those_of_the_matrix() {
     const H: f64 = 1e-5;
     for [pitch, dz, dx, w] in STATES {
         let at = [0.3, -2.0, pitch, dz, dx, w];
-        let accel = |y: [f64; 6]| glider.accel(&[y[0], y[1], y[2]], &[y[3], y[4], y[5]], &[]);
-        let rows = glider.linearize(&[at[0], at[1], at[2]], &[dz, dx, w], &[]);
+        let accel = |y: [f64; 6]| {
+            glider
+                .accel(&[y[0], y[1], y[2]], &[y[3], y[4], y[5]], &[])
+                .expect("a value")
+        };
+        let rows = glider
+            .linearize(&[at[0], at[1], at[2]], &[dz, dx, w], &[])
+            .expect("a value");
         for column in 0..6 {
             let (mut more, mut less) = (at, at);
             more[column] += H;
@@ -149,14 +157,20 @@ fn numbers_of_all_kinds() {
     let single = Glider::<f32, Wing>::default();
     let lanes = Glider::<f64x4, Wing>::default();
     for [pitch, dz, dx, w] in STATES {
-        let wanted = glider().accel(&[0.0, 0.0, pitch], &[dz, dx, w], &[]);
-        let short = single.accel(
-            &[0.0, 0.0, pitch as f32],
-            &[dz as f32, dx as f32, w as f32],
-            &[],
-        );
+        let wanted = glider()
+            .accel(&[0.0, 0.0, pitch], &[dz, dx, w], &[])
+            .expect("a value");
+        let short = single
+            .accel(
+                &[0.0, 0.0, pitch as f32],
+                &[dz as f32, dx as f32, w as f32],
+                &[],
+            )
+            .expect("a value");
         let [zero, pitch, dz, dx, w] = [0.0, pitch, dz, dx, w].map(f64x4::splat);
-        let wide = lanes.accel(&[zero, zero, pitch], &[dz, dx, w], &[]);
+        let wide = lanes
+            .accel(&[zero, zero, pitch], &[dz, dx, w], &[])
+            .expect("a value");
         for k in 0..3 {
             let size = wanted[k].abs().max(10.0);
             assert!((f64::from(short[k]) - wanted[k]).abs() < 1e-4 * size);

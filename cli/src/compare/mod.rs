@@ -146,7 +146,7 @@ fn compare(
     if let Some(fields) = &fields {
         fields.start(&mut state)?;
     }
-    let system = Interpreted::new(&generated, &state)?;
+    let system = Interpreted::new(&generated, &state, source.shown())?;
     system.check_parameters(&state.x)?;
     let structure = &generated.program.structure;
     let (methods, missing) = method::fitting(&arguments.methods, &system, structure);

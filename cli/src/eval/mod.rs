@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let mut missing: Vec<String> = Vec::new();
-    members.extend(motion(&generated, &state, &mut missing)?);
+    members.extend(motion(&generated, (&state, source.shown()), &mut missing)?);
     let infinite = members.iter().filter(|(_, value)| !finite(value));
     let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
     if !infinite.is_empty() {
@@ -127,10 +127,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Forces, rates, energies, outputs.
 fn motion(
     generated: &Generated,
-    state: &State,
+    (state, text): (&State, &str),
     missing: &mut Vec<String>,
 ) -> Result<Vec<(&'static str, Json)>, Failure> {
-    let system = Interpreted::new(generated, state)?;
+    let system = Interpreted::new(generated, state, text)?;
     let State { params, x, xi, u } = state;
     let vector = |name: &str| -> Result<Json, Failure> {
         let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);

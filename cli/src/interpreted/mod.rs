@@ -3,9 +3,8 @@
 mod momenta;
 
 use crate::failure::Failure;
-use crate::names;
 use crate::simulate::inputs::Inputs;
-use crate::singular::Failed;
+use crate::singular::{self, Failed};
 use crate::state::State;
 use hamel::{Block, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
@@ -42,7 +41,9 @@ pub struct Interpreted {
     invariants: Vec<Output>,
     functions: Functions,
     evaluations: Cell<u64>,
-    velocity_names: Vec<String>,
+    velocity_labels: Vec<String>,
+    /// What is said where constraints depend on one another.
+    dependent: String,
     constant_singular: bool,
     constrained: bool,
     /// Whether energy changes otherwise than by loads: with the time, or by drives.
@@ -62,8 +63,9 @@ pub struct Output {
 }
 
 impl Interpreted {
-    /// Compiles a complete program for the parameters, start and constant inputs of a state.
-    pub fn new(generated: &Generated, state: &State) -> Result<Self, Failure> {
+    /// Compiles a complete program for the parameters, start and constant inputs of a state; the text of the description
+    /// is for messages.
+    pub fn new(generated: &Generated, state: &State, text: &str) -> Result<Self, Failure> {
         let program = &generated.program;
         let function = |name: &str| function(program, name, &state.params);
         let output = |name: &String| {
@@ -103,7 +105,8 @@ impl Interpreted {
             invariants: invariants.collect::<Result<_, Failure>>()?,
             functions: Functions::new(program, &state.params)?,
             evaluations: Cell::new(0),
-            velocity_names: names::velocities(&generated.active),
+            velocity_labels: singular::labels(&generated.active, text),
+            dependent: singular::dependent(&generated.active, text),
             constant_singular: constant_singular(program, &state.params),
             constrained: generated.model.is_constrained(),
             driven: generated.model.clock.is_some() || !generated.model.accelerated.is_empty(),
@@ -116,9 +119,14 @@ impl Interpreted {
         self.evaluations.get()
     }
 
-    /// The names of the entries of ξ.
-    pub fn velocity_names(&self) -> &[String] {
-        &self.velocity_names
+    /// The entries of ξ as messages call them.
+    pub fn velocity_labels(&self) -> &[String] {
+        &self.velocity_labels
+    }
+
+    /// What is said where constraints depend on one another.
+    pub fn dependent(&self) -> &str {
+        &self.dependent
     }
 
     /// Whether a mass matrix that is constant in time is not positive definite with these parameters.

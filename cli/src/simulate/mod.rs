@@ -123,7 +123,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         until: arguments.until,
     };
     let given = inputs::Inputs::new(asked, &generated, &state)?;
-    let system = Interpreted::new(&generated, &state)?.with(given);
+    let system = Interpreted::new(&generated, &state, source.shown())?.with(given);
     system.check_parameters(&state.x)?;
     let until = arguments.until;
     let step = arguments
