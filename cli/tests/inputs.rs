@@ -137,7 +137,10 @@ fn what_cannot_be_used_is_said() {
             &["--input", "F = [1, 2]"],
             "`F` is a number, this is 2 numbers",
         ),
-        (&["--input", "side = 1"], "has to be a vector of 2"),
+        (
+            &["--input", "side = 1"],
+            "`side` was declared as a vector of 2, its value is a scalar",
+        ),
         (&["--input", "F"], "an input is written `NAME = EXPRESSION`"),
         (&["--input", "F = 1; q"], "one expression is needed"),
         (

@@ -22,6 +22,8 @@ pub struct Interpreted {
     inputs: Vec<f64>,
     /// What inputs are, where they do not keep these values.
     given: Option<Inputs>,
+    /// Where they jump next.
+    before: Cell<f64>,
     chart: usize,
     rate: Interpreter,
     chart_rate: Interpreter,
@@ -88,6 +90,7 @@ impl Interpreted {
             start: (state.x.clone(), state.xi.clone()),
             inputs: state.u.clone(),
             given: None,
+            before: Cell::new(f64::INFINITY),
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
             rate: function("rate")?,
             chart_rate: function("chart_rate")?,
@@ -167,9 +170,24 @@ impl Interpreted {
         Interpreted { given, ..self }
     }
 
+    /// Times at which inputs jump.
+    pub fn jumps(&self) -> &[f64] {
+        self.given.as_ref().map_or(&[], Inputs::jumps)
+    }
+
+    /// From now on a run goes from this time to the next jump of its inputs, where they are what they are before it.
+    pub fn go_from(&self, t: f64) {
+        let next = self.jumps().iter().find(|jump| **jump > t);
+        self.before.set(next.copied().unwrap_or(f64::INFINITY));
+    }
+
     /// u.
     pub fn inputs(&self, t: f64, x: &[f64], xi: &[f64]) -> Vec<f64> {
         let kept = self.inputs.clone();
+        let t = match t >= self.before.get() {
+            true => self.before.get().next_down(),
+            false => t,
+        };
         match &self.given {
             Some(given) => given.at(t, x, xi, kept),
             None => kept,

@@ -59,6 +59,11 @@ impl Inputs {
         Ok((table.is_some() || expressions.is_some()).then_some(Inputs { table, expressions }))
     }
 
+    /// Times at which inputs jump.
+    pub fn jumps(&self) -> &[f64] {
+        self.table.as_ref().map_or(&[], Table::jumps)
+    }
+
     /// u, from the values that inputs keep elsewhere.
     pub fn at(&self, t: f64, x: &[f64], xi: &[f64], mut u: Vec<f64>) -> Vec<f64> {
         if let Some(table) = &self.table {

@@ -373,18 +373,20 @@ fn advance(
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
         let method = &plan.method.stepper;
-        let Spacing::Times(times) = &plan.spacing else {
-            let observe = |state: &State<Interpreted>| observe(state, Place::End);
-            return integrate(
-                system, method, state, plan.step, plan.until, inputs, observe,
-            );
+        let times = match &plan.spacing {
+            Spacing::Times(times) => times.as_slice(),
+            _ => &[],
         };
-        // Equal steps from each of the times to the next.
+        // Equal steps from each of the times, and from each jump of inputs, to the next.
         observe(state, Place::End);
-        let ends = times.iter().copied().chain([plan.until]);
-        for (place, end) in ends.enumerate() {
+        let mut ends = [times, system.jumps(), &[plan.until]].concat();
+        ends.retain(|end| *end <= plan.until);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        for end in ends {
             let from = state.t;
             if end > from {
+                system.go_from(from);
                 let observe = |state: &State<Interpreted>| {
                     if state.t > from {
                         observe(state, Place::End);
@@ -392,7 +394,7 @@ fn advance(
                 };
                 integrate(system, method, state, plan.step, end, &inputs, observe)?;
             }
-            if place < times.len() {
+            if times.contains(&end) {
                 observe(state, Place::Sample);
             }
         }
@@ -416,17 +418,26 @@ fn advance(
         }
     };
     let events = [Event::new(&followed).stopping()];
-    let outcome = match general {
-        General::Rkmk8 => {
-            Adaptive::rkmk8(tolerance).integrate(system, state, until, inputs, &events, |report| {
-                show(report, spacing, &plan.spacing, &mut observe);
-            })
+    let jumps = system.jumps().iter().filter(|jump| **jump < until);
+    for end in jumps.copied().chain([until]) {
+        system.go_from(state.t);
+        match general {
+            General::Rkmk8 => {
+                let method = Adaptive::rkmk8(tolerance);
+                method.integrate(system, state, end, inputs, &events, |report| {
+                    show(report, spacing, &plan.spacing, &mut observe);
+                })?;
+            }
+            _ => {
+                let method = Adaptive::rkmk54(tolerance);
+                method.integrate(system, state, end, inputs, &events, |report| {
+                    show(report, spacing, &plan.spacing, &mut observe);
+                })?;
+            }
         }
-        _ => {
-            Adaptive::rkmk54(tolerance).integrate(system, state, until, inputs, &events, |report| {
-                show(report, spacing, &plan.spacing, &mut observe);
-            })
+        if state.t < end {
+            break;
         }
-    };
-    outcome.map(|_| ())
+    }
+    Ok(())
 }

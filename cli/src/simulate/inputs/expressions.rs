@@ -59,7 +59,8 @@ impl Expressions {
                 Some(ShapeKind::Vector(n)) => format!(": vec{n}"),
                 _ => String::new(),
             };
-            let (interpreter, count) = compiled(&known, &shape, expression).map_err(wrong)?;
+            let (interpreter, count) = compiled(&known, &shape, expression)
+                .map_err(|why| wrong(why.replace("hamel_input", name)))?;
             if count != places.len() {
                 let numbers = |count: usize| match count {
                     1 => "a number".into(),

@@ -62,6 +62,14 @@ impl Table {
         self.columns.iter().any(|(known, _)| *known == entry)
     }
 
+    /// Times at which values jump: those of the rows but the first, where they hold.
+    pub fn jumps(&self) -> &[f64] {
+        match self.hold {
+            true => self.times.get(1..).unwrap_or_default(),
+            false => &[],
+        }
+    }
+
     /// Sets the entries of u that have a column.
     pub fn set(&self, t: f64, u: &mut [f64]) {
         let last = self.times.len() - 1;
