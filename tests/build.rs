@@ -1,5 +1,5 @@
-//! The build script's front end: every model of `models/`, `models/multibody/`, `models/reuse/` and `models/tabled/`
-//! becomes a module of this crate.
+//! The build script's front end: every model of `models/`, `models/multibody/`, `models/reuse/`, `models/tabled/` and
+//! `models/external/` becomes a module of this crate.
 
 use std::path::PathBuf;
 
@@ -32,6 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "models/multibody",
         "models/reuse",
         "models/tabled",
+        "models/external",
     ] {
         for entry in std::fs::read_dir(folder)? {
             paths.push(entry?.path());

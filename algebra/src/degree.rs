@@ -133,7 +133,7 @@ impl<'a> Degrees<'a> {
                 fraction.degree += 1.0;
                 fraction
             }
-            Node::Atan2(..) => Fraction::of_degree(1.0),
+            Node::Atan2(..) | Node::Listed(..) | Node::External(..) => Fraction::of_degree(1.0),
         }
     }
 

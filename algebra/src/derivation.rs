@@ -124,6 +124,21 @@ impl Derivation {
                 let (da, db) = (self.seen(graph, a), self.seen(graph, b));
                 graph.select(c, da, db)
             }
+            Node::Listed(..) => zero,
+            Node::External(component, list) => {
+                let terms = graph.list(list).into_iter().enumerate();
+                let terms: Vec<Edge> = terms
+                    .map(|(place, a)| {
+                        let da = self.seen(graph, a);
+                        if da == zero {
+                            return zero;
+                        }
+                        let slope = graph.external_of(component.by(place), list);
+                        graph.mul(slope, da)
+                    })
+                    .collect();
+                graph.sum(&terms)
+            }
             Node::Atan2(y, x) => {
                 // (x y' − y x')/(x² + y²)
                 let (dy, dx) = (self.seen(graph, y), self.seen(graph, x));

@@ -12,6 +12,7 @@
 
 use super::fp::Fp;
 use super::numbers::{Form, Modular, Numbers, Step};
+use num_traits::Signed;
 
 /// ∂f/∂a of an operation.
 #[derive(Clone, Debug)]
@@ -146,6 +147,35 @@ impl<C: Numbers, S: Slopes<C>> Numbers for Duals<C, S> {
                     )
                 }
             },
+            // What reads a list has the slopes of all that is in it.
+            Step::Listed(rest, a) => {
+                let value = numbers.make(Step::Listed(&rest.0, &a.0))?;
+                self.with(value, &[])
+            }
+            // Σ ∂f/∂aⱼ aⱼ′.
+            Step::External(component, list, form) => {
+                let listed = form();
+                let values = || -> Form<C::Number> {
+                    let values = listed.iter().map(|((a, _), c)| (a.clone(), c.clone()));
+                    values.collect()
+                };
+                let value = numbers.make(Step::External(component, &list.0, &values))?;
+                let mut total = self.with(value, &[])?;
+                for (place, ((_, slope), sign)) in listed.iter().enumerate() {
+                    if !self.slopes.moves(&self.numbers, slope) {
+                        continue;
+                    }
+                    let by = component.by(place);
+                    let mut factor = self.numbers.make(Step::External(by, &list.0, &values))?;
+                    if sign.is_negative() {
+                        factor = self.numbers.make(Step::Neg(&factor))?;
+                    }
+                    let (value, before) = total;
+                    let parts = [(Partial::One, &before), (Partial::By(factor), slope)];
+                    total = self.with(value, &parts)?;
+                }
+                Some(total)
+            }
             // (x y′ − y x′)/(x² + y²).
             Step::Atan2(y, x) => {
                 let value = numbers.make(Step::Atan2(&y.0, &x.0))?;

@@ -173,9 +173,7 @@ impl Graph {
                     let (a, b) = (of(a), of(b));
                     BigRational::new(a.numer().gcd(b.numer()), a.denom().lcm(b.denom()))
                 }
-                Node::Symbol(_) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => {
-                    continue;
-                }
+                _ => continue,
             };
             contents.insert(id, content);
         }

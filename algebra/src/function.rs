@@ -208,6 +208,12 @@ table! {
         "1/" "inverse_of_length()" r"1/" Quotient Odd Free [None] [MinusSquare]
         |a| if a.abs() < SHORTEST { SHORTEST.recip() } else { a.recip() }, Double::inverse_of_length,
         |a| Real::new(1.0, 0.0).over(a), Interval::inverse;
+    Listed "a list of numbers, the rest and the last: a node of its own, which only what is called reads"
+        "[]" "" "" Choice Plain Free [None] [Two]
+        |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
+    External "a component of a function that is given elsewhere: a node of its own over a list"
+        "extern" "" "" Other Plain Free [None] [Two]
+        |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
 }
 
 /// Lengths below this are divided by as if they were this long.

@@ -7,14 +7,16 @@
 //! An edge is a node with a sign, so negation costs nothing and a − b, b − a are one node.
 //! Children stand before parents.
 
+mod calls;
 mod merge;
 mod side;
 pub(crate) use merge::canonical;
 
+use super::external::External;
 use super::fp::Fp;
 use super::function::{Law, Parity};
 use super::lane::{Lane, Roots};
-pub use super::node::{Edge, Function, Node, NodeId, Symbol};
+pub use super::node::{Component, Edge, Function, Node, NodeId, Symbol};
 use super::prime::is_unfaithful;
 use super::reals::Reals;
 use super::shadow::Shadow;
@@ -23,6 +25,7 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 /// The graph.
 #[derive(Clone, Debug)]
@@ -42,6 +45,8 @@ pub struct Graph {
     copied: Fp,
     /// Whether a number has no faithful image, because a prime divides it.
     unfaithful: bool,
+    /// The functions that are given elsewhere.
+    externals: Arc<Vec<External>>,
     /// Class of the symbols that are constant at run time; products and sums of these are kept
     /// together so that they can be computed once.
     free_class: u8,
@@ -62,6 +67,7 @@ impl Graph {
             contents: FxHashMap::default(),
             copied: Fp::ZERO,
             unfaithful: false,
+            externals: Arc::default(),
             free_class,
         };
         // Node 0 is the number 0, node 1 the number 1.
@@ -75,6 +81,7 @@ impl Graph {
     pub fn fresh(&self) -> Self {
         let mut graph = Graph::new(0, self.free_class);
         graph.lane = self.lane.fresh();
+        graph.externals = self.externals.clone();
         graph
     }
 

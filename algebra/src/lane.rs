@@ -5,6 +5,7 @@
 //! sin(a + b) and sin a cos b + cos a sin b have the same value; those of twelfths of π are exact.
 //! exp is treated likewise, and sinh, cosh and tanh follow from it. Square roots keep the laws of positive numbers (`roots`).
 
+use super::external::Component;
 use super::fp::{Fp, Random};
 use super::function::Function;
 use super::numbers::{Form, Modular, Numbers, Step};
@@ -161,9 +162,11 @@ impl Lane {
                 let of = |a| self.opaque(function, a, Fp::ZERO);
                 of(argument) - of(-argument)
             }
-            Function::Log | Function::Atan2 | Function::Select => {
-                self.opaque(function, argument, Fp::ZERO)
-            }
+            Function::Log
+            | Function::Atan2
+            | Function::Select
+            | Function::Listed
+            | Function::External => self.opaque(function, argument, Fp::ZERO),
         }
     }
 
@@ -197,6 +200,16 @@ impl Lane {
             self.draw(tag, a.0, b.0).residue(),
             self.draw(tag, a.1, b.1).residue(),
         )
+    }
+
+    /// What stands for a list: lists of the same numbers have it in common.
+    pub fn listed(&self, rest: Fp, last: Fp) -> Fp {
+        self.opaque(Function::Listed, rest, last)
+    }
+
+    /// A component of a function of which nothing is known but that it is a function.
+    pub fn external(&self, component: Component, list: Fp) -> Fp {
+        self.opaque(Function::External, list, Fp::from_i64(component.number()))
     }
 
     /// 1 where a > 0 and 0 elsewhere, for numbers a; for anything else a random number s that belongs to the
@@ -293,6 +306,8 @@ impl Numbers for Lane {
             Step::Apply(function, a, form) => self.function(function, *a, &form()),
             Step::Atan2(y, x) => self.opaque(Function::Atan2, *y, *x),
             Step::Select(c, a, b) => *b + self.positive(*c) * (*a - *b),
+            Step::Listed(rest, a) => self.listed(*rest, *a),
+            Step::External(component, list, _) => self.external(component, *list),
         })
     }
 

@@ -27,6 +27,7 @@ pub mod derivation;
 pub mod double;
 pub mod dual;
 pub mod echelon;
+pub mod external;
 mod fold;
 pub mod fp;
 pub mod function;

@@ -1,5 +1,6 @@
 //! Edges, nodes and symbols of the expression graph.
 
+pub use super::external::Component;
 pub use super::function::Function;
 use super::function::Law;
 
@@ -69,6 +70,10 @@ pub enum Node {
     Atan2(Edge, Edge),
     /// (c, a, b): a where c > 0, else b.
     Select(Edge, Edge, Edge),
+    /// The numbers that a function takes: those before, and the last. The first stands behind 0.
+    Listed(Edge, Edge),
+    /// A component of a function that is given elsewhere, or a derivative of one, at listed numbers.
+    External(Component, Edge),
 }
 
 impl Node {
@@ -76,10 +81,12 @@ impl Node {
     pub fn children(self) -> impl DoubleEndedIterator<Item = Edge> {
         let list = match self {
             Node::Constant(_) | Node::Symbol(_) => [None; 3],
-            Node::Apply(_, a) => [Some(a), None, None],
-            Node::Add(a, b) | Node::Mul(a, b) | Node::Div(a, b) | Node::Atan2(a, b) => {
-                [Some(a), Some(b), None]
-            }
+            Node::Apply(_, a) | Node::External(_, a) => [Some(a), None, None],
+            Node::Add(a, b)
+            | Node::Mul(a, b)
+            | Node::Div(a, b)
+            | Node::Atan2(a, b)
+            | Node::Listed(a, b) => [Some(a), Some(b), None],
             Node::Select(c, a, b) => [Some(c), Some(a), Some(b)],
         };
         list.into_iter().flatten()
@@ -100,6 +107,8 @@ impl Node {
             Node::Div(a, b) => Node::Div(child(a), child(b)),
             Node::Atan2(a, b) => Node::Atan2(child(a), child(b)),
             Node::Select(c, a, b) => Node::Select(child(c), child(a), child(b)),
+            Node::Listed(rest, a) => Node::Listed(child(rest), child(a)),
+            Node::External(component, list) => Node::External(component, child(list)),
         }
     }
 }

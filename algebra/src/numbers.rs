@@ -10,6 +10,7 @@
 //! | twice the length, with bounds of rounding, beside `f64` | `rounding` |
 //! | real samples, certain bounds | `shadow` |
 
+use super::external::Component;
 use super::fp::Fp;
 use super::function::{Function, Slope};
 use super::node::{Edge, Node};
@@ -46,6 +47,11 @@ pub enum Step<'a, N> {
     Atan2(&'a N, &'a N),
     /// (c, a, b): a where c > 0, else b.
     Select(&'a N, &'a N, &'a N),
+    /// What stands for a list: of the numbers before, and the last.
+    Listed(&'a N, &'a N),
+    /// A component of a function that is given elsewhere, of a list; the numbers in it, each with its sign, in place
+    /// of a form.
+    External(Component, &'a N, Former<'a, N>),
 }
 
 /// Arithmetic at a point.
@@ -180,6 +186,13 @@ pub trait Numbers {
             Node::Select(c, a, b) => {
                 let (c, a, b) = (read(c)?, read(a)?, read(b)?);
                 self.make(Step::Select(&c, &a, &b))
+            }
+            Node::Listed(rest, a) => {
+                let a = read(a)?;
+                self.make(Step::Listed(at(rest)?, &a))
+            }
+            Node::External(component, list) => {
+                self.make(Step::External(component, at(list)?, form))
             }
         }
     }

@@ -33,6 +33,8 @@ impl Numbers for Floats<'_> {
                 Some(false) => *b,
                 None => f64::NAN,
             },
+            // Nothing is known of them in numbers.
+            Step::Listed(..) | Step::External(..) => f64::NAN,
         })
     }
 

@@ -15,6 +15,7 @@
 
 use super::double::Double;
 use super::dual::{Duals, Partial, Slopes};
+use super::external;
 use super::graph::{Edge, Graph};
 use super::numbers::{Numbers, Step};
 use super::numeric::Floats;
@@ -63,6 +64,12 @@ impl Numbers for Doubles<'_> {
                 Some(false) => *b,
                 None => *c,
             },
+            // The nearest that there is to numbers of a function that is not known: its own rounding is not asked for.
+            Step::Listed(rest, a) => *rest * Double::new(external::WEIGHT) + *a,
+            Step::External(component, list, _) => {
+                let [constant, factor] = component.likeness().map(Double::new);
+                *list * factor + constant
+            }
         })
     }
 
@@ -100,6 +107,16 @@ impl Numbers for Both<'_> {
                 let rounded = Step::Select(&c.rounded, &a.rounded, &b.rounded);
                 let exact = Step::Select(&c.exact, &a.exact, &b.exact);
                 (Floats(&[]).make(rounded)?, self.0.make(exact)?)
+            }
+            Step::Listed(rest, a) => {
+                let of = |rest: Double, a: Double| rest * Double::new(external::WEIGHT) + a;
+                let rounded = of(long(rest), long(a)).to_f64();
+                (rounded, of(rest.exact, a.exact))
+            }
+            Step::External(component, list, _) => {
+                let [constant, factor] = component.likeness().map(Double::new);
+                let of = |list: Double| list * factor + constant;
+                (of(long(list)).to_f64(), of(list.exact))
             }
         };
         Some(Rounded { rounded, exact })

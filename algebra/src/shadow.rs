@@ -1,6 +1,7 @@
 //! The real values of a graph's nodes, found where they are needed to tell expressions apart: those of
 //! numbers with certainty, those of what has a square root below it at samples.
 
+use super::external;
 use super::interval::Interval;
 use super::node::{Edge, Node, NodeId};
 use super::numbers::{Form, Numbers, Step};
@@ -192,6 +193,14 @@ impl Numbers for Samples<'_> {
             Step::Select(c, a, b) => {
                 std::array::from_fn(|sample| c[sample].select(a[sample], b[sample]))
             }
+            // One function that these may be: what holds for all functions holds for this one.
+            Step::Listed(rest, a) => pair(rest, a, |rest, a| {
+                rest.times(Real::new(external::WEIGHT, 0.0)).plus(a)
+            }),
+            Step::External(component, list, _) => {
+                let [constant, factor] = component.likeness().map(|c| Real::new(c, 0.0));
+                list.map(|list| list.times(factor).plus(constant))
+            }
         })
     }
 }
@@ -220,6 +229,7 @@ impl Numbers for Bounds {
                 Ordering::Greater => a.clone(),
                 _ => b.clone(),
             }),
+            Step::Listed(..) | Step::External(..) => None,
         }
     }
 }

@@ -50,6 +50,12 @@ impl Tape {
                         .for_each(|(atom, _)| *atom = places[*atom as usize]);
                     Node::Apply(function, a.moved(&places))
                 }
+                Node::External(component, list) => {
+                    form = graph.signed_list(list);
+                    form.iter_mut()
+                        .for_each(|(atom, _)| *atom = places[*atom as usize]);
+                    Node::External(component, list.moved(&places))
+                }
                 node => node.over(|edge| edge.moved(&places)),
             };
             tape.steps.push(Step { node, form });

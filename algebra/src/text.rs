@@ -65,6 +65,13 @@ fn write(graph: &Graph, edge: Edge, most: usize, depth: usize) -> Option<(String
             let x = within(graph, x, Binding::Sum, most, depth)?;
             (format!("atan2({y}, {x})"), Binding::Whole)
         }
+        Node::Listed(..) => return None,
+        Node::External(component, list) => {
+            let given = graph.list(list).into_iter();
+            let given = given.map(|edge| within(graph, edge, Binding::Sum, most, depth));
+            let given = given.collect::<Option<Vec<String>>>()?.join(", ");
+            (graph.called(component, &given), Binding::Whole)
+        }
         Node::Select(c, a, b) => {
             let [c, a, b] = [c, a, b].map(|edge| within(graph, edge, Binding::Sum, most, depth));
             (

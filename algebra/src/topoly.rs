@@ -97,9 +97,7 @@ impl Expander {
                 (sum.terms().len() <= MOST_TERMS).then_some(sum)
             }
             Node::Mul(a, b) => product(&self.signed(a)?, &self.signed(b)?),
-            Node::Div(..) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => {
-                Some(Poly::var(OPAQUE + id))
-            }
+            _ => Some(Poly::var(OPAQUE + id)),
         }
     }
 }
@@ -110,9 +108,9 @@ pub fn is_polynomial(graph: &Graph, edge: Edge, classes: u8) -> bool {
         .reachable(&[edge])
         .into_iter()
         .all(|id| match graph.node(id) {
-            Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => graph.class(id) & classes == 0,
+            Node::Constant(_) | Node::Symbol(_) | Node::Add(..) | Node::Mul(..) => true,
             Node::Div(_, b) => graph.class(b.node()) & classes == 0,
-            _ => true,
+            _ => graph.class(id) & classes == 0,
         })
 }
 
@@ -145,7 +143,7 @@ pub fn polynomial_at(
                 read(&memo, a)?.scale(&divisor)
             }
             // Functions of parameters: any fixed value serves, the same in both graphs by its law.
-            Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => return None,
+            _ => return None,
         };
         memo.insert(id, polynomial);
     }

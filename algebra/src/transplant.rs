@@ -31,6 +31,8 @@ pub(crate) fn merged(into: &mut Graph, node: Node) -> Edge {
         Node::Apply(function, a) => into.apply(function, a),
         Node::Atan2(y, x) => into.atan2(y, x),
         Node::Select(c, a, b) => into.select(c, a, b),
+        Node::Listed(rest, a) => into.listed(rest, a),
+        Node::External(component, list) => into.external_of(component, list),
         Node::Constant(_) | Node::Symbol(_) => into.zero(),
     }
 }
@@ -79,8 +81,10 @@ pub fn graft(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {
                 -into.push_apart(Node::Add(-a, -b))
             }
             (Node::Add(a, b), _) if a.is_negative() => into.push_apart(Node::Add(b, a)),
-            (Node::Apply(..) | Node::Atan2(..) | Node::Select(..), _) => merged(into, node),
-            (other, negative) => into.push_apart(other).signed(negative),
+            (other @ (Node::Add(..) | Node::Mul(..) | Node::Div(..)), negative) => {
+                into.push_apart(other).signed(negative)
+            }
+            _ => merged(into, node),
         }
     })
 }

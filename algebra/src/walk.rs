@@ -16,11 +16,13 @@ pub fn evaluate<C: Numbers>(
     values[1] = numbers.make(Step::Whole(1))?;
     for id in graph.reachable(roots) {
         let form = || {
-            let Node::Apply(function, a) = graph.node(id) else {
-                return Form::new();
-            };
             let value = |(atom, c): (NodeId, BigRational)| (values[atom as usize].clone(), c);
-            graph.form(function, a).into_iter().map(value).collect()
+            let atoms = match graph.node(id) {
+                Node::Apply(function, a) => graph.form(function, a),
+                Node::External(_, list) => graph.signed_list(list),
+                _ => return Form::new(),
+            };
+            atoms.into_iter().map(value).collect()
         };
         let at = |edge: Edge| values.get(edge.node() as usize);
         values[id as usize] = match graph.node(id) {

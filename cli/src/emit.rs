@@ -5,8 +5,7 @@ use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::builder;
-use hamel_codegen::emit::c::Precision;
-use hamel_codegen::generate::Generated;
+use hamel_codegen::emit::c::{Files, Precision};
 use std::path::{Path, PathBuf};
 
 /// Writes the generated Rust, or C99.
@@ -82,19 +81,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 None => print(&code),
             }
         }
-        Language::C => emit_c(arguments, &generated, &name, stem.as_deref()),
+        Language::C => {
+            let precision = arguments.precision.unwrap_or_default();
+            let files = builder::written_in_c(&generated, &name, stem.as_deref(), precision)
+                .map_err(|errors| source.refused(&errors))?;
+            write_c(arguments, &files, stem.as_deref())
+        }
     }
 }
 
 /// Header and source to their files, or both as one source to the terminal.
-fn emit_c(
-    arguments: &Arguments,
-    generated: &Generated,
-    name: &str,
-    stem: Option<&str>,
-) -> Result<(), Failure> {
-    let precision = arguments.precision.unwrap_or_default();
-    let files = builder::written_in_c(generated, name, stem, precision);
+fn write_c(arguments: &Arguments, files: &Files, stem: Option<&str>) -> Result<(), Failure> {
     let (Some(out), Some(stem)) = (&arguments.out, stem) else {
         return print(&format!("{}\n{}", files.header, files.rest));
     };

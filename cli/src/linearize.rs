@@ -69,12 +69,12 @@ struct Linear {
 
 /// Linearises and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_linearized()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;
-    let system = Interpreted::new(&generated, &state)?;
+    let system = Interpreted::new(&generated, &state, source.shown())?;
     let none = |why: String| Failure::failed(format!("there is no linearisation: {why}"));
     let xi_dot = system.motion(x, xi, u).map_err(none)?;
     let flat = function(program, "linearize", params)?

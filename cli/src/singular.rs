@@ -2,12 +2,17 @@
 
 use crate::failure::Failure;
 use crate::interpreted::Interpreted;
+use crate::names;
 use crate::number::short;
+use crate::state::solved::shown;
 use hamel::{Singular, StepError, System};
+use hamel_codegen::model::Model;
 use nalgebra::DMatrix;
 
 /// Pivots that are smaller than this part of the diagonal entry that they began as are rounding of zero.
 const ROUNDING: f64 = 1e-12;
+/// Constraints listed at most.
+const LISTED: usize = 6;
 /// What is said where no inertia is missing.
 const CONFIGURATION: &str = "the mechanism is at a singular configuration, where its velocities do not determine its motion";
 const DEPENDENT: &str = "the constraints on the velocities depend on one another";
@@ -21,7 +26,32 @@ pub enum Failed {
     Projection,
 }
 
-/// What a mass matrix that is not positive definite is told as, by the names of its rows.
+/// Velocities as messages call them, with the lines on which they are declared.
+pub fn labels(model: &Model, text: &str) -> Vec<String> {
+    let names = names::velocities(model).into_iter();
+    let label = |(place, name): (usize, String)| {
+        let span = model.velocity_spans.get(place);
+        let start = span.and_then(|span| Some(model.origins.source(*span).range()?.start));
+        match start.and_then(|start| text.get(..start)) {
+            Some(before) => format!("`{name}`, line {}", 1 + before.matches('\n').count()),
+            None => format!("`{name}`"),
+        }
+    };
+    names.enumerate().map(label).collect()
+}
+
+/// What is said where constraints that are kept by multipliers depend on one another.
+pub fn dependent(model: &Model, text: &str) -> String {
+    let rows = model.constraints.iter().take(LISTED);
+    let rows: Vec<String> = rows.map(|row| shown(row, text)).collect();
+    match model.constraints.len() {
+        0 => DEPENDENT.into(),
+        count if count > LISTED => format!("{DEPENDENT}: {} and others", rows.join(", ")),
+        _ => format!("{DEPENDENT}: {}", rows.join(", ")),
+    }
+}
+
+/// What a mass matrix that is not positive definite is told as, by the labels of its rows.
 pub fn of_mass(mass: &DMatrix<f64>, names: &[String]) -> Option<String> {
     let (place, part) = weakest(mass)?;
     (part <= ROUNDING).then(|| told(place, names))
@@ -30,7 +60,7 @@ pub fn of_mass(mass: &DMatrix<f64>, names: &[String]) -> Option<String> {
 fn told(place: usize, names: &[String]) -> String {
     let name = names.get(place).map_or("", String::as_str);
     let number = place + 1;
-    format!("the mass matrix is not positive definite at pivot {number} (`{name}`)")
+    format!("the mass matrix is not positive definite at pivot {number} ({name})")
 }
 
 /// What is said of a state where ξ̇ has no value, from the mass matrix there.
@@ -92,16 +122,16 @@ impl Interpreted {
         match self.failed() {
             Some(Failed::Motion(x)) => {
                 let mass = self.mass(&x);
-                match (of_mass(&mass, self.velocity_names()), weakest(&mass)) {
+                match (of_mass(&mass, self.velocity_labels()), weakest(&mass)) {
                     (Some(why), _) => why,
                     // Without constraints no other pivot can have failed.
                     (None, Some((place, _))) if !self.is_constrained() => {
-                        told(place, self.velocity_names())
+                        told(place, self.velocity_labels())
                     }
-                    _ => DEPENDENT.into(),
+                    _ => self.dependent().into(),
                 }
             }
-            Some(Failed::Projection) => DEPENDENT.into(),
+            Some(Failed::Projection) => self.dependent().into(),
             None => cause.to_string(),
         }
     }
@@ -119,12 +149,12 @@ impl Interpreted {
 
     /// What is said of a state where ξ̇ has no value.
     pub fn at(&self, x: &[f64]) -> String {
-        at(&self.mass(x), self.velocity_names())
+        at(&self.mass(x), self.velocity_labels())
     }
 
     /// M at x.
     fn mass(&self, x: &[f64]) -> DMatrix<f64> {
-        let n = self.velocity_names().len();
+        let n = self.velocity_labels().len();
         let still = self.momentum(x, &vec![0.0; n]);
         let mut mass = DMatrix::zeros(n, n);
         for column in 0..n {
@@ -146,12 +176,12 @@ mod tests {
 
     #[test]
     fn the_velocity_without_inertia_is_named() {
-        let names = ["a", "w[1]", "w[2]"].map(String::from);
+        let names = ["`a`", "`w[1]`, line 3", "`w[2]`"].map(String::from);
         let told = |entries: [f64; 9]| of_mass(&DMatrix::from_row_slice(3, 3, &entries), &names);
         assert_eq!(told([2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]), None);
         // Row 2 is half of row 1: what is left of it is rounding.
         let dependent = told([0.3, 0.1, 0.0, 0.1, 0.1 * (0.1 / 0.3), 0.0, 0.0, 0.0, 1.0]);
-        let expected = "the mass matrix is not positive definite at pivot 2 (`w[1]`)";
+        let expected = "the mass matrix is not positive definite at pivot 2 (`w[1]`, line 3)";
         assert_eq!(dependent.as_deref(), Some(expected));
         let nowhere = told([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN]);
         assert!(nowhere.is_some_and(|why| why.ends_with("pivot 3 (`w[2]`)")));

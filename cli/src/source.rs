@@ -31,6 +31,8 @@ pub struct Source {
     pub robot: Option<Robot>,
     /// Whether the warnings were shown.
     warned: Cell<bool>,
+    /// Whether functions in Rust have to have values, by their stand-ins.
+    evaluated: bool,
 }
 
 impl Source {
@@ -59,6 +61,7 @@ impl Source {
                 text,
                 robot: None,
                 warned: Cell::new(false),
+                evaluated: false,
             }),
             Err(error) => {
                 let place = error.utf8_error().valid_up_to();
@@ -72,6 +75,14 @@ impl Source {
     /// Whether it was standard input.
     pub fn is_stdin(&self) -> bool {
         self.path == STDIN
+    }
+
+    /// The text that messages give lines of: none for a robot, whose description its user has not written.
+    pub fn shown(&self) -> &str {
+        match &self.robot {
+            Some(_) => "",
+            None => &self.text,
+        }
     }
 
     /// The joints of a robot by their names in its file and in the description; none of a description.
@@ -105,6 +116,14 @@ impl Source {
         Ok(source)
     }
 
+    /// The same for who wants numbers: of functions in Rust, the stand-ins.
+    pub fn in_numbers(self) -> Self {
+        Source {
+            evaluated: true,
+            ..self
+        }
+    }
+
     /// The text is a robot in URDF: it becomes a description.
     pub fn robot(self, options: &RobotOptions) -> Result<Self, Failure> {
         let robot = Robot::read(self.text, &self.path, options)?;
@@ -113,6 +132,7 @@ impl Source {
             text: robot.imported.text.clone(),
             robot: Some(robot),
             warned: self.warned,
+            evaluated: self.evaluated,
         })
     }
 
@@ -126,6 +146,9 @@ impl Source {
     fn system(&self) -> Result<System, Failure> {
         let system = syntax::parse_text(&self.text).and_then(|mut system| {
             syntax::read_files(&mut system, &mut |name| self.file(name))?;
+            if self.evaluated {
+                system.evaluate();
+            }
             Ok(system)
         });
         system.map_err(|errors| self.refused(&errors))

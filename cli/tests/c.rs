@@ -139,3 +139,22 @@ fn what_makes_no_sense_is_refused_with_the_way_out() {
         assert!(message.contains(part), "{message}");
     }
 }
+
+/// Functions in Rust have no C: each is named where it stands, and nothing is written.
+#[test]
+fn functions_in_rust_are_refused() {
+    let folder = folder("functions");
+    let out = folder.join("glider").display().to_string();
+    let glider = model("external/glider.eom");
+    let (status, said) = said(&["emit", "--language", "c", &glider, "-o", &out]);
+    assert_eq!(status, Some(1));
+    assert!(
+        said.contains("C has no function that is given in Rust"),
+        "{said}"
+    );
+    assert!(
+        said.contains("extern fn coefficients(alpha, rate)"),
+        "{said}"
+    );
+    assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 0);
+}

@@ -71,7 +71,7 @@ fn a_velocity_without_inertia_is_named() {
     let scratch = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
     let file = scratch.join("polar.eom").display().to_string();
     std::fs::write(&file, POLAR).expect("scratch");
-    let named = "the mass matrix is not positive definite at pivot 2 (`w`)";
+    let named = "the mass matrix is not positive definite at pivot 2 (`w`, line 2)";
     let there = r#"{"coord": {"r": 0}}"#;
     for command in ["eval", "linearize"] {
         let output = hamel(&[command, &file, "--at", "-"], there);
@@ -110,7 +110,7 @@ fn parameters_that_leave_no_inertia_name_the_velocity() {
     ] {
         let errors = text(&hamel(arguments, state).stderr);
         assert!(
-            errors.contains("pivot 2 (`w[2]`)"),
+            errors.contains("pivot 2 (`w[2]`, line "),
             "{arguments:?}: {errors}"
         );
     }

@@ -203,7 +203,7 @@ impl Builder {
         if let Some((folder, precision)) = &self.c {
             // The Rust stands elsewhere.
             let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
-            let c = written_in_c(generated, name, Some(stem), *precision);
+            let c = written_in_c(generated, name, Some(stem), *precision)?;
             files.push((folder.join(format!("{stem}.h")), c.header));
             files.push((folder.join(format!("{stem}.c")), c.source));
         }
@@ -234,13 +234,21 @@ pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnost
 }
 
 /// The C99 of what was derived already; `name` stands in the command that it shows, `stem` is what its files are called
-/// before `.h` and `.c`, where they have a name.
+/// before `.h` and `.c`, where they have a name. Functions that are given in Rust are refused.
 pub fn written_in_c(
     generated: &Generated,
     name: &str,
     stem: Option<&str>,
     precision: Precision,
-) -> emit::c::Files {
+) -> Result<emit::c::Files, Vec<Diagnostic>> {
+    let refused = generated.model.externals.iter().map(|&place| {
+        Diagnostic::new(place, "C has no function that is given in Rust")
+            .help("write what it gives as an expression, `fn`, or as a table")
+    });
+    let refused: Vec<Diagnostic> = refused.collect();
+    if !refused.is_empty() {
+        return Err(refused);
+    }
     let numbers = match precision {
         Precision::Double => "",
         Precision::Float => " --precision float",
@@ -252,5 +260,5 @@ pub fn written_in_c(
         header: format!("{}.h", stem.unwrap_or_default()),
         precision,
     };
-    emit::c::files(&generated.program, &options)
+    Ok(emit::c::files(&generated.program, &options))
 }

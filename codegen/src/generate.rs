@@ -178,6 +178,7 @@ impl Generated {
         let reduction = reduce(&model).map_err(|error| vec![error])?;
         let program = assemble(&model, reduction.as_ref(), linearized);
         let program = program.map_err(|error| vec![error])?;
+        curved(&model, &program).map_or(Ok(()), |error| Err(vec![error]))?;
         proof::prove(&model, reduction.as_ref(), &program)?;
         let solved = reduction.as_ref().map_or(Vec::new(), |reduction| {
             reduction
@@ -194,6 +195,27 @@ impl Generated {
             hash,
         })
     }
+}
+
+/// What is wrong where a function of the program needs slopes of slopes of a function in Rust, which has none.
+fn curved(model: &Model, program: &Program) -> Option<Diagnostic> {
+    let graph = &program.graph;
+    for function in &program.functions {
+        let Some((component, _)) = graph.find_external(&function.outputs, 2) else {
+            continue;
+        };
+        let place = usize::from(component.function);
+        let name = &graph.externals().get(place)?.name;
+        let message = format!(
+            "`{}` needs second derivatives of `{name}`, a function in Rust that has the first ones",
+            function.name
+        );
+        let span = model.externals.get(place).copied().unwrap_or(model.span);
+        return Some(Diagnostic::new(span, message).help(
+            "leave out what is a rate of the function, or write it as an expression or a `table`",
+        ));
+    }
+    None
 }
 
 /// FNV-1a, 64 bits.

@@ -292,7 +292,7 @@ fn legs_obey_newton() {
 #[test]
 fn nothing_else_is_changed() {
     let mut count = 0;
-    for folder in ["", "multibody", "tabled"] {
+    for folder in ["", "multibody", "tabled", "external"] {
         for entry in std::fs::read_dir(models().join(folder)).expect("models") {
             let path = entry.expect("an entry").path();
             if path.extension().is_none_or(|ending| ending != "eom") {

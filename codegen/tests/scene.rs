@@ -13,6 +13,7 @@ fn descriptions() -> Vec<(String, String)> {
     let folders = [
         "tests/models",
         "tests/models/reuse",
+        "tests/models/external",
         "examples/models",
         "examples",
     ];

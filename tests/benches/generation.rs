@@ -26,6 +26,25 @@ fn chains(bencher: divan::Bencher, links: usize) {
     bencher.bench(|| source(divan::black_box(&text), "chain").expect("the chain is correct"));
 }
 
+/// Parameters by the thousand, each of them used: time grows by their number.
+#[divan::bench(args = [1250, 2500, 5000], sample_count = 3, sample_size = 1)]
+fn parameters(bencher: divan::Bencher, count: usize) {
+    let declared: String = (0..count).map(|k| format!("param p{k} = {k};\n")).collect();
+    let sum = |start: usize| {
+        let end = (start + 50).min(count);
+        let terms: Vec<String> = (start..end).map(|k| format!("p{k}")).collect();
+        format!("let s{start} = {};\n", terms.join(" + "))
+    };
+    let sums: String = (0..count).step_by(50).map(sum).collect();
+    let all: Vec<String> = (0..count).step_by(50).map(|k| format!("s{k}")).collect();
+    let text = format!(
+        "system Many {{ {declared} coord x; velocity v; rate x = v; particle mass 1 at [x, 0, 0];
+        {sums} generalized force v = -x * ({}); }}",
+        all.join(" + ")
+    );
+    bencher.bench(|| source(divan::black_box(&text), "many").expect("the description is correct"));
+}
+
 /// Robots, and whether their base floats.
 const ROBOTS: [(&str, &str, bool); 3] = [
     ("ur5", "ur_description/urdf/ur5_robot.urdf", false),

@@ -136,7 +136,7 @@ fn compare(
     arguments: &Arguments,
     solution: Option<&Solution>,
 ) -> Result<Case, Failure> {
-    let source = Source::open(file, &arguments.robot)?;
+    let source = Source::open(file, &arguments.robot)?.in_numbers();
     let generated = source.derive_all()?;
     let mut state = State::read(&source, &generated, arguments.at.as_deref())?;
     let fields = solution
@@ -146,15 +146,15 @@ fn compare(
     if let Some(fields) = &fields {
         fields.start(&mut state)?;
     }
-    let system = Interpreted::new(&generated, &state)?;
+    let system = Interpreted::new(&generated, &state, source.shown())?;
     system.check_parameters(&state.x)?;
     let structure = &generated.program.structure;
     let (methods, missing) = method::fitting(&arguments.methods, &system, structure);
-    let inputs = |_: f64, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
+    let inputs = |t: f64, x: &Vec<f64>, xi: &Vec<f64>| system.inputs(t, x, xi);
     let momenta = |x: &[f64], xi: &[f64]| -> Vec<f64> {
         let values = system.invariants().iter();
         values
-            .flat_map(|claim| system.output(claim, x, xi))
+            .flat_map(|claim| system.output(claim, 0.0, x, xi))
             .collect()
     };
     let mut problem = Problem {

@@ -62,7 +62,7 @@ pub struct Arguments {
 
 /// Evaluates and prints; where something has no value it is `null`, and the command fails.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let at = arguments.at.as_deref();
     let at = at.map(|path| File::read(path, &source)).transpose()?;
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let mut missing: Vec<String> = Vec::new();
-    members.extend(motion(&generated, &state, &mut missing)?);
+    members.extend(motion(&generated, (&state, source.shown()), &mut missing)?);
     let infinite = members.iter().filter(|(_, value)| !finite(value));
     let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
     if !infinite.is_empty() {
@@ -127,10 +127,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Forces, rates, energies, outputs.
 fn motion(
     generated: &Generated,
-    state: &State,
+    (state, text): (&State, &str),
     missing: &mut Vec<String>,
 ) -> Result<Vec<(&'static str, Json)>, Failure> {
-    let system = Interpreted::new(generated, state)?;
+    let system = Interpreted::new(generated, state, text)?;
     let State { params, x, xi, u } = state;
     let vector = |name: &str| -> Result<Json, Failure> {
         let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);
@@ -152,7 +152,7 @@ fn motion(
         None => Some(Json::vector(&[])),
     };
     let outputs = system.outputs().iter().map(|output| {
-        let values = system.output(output, x, xi);
+        let values = system.output(output, 0.0, x, xi);
         let value = match output.shape {
             Shape::Scalar => Json::Number(values.first().copied().unwrap_or(f64::NAN)),
             Shape::Vector(_) => Json::vector(&values),

@@ -64,7 +64,7 @@ pub fn run(source: &Source, at: &File) -> Result<(), Failure> {
     let mut failed = Vec::new();
     let mut written = Vec::new();
     for (index, sample) in samples.iter().enumerate() {
-        let (members, missing) = members(&generated, sample)?;
+        let (members, missing) = members((&generated, source.shown()), sample)?;
         let place = match several {
             true => format!("samples[{index}]: "),
             false => String::new(),
@@ -93,7 +93,7 @@ pub fn run(source: &Source, at: &File) -> Result<(), Failure> {
 /// What is printed of a state, and what has no value there.
 type Members = (Vec<(&'static str, Json)>, Vec<String>);
 
-fn members(generated: &Generated, sample: &Sample) -> Result<Members, Failure> {
+fn members((generated, text): (&Generated, &str), sample: &Sample) -> Result<Members, Failure> {
     let model = &generated.active;
     let state = &sample.state;
     let call = |name: &str| -> Result<Vec<f64>, Failure> {
@@ -137,7 +137,7 @@ fn members(generated: &Generated, sample: &Sample) -> Result<Members, Failure> {
     let mut missing = Vec::new();
     // Where there is no such function, that was said before.
     if accel.value.is_none() && generated.program.function(FunctionId::Accel).is_some() {
-        let why = singular::at(&mass, &names::velocities(model));
+        let why = singular::at(&mass, &singular::labels(model, text));
         missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));

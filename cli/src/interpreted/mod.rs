@@ -3,8 +3,8 @@
 mod momenta;
 
 use crate::failure::Failure;
-use crate::names;
-use crate::singular::Failed;
+use crate::simulate::inputs::Inputs;
+use crate::singular::{self, Failed};
 use crate::state::State;
 use hamel::{Block, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
@@ -20,6 +20,10 @@ pub struct Interpreted {
     blocks: Vec<Block>,
     start: (Vec<f64>, Vec<f64>),
     inputs: Vec<f64>,
+    /// What inputs are, where they do not keep these values.
+    given: Option<Inputs>,
+    /// Where they jump next.
+    before: Cell<f64>,
     chart: usize,
     rate: Interpreter,
     chart_rate: Interpreter,
@@ -39,7 +43,9 @@ pub struct Interpreted {
     invariants: Vec<Output>,
     functions: Functions,
     evaluations: Cell<u64>,
-    velocity_names: Vec<String>,
+    velocity_labels: Vec<String>,
+    /// What is said where constraints depend on one another.
+    dependent: String,
     constant_singular: bool,
     constrained: bool,
     /// Whether energy changes otherwise than by loads: with the time, or by drives.
@@ -59,8 +65,9 @@ pub struct Output {
 }
 
 impl Interpreted {
-    /// Compiles a complete program for the parameters, start and constant inputs of a state.
-    pub fn new(generated: &Generated, state: &State) -> Result<Self, Failure> {
+    /// Compiles a complete program for the parameters, start and constant inputs of a state; the text of the description
+    /// is for messages.
+    pub fn new(generated: &Generated, state: &State, text: &str) -> Result<Self, Failure> {
         let program = &generated.program;
         let function = |name: &str| function(program, name, &state.params);
         let output = |name: &String| {
@@ -82,6 +89,8 @@ impl Interpreted {
             blocks: program.blocks.iter().copied().map(block).collect(),
             start: (state.x.clone(), state.xi.clone()),
             inputs: state.u.clone(),
+            given: None,
+            before: Cell::new(f64::INFINITY),
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
             rate: function("rate")?,
             chart_rate: function("chart_rate")?,
@@ -99,7 +108,8 @@ impl Interpreted {
             invariants: invariants.collect::<Result<_, Failure>>()?,
             functions: Functions::new(program, &state.params)?,
             evaluations: Cell::new(0),
-            velocity_names: names::velocities(&generated.active),
+            velocity_labels: singular::labels(&generated.active, text),
+            dependent: singular::dependent(&generated.active, text),
             constant_singular: constant_singular(program, &state.params),
             constrained: generated.model.is_constrained(),
             driven: generated.model.clock.is_some() || !generated.model.accelerated.is_empty(),
@@ -112,9 +122,14 @@ impl Interpreted {
         self.evaluations.get()
     }
 
-    /// The names of the entries of ξ.
-    pub fn velocity_names(&self) -> &[String] {
-        &self.velocity_names
+    /// The entries of ξ as messages call them.
+    pub fn velocity_labels(&self) -> &[String] {
+        &self.velocity_labels
+    }
+
+    /// What is said where constraints depend on one another.
+    pub fn dependent(&self) -> &str {
+        &self.dependent
     }
 
     /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
@@ -150,9 +165,33 @@ impl Interpreted {
         self.evaluations.set(self.evaluations.get() + 1);
     }
 
-    /// u, constant in a run.
-    pub fn inputs(&self) -> &[f64] {
-        &self.inputs
+    /// The same with inputs that change.
+    pub fn with(self, given: Option<Inputs>) -> Self {
+        Interpreted { given, ..self }
+    }
+
+    /// Times at which inputs jump.
+    pub fn jumps(&self) -> &[f64] {
+        self.given.as_ref().map_or(&[], Inputs::jumps)
+    }
+
+    /// From now on a run goes from this time to the next jump of its inputs, where they are what they are before it.
+    pub fn go_from(&self, t: f64) {
+        let next = self.jumps().iter().find(|jump| **jump > t);
+        self.before.set(next.copied().unwrap_or(f64::INFINITY));
+    }
+
+    /// u.
+    pub fn inputs(&self, t: f64, x: &[f64], xi: &[f64]) -> Vec<f64> {
+        let kept = self.inputs.clone();
+        let t = match t >= self.before.get() {
+            true => self.before.get().next_down(),
+            false => t,
+        };
+        match &self.given {
+            Some(given) => given.at(t, x, xi, kept),
+            None => kept,
+        }
     }
 
     /// p = M ξ.
@@ -161,8 +200,8 @@ impl Interpreted {
     }
 
     /// The power of the loads, f ξ.
-    pub fn power(&self, x: &[f64], xi: &[f64]) -> f64 {
-        let force = value(&self.force, x, xi, &self.inputs);
+    pub fn power(&self, t: f64, x: &[f64], xi: &[f64]) -> f64 {
+        let force = value(&self.force, x, xi, &self.inputs(t, x, xi));
         force.iter().zip(xi).map(|(f, v)| f * v).sum()
     }
 
@@ -183,14 +222,15 @@ impl Interpreted {
 
     /// The value of an output, matrices by rows; of accelerations, those of the forward dynamics,
     /// NaN where they have no value.
-    pub fn output(&self, output: &Output, x: &[f64], xi: &[f64]) -> Vec<f64> {
+    pub fn output(&self, output: &Output, t: f64, x: &[f64], xi: &[f64]) -> Vec<f64> {
+        let u = self.inputs(t, x, xi);
         let mut xi_dot = Vec::new();
         if output.accelerated {
             let accel = self.accel.as_ref();
-            let accel = accel.and_then(|accel| accel.call(x, xi, &self.inputs, &[]).ok());
+            let accel = accel.and_then(|accel| accel.call(x, xi, &u, &[]).ok());
             xi_dot = accel.unwrap_or_else(|| vec![f64::NAN; xi.len()]);
         }
-        let value = output.function.call(x, xi, &self.inputs, &xi_dot);
+        let value = output.function.call(x, xi, &u, &xi_dot);
         value.unwrap_or_default()
     }
 }

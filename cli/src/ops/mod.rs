@@ -138,7 +138,7 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Written {
             .children()
             .fold(NONE, |cost, child| sum(cost, costs[child.node() as usize]));
         let kind = match graph.node(id) {
-            Node::Constant(_) | Node::Symbol(_) => None,
+            Node::Constant(_) | Node::Symbol(_) | Node::Listed(..) => None,
             Node::Add(..) | Node::Select(..) => Some(0),
             Node::Mul(..) => Some(1),
             Node::Div(..) => Some(2),
@@ -149,7 +149,7 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Written {
                 Cost::Turn => 4,
                 Cost::Other => 5,
             }),
-            Node::Atan2(..) => Some(5),
+            Node::Atan2(..) | Node::External(..) => Some(5),
         };
         if let Some(kind) = kind {
             cost[kind] = cost[kind].and_then(|count| count.checked_add(1));

@@ -36,7 +36,7 @@ impl Balance {
             start: state.t,
             initial: energy(system, state),
             time: state.t,
-            power: system.power(&state.x, &state.xi).abs(),
+            power: system.power(state.t, &state.x, &state.xi).abs(),
             work: 0.0,
             moving: 0.0,
             driven: system.is_driven(),
@@ -48,7 +48,7 @@ impl Balance {
     /// What is known with one more state.
     pub fn after(mut self, system: &Interpreted, state: &State<Interpreted>) -> Self {
         let h = (state.t - self.time).abs();
-        let power = system.power(&state.x, &state.xi).abs();
+        let power = system.power(state.t, &state.x, &state.xi).abs();
         let gained = energy(system, state) - self.initial;
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
         self.kinetic = (kinetic - gained.max(0.0)).max(0.0);

@@ -1,6 +1,7 @@
 //! `hamel simulate`: a run in time, interpreted.
 
 mod balance;
+pub mod inputs;
 mod panels;
 mod picture;
 mod record;
@@ -20,7 +21,7 @@ use hamel::methods::General;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
 use hamel_report::plot;
-use record::{Every, Plan, Run};
+use record::{Every, Plan, Run, Spacing};
 use std::path::PathBuf;
 use write::Format;
 
@@ -38,7 +39,8 @@ const BY_TOLERANCE: &str = "rkmk8";
 /// Integrates the equations of motion from a start.
 ///
 /// The equations are interpreted: good for a look at a system, and some ten times slower than the
-/// generated code. Inputs keep the value that STATE.json gives them, or zero.
+/// generated code. Inputs keep the value that STATE.json gives them, or zero, where no --inputs and no --input says what
+/// they are.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel simulate dzhanibekov.eom --until 100 --plot flip.svg
@@ -46,7 +48,9 @@ const BY_TOLERANCE: &str = "rkmk8";
   hamel simulate heavy_top.eom --until 10 --method gauss6 --tables
   hamel simulate heavy_top.eom --until 10 --method rkmk8 --tol 1e-10
   hamel simulate heavy_top.eom --until 10 --method rk4 --lambda 5
-  hamel simulate heavy_top.eom --until 10 --at state.json", after_long_help = method::described())]
+  hamel simulate heavy_top.eom --until 10 --at state.json
+  hamel simulate cart_pole.eom --until 10 --input \"F = 2 * sin(3 * t) - 4 * v\"
+  hamel simulate cart_pole.eom --until 10 --inputs forces.csv --times times.csv --out run.csv", after_long_help = method::described())]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
@@ -80,6 +84,19 @@ pub struct Arguments {
     /// samples.
     #[arg(long, value_name = "N", value_parser = every, allow_negative_numbers = true)]
     every: Option<Every>,
+    /// Samples at the times in the column `t` of this file, and nowhere else.
+    #[arg(long, value_name = "F.csv", conflicts_with = "every")]
+    times: Option<PathBuf>,
+    /// Inputs over time: a column `t` and columns with names of inputs, as in `t,F,tau[2]`; between two rows on a
+    /// straight line. Inputs without a column keep their values.
+    #[arg(long, value_name = "F.csv")]
+    inputs: Option<PathBuf>,
+    /// Values of --inputs hold until the next row, and behind the last.
+    #[arg(long, requires = "inputs")]
+    hold: bool,
+    /// An input as an expression of `t`, parameters, coordinates, velocities and states.
+    #[arg(long, value_name = "NAME = EXPR")]
+    input: Vec<String>,
     /// Plot of coordinates, velocities, outputs and what is conserved over time, with the path of a body
     /// axis where there is one attitude, and with Poinsot's construction of a body that is nearly free.
     #[arg(long, value_name = "F.svg")]
@@ -96,10 +113,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
-    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_all()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
-    let system = Interpreted::new(&generated, &state)?;
+    let asked = inputs::Asked {
+        file: arguments.inputs.as_ref(),
+        hold: arguments.hold,
+        expressions: &arguments.input,
+        until: arguments.until,
+    };
+    let given = inputs::Inputs::new(asked, &generated, &state)?;
+    let system = Interpreted::new(&generated, &state, source.shown())?.with(given);
     system.check_parameters(&state.x)?;
     let until = arguments.until;
     let step = arguments
@@ -108,7 +132,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let steps = (until / step).ceil() as u64;
     let method = chosen(arguments, &generated, &system, steps)?;
     let tolerance = tolerance(arguments, &method)?;
-    let plan = Plan::new(method, until, step, arguments.every, tolerance);
+    let mut plan = Plan::new(method, until, step, arguments.every, tolerance);
+    if let Some(path) = &arguments.times {
+        plan.spacing = Spacing::Times(inputs::times(path, until)?);
+    }
     let run = Run::new(&generated, &system, plan)?;
 
     let mut written = String::new();

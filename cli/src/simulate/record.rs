@@ -49,8 +49,39 @@ pub struct Plan {
     pub chosen: bool,
     /// The error that a step may make, where steps are chosen by it.
     pub tolerance: Option<f64>,
-    /// The time between two samples, where steps are chosen by their error and samples are not at their ends.
-    pub spacing: Option<f64>,
+    /// Where samples are that are not at the ends of steps.
+    pub spacing: Spacing,
+}
+
+/// Where samples are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spacing {
+    /// At ends of steps.
+    Steps,
+    /// At multiples of a time.
+    Every(f64),
+    /// At these times.
+    Times(Vec<f64>),
+}
+
+impl Spacing {
+    /// The times of samples in a step.
+    fn within(&self, from: f64, to: f64) -> Vec<f64> {
+        match self {
+            Spacing::Steps => Vec::new(),
+            Spacing::Every(time) => {
+                let first = (from / time).floor() + 1.0;
+                let numbers = std::iter::successors(Some(first), |number| Some(number + 1.0));
+                let times = numbers.map(|number| number * time);
+                times.take_while(|t| *t <= to).collect()
+            }
+            Spacing::Times(times) => {
+                let first = times.partition_point(|t| *t <= from);
+                let last = times.partition_point(|t| *t <= to);
+                times[first..last].to_vec()
+            }
+        }
+    }
 }
 
 impl Plan {
@@ -64,13 +95,13 @@ impl Plan {
         tolerance: Option<f64>,
     ) -> Self {
         let (every, spacing) = match (every, tolerance) {
-            (None, _) => (None, None),
-            (Some(Every::Steps(steps)), _) => (Some(steps), None),
-            (Some(Every::Time(time)), Some(_)) => (Some(1), Some(time)),
+            (None, _) => (None, Spacing::Steps),
+            (Some(Every::Steps(steps)), _) => (Some(steps), Spacing::Steps),
+            (Some(Every::Time(time)), Some(_)) => (Some(1), Spacing::Every(time)),
             (Some(Every::Time(time)), None) => {
                 let parts = (time / step * (1.0 - 1e-9)).ceil().max(1.0);
                 step = time / parts;
-                (Some(parts as u64), None)
+                (Some(parts as u64), Spacing::Steps)
             }
         };
         // As the integrator counts: a ratio that is whole but for rounding is whole.
@@ -112,7 +143,7 @@ impl Sample {
         let (x, xi) = (state.x.clone(), state.xi.clone());
         let values = |list: &[Output]| -> Vec<f64> {
             list.iter()
-                .flat_map(|output| system.output(output, &x, &xi))
+                .flat_map(|output| system.output(output, state.t, &x, &xi))
                 .collect()
         };
         Sample {
@@ -185,7 +216,13 @@ impl<'a> Run<'a> {
             if plan.tolerance.is_some() {
                 balance.set(balance.get().after(system, state));
             }
-            if steps % every == 0 && (plan.spacing.is_none() || steps == 0) {
+            // Times that are given say all of it.
+            let asked = match plan.spacing {
+                Spacing::Steps => steps % every == 0,
+                Spacing::Every(_) => steps == 0,
+                Spacing::Times(_) => false,
+            };
+            if asked {
                 samples.push(Sample::of(system, state));
                 if plan.chosen && thin(&mut samples) {
                     every *= 2;
@@ -246,7 +283,12 @@ impl<'a> Run<'a> {
             )),
             Err(error) => Some(error.to_string()),
         };
-        for list in [&mut samples, &mut track] {
+        let listed = matches!(plan.spacing, Spacing::Times(_));
+        let lists = [(&mut samples, listed), (&mut track, false)];
+        for (list, complete) in lists {
+            if complete && !list.is_empty() {
+                continue;
+            }
             if list.last().is_none_or(|last| last.t != state.t) {
                 list.push(Sample::of(system, &state));
             }
@@ -301,7 +343,7 @@ enum Place {
 fn show<const D: usize>(
     report: Report<'_, Interpreted, D>,
     spacing: f64,
-    samples: Option<f64>,
+    samples: &Spacing,
     observe: &mut impl FnMut(&State<Interpreted>, Place),
 ) {
     let Report::Step(step) = report else {
@@ -313,12 +355,8 @@ fn show<const D: usize>(
         let t = from + (to - from) * (part as f64 / parts);
         observe(&step.at(t), Place::Within);
     }
-    if let Some(time) = samples {
-        let mut number = (from / time).floor() + 1.0;
-        while number * time <= to {
-            observe(&step.at(number * time), Place::Sample);
-            number += 1.0;
-        }
+    for t in samples.within(from, to) {
+        observe(&step.at(t), Place::Sample);
     }
     observe(step.end(), Place::End);
 }
@@ -331,16 +369,43 @@ fn advance(
     balance: &Cell<Balance>,
     mut observe: impl FnMut(&State<Interpreted>, Place),
 ) -> Result<(), StepError> {
-    let inputs = |_, _: &Vec<f64>, _: &Vec<f64>| system.inputs().to_vec();
+    let inputs = |t, x: &Vec<f64>, xi: &Vec<f64>| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
         let method = &plan.method.stepper;
-        let observe = |state: &State<Interpreted>| observe(state, Place::End);
-        return integrate(
-            system, method, state, plan.step, plan.until, inputs, observe,
-        );
+        let times = match &plan.spacing {
+            Spacing::Times(times) => times.as_slice(),
+            _ => &[],
+        };
+        // Equal steps from each of the times, and from each jump of inputs, to the next.
+        observe(state, Place::End);
+        let mut ends = [times, system.jumps(), &[plan.until]].concat();
+        ends.retain(|end| *end <= plan.until);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        for end in ends {
+            let from = state.t;
+            if end > from {
+                system.go_from(from);
+                let observe = |state: &State<Interpreted>| {
+                    if state.t > from {
+                        observe(state, Place::End);
+                    }
+                };
+                integrate(system, method, state, plan.step, end, &inputs, observe)?;
+            }
+            if times.contains(&end) {
+                observe(state, Place::Sample);
+            }
+        }
+        return Ok(());
     };
     observe(state, Place::End);
+    if let Spacing::Times(times) = &plan.spacing
+        && times.first() == Some(&state.t)
+    {
+        observe(state, Place::Sample);
+    }
     let until = plan.until;
     let spacing = until / POINTS as f64;
     // A run that has lost the motion ends there.
@@ -353,17 +418,26 @@ fn advance(
         }
     };
     let events = [Event::new(&followed).stopping()];
-    let outcome = match general {
-        General::Rkmk8 => {
-            Adaptive::rkmk8(tolerance).integrate(system, state, until, inputs, &events, |report| {
-                show(report, spacing, plan.spacing, &mut observe);
-            })
+    let jumps = system.jumps().iter().filter(|jump| **jump < until);
+    for end in jumps.copied().chain([until]) {
+        system.go_from(state.t);
+        match general {
+            General::Rkmk8 => {
+                let method = Adaptive::rkmk8(tolerance);
+                method.integrate(system, state, end, inputs, &events, |report| {
+                    show(report, spacing, &plan.spacing, &mut observe);
+                })?;
+            }
+            _ => {
+                let method = Adaptive::rkmk54(tolerance);
+                method.integrate(system, state, end, inputs, &events, |report| {
+                    show(report, spacing, &plan.spacing, &mut observe);
+                })?;
+            }
         }
-        _ => {
-            Adaptive::rkmk54(tolerance).integrate(system, state, until, inputs, &events, |report| {
-                show(report, spacing, plan.spacing, &mut observe);
-            })
+        if state.t < end {
+            break;
         }
-    };
-    outcome.map(|_| ())
+    }
+    Ok(())
 }

@@ -130,6 +130,7 @@ impl Drawing<'_> {
             arguments: self.spec.arguments,
             locals: self.locals,
             parameters: self.parameters,
+            externals: &self.emitter.names.externals,
             slots: &self.plan.slots,
             here: FxHashSet::default(),
             used: Used::default(),

@@ -65,10 +65,12 @@ impl Locals {
         for statement in statements {
             if let Operation::SinCos(angle) = statement.operation {
                 self.pair(angle, statement.results, &mut angles, places);
-            } else if let Some(node) = statement.results[0]
-                && !self.names.contains_key(&node)
-            {
-                self.count(node, "t", &mut temporaries);
+                continue;
+            }
+            for node in statement.defined() {
+                if !self.names.contains_key(&node) {
+                    self.count(node, "t", &mut temporaries);
+                }
             }
         }
     }

@@ -5,12 +5,12 @@
 
 use super::places::{Place, Places, Time};
 use super::sums::sums;
-use crate::algebra::graph::{Edge, Function, Node, NodeId};
+use crate::algebra::graph::{Component, Edge, Function, Graph, Node, NodeId};
 use num_traits::Signed;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// What a statement computes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// a + b
     Add(Edge, Edge),
@@ -28,14 +28,30 @@ pub enum Operation {
     Atan2(Edge, Edge),
     /// a where c > 0, else b
     Select(Edge, Edge, Edge),
+    /// A function in Rust, or its slopes.
+    Call(Call),
     /// Leaves the function unless a pivot is positive.
     Check(usize, Edge),
 }
 
+/// A call of a function in Rust.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Call {
+    /// The function, by its place.
+    pub function: usize,
+    /// Whether its slopes are asked for, and not its components.
+    pub slopes: bool,
+    /// What it is called with.
+    pub arguments: Vec<Edge>,
+    /// The nodes that its components give values to, slopes by rows.
+    pub results: Vec<Option<NodeId>>,
+}
+
 impl Operation {
     /// What is read, in order.
-    pub fn operands(self) -> impl Iterator<Item = Edge> {
-        let list = match self {
+    pub fn operands(&self) -> impl Iterator<Item = Edge> {
+        let mut call = &[][..];
+        let list = match *self {
             Operation::Add(a, b)
             | Operation::Multiply(a, b)
             | Operation::Divide(a, b)
@@ -44,8 +60,12 @@ impl Operation {
             Operation::SinCos(a) | Operation::Apply(_, a) | Operation::Check(_, a) => {
                 [Some(a), None, None]
             }
+            Operation::Call(ref of) => {
+                call = &of.arguments;
+                [None; 3]
+            }
         };
-        list.into_iter().flatten()
+        list.into_iter().flatten().chain(call.iter().copied())
     }
 
     /// The same with other operands.
@@ -60,12 +80,16 @@ impl Operation {
             Operation::Atan2(y, x) => Operation::Atan2(to(y), to(x)),
             Operation::Select(c, a, b) => Operation::Select(to(c), to(a), to(b)),
             Operation::Check(pivot, a) => Operation::Check(pivot, to(a)),
+            Operation::Call(call) => Operation::Call(Call {
+                arguments: call.arguments.iter().map(|&a| to(a)).collect(),
+                ..call
+            }),
         }
     }
 }
 
 /// One statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Statement {
     /// What it computes.
     pub operation: Operation,
@@ -75,13 +99,17 @@ pub struct Statement {
 
 impl Statement {
     /// Whether it binds names.
-    pub fn is_let(self) -> bool {
+    pub fn is_let(&self) -> bool {
         !matches!(self.operation, Operation::Check(..))
     }
 
     /// The nodes that it gives values to.
-    pub fn defined(self) -> impl Iterator<Item = NodeId> {
-        self.results.into_iter().flatten()
+    pub fn defined(&self) -> impl Iterator<Item = NodeId> {
+        let called = match &self.operation {
+            Operation::Call(call) => call.results.as_slice(),
+            _ => &[],
+        };
+        self.results.iter().chain(called).copied().flatten()
     }
 }
 
@@ -119,6 +147,7 @@ pub fn lower(
             }
         }
     }
+    let mut calls = calls(graph, nodes);
     let read = |edge: Edge| {
         let known = first.get(&edge.node());
         known.map_or(edge, |&node| Edge::of(node).signed(edge.is_negative()))
@@ -135,11 +164,10 @@ pub fn lower(
     }
     let mut push = |mut statement: Statement| {
         statement.operation = statement.operation.map(read);
+        let checked = statement.defined().flat_map(|node| checks.remove(&node));
+        let pivots: Vec<usize> = checked.flatten().collect();
         statements.push(statement);
-        for node in statement.defined() {
-            let pivots = checks.remove(&node).unwrap_or_default();
-            statements.extend(pivots.iter().map(|&pivot| check(pivot, guards[pivot])));
-        }
+        statements.extend(pivots.iter().map(|&pivot| check(pivot, guards[pivot])));
     };
     for (index, &id) in nodes.iter().enumerate() {
         let mut results = [Some(id), None];
@@ -158,6 +186,11 @@ pub fn lower(
             Node::Apply(function, a) => Some(Operation::Apply(function, a)),
             Node::Atan2(y, x) => Some(Operation::Atan2(y, x)),
             Node::Select(c, a, b) => Some(Operation::Select(c, a, b)),
+            Node::Listed(..) => None,
+            Node::External(component, list) => {
+                results = [None, None];
+                calls.remove(&key(component, list)).map(Operation::Call)
+            }
         };
         if let Some(operation) = operation {
             push(Statement { operation, results });
@@ -170,6 +203,42 @@ pub fn lower(
         statements,
         outputs: outputs.iter().map(|&output| read(output)).collect(),
     }
+}
+
+/// What components have in common that one call gives.
+type Key = (u8, usize, Edge);
+
+fn key(component: Component, list: Edge) -> Key {
+    (component.function, component.order(), list)
+}
+
+/// The calls of functions in Rust, each for all of its components that are wanted.
+fn calls(graph: &Graph, nodes: &[NodeId]) -> FxHashMap<Key, Call> {
+    let mut calls: FxHashMap<Key, Call> = FxHashMap::default();
+    for &id in nodes {
+        let Node::External(component, list) = graph.node(id) else {
+            continue;
+        };
+        let function = usize::from(component.function);
+        let Some(external) = graph.externals().get(function) else {
+            continue;
+        };
+        let columns = match component.order() {
+            0 => 1,
+            _ => external.arguments.len(),
+        };
+        let call = calls.entry(key(component, list)).or_insert_with(|| Call {
+            function,
+            slopes: component.order() > 0,
+            arguments: graph.list(list),
+            results: vec![None; external.components * columns],
+        });
+        let place = usize::from(component.component) * columns + component.first().unwrap_or(0);
+        if let Some(result) = call.results.get_mut(place) {
+            *result = Some(id);
+        }
+    }
+    calls
 }
 
 fn check(pivot: usize, guard: Edge) -> Statement {

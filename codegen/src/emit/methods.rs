@@ -1,6 +1,6 @@
 //! `impl hamel::Split`, `hamel::Canonical` and `hamel::Tangent`, where all that they consist of was generated.
 
-use super::{Emitter, names, structure};
+use super::{Emitter, externals, names, structure};
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
 use crate::program::{Argument, FunctionId, Shape};
 use crate::syntax::ast::ShapeKind;
@@ -20,9 +20,10 @@ fn generated<'a>(emitter: &'a Emitter, name: &str) -> Option<&'a str> {
 
 fn head(emitter: &Emitter, of: &str, body: &str) -> String {
     format!(
-        "{}impl<S: ::hamel::Scalar> ::hamel::{of} for {}<S> {{\n{body}}}\n\n",
+        "{}impl{} ::hamel::{of} for {} {{\n{body}}}\n\n",
         structure::ALLOW_TRAIT,
-        emitter.names.type_name
+        externals::generics(emitter),
+        externals::applied(emitter)
     )
 }
 
@@ -152,6 +153,17 @@ fn tangent(emitter: &Emitter) -> Option<String> {
         let kept = &emitter.names.kept;
         fields += &format!("{kept}: self.{kept}.map({constant}),\n");
     }
+    let number = format!("::hamel::Dual<S, {columns}>");
+    let (mut applied, mut generics) = (externals::applied(emitter), externals::generics(emitter));
+    if externals::has(emitter) {
+        // Functions in Rust take such numbers, too.
+        let names = &emitter.names.externals;
+        let own = format!("{}<S>", names.of);
+        generics = generics.replace(&own, &format!("{own} + {}<{number}>", names.of));
+        fields += &format!("{0}: self.{0}.clone(),\n", names.field);
+    }
+    let of = applied.clone();
+    applied = applied.replacen("<S", &format!("<{number}"), 1);
     let name = &emitter.names.type_name;
     let slopes = slopes(emitter)?;
     // What is constant for its coordinate kind, and nothing else.
@@ -159,10 +171,13 @@ fn tangent(emitter: &Emitter) -> Option<String> {
     let constraint = program.function(FunctionId::Constraint);
     let charted = constraint.is_none_or(|phi| phi.outputs.len() == own);
     let body = format!(
-        "const CHARTED: bool = {charted};\n\ntype Number = ::hamel::Dual<S, {columns}>;\ntype Dual = {name}<::hamel::Dual<S, {columns}>>;\n{frame}{coframe}\
+        "const CHARTED: bool = {charted};\n\ntype Number = {number};\ntype Dual = {applied};\n{frame}{coframe}\
          type Slopes = [[S; {columns}]; {rows}];\n\nfn dual(&self) -> Self::Dual {{\n{name} {{\n{fields}}}\n}}\n{frame_of}{coframe_of}{slopes}"
     );
-    Some(head(emitter, "Tangent", &body))
+    Some(format!(
+        "{}impl{generics} ::hamel::Tangent for {of} {{\n{body}}}\n\n",
+        structure::ALLOW_TRAIT
+    ))
 }
 
 /// The linearisation as the trait has it.

@@ -20,6 +20,7 @@
 //! | `structure` | the type: fields, sizes, constructor, defaults |
 //! | `parameters` | accessors, and the constants kept for parameters |
 //! | `system` | `impl hamel::System` |
+//! | `externals` | functions in Rust: the trait of those who have them |
 //! | `views` | parameters, states and inputs by name |
 //! | `methods` | `impl hamel::Split`, `impl hamel::Canonical` |
 //! | [`c`] | the same program as C99 |
@@ -30,6 +31,7 @@
 pub mod c;
 mod chunk;
 mod docs;
+mod externals;
 #[cfg(feature = "files")]
 mod format;
 mod function;
@@ -197,15 +199,17 @@ pub fn rust(program: &Program, options: &Options) -> String {
         methods.push_str(&function::text(&emitter, &spec));
     }
     methods.push_str(&parameters::accessors(&emitter));
-    let name = &emitter.names.type_name;
     let mut text = structure::structure(&emitter);
     let system = system::implementation(&emitter);
+    text.push_str(&externals::functions(&emitter));
     text.push_str(&views::parameters(&emitter));
     text.push_str(&views::state(&emitter, !system.is_empty()));
     text.push_str(&views::inputs(&emitter));
     text.push_str(structure::ALLOW);
     text.push_str(&format!(
-        "impl<S: ::hamel::Scalar> {name}<S> {{\n{methods}}}\n"
+        "impl{} {} {{\n{methods}}}\n",
+        externals::generics(&emitter),
+        externals::applied(&emitter)
     ));
     text.push_str(&structure::default(&emitter));
     if !system.is_empty() {

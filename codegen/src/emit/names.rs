@@ -11,6 +11,8 @@
 //! | the same where that is taken | `snake_case` + `_output` |
 //! | field of kept constants | `k` |
 //! | private functions | `constants`, `update`, function + `_part1` … |
+//! | functions in Rust: their trait, their field | type + `Functions`, `functions` |
+//! | their methods | `snake_case` of the name as written, the same + `_jacobian` |
 //! | arguments | `x`, `xi`, `u`, `xi_dot`; `slots`, `out` in parts |
 //! | temporaries | the user's name, `t1` …, `sin1`, `sin_q` …, `minus_` + name of a negated one |
 //! | numbers | `zero`, `one`, `two`, `half` …, `c1` … |
@@ -149,16 +151,17 @@ pub fn type_name(name: &str) -> String {
 pub fn cased(names: &[&str]) -> Vec<String> {
     let is_lower = |name: &str| !name.chars().any(char::is_uppercase);
     let snakes: Vec<String> = names.iter().map(|name| snake(name)).collect();
-    let lower = |wanted: &String| {
-        let mut all = names.iter().zip(&snakes);
-        all.any(|(name, snake)| snake == wanted && is_lower(name))
-    };
-    let each = names.iter().zip(&snakes);
-    each.map(|(name, snake)| match lower(snake) && !is_lower(name) {
-        true => format!("{}_upper", snake.trim_end_matches('_')),
-        false => snake.clone(),
-    })
-    .collect()
+    let each = || names.iter().zip(&snakes);
+    let lower = each().filter(|(name, _)| is_lower(name));
+    let lower: FxHashSet<&String> = lower.map(|(_, snake)| snake).collect();
+    each()
+        .map(
+            |(name, snake)| match lower.contains(snake) && !is_lower(name) {
+                true => format!("{}_upper", snake.trim_end_matches('_')),
+                false => snake.clone(),
+            },
+        )
+        .collect()
 }
 
 fn spell(letter: char) -> String {
@@ -199,7 +202,9 @@ impl Unique {
 
     /// The wanted name where it is free, or the first free one of `name_2`, `name_3` ….
     pub fn claim(&mut self, wanted: &str) -> String {
-        self.claim_where(wanted, |_| true)
+        let name = self.free_where(wanted, |_| true);
+        self.taken.insert(name.clone());
+        name
     }
 
     /// The name that `claim` would give, without taking it.
@@ -210,12 +215,6 @@ impl Unique {
     /// Whether `claim` would give this very name.
     pub fn is_free(&self, name: &str) -> bool {
         !self.taken.contains(name)
-    }
-
-    fn claim_where(&mut self, wanted: &str, accept: impl Fn(&str) -> bool) -> String {
-        let name = self.free_where(wanted, accept);
-        self.taken.insert(name.clone());
-        name
     }
 
     fn free_where(&self, wanted: &str, accept: impl Fn(&str) -> bool) -> String {
@@ -248,6 +247,52 @@ impl Words {
     }
 }
 
+/// The names of what a program's functions in Rust go by.
+#[derive(Clone, Debug, Default)]
+pub struct ExternalNames {
+    /// The trait of those who have them.
+    pub of: String,
+    /// The type that has them, a parameter of the program's type.
+    pub parameter: String,
+    /// The field in which they are.
+    pub field: String,
+    /// For each function, that of its components and that of its slopes.
+    pub methods: Vec<[String; 2]>,
+    /// Its arguments.
+    pub arguments: Vec<Vec<String>>,
+}
+
+impl ExternalNames {
+    fn new(program: &Program, type_name: &str, fields: &mut Unique) -> Self {
+        let externals = program.graph.externals();
+        if externals.is_empty() {
+            return ExternalNames::default();
+        }
+        let mut methods = Unique::new(METHODS);
+        let written: Vec<&str> = externals.iter().map(|one| one.name.as_str()).collect();
+        let values: Vec<String> = cased(&written)
+            .iter()
+            .map(|wanted| methods.claim(wanted))
+            .collect();
+        let both = values.into_iter().map(|value| {
+            let slopes = methods.claim(&format!("{}_jacobian", value.trim_end_matches('_')));
+            [value, slopes]
+        });
+        let arguments = externals.iter().map(|one| {
+            let mut own = Unique::default();
+            let wanted: Vec<&str> = one.arguments.iter().map(String::as_str).collect();
+            cased(&wanted).iter().map(|name| own.claim(name)).collect()
+        });
+        ExternalNames {
+            of: format!("{type_name}Functions"),
+            parameter: if type_name == "F" { "G" } else { "F" }.into(),
+            field: fields.claim("functions"),
+            methods: both.collect(),
+            arguments: arguments.collect(),
+        }
+    }
+}
+
 /// The names of a program's type, fields and methods.
 #[derive(Clone, Debug)]
 pub struct Names {
@@ -265,6 +310,8 @@ pub struct Names {
     pub constants: String,
     /// The function that computes them and checks pivots.
     pub update: String,
+    /// Functions in Rust.
+    pub externals: ExternalNames,
     methods: Unique,
 }
 
@@ -284,10 +331,10 @@ impl Names {
         let params = cased(&groups.map(|group| group.name.as_str()).collect::<Vec<_>>());
         let mut accessors = Vec::new();
         for wanted in &params {
-            let taken = methods.taken.clone();
-            let free = |name: &str| !taken.contains(&format!("set_{name}"));
-            let accessor = methods.claim_where(wanted, free);
-            methods.claim(&format!("set_{accessor}"));
+            let setter = |name: &str| format!("set_{name}");
+            let accessor = methods.free_where(wanted, |name| methods.is_free(&setter(name)));
+            methods.claim(&accessor);
+            methods.claim(&setter(&accessor));
             accessors.push(accessor);
         }
         let own = program.functions.iter().filter(|f| f.id.is_none());
@@ -305,12 +352,16 @@ impl Names {
                 Some(wanted) => methods.claim(&format!("{}_output", wanted.trim_end_matches('_'))),
             });
         }
+        let type_name = type_name(&program.name);
+        let all = params.iter().map(|wanted| fields.claim(wanted)).collect();
+        let kept = fields.claim("k");
         Names {
-            type_name: type_name(&program.name),
+            externals: ExternalNames::new(program, &type_name, &mut fields),
+            type_name,
             functions: named,
-            fields: params.iter().map(|wanted| fields.claim(wanted)).collect(),
+            fields: all,
             accessors,
-            kept: fields.claim("k"),
+            kept,
             constants: methods.claim("constants"),
             update: methods.claim("update"),
             methods,

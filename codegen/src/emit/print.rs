@@ -2,8 +2,8 @@
 
 use super::language::{Language, Operand};
 use super::locals::Locals;
-use super::lower::{Operation, Statement};
-use super::names;
+use super::lower::{Call, Operation, Statement};
+use super::names::{self, ExternalNames};
 use super::places::{Place, Places, Time};
 use crate::algebra::graph::{Edge, NodeId};
 use crate::program::{Argument, Program};
@@ -43,6 +43,8 @@ pub struct Printer<'a> {
     pub locals: &'a Locals,
     /// The parameters as expressions, in order.
     pub parameters: &'a [String],
+    /// Names of functions in Rust.
+    pub externals: &'a ExternalNames,
     /// Slots of values that cross parts.
     pub slots: &'a FxHashMap<NodeId, usize>,
     /// Values computed by statements printed so far.
@@ -130,11 +132,15 @@ impl Printer<'_> {
             return self.language.check(&operand, kinematic, pivot);
         }
         let name = |node: NodeId| self.locals.name(node);
-        let mut text = match statement.operation {
+        let mut text = match &statement.operation {
             Operation::SinCos(angle) => {
                 let names = statement.results.map(|node| node.map(name));
-                let angle = self.operand(angle);
+                let angle = self.operand(*angle);
                 self.language.pair(names, &angle)
+            }
+            Operation::Call(call) => {
+                let expression = self.expression(&statement.operation);
+                format!("let {} = {expression};\n", self.pattern(call))
             }
             operation => {
                 let name = statement.results[0].map_or("_", name);
@@ -152,10 +158,28 @@ impl Printer<'_> {
         text
     }
 
-    fn expression(&mut self, operation: Operation) -> String {
-        match operation {
+    /// What a function in Rust gives, by rows where it has several components.
+    fn pattern(&self, call: &Call) -> String {
+        let name = |node: &Option<NodeId>| node.map_or("_", |node| self.locals.name(node));
+        let list = |nodes: &[Option<NodeId>]| {
+            let names: Vec<&str> = nodes.iter().map(name).collect();
+            format!("[{}]", names.join(", "))
+        };
+        match (call.slopes, call.results.as_slice()) {
+            (false, [one]) => name(one).into(),
+            (false, all) => list(all),
+            (true, all) if all.len() == call.arguments.len() => list(all),
+            (true, all) => {
+                let rows = all.chunks(call.arguments.len().max(1)).map(list);
+                format!("[{}]", rows.collect::<Vec<_>>().join(", "))
+            }
+        }
+    }
+
+    fn expression(&mut self, operation: &Operation) -> String {
+        match *operation {
             Operation::Add(a, b) if a.is_negative() && !b.is_negative() => {
-                self.expression(Operation::Add(b, a))
+                self.expression(&Operation::Add(b, a))
             }
             Operation::Add(a, b) => {
                 let sign = if b.is_negative() { "-" } else { "+" };
@@ -181,6 +205,13 @@ impl Printer<'_> {
             }
             // Statements of their own.
             Operation::SinCos(a) | Operation::Check(_, a) => self.signed(a),
+            Operation::Call(ref call) => {
+                let given: Vec<String> = call.arguments.iter().map(|&a| self.signed(a)).collect();
+                let [value, slopes] = &self.externals.methods[call.function];
+                let method = if call.slopes { slopes } else { value };
+                let field = &self.externals.field;
+                format!("self.{field}.{method}({})", given.join(", "))
+            }
         }
     }
 }

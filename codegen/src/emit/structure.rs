@@ -2,7 +2,7 @@
 
 use super::function::zeros;
 use super::parameters::{errors, group_type, kept_value, needs_update};
-use super::{Emitter, docs};
+use super::{Emitter, docs, externals};
 use crate::program::{FunctionId, Shape};
 
 /// Lints that generated functions cannot obey in general.
@@ -55,11 +55,12 @@ pub fn structure(emitter: &Emitter) -> String {
             "/// What depends on parameters alone.\n{kept}: [S; {n}],\n"
         ));
     }
+    fields.push_str(&externals::field(emitter));
     let public = if program.public { "pub " } else { "" };
     format!(
-        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, reason = \"the description's names and uses\")]\n#[derive(Clone, Debug)]\n{public}struct {}<S> {{\n{fields}}}\n\n",
+        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, reason = \"the description's names and uses\")]\n#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
         docs::comment(&lines),
-        emitter.names.type_name
+        externals::applied(emitter)
     )
 }
 
@@ -104,10 +105,19 @@ fn constructor(emitter: &Emitter) -> String {
     let groups = || emitter.program.params.iter().zip(&emitter.names.fields);
     let mut lines = vec!["The system with given parameters.".to_string()];
     lines.extend(errors());
-    let argument = match emitter.program.params.is_empty() {
-        true => String::new(),
-        false => format!("parameters: {}Parameters<S>", emitter.names.type_name),
-    };
+    let mut arguments = Vec::new();
+    if !emitter.program.params.is_empty() {
+        arguments.push(format!(
+            "parameters: {}Parameters<S>",
+            emitter.names.type_name
+        ));
+    }
+    if externals::has(emitter) {
+        let names = &emitter.names.externals;
+        arguments.push(format!("{}: {}", names.field, names.parameter));
+        lines[0] = "The system with given parameters and functions.".into();
+    }
+    let argument = arguments.join(", ");
     let values = groups().map(|(group, field)| {
         let value = kept_value(group, &format!("parameters.{field}"));
         format!("{field}: {value}")
@@ -119,18 +129,22 @@ fn constructor(emitter: &Emitter) -> String {
     format!(
         "{}pub fn new({argument}) -> ::core::result::Result<Self, ::hamel::Singular> {{\nlet {mutable}system = {};\n{update}Ok(system)\n}}\n\n",
         docs::comment(&lines),
-        literal(emitter, values.collect())
+        literal(emitter, values.collect(), None)
     )
 }
 
 /// `Self { … }` with constants not yet computed.
-fn literal(emitter: &Emitter, mut fields: Vec<String>) -> String {
+fn literal(emitter: &Emitter, mut fields: Vec<String>, functions: Option<&str>) -> String {
     if has_kept(emitter) {
         fields.push(format!(
             "{}: {}",
             emitter.names.kept,
             zero_constants(emitter)
         ));
+    }
+    if externals::has(emitter) {
+        let field = &emitter.names.externals.field;
+        fields.push(functions.map_or_else(|| field.clone(), |value| format!("{field}: {value}")));
     }
     format!("Self {{ {} }}", fields.join(", "))
 }
@@ -140,7 +154,8 @@ pub fn default(emitter: &Emitter) -> String {
     let program = emitter.program;
     let fields = emitter.names.fields.iter();
     let fields = fields.map(|field| format!("{field}: parameters.{field}"));
-    let value = literal(emitter, fields.collect());
+    let functions = format!("{}::default()", emitter.names.externals.parameter);
+    let value = literal(emitter, fields.collect(), Some(&functions));
     let names = &emitter.names;
     let given = match program.params.is_empty() {
         true => String::new(),
@@ -157,7 +172,9 @@ pub fn default(emitter: &Emitter) -> String {
         ),
     };
     format!(
-        "{ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::default::Default for {}<S> {{\n/// The parameters of the description.\nfn default() -> Self {{\n{body}\n}}\n}}\n\n",
-        names.type_name
+        "{ALLOW_TRAIT}impl{} ::core::default::Default for {}{} {{\n/// The parameters of the description.\nfn default() -> Self {{\n{body}\n}}\n}}\n\n",
+        externals::generics(emitter),
+        externals::applied(emitter),
+        externals::default_where(emitter)
     )
 }

@@ -1,7 +1,7 @@
 //! `impl hamel::System`, where all that it consists of was generated.
 
 use super::function::zeros;
-use super::{Emitter, docs, names, number, structure};
+use super::{Emitter, docs, externals, names, number, structure};
 use crate::program::{Argument, Shape};
 
 const X: Argument = Argument::Coordinates;
@@ -68,9 +68,10 @@ pub fn implementation(emitter: &Emitter) -> String {
         entries.join(", ")
     });
     format!(
-        "{}impl<S: ::hamel::Scalar> ::hamel::System for {}<S> {{\ntype Scalar = S;\n{types}\nfn blocks(&self) -> &[::hamel::Block] {{\n&[{}]\n}}\n\n{zeros}fn start(&self) -> (Self::Coordinates, Self::Velocities) {{\n([{x}], [{xi}])\n}}\n\n{methods}}}\n",
+        "{}impl{} ::hamel::System for {} {{\ntype Scalar = S;\n{types}\nfn blocks(&self) -> &[::hamel::Block] {{\n&[{}]\n}}\n\n{zeros}fn start(&self) -> (Self::Coordinates, Self::Velocities) {{\n([{x}], [{xi}])\n}}\n\n{methods}}}\n",
         structure::ALLOW_TRAIT,
-        emitter.names.type_name,
+        externals::generics(emitter),
+        externals::applied(emitter),
         blocks.join(", ")
     )
 }

@@ -10,7 +10,7 @@
 use super::names::{Unique, cased};
 use super::parameters::{group_type, shaped};
 use super::structure::ALLOW_TRAIT;
-use super::{Emitter, docs, number};
+use super::{Emitter, docs, externals, number};
 use crate::model::{Coordinate, Group};
 use crate::program::Program;
 use crate::syntax::ast::{CoordKind, ShapeKind};
@@ -265,9 +265,10 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
         entries("xi"),
     ));
     if system {
+        let (generics, of) = (externals::generics(emitter), externals::applied(emitter));
         text.push_str(&format!(
-            "{ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::convert::From<{name}<S>> for ::hamel::State<{of}<S>> {{\n/// The state at t = 0.\nfn from(state: {name}<S>) -> Self {{\nlet (x, xi) = state.to_arrays();\nSelf {{ t: 0.0, x, xi }}\n}}\n}}\n\n\
-             {ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::convert::From<&::hamel::State<{of}<S>>> for {name}<S> {{\nfn from(state: &::hamel::State<{of}<S>>) -> Self {{\nSelf::from_arrays(&state.x, &state.xi)\n}}\n}}\n\n"
+            "{ALLOW_TRAIT}impl{generics} ::core::convert::From<{name}<S>> for ::hamel::State<{of}> {{\n/// The state at t = 0.\nfn from(state: {name}<S>) -> Self {{\nlet (x, xi) = state.to_arrays();\nSelf {{ t: 0.0, x, xi }}\n}}\n}}\n\n\
+             {ALLOW_TRAIT}impl{generics} ::core::convert::From<&::hamel::State<{of}>> for {name}<S> {{\nfn from(state: &::hamel::State<{of}>) -> Self {{\nSelf::from_arrays(&state.x, &state.xi)\n}}\n}}\n\n"
         ));
     }
     text

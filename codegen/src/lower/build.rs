@@ -7,8 +7,8 @@ use super::rate::At;
 use super::scope::Scope;
 use super::variety::Variety;
 use super::{
-    defaults, dynamics, invariants, joints, kinematics, pfaffian, prescribe, start, states,
-    staying, strange, time, unused,
+    defaults, dynamics, externals, invariants, joints, kinematics, pfaffian, prescribe, start,
+    states, staying, strange, time, unused,
 };
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
@@ -248,8 +248,10 @@ impl<'a> Reading<'a> {
             return Err((vec![error], None));
         };
         let declared = self.declared;
+        let places = externals::places(&self.scope);
         let motion = self.scope.motion;
-        Ok(Model {
+        let (called, externals) = (self.scope.called.take(), places);
+        let model = Model {
             name: system.name.name.clone(),
             public: system.public,
             docs: system.docs.clone(),
@@ -298,6 +300,7 @@ impl<'a> Reading<'a> {
             outputs: dynamics.outputs,
             invariants,
             lets: names.lets,
+            externals,
             start_x: start.x,
             start_xi: start.xi,
             start_z: states.start,
@@ -305,7 +308,11 @@ impl<'a> Reading<'a> {
             span: system.name.span,
             origins: Origins::default(),
             warnings: Vec::new(),
-        })
+        };
+        match externals::misplaced(&model, &called) {
+            Some(error) => Err((vec![error], None)),
+            None => Ok(model),
+        }
     }
 
     fn check_present(&mut self) {

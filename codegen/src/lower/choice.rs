@@ -46,6 +46,7 @@ impl Evaluator<'_> {
     /// Whether a value does not jump where it changes from one branch to another, as far as that is found; reports it
     /// where not. What is derived from the slopes of a function is true of a jump nowhere.
     pub(super) fn continuous(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
+        self.inside(value, span, what)?;
         let graph = &*self.graph;
         let coordinates = self.scope.plain();
         let free =

@@ -2,7 +2,7 @@
 
 use super::expression::Evaluator;
 use super::scope::{NameKind, Scope};
-use super::{applied, curves, time};
+use super::{applied, curves, externals, time};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
@@ -58,6 +58,7 @@ pub fn declare(
         }
     }
     curves::declare(system, graph, scope, report);
+    externals::declare(system, graph, scope, report);
     let functions = applied::functions(system);
     for item in &system.items {
         if let ItemKind::Function(function) = &item.kind {
@@ -123,6 +124,7 @@ pub fn declare(
         }
     }
     curves::claim(system, scope, report);
+    externals::claim(system, scope, report);
     let velocities = graph
         .symbols()
         .iter()

@@ -29,6 +29,9 @@ impl Evaluator<'_> {
         if let Some(curve) = scope.tables.get(&function.name) {
             return self.table(&function.name, curve.as_ref(), arguments, span);
         }
+        if let Some((place, external)) = self.scope.externals.get(&function.name) {
+            return self.external(*place, external, arguments, span);
+        }
         if function.name == "rate" {
             return self.rate(arguments, span);
         }
@@ -84,6 +87,7 @@ impl Evaluator<'_> {
         }
         let scope = self.scope;
         let own = scope.functions.keys().chain(scope.tables.keys());
+        let own = own.chain(scope.externals.keys());
         let own = own.map(String::as_str);
         let all: Vec<&str> = known().collect();
         let all = all.into_iter().chain(own);

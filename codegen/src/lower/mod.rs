@@ -21,6 +21,7 @@ mod definitions;
 mod dynamics;
 mod elements;
 mod expression;
+mod externals;
 mod frames;
 mod functions;
 mod independent;

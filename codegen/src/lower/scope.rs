@@ -6,9 +6,11 @@ use crate::algebra::function::Function;
 use crate::algebra::graph::{Edge, NodeId};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, Function as Defined, Ident, Item, ItemKind, Span, System};
+use crate::syntax::ast::{
+    CoordKind, External, Function as Defined, Ident, Item, ItemKind, Span, System,
+};
 use crate::syntax::suggest::closest;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 /// What kind of thing a name is.
@@ -138,6 +140,10 @@ pub struct Scope {
     pub functions: BTreeMap<String, Defined>,
     /// The tables of the description; `None` where they are in error.
     pub tables: BTreeMap<String, Option<Curve>>,
+    /// The functions in Rust, in the order of the text, each with its place among those of the graph.
+    pub externals: BTreeMap<String, (usize, External)>,
+    /// Where functions in Rust are called, by the lists of their arguments.
+    pub called: RefCell<Vec<(Edge, Span)>>,
     /// How many calls of them have been written out.
     pub calls: Cell<usize>,
     /// How many names were found to be unknown.
@@ -177,6 +183,10 @@ impl Scope {
                     note(&function.name, NameKind::Function);
                     continue;
                 }
+                ItemKind::External(function) => {
+                    note(&function.name, NameKind::Function);
+                    continue;
+                }
                 ItemKind::Table(table) => {
                     note(&table.name, NameKind::Function);
                     continue;
@@ -203,6 +213,8 @@ impl Scope {
             rates: None,
             functions: BTreeMap::new(),
             tables: BTreeMap::new(),
+            externals: BTreeMap::new(),
+            called: RefCell::default(),
             calls: Cell::new(0),
             misspelt: Cell::new(0),
         }

@@ -43,6 +43,10 @@ pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
                 found.push(uses.unused(&table.name, "table"));
                 continue;
             }
+            ItemKind::External(function) => {
+                found.push(uses.unused(&function.name, "function"));
+                continue;
+            }
             ItemKind::Function(function) => {
                 found.push(uses.unused(&function.name, "function"));
                 continue;
@@ -164,6 +168,14 @@ impl<'a> Uses<'a> {
                 let mut inner = Uses::default();
                 inner.expr(&function.value);
                 for (parameter, _) in &function.parameters {
+                    inner.names.remove(parameter.name.as_str());
+                }
+                self.names.extend(inner.names);
+            }
+            ItemKind::External(function) => {
+                let mut inner = Uses::default();
+                function.stand_in.iter().for_each(|value| inner.expr(value));
+                for parameter in &function.parameters {
                     inner.names.remove(parameter.name.as_str());
                 }
                 self.names.extend(inner.names);

@@ -289,6 +289,7 @@ fn polynomial_help(graph: &Graph, edge: Edge) -> &'static str {
             Node::Apply(function, _) => Some(function),
             Node::Atan2(..) => Some(Function::Atan2),
             Node::Select(..) => Some(Function::Select),
+            Node::External(..) => Some(Function::External),
             _ => None,
         });
     match found {
@@ -314,7 +315,7 @@ fn degree(graph: &Graph, edge: Edge) -> u32 {
             Node::Add(a, b) => of(a).max(of(b)),
             Node::Mul(a, b) => of(a).saturating_add(of(b)),
             Node::Div(a, _) => of(a),
-            Node::Constant(_) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => 0,
+            _ => 0,
         };
     }
     degrees[edge.node() as usize]

@@ -38,6 +38,15 @@ impl Model {
     }
 }
 
+impl Model {
+    /// Every expression of the model.
+    pub fn all_edges(&mut self) -> Vec<Edge> {
+        let mut edges = Vec::new();
+        self.for_each_edge(&mut |edge| edges.push(*edge));
+        edges
+    }
+}
+
 impl Edges for Edge {
     fn for_each_edge(&mut self, f: &mut dyn FnMut(&mut Edge)) {
         f(self);
@@ -131,7 +140,7 @@ fields!(Model {
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, whole;
     name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, clock,
-    joints, start_x, start_xi, start_z, asked, span, origins, warnings, independent
+    joints, start_x, start_xi, start_z, asked, span, origins, warnings, independent, externals
 });
 
 impl Edges for Along {

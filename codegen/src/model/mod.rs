@@ -264,6 +264,8 @@ pub struct Model {
     pub observed: Vec<Observed>,
     /// Outputs.
     pub outputs: Vec<(String, Value)>,
+    /// Where the functions in Rust are declared, by their places in the graph.
+    pub externals: Vec<Span>,
     /// What is claimed to be constant along the motion.
     pub invariants: Vec<invariants::Invariant>,
     /// Named expressions of the user.

@@ -275,9 +275,7 @@ impl Points {
                 Node::Add(a, b) => read(a)?.add(&read(b)?),
                 Node::Mul(a, b) => read(a)?.mul_limited(&read(b)?, MOST_TERMS)?,
                 Node::Div(a, b) => read(a)?.scale(&read(b)?.as_constant()?.inv()?),
-                Node::Constant(_) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => {
-                    return None;
-                }
+                _ => return None,
             };
             memo.insert(id, polynomial);
         }

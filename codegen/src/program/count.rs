@@ -42,7 +42,7 @@ pub fn count(graph: &Graph, roots: &[Edge]) -> Count {
 /// The operations of a list of nodes.
 pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
     let mut count = Count::default();
-    let mut angles = Vec::new();
+    let (mut angles, mut calls) = (Vec::new(), Vec::new());
     for &id in nodes {
         match graph.node(id) {
             Node::Constant(_) | Node::Symbol(_) => {}
@@ -57,11 +57,19 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
                 Cost::Other => count.other += 1,
             },
             Node::Atan2(..) => count.other += 1,
+            Node::Listed(..) => {}
+            // One call gives all components, another one all slopes.
+            Node::External(component, list) => {
+                calls.push((component.function, component.order(), list));
+            }
         }
     }
     angles.sort_unstable();
     angles.dedup();
     count.sincos = angles.len();
+    calls.sort_unstable();
+    calls.dedup();
+    count.other += calls.len();
     count
 }
 

@@ -1,8 +1,11 @@
 //! Components, and the parts that are made of them.
 
+use super::copies::moved;
 use super::names::{Binding, Context, Kind, Scope, Thing, World, shown};
 use crate::diagnostics::Diagnostic;
-use crate::syntax::ast::{Argument, Component, Ident, Part, Span};
+use crate::syntax::ast::{
+    Argument, Component, Declaration, Ident, Item, ItemKind, Part, Shape, Span,
+};
 use crate::syntax::path::{Step, plain, steps};
 use crate::syntax::suggest::closest;
 use std::collections::BTreeMap;
@@ -150,12 +153,48 @@ impl<'a> World<'a> {
         if !first {
             return;
         }
+        self.shaped(component, inner, delta);
         let context = Context {
             scope: inner,
             counters: Rc::default(),
             by: delta,
         };
         self.statements(&component.items, &context);
+    }
+
+    /// Parameters with a shape are named expressions of the part, `left.hip`: what they are is found once, and whether it
+    /// has the shape.
+    fn shaped(&mut self, component: &'a Component, scope: usize, by: usize) {
+        for parameter in &component.parameters {
+            let Some(shape) = parameter.shape else {
+                continue;
+            };
+            let base = parameter.name.name.as_str();
+            let Some(binding) = self.scopes[scope].bindings.remove(base) else {
+                continue;
+            };
+            let span = parameter.name.span.later(by);
+            let thing = Thing {
+                kind: Kind::Other,
+                name: String::new(),
+                span,
+            };
+            let name = self.register(base, None, "", thing, scope);
+            let mut value = binding.value.clone();
+            moved(&mut value, binding.context.by);
+            let declaration = Declaration {
+                name: Ident { name, span },
+                shape: Shape {
+                    span: shape.span.later(by),
+                    ..shape
+                },
+                value: Some(value),
+            };
+            let kind = ItemKind::Let(vec![declaration]);
+            self.pending.push((Item { kind, span }, binding.context));
+            let key = (component.name.name.clone(), base.to_owned());
+            self.parameters.borrow_mut().insert(key);
+        }
     }
 
     /// Whether a scope has a part of this name.
@@ -187,6 +226,10 @@ impl<'a> World<'a> {
                 .iter()
                 .map(
                     |parameter| match (parameter.frame, parameter.default.is_some()) {
+                        (false, false) if parameter.shape.is_some() => {
+                            let shape = parameter.shape.map(|shape| shape.kind.annotation());
+                            parameter.name.name.clone() + &shape.unwrap_or_default()
+                        }
                         (true, _) => format!("{}: frame", parameter.name.name),
                         (false, false) => parameter.name.name.clone(),
                         (false, true) => format!("{} = …", parameter.name.name),

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOST_LEVELS: usize = 600;
 
 /// The most operations that arguments have where they are written out.
-const MOST_WRITTEN: usize = 1_000_000;
+const MOST_WRITTEN: usize = 250_000;
 
 /// With more errors than this, no more statements are looked at.
 const MOST_ERRORS: usize = 200;
@@ -42,6 +42,10 @@ pub fn replace(world: &mut World<'_>, pending: Vec<(Item, Context)>) -> Vec<Item
                 .parameters
                 .iter()
                 .map(|(name, _)| name.name.clone());
+            replacing.locals = names.collect();
+        }
+        if let ItemKind::External(function) = &item.kind {
+            let names = function.parameters.iter().map(|name| name.name.clone());
             replacing.locals = names.collect();
         }
         if let ItemKind::Frame { name, .. } = &mut item.kind
@@ -330,12 +334,23 @@ impl<'w, 'a> Replacing<'w, 'a> {
             }
             Ok(Found::Parameter(scope, name, binding)) => {
                 self.world.mention(scope, name);
-                let Some((argument, depth, size)) = self.argument(scope, name, binding) else {
-                    return;
+                // What is not written out is not copied either.
+                let known = self.known.arguments.get(&(scope, name.to_owned()));
+                let measured = known.map(|known| known.as_ref().map(|(_, d, s)| (*d, *s)));
+                let (depth, size) = match measured {
+                    Some(Some(measured)) => measured,
+                    Some(None) => return,
+                    None => match self.argument(scope, name, binding) {
+                        Some((_, depth, size)) => (depth, size),
+                        None => return,
+                    },
                 };
                 if self.is_too_large(depth, size, expr.span) {
                     return;
                 }
+                let Some((argument, ..)) = self.argument(scope, name, binding) else {
+                    return;
+                };
                 (Some(argument.kind), 1)
             }
             Ok(Found::Thing(thing, taken)) => match thing.kind {

@@ -5,8 +5,8 @@ use super::parts::{Body, Element, Frame, Joint, Load};
 use super::{Scene, SceneError, print};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
-    Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, Function, Item, ItemKind,
-    Origins, Shape, ShapeKind, Source, Span, System, Table, Target,
+    Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, External, Function, Item,
+    ItemKind, Origins, Shape, ShapeKind, Source, Span, System, Table, Target,
 };
 use crate::syntax::parse_text;
 
@@ -118,6 +118,24 @@ impl SceneBuilder {
             name: ident(name),
             parameters: parameters.collect(),
             value: value.into(),
+        }));
+    }
+
+    /// A function in Rust of some numbers, which gives `components` numbers; the stand-in has its place where the
+    /// function is not there. It is called by [`call`](super::call).
+    pub fn external(
+        &mut self,
+        name: &str,
+        parameters: &[&str],
+        components: usize,
+        stand_in: Option<Expr>,
+    ) {
+        self.add(ItemKind::External(External {
+            name: ident(name),
+            parameters: parameters.iter().map(|&name| ident(name)).collect(),
+            components: (components, Span::NOWHERE),
+            stand_in,
+            evaluated: false,
         }));
     }
 

@@ -5,8 +5,8 @@
 
 use crate::syntax::ast::{
     About, Acting, Body, Component, Components, Conserved, CoordKind, Counter, Declaration, End,
-    Expr, Ident, Item, ItemKind, Joint, JointKind, Load, Part, Repeat, ShapeKind, Source, System,
-    Table, Target,
+    Expr, Ident, Item, ItemKind, Joint, JointKind, Load, Part, Repeat, Source, System, Table,
+    Target,
 };
 use crate::syntax::written::{conditions, equation, list, written};
 use crate::syntax::{joint_field, joint_kind};
@@ -37,10 +37,20 @@ pub fn statement(item: &Item) -> String {
         ItemKind::Let(list) => format!("let {}", declarations(list)),
         ItemKind::Function(function) => {
             let parameters = each(&function.parameters, |(name, of)| {
-                format!("{}{}", name.name, shape(of.kind))
+                format!("{}{}", name.name, of.kind.annotation())
             });
             let (name, value) = (&function.name.name, written(&function.value));
             format!("fn {name}({parameters}) = {value}")
+        }
+        ItemKind::External(function) => {
+            let parameters = each(&function.parameters, |name| name.name.clone());
+            let (name, count) = (&function.name.name, function.components.0);
+            let stand_in = function.stand_in.as_ref();
+            let stand_in = stand_in.map(|value| format!(" = {}", written(value)));
+            format!(
+                "extern fn {name}({parameters}) -> {count}{}",
+                stand_in.unwrap_or_default()
+            )
         }
         ItemKind::Table(values) => table(values),
         ItemKind::Coord(list) => format!("coord {}", each(list, coordinate)),
@@ -179,14 +189,14 @@ fn counter(counter: &Counter) -> String {
 
 fn component(component: &Component) -> String {
     let parameters = each(&component.parameters, |parameter| {
-        let frame = if parameter.frame { ": frame" } else { "" };
+        let of = match &parameter.shape {
+            _ if parameter.frame => ": frame".into(),
+            Some(of) => of.kind.annotation(),
+            None => String::new(),
+        };
         let default = parameter.default.as_ref();
         let default = default.map(|value| format!(" = {}", written(value)));
-        format!(
-            "{}{frame}{}",
-            parameter.name.name,
-            default.unwrap_or_default()
-        )
+        format!("{}{of}{}", parameter.name.name, default.unwrap_or_default())
     });
     let (name, items) = (&component.name.name, block(&component.items));
     format!("component {name}({parameters}) {items}")
@@ -218,16 +228,6 @@ fn table(table: &Table) -> String {
     format!("table {name} {points} {between} extrapolate {beyond}")
 }
 
-/// A shape after a name: `: vec3`, nothing for a scalar.
-pub fn shape(kind: ShapeKind) -> String {
-    match kind {
-        ShapeKind::Scalar => String::new(),
-        ShapeKind::Vector(n) => format!(": vec{n}"),
-        ShapeKind::Matrix(n) => format!(": mat{n}"),
-        ShapeKind::Symmetric(n) => format!(": sym{n}"),
-    }
-}
-
 /// A kind of coordinate after a name: `: S1`, nothing for a real.
 pub fn kind(kind: CoordKind) -> String {
     match kind {
@@ -251,7 +251,7 @@ fn declarations(list: &[Declaration]) -> String {
             .as_ref()
             .map(|value| format!(" = {}", written(value)));
         let value = value.unwrap_or_default();
-        format!("{}{}{value}", one.name.name, shape(one.shape.kind))
+        format!("{}{}{value}", one.name.name, one.shape.kind.annotation())
     })
 }
 

@@ -2,7 +2,9 @@
 
 use super::build::SceneBuilder;
 use super::expression::ident;
-use crate::syntax::ast::{self, Argument, Component, Counter, Expr, ItemKind, Part, Repeat, Span};
+use crate::syntax::ast::{
+    self, Argument, Component, Counter, Expr, ItemKind, Part, Repeat, Shape, ShapeKind, Span,
+};
 
 /// A parameter of a component.
 #[derive(Clone, Debug)]
@@ -13,6 +15,7 @@ impl Parameter {
         Parameter(ast::Parameter {
             name: ident(name),
             frame,
+            shape: None,
             default: None,
         })
     }
@@ -25,6 +28,14 @@ impl Parameter {
     /// Stands for an expression.
     pub fn value(name: &str) -> Parameter {
         Parameter::new(name, false)
+    }
+
+    /// Stands for an expression of this shape, a vector or a matrix.
+    pub fn shaped(name: &str, kind: ShapeKind) -> Parameter {
+        let mut parameter = Parameter::new(name, false);
+        let span = Span::NOWHERE;
+        parameter.0.shape = Some(Shape { kind, span });
+        parameter
     }
 
     /// What it is where a part does not say.

@@ -52,6 +52,18 @@ pub enum ShapeKind {
     Symmetric(usize),
 }
 
+impl ShapeKind {
+    /// What stands behind a name: `: vec3`, nothing for a scalar.
+    pub fn annotation(self) -> String {
+        match self {
+            ShapeKind::Scalar => String::new(),
+            ShapeKind::Vector(n) => format!(": vec{n}"),
+            ShapeKind::Matrix(n) => format!(": mat{n}"),
+            ShapeKind::Symmetric(n) => format!(": sym{n}"),
+        }
+    }
+}
+
 /// A shape annotation with its place (the place of the name where none was written).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
@@ -98,6 +110,39 @@ pub struct Function {
     pub parameters: Vec<(Ident, Shape)>,
     /// Its value, in its parameters and all names of the description.
     pub value: Expr,
+}
+
+/// `extern fn lift(alpha, mach) -> 2;`, or with a stand-in: `… -> 2 = [a, b];`
+#[derive(Clone, Debug, PartialEq)]
+pub struct External {
+    /// Its name.
+    pub name: Ident,
+    /// The names of its arguments, all of them numbers.
+    pub parameters: Vec<Ident>,
+    /// How many components it has, and where that is said.
+    pub components: (usize, Span),
+    /// What has its place where numbers of it are wanted and the function is not there.
+    pub stand_in: Option<Expr>,
+    /// Whether numbers of it are wanted.
+    pub evaluated: bool,
+}
+
+impl System {
+    /// From now on numbers of functions in Rust are wanted: those of their stand-ins.
+    pub fn evaluate(&mut self) {
+        evaluate(&mut self.items);
+    }
+}
+
+fn evaluate(items: &mut [Item]) {
+    for item in items {
+        match &mut item.kind {
+            ItemKind::External(function) => function.evaluated = true,
+            ItemKind::Component(component) => evaluate(&mut component.items),
+            ItemKind::Repeat(repeat) => evaluate(&mut repeat.items),
+            _ => {}
+        }
+    }
 }
 
 /// A name or one of its parts on the left of `rate` and `start`: `R`, `X.p`.
@@ -259,6 +304,8 @@ pub enum ItemKind {
     Let(Vec<Declaration>),
     /// `fn drag(v: vec3, c) = -c * norm(v) * v;` a function of expressions.
     Function(Function),
+    /// `extern fn lift(alpha, mach) -> 2;`
+    External(External),
     /// `table thrust = [(0, 0), (0.2, 1.1)] linear extrapolate hold;` a function by its values.
     Table(Table),
     /// `coord r: R3, R: SO3, q;`

@@ -1,9 +1,10 @@
 //! Statements that declare names: parameters, coordinates, velocities, inputs.
 
-use super::ast::{CoordKind, Declaration, Function, Ident, Shape, ShapeKind, Span};
+use super::ast::{CoordKind, Declaration, External, Function, Ident, Shape, ShapeKind, Span};
 use super::cursor::{Cursor, Parsed, shown};
 use super::expression::expression;
 use super::path;
+use super::tokens::Kind;
 use crate::diagnostics::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -94,6 +95,53 @@ pub(super) fn function(cursor: &mut Cursor<'_>) -> Parsed<Function> {
     })
 }
 
+/// Behind `extern`: `fn lift(alpha, mach) -> 2`, and a stand-in behind `=`.
+pub(super) fn external(cursor: &mut Cursor<'_>) -> Parsed<External> {
+    cursor.expect_word("fn")?;
+    let name = cursor.name("a function")?;
+    if !cursor.eat_open(Delimiter::Parenthesis) {
+        return Err(cursor.unexpected("`(` and the names of its arguments"));
+    }
+    let parameters = separated(cursor, |cursor| {
+        let name = cursor.name("an argument")?;
+        match cursor.is_punct(':') {
+            true => Err(cursor.unexpected("`,` or `)`").help(
+                "arguments of a function in Rust are numbers: give the entries of a vector one by one",
+            )),
+            false => Ok(name),
+        }
+    })?;
+    cursor.expect_close(Delimiter::Parenthesis, false)?;
+    const HELP: &str = "how many numbers it gives stands behind an arrow: `-> 2`";
+    for part in ['-', '>'] {
+        if !cursor.eat_punct(part) {
+            return Err(cursor.unexpected("`->`").help(HELP));
+        }
+    }
+    let span = cursor.here();
+    let token = cursor.peek();
+    let count = token
+        .text
+        .parse()
+        .ok()
+        .filter(|_| token.kind == Kind::Literal);
+    let Some(count) = count else {
+        return Err(cursor.unexpected("a whole number").help(HELP));
+    };
+    cursor.bump();
+    let stand_in = match cursor.eat_punct('=') {
+        true => Some(expression(cursor)?),
+        false => None,
+    };
+    Ok(External {
+        name,
+        parameters,
+        components: (count, span),
+        stand_in,
+        evaluated: false,
+    })
+}
+
 /// One or more, with commas between them.
 fn separated<T>(
     cursor: &mut Cursor<'_>,
@@ -124,7 +172,7 @@ fn after(cursor: &mut Cursor<'_>, name: &Ident) -> Parsed<Shape> {
     }
 }
 
-fn shape(cursor: &mut Cursor<'_>) -> Parsed<Shape> {
+pub(super) fn shape(cursor: &mut Cursor<'_>) -> Parsed<Shape> {
     let Ident { name, span } = cursor.word("a shape")?;
     let (family, size) = family(&name);
     let kind: fn(usize) -> ShapeKind = match family {

@@ -7,6 +7,7 @@ use super::ast::{
 };
 use super::blocks::{docs, since};
 use super::cursor::{Cursor, MAX_ERRORS, Parsed};
+use super::declaration::shape;
 use super::expression::expression;
 use super::path;
 use super::statement::statement;
@@ -134,15 +135,18 @@ pub(super) fn component(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     }))
 }
 
-/// `mount: frame`, `side = 1`
+/// What a parameter can be.
+const PARAMETERS: &str = "a parameter of a component is a frame, `mount: frame`, of a shape, `hip: vec3`, or any expression, `side` or `side = 1`";
+
+/// `mount: frame`, `hip: vec3`, `side = 1`
 fn parameter(cursor: &mut Cursor<'_>) -> Parsed<Parameter> {
     let name = cursor.name("a parameter")?;
-    let frame = cursor.eat_punct(':');
-    if frame && !cursor.eat_word("frame") {
-        return Err(cursor.unexpected("`frame`").help(
-            "a parameter of a component is a frame, `mount: frame`, or any expression, `side` or `side = 1`",
-        ));
-    }
+    let shaped = cursor.eat_punct(':');
+    let frame = shaped && cursor.eat_word("frame");
+    let shape = match shaped && !frame {
+        true => Some(shape(cursor).map_err(|error| error.help(PARAMETERS))?),
+        false => None,
+    };
     let default = match cursor.eat_punct('=') {
         true => Some(expression(cursor)?),
         false => None,
@@ -150,6 +154,7 @@ fn parameter(cursor: &mut Cursor<'_>) -> Parsed<Parameter> {
     Ok(Parameter {
         name,
         frame,
+        shape,
         default,
     })
 }

@@ -25,6 +25,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         "const" => ItemKind::Const(declaration::values(cursor, "a constant")?),
         "let" => ItemKind::Let(declaration::values(cursor, "an expression")?),
         "fn" => ItemKind::Function(declaration::function(cursor)?),
+        "extern" => ItemKind::External(declaration::external(cursor)?),
         "table" => ItemKind::Table(table::table(cursor)?),
         "coord" => ItemKind::Coord(declaration::coordinates(cursor)?),
         "velocity" => ItemKind::Velocity(declaration::velocities(cursor)?),

@@ -121,6 +121,15 @@ fn told(kind: &ItemKind) -> String {
             let value = spelled(&function.value);
             format!("fn {}({parameters}) = {value}", function.name.name)
         }
+        External(function) => {
+            let parameters = function.parameters.iter().map(|name| name.name.as_str());
+            let parameters = parameters.collect::<Vec<_>>().join(", ");
+            let (name, count) = (&function.name.name, function.components.0);
+            format!(
+                "extern fn {name}({parameters}) -> {count}, stand-in {}",
+                maybe(&function.stand_in)
+            )
+        }
         Table(table) => {
             let source = match &table.source {
                 super::ast::Source::Points(points, _) => {

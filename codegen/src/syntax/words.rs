@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 39] = [
+const STATEMENTS: [(&str, &str); 40] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -11,6 +11,10 @@ const STATEMENTS: [(&str, &str); 39] = [
     (
         "fn",
         "a function is written `fn drag(v: vec3, c) = -c * norm(v) * v;`",
+    ),
+    (
+        "extern",
+        "a function in Rust is written `extern fn lift(alpha, mach) -> 2;`, with a stand-in `extern fn lift(alpha, mach) -> 2 = [alpha, 0];`",
     ),
     (
         "table",

@@ -13,6 +13,15 @@ pub enum Atom {
     Sum(Vec<Term>),
     /// A function with its arguments.
     Call(Function, Vec<Term>),
+    /// A component of a function in Rust.
+    External {
+        /// What stands before the arguments.
+        name: String,
+        /// The arguments.
+        arguments: Vec<Term>,
+        /// Which component it is, where there are several: `[1]`.
+        part: String,
+    },
 }
 
 /// coefficient · Π over / Π under, every factor with its power.
@@ -162,14 +171,20 @@ impl Atom {
         match self {
             Atom::Name(_) => 1,
             Atom::Sum(terms) => terms.iter().map(Term::weight).sum(),
-            Atom::Call(_, arguments) => 1 + arguments.iter().map(Term::weight).sum::<usize>(),
+            Atom::Call(_, arguments) | Atom::External { arguments, .. } => {
+                1 + arguments.iter().map(Term::weight).sum::<usize>()
+            }
         }
     }
 
     fn names(&self) -> Vec<&str> {
         match self {
             Atom::Name(name) => vec![name],
-            Atom::Sum(terms) | Atom::Call(_, terms) => terms.iter().flat_map(Term::names).collect(),
+            Atom::Sum(terms)
+            | Atom::Call(_, terms)
+            | Atom::External {
+                arguments: terms, ..
+            } => terms.iter().flat_map(Term::names).collect(),
         }
     }
 }

@@ -75,6 +75,29 @@ impl Notation {
             (_, Atom::Sum(terms), _) => raised(self, self.group(&self.sum(terms)), power),
             (Notation::Text, Atom::Name(name), _) => raised(self, name.clone(), power),
             (Notation::Latex, Atom::Name(name), _) => raised(self, latex_name(name), power),
+            (
+                _,
+                Atom::External {
+                    name,
+                    arguments,
+                    part,
+                },
+                _,
+            ) => {
+                let given = self.group(&self.arguments(arguments));
+                let called = match self {
+                    Notation::Text => format!("{name}{given}{part}"),
+                    Notation::Latex => {
+                        let index = part.trim_matches(['[', ']']);
+                        let name = latex_name(name);
+                        match index {
+                            "" => format!("{name}{given}"),
+                            _ => format!("{name}{given}_{{{index}}}"),
+                        }
+                    }
+                };
+                raised(self, called, power)
+            }
             (_, Atom::Call(Function::Select, arguments), _) => {
                 raised(self, self.choice(arguments), power)
             }

@@ -137,14 +137,15 @@ impl<'a> Writer<'a> {
     fn choose(&mut self, id: NodeId, whole: bool) -> Plan {
         let polynomial = match (self.graph.node(id), self.style) {
             (Node::Constant(_) | Node::Symbol(_), _) => return Plan::Leaf,
-            (Node::Div(..) | Node::Apply(..) | Node::Atan2(..) | Node::Select(..), _) => None,
-            (_, Style::Table) if whole => self.simplifier.whole(self.graph, id),
-            (_, Style::Table) => self.simplifier.part(self.graph, id),
-            (_, Style::Route) if !self.graph.is_free(id) => None,
-            (_, Style::Route) => {
+            (Node::Add(..) | Node::Mul(..), Style::Table) if whole => {
+                self.simplifier.whole(self.graph, id)
+            }
+            (Node::Add(..) | Node::Mul(..), Style::Table) => self.simplifier.part(self.graph, id),
+            (Node::Add(..) | Node::Mul(..), Style::Route) if self.graph.is_free(id) => {
                 let short = self.simplifier.part(self.graph, id);
                 short.filter(|p| p.terms().len() <= 4 && p.variables().iter().all(|&v| v < OPAQUE))
             }
+            _ => None,
         };
         polynomial.map_or(Plan::Structure, Plan::Polynomial)
     }
@@ -194,6 +195,18 @@ impl<'a> Writer<'a> {
             Node::Div(a, b) => self.value(a).divided(&self.value(b)),
             Node::Apply(function, a) => call(function, vec![self.value(a)]),
             Node::Atan2(y, x) => call(Function::Atan2, vec![self.value(y), self.value(x)]),
+            // Read by what is called alone.
+            Node::Listed(..) => Term::number(BigRational::one()),
+            Node::External(component, list) => {
+                let name = self.graph.called(component, "");
+                let (head, part) = name.split_once("()").unwrap_or((&name, ""));
+                let given = self.graph.list(list).into_iter();
+                Term::atom(Atom::External {
+                    name: head.into(),
+                    arguments: given.map(|edge| self.value(edge)).collect(),
+                    part: part.into(),
+                })
+            }
             Node::Select(c, a, b) => {
                 let list = [c, a, b].map(|edge| self.value(edge));
                 call(Function::Select, list.into())

@@ -32,7 +32,8 @@ fn descriptions(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_path_buf()];
     while let Some(path) = open.pop() {
-        if path.ends_with("parts") {
+        // Parts of others, and functions in Rust, which have no C.
+        if path.ends_with("parts") || path.ends_with("external") {
             continue;
         } else if path.is_dir() {
             let entries = std::fs::read_dir(&path).expect("a folder");

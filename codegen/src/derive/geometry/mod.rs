@@ -233,7 +233,7 @@ fn numbers(model: &Model, edges: &[Edge]) -> Option<Vec<BigRational>> {
                 }
                 read(&values, a) / divisor
             }
-            Node::Apply(..) | Node::Atan2(..) | Node::Select(..) => return None,
+            _ => return None,
         };
     }
     Some(edges.iter().map(|&edge| read(&values, edge)).collect())

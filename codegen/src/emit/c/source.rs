@@ -67,7 +67,7 @@ fn body(texts: &Texts, drawing: &Drawing, spec: &Spec) -> String {
     let mut text = String::new();
     // Pivots are looked at last: gcc keeps fewer values in memory where no function ends in its middle.
     let (values, checks): (Vec<_>, Vec<_>) =
-        (drawing.body.statements.iter().copied()).partition(|statement| statement.is_let());
+        (drawing.body.statements.iter().cloned()).partition(|statement| statement.is_let());
     let body = Body {
         statements: [values, checks].concat(),
         outputs: drawing.body.outputs.clone(),

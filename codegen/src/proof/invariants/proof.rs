@@ -24,6 +24,9 @@ const MOST_PROVED: usize = 8;
 /// Expressions of more nodes are not expanded.
 const MOST_NODES: usize = 20_000;
 
+/// Products and sums of terms of all expansions together; more leave the claim to points modulo p.
+const WORK: usize = 300_000;
+
 /// What became of a proof.
 pub enum Proof {
     /// d/dt I lies in the ideal of φ.
@@ -60,7 +63,7 @@ impl Prover {
         } = Geometry::unreduced(model)?;
         // Normal forms at every stage keep the polynomials small. They may be differentiated, as
         // the columns of A are tangent to X.
-        let mut forms = NormalForms::new(&model.points);
+        let mut forms = NormalForms::within(&model.points, WORK);
         let entries = gamma.iter_mut().flatten().flatten();
         for entry in entries.chain(mass.iter_mut().flatten()) {
             *entry = normal(&mut forms, &mut free.graph, *entry);

@@ -66,11 +66,11 @@ fn expression(graph: &Graph, edge: Edge, depth: usize) -> Option<String> {
             };
             format!("{} {}", factor(a)?, factor(b)?)
         }
-        Node::Div(..) | Node::Atan2(..) | Node::Select(..) => return None,
         Node::Apply(function, a) => {
             let name = function.name();
             format!("{name}({})", of(a)?)
         }
+        _ => return None,
     };
     Some(if edge.is_negative() {
         format!("-{text}")

@@ -1,6 +1,6 @@
 //! Statements that stand for others: repetition, components and their parts.
 
-use super::{Expr, Ident, Item, Span};
+use super::{Expr, Ident, Item, Shape, Span};
 
 /// `i in 1..n`: a counter and its range, both ends included.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,13 +40,15 @@ pub struct Component {
     pub items: Vec<Item>,
 }
 
-/// `mount: frame` or `side = 1` of a component.
+/// `mount: frame`, `hip: vec3` or `side = 1` of a component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
     /// Its name in the component.
     pub name: Ident,
     /// Whether it stands for a frame, else for an expression.
     pub frame: bool,
+    /// The shape that the expression has to have, where one is written.
+    pub shape: Option<Shape>,
     /// What it is where a part does not say.
     pub default: Option<Expr>,
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Acting, Body, Choice, Components, Condition, Conserved, Declaration, End, Expr, ExprKind,
-    Function, Ident, Item, ItemKind, Joint, Load, Source, Span, Table, Target,
+    External, Function, Ident, Item, ItemKind, Joint, Load, Source, Span, Table, Target,
 };
 
 /// What is done with the parts of a statement.
@@ -41,6 +41,22 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
                 to.place(&mut shape.span);
             }
             to.expr(value);
+        }
+        ItemKind::External(External {
+            name,
+            parameters,
+            components,
+            stand_in,
+            evaluated: _,
+        }) => {
+            to.declares(name, false);
+            for name in parameters {
+                to.place(&mut name.span);
+            }
+            to.place(&mut components.1);
+            if let Some(value) = stand_in {
+                to.expr(value);
+            }
         }
         ItemKind::Table(Table {
             name,

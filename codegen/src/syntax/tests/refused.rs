@@ -15,7 +15,7 @@ fn errors(text: &str) -> String {
         let region = text.get(range).unwrap_or("?");
         let help = error.help.as_deref().unwrap_or("none");
         let help = help
-            .split_once("`param`, `const`, `let`, `fn`, `table`, `coord`")
+            .split_once("`param`, `const`, `let`, `fn`, `extern`, `table`, `coord`")
             .map_or(help, |(start, _)| start);
         format!("{}:{} {} <{region}>\n  {help}", line, column, error.message)
     });

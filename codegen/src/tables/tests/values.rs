@@ -32,6 +32,7 @@ fn atom(values: &Values, atom: &Atom) -> f64 {
     match atom {
         Atom::Name(name) => values[name],
         Atom::Sum(terms) => arguments(terms).iter().sum(),
+        Atom::External { name, .. } => panic!("no values of {name}"),
         Atom::Call(function, terms) => match (function, arguments(terms).as_slice()) {
             (function, [a]) => (function.row().value)(*a),
             (Function::Atan2, [y, x]) => y.atan2(*x),

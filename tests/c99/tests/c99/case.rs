@@ -73,7 +73,7 @@ impl Case {
 
     /// Header and source in one, and the function `run_NAME` behind them.
     pub fn text(&self, precision: Precision) -> (String, String) {
-        let files = written_in_c(&self.generated, "case.eom", None, precision);
+        let files = written_in_c(&self.generated, "case.eom", None, precision).expect("C");
         let (prefix, functions) = declared(&files.header);
         let program = &self.generated.program;
         assert_eq!(functions.len(), program.functions.len());
@@ -119,7 +119,7 @@ impl Case {
 
     /// The call of the function that [`Self::text`] defines.
     pub fn run(&self) -> String {
-        let files = written_in_c(&self.generated, "case.eom", None, Precision::Double);
+        let files = written_in_c(&self.generated, "case.eom", None, Precision::Double).expect("C");
         format!("    run_{}();\n", declared(&files.header).0)
     }
 

@@ -1,0 +1,95 @@
+//! What acts on a run from outside: columns of a file over time, and expressions of time and state.
+
+mod expressions;
+mod file;
+
+use crate::failure::Failure;
+use crate::names;
+use crate::state::State;
+use expressions::Expressions;
+use file::Table;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::syntax::path::plain;
+use hamel_codegen::syntax::suggest::closest;
+use std::path::{Path, PathBuf};
+
+/// What was asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    /// A file with columns of inputs.
+    pub file: Option<&'a PathBuf>,
+    /// Whether a value holds until the next row of it.
+    pub hold: bool,
+    /// `NAME = EXPRESSION`.
+    pub expressions: &'a [String],
+    /// Length of the run.
+    pub until: f64,
+}
+
+/// u as a function of t, x and ξ.
+#[derive(Debug)]
+pub struct Inputs {
+    table: Option<Table>,
+    expressions: Option<Expressions>,
+}
+
+impl Inputs {
+    /// Reads what was asked for; none where all inputs keep their values.
+    pub fn new(
+        asked: Asked,
+        generated: &Generated,
+        state: &State,
+    ) -> Result<Option<Self>, Failure> {
+        let model = &generated.active;
+        let entries: Vec<String> = model.inputs.iter().flat_map(names::group).collect();
+        let table = match asked.file {
+            Some(path) => Some(Table::read(path, &entries, asked.hold, asked.until)?),
+            None => None,
+        };
+        let expressions = Expressions::new(asked.expressions, model, &state.params)?;
+        if let (Some(table), Some(expressions)) = (&table, &expressions) {
+            let both = expressions.places().find(|place| table.has(*place));
+            if let Some(place) = both {
+                let name = &entries[place];
+                return Err(Failure::usage(format!(
+                    "`{name}` has a column of --inputs and an --input: one of the two is needed"
+                )));
+            }
+        }
+        Ok((table.is_some() || expressions.is_some()).then_some(Inputs { table, expressions }))
+    }
+
+    /// Times at which inputs jump.
+    pub fn jumps(&self) -> &[f64] {
+        self.table.as_ref().map_or(&[], Table::jumps)
+    }
+
+    /// u, from the values that inputs keep elsewhere.
+    pub fn at(&self, t: f64, x: &[f64], xi: &[f64], mut u: Vec<f64>) -> Vec<f64> {
+        if let Some(table) = &self.table {
+            table.set(t, &mut u);
+        }
+        if let Some(expressions) = &self.expressions {
+            expressions.set(t, x, xi, &mut u);
+        }
+        u
+    }
+}
+
+/// The times of samples, from the column `t` of a file.
+pub fn times(path: &Path, until: f64) -> Result<Vec<f64>, Failure> {
+    file::times(path, until)
+}
+
+/// The place of an entry of the inputs, as it is written or plainly; why there is none.
+fn place(name: &str, entries: &[String]) -> Result<usize, String> {
+    let found = |entry: &String| entry == name || plain(entry) == plain(name);
+    entries.iter().position(found).ok_or_else(|| {
+        let message = format!("no input is called `{name}`");
+        match closest(name, entries.iter().map(String::as_str)) {
+            Some(close) => format!("{message}: did you mean `{close}`?"),
+            None if entries.is_empty() => format!("{message}: the description has no inputs"),
+            None => format!("{message}: the inputs are {}", entries.join(", ")),
+        }
+    })
+}

@@ -1,0 +1,178 @@
+//! Inputs by expressions in the language of descriptions: `F = 2 * sin(3 * t) - 4 * q`.
+//!
+//! They are outputs of a description of their own, whose inputs are the time, the parameters and the state.
+
+use super::place;
+use crate::failure::Failure;
+use crate::names;
+use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::generate::from_text;
+use hamel_codegen::model::layout::entry_names;
+use hamel_codegen::model::{Group, Model};
+use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
+use hamel_codegen::syntax::path::plain;
+
+/// The name of the time, where the description has no other use for it.
+const TIME: &str = "t";
+
+/// The names that the description has beside those of the user, as messages list them.
+const OWN: &str = "`hamel_v`, `hamel_x`, ";
+
+/// Expressions of inputs.
+#[derive(Debug)]
+pub struct Expressions {
+    /// Each with the entries of u that it is.
+    all: Vec<(Vec<usize>, Interpreter)>,
+    params: Vec<f64>,
+    /// Whether the time stands first among what they take.
+    timed: bool,
+}
+
+impl Expressions {
+    /// Reads `NAME = EXPRESSION`; none where there is none.
+    pub fn new(asked: &[String], model: &Model, params: &[f64]) -> Result<Option<Self>, Failure> {
+        if asked.is_empty() {
+            return Ok(None);
+        }
+        let entries: Vec<String> = model.inputs.iter().flat_map(names::group).collect();
+        let (known, timed) = known(model);
+        let mut all: Vec<(Vec<usize>, Interpreter)> = Vec::new();
+        for text in asked {
+            let wrong = |why: String| Failure::usage(format!("--input \"{text}\": {why}"));
+            let Some((name, expression)) = text.split_once('=') else {
+                return Err(wrong("an input is written `NAME = EXPRESSION`".into()));
+            };
+            let name = name.trim();
+            let group = model.inputs.iter().find(|group| group.name == plain(name));
+            let places: Vec<usize> = match group {
+                Some(group) => (group.offset..group.offset + group.len).collect(),
+                None => vec![place(name, &entries).map_err(wrong)?],
+            };
+            if all
+                .iter()
+                .any(|(taken, _)| taken.iter().any(|place| places.contains(place)))
+            {
+                return Err(wrong(format!("`{name}` is given twice")));
+            }
+            let shape = match group.map(|group| group.shape) {
+                Some(ShapeKind::Vector(n)) => format!(": vec{n}"),
+                _ => String::new(),
+            };
+            let (interpreter, count) = compiled(&known, &shape, expression)
+                .map_err(|why| wrong(why.replace("hamel_input", name)))?;
+            if count != places.len() {
+                let numbers = |count: usize| match count {
+                    1 => "a number".into(),
+                    _ => format!("{count} numbers"),
+                };
+                let (needed, found) = (numbers(places.len()), numbers(count));
+                return Err(wrong(format!("`{name}` is {needed}, this is {found}")));
+            }
+            all.push((places, interpreter));
+        }
+        Ok(Some(Expressions {
+            all,
+            params: params.to_vec(),
+            timed,
+        }))
+    }
+
+    /// The entries of u that expressions give.
+    pub fn places(&self) -> impl Iterator<Item = usize> {
+        self.all
+            .iter()
+            .flat_map(|(places, _)| places.iter().copied())
+    }
+
+    /// Sets the entries of u that expressions give.
+    pub fn set(&self, t: f64, x: &[f64], xi: &[f64], u: &mut [f64]) {
+        let time = self.timed.then_some(t).into_iter();
+        let rest = self.params.iter().chain(x).chain(xi).copied();
+        let given: Vec<f64> = time.chain(rest).collect();
+        for (places, interpreter) in &self.all {
+            let values = interpreter.call(&[0.0], &[0.0], &given, &[]);
+            let values = values.unwrap_or_else(|_| vec![f64::NAN; places.len()]);
+            for (&place, value) in places.iter().zip(values) {
+                u[place] = value;
+            }
+        }
+    }
+}
+
+/// Declarations of what expressions may mention, in the order of t, the parameters, x, ξ and z; whether t is among
+/// them.
+fn known(model: &Model) -> (Vec<String>, bool) {
+    let group = |group: &Group| match group.shape {
+        ShapeKind::Scalar => group.name.clone(),
+        ShapeKind::Vector(n) => format!("{}: vec{n}", group.name),
+        ShapeKind::Matrix(n) => format!("{}: mat{n}", group.name),
+        ShapeKind::Symmetric(n) => format!("{}: sym{n}", group.name),
+    };
+    let mut all: Vec<String> = model.params.iter().map(group).collect();
+    for coordinate in &model.coordinates {
+        let name = &coordinate.name;
+        match coordinate.kind {
+            CoordKind::Real => all.push(name.clone()),
+            CoordKind::SE3 => all.extend([format!("{name}_p: vec3"), format!("{name}_R: mat3")]),
+            CoordKind::SO3 => all.push(format!("{name}: mat3")),
+            kind => all.push(format!("{name}: vec{}", entry_names(name, kind).len())),
+        }
+    }
+    all.extend(model.velocities.iter().chain(&model.states).map(group));
+    let is_time = |one: &String| one.split(':').next() == Some(TIME);
+    let timed = !all.iter().any(is_time);
+    if timed {
+        all.insert(0, TIME.into());
+    }
+    (all, timed)
+}
+
+/// An expression as the output of a description, and how many numbers it is.
+fn compiled(
+    known: &[String],
+    shape: &str,
+    expression: &str,
+) -> Result<(Interpreter, usize), String> {
+    if expression.contains(';') {
+        return Err("one expression is needed".into());
+    }
+    let text = format!(
+        "system Input {{
+    input {};
+    coord hamel_x;
+    velocity hamel_v;
+    rate hamel_x = hamel_v;
+    particle mass 1 at [hamel_x, 0, 0];
+    let hamel_input{shape} = {expression};
+    output hamel_output = hamel_input;
+    generate hamel_output;
+}}",
+        known.join(", ")
+    );
+    let generated = from_text(&text).map_err(|errors| said(&errors))?;
+    let program = &generated.program;
+    let function = program
+        .functions
+        .iter()
+        .find(|function| function.id.is_none());
+    match function {
+        Some(function) => Ok((
+            Interpreter::new(program, function, &[]),
+            function.outputs.len(),
+        )),
+        None => Err("one expression is needed".into()),
+    }
+}
+
+/// The first error, in a line.
+fn said(errors: &[Diagnostic]) -> String {
+    let Some(error) = errors.first() else {
+        return String::new();
+    };
+    match &error.help {
+        // What the description has of its own is nothing to choose from.
+        Some(help) => format!("{}; {}", error.message, help.replace(OWN, "")),
+        None => error.message.clone(),
+    }
+}

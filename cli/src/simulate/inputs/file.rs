@@ -1,0 +1,170 @@
+//! Files of numbers over time, as CSV: a header with `t` and names, rows with increasing t.
+
+use super::place;
+use crate::failure::Failure;
+use crate::number::short;
+use std::path::Path;
+
+/// The name of the column of times.
+const TIME: &str = "t";
+
+/// Inputs over time.
+#[derive(Debug)]
+pub struct Table {
+    times: Vec<f64>,
+    /// Entries of u with their values at the times.
+    columns: Vec<(usize, Vec<f64>)>,
+    hold: bool,
+}
+
+impl Table {
+    /// Reads a file, which has to cover the run.
+    pub fn read(path: &Path, entries: &[String], hold: bool, until: f64) -> Result<Self, Failure> {
+        let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display()));
+        let (names, rows) = rows(path).map_err(wrong)?;
+        let times = increasing(&names, &rows).map_err(wrong)?;
+        let mut columns: Vec<(usize, Vec<f64>)> = Vec::new();
+        for (column, name) in names.iter().enumerate().filter(|(_, name)| *name != TIME) {
+            let entry = place(name, entries).map_err(wrong)?;
+            if columns.iter().any(|(known, _)| *known == entry) {
+                return Err(wrong(format!("two columns are called `{name}`")));
+            }
+            columns.push((entry, rows.iter().map(|(_, row)| row[column]).collect()));
+        }
+        if columns.is_empty() {
+            let all = match entries {
+                [] => "the description has no inputs".into(),
+                all => format!("the inputs are {}", all.join(", ")),
+            };
+            return Err(wrong(format!(
+                "no column of an input beside `{TIME}`: {all}"
+            )));
+        }
+        if let (Some(&first), Some(&last)) = (times.first(), times.last())
+            && (first > 0.0 || last < until && !hold)
+        {
+            return Err(wrong(format!(
+                "its times reach from {} to {}, the run from 0 to {}: add rows, or shorten the run",
+                short(first),
+                short(last),
+                short(until)
+            )));
+        }
+        Ok(Table {
+            times,
+            columns,
+            hold,
+        })
+    }
+
+    /// Whether an entry of u has a column.
+    pub fn has(&self, entry: usize) -> bool {
+        self.columns.iter().any(|(known, _)| *known == entry)
+    }
+
+    /// Times at which values jump: those of the rows but the first, where they hold.
+    pub fn jumps(&self) -> &[f64] {
+        match self.hold {
+            true => self.times.get(1..).unwrap_or_default(),
+            false => &[],
+        }
+    }
+
+    /// Sets the entries of u that have a column.
+    pub fn set(&self, t: f64, u: &mut [f64]) {
+        let last = self.times.len() - 1;
+        // The row at or before t.
+        let row = self
+            .times
+            .partition_point(|&time| time <= t)
+            .saturating_sub(1);
+        let part = match row < last && !self.hold {
+            true => (t - self.times[row]) / (self.times[row + 1] - self.times[row]),
+            false => 0.0,
+        };
+        for (entry, values) in &self.columns {
+            let next = values[(row + 1).min(last)];
+            u[*entry] = values[row] + part * (next - values[row]);
+        }
+    }
+}
+
+/// Times of samples: those of the column `t`.
+pub fn times(path: &Path, until: f64) -> Result<Vec<f64>, Failure> {
+    let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display()));
+    let (names, rows) = rows(path).map_err(wrong)?;
+    let times = increasing(&names, &rows).map_err(wrong)?;
+    let outside = times
+        .iter()
+        .zip(&rows)
+        .find(|(time, _)| !(0.0..=until).contains(*time));
+    match outside {
+        Some((time, (line, _))) => Err(wrong(format!(
+            "line {line}: t = {} is outside of the run, which is from 0 to {}",
+            short(*time),
+            short(until)
+        ))),
+        None => Ok(times),
+    }
+}
+
+/// Numbers of a row, with its line.
+type Row = (u64, Vec<f64>);
+
+/// The header and the rows.
+fn rows(path: &Path) -> Result<(Vec<String>, Vec<Row>), String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(path)
+        .map_err(|error| error.to_string())?;
+    let header = reader.headers().map_err(|error| error.to_string())?;
+    let names: Vec<String> = header.iter().map(String::from).collect();
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| match error.kind() {
+            csv::ErrorKind::UnequalLengths {
+                pos,
+                expected_len,
+                len,
+            } => {
+                let line = pos.as_ref().map_or(0, csv::Position::line);
+                format!("line {line}: {len} columns, the header has {expected_len}")
+            }
+            _ => error.to_string(),
+        })?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let number = |(entry, name): (&str, &String)| match entry.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(format!(
+                "line {line}: `{entry}` in the column `{name}` is no number"
+            )),
+        };
+        let row: Result<Vec<f64>, String> = record.iter().zip(&names).map(number).collect();
+        rows.push((line, row?));
+    }
+    Ok((names, rows))
+}
+
+/// The column of times, which has to increase.
+fn increasing(names: &[String], rows: &[Row]) -> Result<Vec<f64>, String> {
+    let Some(column) = names.iter().position(|name| name == TIME) else {
+        return Err(format!(
+            "no column `{TIME}`: the first line has the names of the columns, as in `t,F`"
+        ));
+    };
+    let times: Vec<f64> = rows.iter().map(|(_, row)| row[column]).collect();
+    if times.is_empty() {
+        return Err("there are no rows behind the header".into());
+    }
+    let falling = times.windows(2).position(|pair| pair[0] >= pair[1]);
+    match falling {
+        Some(place) => Err(format!(
+            "line {}: t = {} is not behind t = {} of the row before",
+            rows[place + 1].0,
+            short(times[place + 1]),
+            short(times[place])
+        )),
+        None => Ok(times),
+    }
+}

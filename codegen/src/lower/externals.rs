@@ -1,0 +1,270 @@
+//! Functions in Rust: `extern fn lift(alpha, mach) -> 2;`.
+//!
+//! Here they have no values, only names: what they give is any number that belongs to their arguments. Loads, outputs
+//! and rates of states may depend on them; what proofs take slopes of more than once may not.
+
+use super::expression::Evaluator;
+use super::functions::is_function;
+use super::scope::{NameKind, Scope};
+use crate::algebra::external;
+use crate::algebra::graph::{Component, Edge, Graph};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::value::Value;
+use crate::model::{Model, class};
+use crate::syntax::ast::{Expr, External, Function, ItemKind, Shape, ShapeKind, Span, System};
+
+fn all(system: &System) -> impl Iterator<Item = &External> {
+    system.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::External(function) => Some(function),
+        _ => None,
+    })
+}
+
+/// Makes the functions known to the graph; those in error are known by name alone.
+pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &mut Report) {
+    let mut known = Vec::new();
+    for function in all(system) {
+        let name = &function.name;
+        if scope.externals.contains_key(&name.name) {
+            // Its name is claimed later, and refused then.
+            continue;
+        }
+        check(function, report);
+        if known.len() == Component::MOST {
+            let message = format!("more than {} functions in Rust", Component::MOST);
+            report.push(
+                Diagnostic::new(name.span, message)
+                    .help("one function with several components may do for some of them"),
+            );
+            break;
+        }
+        let place = (known.len(), function.clone());
+        scope.externals.insert(name.name.clone(), place);
+        let arguments = function.parameters.iter();
+        known.push(external::External {
+            name: name.name.clone(),
+            arguments: arguments.map(|name| name.name.clone()).collect(),
+            components: function.components.0,
+        });
+    }
+    graph.set_externals(known);
+}
+
+/// Where they are declared, in order.
+pub fn places(scope: &Scope) -> Vec<Span> {
+    let mut all: Vec<(usize, Span)> = scope
+        .externals
+        .values()
+        .map(|(place, function)| (*place, function.name.span))
+        .collect();
+    all.sort_by_key(|(place, _)| *place);
+    all.into_iter().map(|(_, span)| span).collect()
+}
+
+fn check(function: &External, report: &mut Report) {
+    let name = &function.name;
+    for (place, parameter) in function.parameters.iter().enumerate() {
+        let before = function.parameters[..place].iter();
+        if let Some(first) = before.into_iter().find(|p| p.name == parameter.name) {
+            let message = format!("two arguments are called `{}`", parameter.name);
+            report.push(
+                Diagnostic::new(parameter.span, message)
+                    .help("rename one of the two")
+                    .note(first.span, "the first one"),
+            );
+        }
+    }
+    let most = Component::MOST;
+    if function.parameters.len() > most {
+        let message = format!("a function of {} arguments", function.parameters.len());
+        let help = format!("functions in Rust take up to {most} numbers");
+        report.push(Diagnostic::new(name.span, message).help(help));
+    }
+    let (count, span) = function.components;
+    if !(1..=most).contains(&count) {
+        let message = format!("a function that gives {count} numbers");
+        let help = format!("functions in Rust give from 1 to {most} numbers");
+        report.push(Diagnostic::new(span, message).help(help));
+    }
+    if function.evaluated && function.stand_in.is_none() {
+        let parameters = function.parameters.iter().map(|name| name.name.as_str());
+        let parameters = parameters.collect::<Vec<_>>().join(", ");
+        let value = match count {
+            1 => "0".into(),
+            _ => format!("[{}]", vec!["0"; count.min(most)].join(", ")),
+        };
+        let message = format!(
+            "`{}` is a function in Rust, which has no values here",
+            name.name
+        );
+        let help = format!(
+            "give it a stand-in for where it is not there: `extern fn {}({parameters}) -> {count} = {value};`",
+            name.name
+        );
+        report.push(Diagnostic::new(name.span, message).help(help));
+    }
+}
+
+/// Takes the names of the functions, after all others are taken.
+pub fn claim(system: &System, scope: &mut Scope, report: &mut Report) {
+    for function in all(system) {
+        let name = &function.name;
+        if is_function(&name.name) {
+            let message = format!("`{}` is a function of the language", name.name);
+            let help = format!("choose another name, such as `{}_1`", name.name);
+            report.push(Diagnostic::new(name.span, message).help(help));
+        } else {
+            scope.claim(name, NameKind::Function, report);
+        }
+    }
+}
+
+impl Evaluator<'_> {
+    /// What a function in Rust gives: a number, or a vector where it has several components.
+    pub(super) fn external(
+        &mut self,
+        place: usize,
+        function: &External,
+        arguments: &[Expr],
+        span: Span,
+    ) -> Option<Value> {
+        let values: Vec<Option<Value>> = arguments.iter().map(|a| self.value(a)).collect();
+        let name = &function.name;
+        let (wanted, given) = (function.parameters.len(), arguments.len());
+        if wanted != given {
+            let plural = if wanted == 1 { "" } else { "s" };
+            let message = format!(
+                "`{}` takes {wanted} argument{plural}, not {given}",
+                name.name
+            );
+            let parameters = function.parameters.iter().map(|name| name.name.as_str());
+            let parameters: Vec<&str> = parameters.collect();
+            let usage = format!("write `{}({})`", name.name, parameters.join(", "));
+            let error = Diagnostic::new(span, message).help(usage);
+            return self.error(error.note(name.span, "declared here"));
+        }
+        let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
+        let mut edges = Vec::new();
+        for (value, argument) in values.iter().zip(arguments) {
+            let Value::Scalar(edge) = value else {
+                let what = "an argument of a function in Rust";
+                return self.wrong_shape(argument.span, what, "a scalar", value);
+            };
+            edges.push(*edge);
+        }
+        let stand_in = match &function.stand_in {
+            Some(value) => Some(self.stand_in(function, value, arguments, span)?),
+            None => None,
+        };
+        if function.evaluated {
+            return stand_in;
+        }
+        let constant = |edge: &Edge| self.graph.class(edge.node()) & !class::PARAM == 0;
+        if edges.iter().all(constant) {
+            let message = format!("`{}` of what never changes", name.name);
+            return self.error(Diagnostic::new(span, message).help(
+                "a function in Rust is called while the system moves: let a parameter stand for this value",
+            ));
+        }
+        let count = function.components.0.clamp(1, Component::MOST);
+        let of = |component| Component::new(place, component, given);
+        let made = (0..count).map(|k| self.graph.external(of(k), &edges));
+        let made: Vec<Edge> = made.collect();
+        self.scope.called.borrow_mut().push((made[0], span));
+        Some(match made.as_slice() {
+            [one] => Value::Scalar(*one),
+            _ => Value::Vector(made),
+        })
+    }
+
+    /// The value of the stand-in of a function, which has to have its shape.
+    fn stand_in(
+        &mut self,
+        function: &External,
+        value: &Expr,
+        arguments: &[Expr],
+        span: Span,
+    ) -> Option<Value> {
+        let shape = |span| Shape {
+            kind: ShapeKind::Scalar,
+            span,
+        };
+        let parameters = function.parameters.iter();
+        let written = Function {
+            name: function.name.clone(),
+            parameters: parameters
+                .map(|name| (name.clone(), shape(name.span)))
+                .collect(),
+            value: value.clone(),
+        };
+        let found = self.applied(&written, arguments, span)?;
+        let (count, place) = function.components;
+        let fits = match &found {
+            Value::Scalar(_) => count == 1,
+            Value::Vector(entries) => count > 1 && entries.len() == count,
+            _ => false,
+        };
+        if fits {
+            return Some(found);
+        }
+        let wanted = match count {
+            1 => "a scalar".into(),
+            _ => format!("a vector of {count}"),
+        };
+        let name = &function.name.name;
+        let message = format!(
+            "the stand-in of `{name}` has to be {wanted}, this is {}",
+            found.shape()
+        );
+        let error = Diagnostic::new(value.span, message).help("make the shapes agree");
+        self.report.push_once(error.note(place, "declared here"));
+        None
+    }
+}
+
+impl Evaluator<'_> {
+    /// Whether a value depends on no function in Rust; reports it where it does.
+    pub(super) fn inside(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
+        let Some((component, _)) = self.graph.find_external(&value.entries(), 0) else {
+            return Some(());
+        };
+        let functions = self.graph.externals();
+        let name = &functions.get(usize::from(component.function))?.name;
+        let message = format!("{what} cannot depend on `{name}`, a function in Rust");
+        self.error(Diagnostic::new(span, message).help(PLACES))
+    }
+}
+
+/// Where functions in Rust may be called.
+const PLACES: &str = "forces, torques, outputs and rates of states may depend on it; energies, places, constraints and prescribed motions have to be expressions";
+
+/// What is wrong where something other than a load, an output or the rate of a state depends on a function in Rust.
+pub fn misplaced(model: &Model, called: &[(Edge, Span)]) -> Option<Diagnostic> {
+    if called.is_empty() {
+        return None;
+    }
+    let mut kept = model.clone();
+    kept.wrenches.clear();
+    kept.generalized.clear();
+    kept.elements.pushes.clear();
+    kept.elements.generalized.clear();
+    kept.elements.wrenches.clear();
+    kept.observed.clear();
+    kept.outputs.clear();
+    kept.lets.clear();
+    kept.state_rates.clear();
+    let edges = kept.all_edges();
+    let (component, list) = model.graph.find_external(&edges, 0)?;
+    let lists = |edge: Edge| model.graph.called_with(edge).map(|(_, list)| list);
+    let call = called.iter().find(|(edge, _)| lists(*edge) == Some(list));
+    let function = model
+        .graph
+        .externals()
+        .get(usize::from(component.function))?;
+    let span = call.map_or(model.span, |(_, span)| *span);
+    let message = format!(
+        "`{}` takes part in what is no load, and it is a function in Rust",
+        function.name
+    );
+    Some(Diagnostic::new(span, message).help(PLACES))
+}
