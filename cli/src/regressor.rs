@@ -5,6 +5,7 @@ use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::derive::regressor::regressor;
+use hamel_codegen::proof::regressor::prove;
 use hamel_codegen::tables::regressor::{BaseParameters, json, latex, markdown, text};
 use std::path::PathBuf;
 
@@ -42,7 +43,11 @@ enum Format {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
     let model = source.model()?;
-    let regressor = regressor(&model).map_err(|why| {
+    let derived = regressor(&model).and_then(|regressor| {
+        prove(&model, &regressor)?;
+        Ok(regressor)
+    });
+    let regressor = derived.map_err(|why| {
         Failure::failed(format!(
             "{}: `{}` has no regressor: {why}",
             source.path, model.name

@@ -11,7 +11,13 @@ use super::write::Writer;
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate;
 use crate::derive::regressor::{Kind, Regressor, Standard};
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_rational::BigRational;
 use serde_json::{Value, json as object};
+
+/// Most decimal places of a factor that is not written as a fraction.
+const MOST_PLACES: u32 = 12;
 
 /// A base parameter with its factors written out.
 struct Row {
@@ -135,7 +141,7 @@ impl BaseParameters {
         } else {
             term.clone()
         };
-        let text = notation.term(&positive);
+        let text = decimal(&positive).unwrap_or_else(|| notation.term(&positive));
         (sign, if text == "1" { String::new() } else { text })
     }
 
@@ -158,6 +164,25 @@ impl BaseParameters {
         }
         text.trim_start().to_string()
     }
+}
+
+/// A positive number with few decimal places, written with a point; exact.
+fn decimal(term: &Term) -> Option<String> {
+    if !term.over.is_empty() || !term.under.is_empty() || term.coefficient.is_integer() {
+        return None;
+    }
+    (1..=MOST_PLACES).find_map(|places| {
+        let power = BigInt::from(10).pow(places);
+        let digits = &term.coefficient * BigRational::from_integer(power.clone());
+        let (whole, rest) = digits
+            .is_integer()
+            .then(|| digits.to_integer().div_rem(&power))?;
+        Some(format!(
+            "{whole}.{:0>width$}",
+            rest.to_string(),
+            width = places as usize
+        ))
+    })
 }
 
 const CONDITIONS: &str = "Physically consistent where for each link the pseudo-inertia [[tr(Theta)/2 I - Theta, h], [h^T, m]] is positive definite";

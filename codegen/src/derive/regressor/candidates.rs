@@ -10,7 +10,9 @@ use super::samples::Samples;
 use crate::algebra::echelon::Echelon;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, Node};
-use crate::algebra::linear::{Mat3, Vec3, add3, apply3, multiply3};
+use crate::algebra::linear::{
+    Mat3, Vec3, add3, apply_transposed, apply3, multiply3, sub3, transpose3,
+};
 use crate::algebra::transplant::substitute;
 use crate::derive::tree::turn::Turn;
 use crate::model::Model;
@@ -99,28 +101,42 @@ pub fn candidates(
                 relations.push(joined(&model.graph, &own, &exact));
             }
         }
-        let Some(parent) = link.parent else {
+        // A link that stands in the world may be placed by expressions that follow another one.
+        for parent in link.parent.map_or(0..index, |parent| parent..parent + 1) {
+            relations.extend(between(model, samples, known, links, (index, parent)));
+        }
+    }
+    relations
+}
+
+/// The relations between a link and another one before it.
+fn between(
+    model: &mut Model,
+    samples: &Samples,
+    known: &Known,
+    links: &[Link],
+    (index, parent): (usize, usize),
+) -> Vec<Relation> {
+    let mut relations = Vec::new();
+    let own: Vec<usize> = (10 * index..10 * index + 10).collect();
+    let before: Vec<usize> = (10 * parent..10 * parent + 10).collect();
+    let both = [&own[..], &before[..]].concat();
+    let pairs = samples.relations(&both);
+    let halves: Vec<Vec<Fp>> = pairs.iter().map(|pair| pair[..10].to_vec()).collect();
+    let pose = pose_at_zero(model, links[index].frame, links[parent].frame);
+    for values in Echelon::new(halves).rows {
+        let graph = &mut model.graph;
+        let Some(exact) = known.all(graph, &values) else {
             continue;
         };
-        let before: Vec<usize> = (10 * parent..10 * parent + 10).collect();
-        let both = [&own[..], &before[..]].concat();
-        let pairs = samples.relations(&both);
-        let halves: Vec<Vec<Fp>> = pairs.iter().map(|pair| pair[..10].to_vec()).collect();
-        let pose = pose_at_zero(model, link.frame, links[parent].frame);
-        for values in Echelon::new(halves).rows {
-            let graph = &mut model.graph;
-            let Some(exact) = known.all(graph, &values) else {
-                continue;
-            };
-            let carried = moments(graph, &exact)
-                .turned(graph, &Turn::By(pose.0))
-                .shifted(graph, pose.1);
-            let carried: Vec<Edge> = ten(graph, &carried).iter().map(|&entry| -entry).collect();
-            let mut relation = joined(graph, &own, &exact);
-            relation.extend(joined(graph, &before, &carried));
-            if holds(graph, samples, &relation) {
-                relations.push(relation);
-            }
+        let carried = moments(graph, &exact)
+            .turned(graph, &Turn::By(pose.0))
+            .shifted(graph, pose.1);
+        let carried: Vec<Edge> = ten(graph, &carried).iter().map(|&entry| -entry).collect();
+        let mut relation = joined(graph, &own, &exact);
+        relation.extend(joined(graph, &before, &carried));
+        if holds(graph, samples, &relation) {
+            relations.push(relation);
         }
     }
     relations
@@ -144,22 +160,34 @@ pub fn holds(graph: &Graph, samples: &Samples, relation: &Relation) -> bool {
     samples.vanishes(&parameters.zip(values).collect::<Vec<_>>())
 }
 
-/// The pose of a frame in one that it hangs on, where all coordinates are zero or the identity.
+/// The pose of a frame in another one, where all coordinates are zero or the identity.
 fn pose_at_zero(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
+    let (turn, shift) = relative(model, frame, on);
+    let entries: Vec<Edge> = turn.iter().flatten().chain(&shift).copied().collect();
+    let entries = at_zero(model, &entries);
+    let turn = std::array::from_fn(|i| std::array::from_fn(|j| entries[3 * i + j]));
+    (turn, std::array::from_fn(|i| entries[9 + i]))
+}
+
+/// The pose of a frame in one that it hangs on, or else that of two frames in the world.
+fn relative(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
     let (mut turn, mut shift) = model.frames[frame].relative;
     let mut at = model.frames[frame].parent;
-    while let Some(index) = at.filter(|&index| index != on) {
+    let graph = &mut model.graph;
+    while let Some(index) = at {
+        if index == on {
+            return (turn, shift);
+        }
         let (outer, origin) = model.frames[index].relative;
-        let graph = &mut model.graph;
         turn = multiply3(graph, &outer, &turn);
         shift = apply3(graph, &outer, shift);
         shift = add3(graph, origin, shift);
         at = model.frames[index].parent;
     }
-    let entries: Vec<Edge> = turn.iter().flatten().chain(&shift).copied().collect();
-    let entries = at_zero(model, &entries);
-    let turn = std::array::from_fn(|i| std::array::from_fn(|j| entries[3 * i + j]));
-    (turn, std::array::from_fn(|i| entries[9 + i]))
+    let (outer, origin) = (model.frames[on].rotation, model.frames[on].position);
+    let away = sub3(graph, model.frames[frame].position, origin);
+    let turn = multiply3(graph, &transpose3(&outer), &model.frames[frame].rotation);
+    (turn, apply_transposed(graph, &outer, away))
 }
 
 /// Expressions in the configuration in which all coordinates are zero or the identity.

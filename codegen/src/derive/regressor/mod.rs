@@ -24,7 +24,7 @@ mod parameters;
 mod relations;
 mod samples;
 
-pub use parameters::{Kind, PLACES, Standard};
+pub use parameters::{Kind, Standard};
 
 use super::calculus::Calculus;
 use super::tree::Tree;
@@ -58,6 +58,8 @@ pub struct Regressor {
     pub idle: Vec<usize>,
     /// What acts besides and is no linear function of these parameters.
     pub besides: Vec<&'static str>,
+    /// The force of potentials that are no part of it, ∂ᵢV.
+    pub rest: Vec<Edge>,
 }
 
 /// Derives the base parameters of a model.
@@ -110,6 +112,7 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
         standard: present.iter().map(|&k| standard[k].clone()).collect(),
         columns: present.iter().map(|&k| columns[k].clone()).collect(),
         besides: beside.besides,
+        rest: beside.rest,
         model,
     })
 }

@@ -151,6 +151,8 @@ pub struct Beside {
     pub parameters: Vec<(Standard, Vec<Edge>)>,
     /// What else acts.
     pub besides: Vec<&'static str>,
+    /// ∂ᵢ of all potentials but those of gravity and of these springs.
+    pub rest: Vec<Edge>,
 }
 
 /// Armatures, dampers and springs.
@@ -188,12 +190,19 @@ pub fn beside(model: &mut Model, calculus: &mut Calculus) -> Beside {
         let name = named(model, rate).unwrap_or_else(|| format!("damper_{}", place + 1));
         parameters.push((standard(Kind::Damping, name, damper.coefficient), column));
     }
+    let mut potential = model.potential;
     for (place, spring) in model.elements.springs.clone().into_iter().enumerate() {
         let Along::Scalar(length) = spring.along else {
             lines = true;
             continue;
         };
         let stretch = model.graph.sub(length, spring.length);
+        let half = model.graph.ratio(1, 2);
+        let energy = [half, spring.stiffness, stretch, stretch].into_iter();
+        let energy = energy.fold(model.graph.one(), |product, by| {
+            model.graph.mul(product, by)
+        });
+        potential = model.graph.sub(potential, energy);
         let column = (0..n).map(|i| {
             let slope = calculus.along(&mut model.graph, i, length);
             model.graph.mul(stretch, slope)
@@ -202,6 +211,8 @@ pub fn beside(model: &mut Model, calculus: &mut Calculus) -> Beside {
         let name = named(model, length).unwrap_or_else(|| format!("spring_{}", place + 1));
         parameters.push((standard(Kind::Stiffness, name, spring.stiffness), column));
     }
+    let rest = (0..n).map(|i| calculus.along(&mut model.graph, i, potential));
+    let rest = rest.collect();
     let elements = &model.elements;
     let mut besides = Vec::new();
     let all = [
@@ -217,6 +228,7 @@ pub fn beside(model: &mut Model, calculus: &mut Calculus) -> Beside {
     Beside {
         parameters,
         besides,
+        rest,
     }
 }
 
