@@ -29,6 +29,7 @@ pub use parameters::{Kind, Standard};
 use super::calculus::Calculus;
 use super::tree::Tree;
 use crate::algebra::graph::Edge;
+use crate::algebra::transplant::rebuild;
 use crate::model::Model;
 use samples::Samples;
 
@@ -78,31 +79,39 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
         .iter()
         .flat_map(|link| link.standard.clone())
         .collect();
-    let mut columns = columns::inertial(&mut model, &tree, &links);
     let beside = parameters::beside(&mut model, &mut calculus);
-    for (parameter, column) in beside.parameters {
-        standard.push(parameter);
-        columns.push(column);
+    // What is emitted is derived apart: equal expressions of one graph are computed in one way.
+    let mut derived = model.clone();
+    let mut columns = columns::inertial(&mut model, &tree, &links);
+    for (parameter, column) in &beside.parameters {
+        standard.push(parameter.clone());
+        columns.push(column.clone());
     }
     let samples = Samples::new(&model, &columns)
         .ok_or("at random states its expressions have no values modulo p")?;
     let found = relations::find(&mut model, &samples, &links, standard.len())?;
+    let kept: Vec<usize> = found.base.iter().map(|base| base.kept).collect();
+    let mut columns = columns::cheapest(&mut derived, &tree, &links, &kept);
+    columns.extend(beside.parameters.into_iter().map(|(_, column)| column));
     // Links without mass take part in the relations, and have no parameters.
     let present: Vec<usize> = (0..standard.len())
         .filter(|&k| standard[k].present)
         .collect();
     let place = |k: usize| present.binary_search(&k).ok();
     let base = found.base.into_iter().filter_map(|base| {
-        let terms = base.terms.into_iter();
+        let factors: Vec<Edge> = base.terms.iter().map(|&(_, factor)| factor).collect();
+        let factors = rebuild(&model.graph, &mut derived.graph, &factors);
+        let terms = base.terms.into_iter().zip(factors);
         Some(Base {
             kept: place(base.kept)?,
             terms: terms
-                .filter_map(|(k, factor)| Some((place(k)?, factor)))
+                .filter_map(|((k, _), factor)| Some((place(k)?, factor)))
                 .collect(),
         })
     });
+    let base = base.collect();
     Ok(Regressor {
-        base: base.collect(),
+        base,
         idle: found.idle.into_iter().filter_map(place).collect(),
         links: links
             .iter()
@@ -113,7 +122,7 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
         columns: present.iter().map(|&k| columns[k].clone()).collect(),
         besides: beside.besides,
         rest: beside.rest,
-        model,
+        model: derived,
     })
 }
 
