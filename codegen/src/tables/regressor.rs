@@ -11,6 +11,7 @@ use super::write::Writer;
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate;
 use crate::derive::regressor::{Kind, Regressor, Standard};
+use crate::program::count::count;
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_rational::BigRational;
@@ -38,6 +39,8 @@ pub struct BaseParameters {
     idle: Vec<usize>,
     besides: Vec<&'static str>,
     definitions: Vec<Definition>,
+    /// What Y costs: products, sums and quotients.
+    operations: usize,
 }
 
 impl BaseParameters {
@@ -69,7 +72,10 @@ impl BaseParameters {
         let rows = rows.collect();
         let (mut definitions, rest) = writer.definitions();
         definitions.extend(rest);
+        let kept = regressor.base.iter().map(|base| base.kept);
+        let columns: Vec<Edge> = kept.flat_map(|k| regressor.columns[k].clone()).collect();
         BaseParameters {
+            operations: count(&model.graph, &columns).flops(),
             system: model.name.clone(),
             velocities: model.n(),
             links: regressor.links.clone(),
@@ -96,10 +102,11 @@ impl BaseParameters {
             _ => format!(", {inertial} of inertia and {joints} of joints"),
         };
         format!(
-            "{} base parameters of {} standard parameters{of_joints}; {} velocities",
+            "{} base parameters of {} standard parameters{of_joints}; {} velocities; Y takes {} operations",
             self.rows.len(),
             self.standard.len(),
-            self.velocities
+            self.velocities,
+            self.operations
         )
     }
 
@@ -340,6 +347,7 @@ pub fn json(all: &BaseParameters) -> Value {
         "system": all.system,
         "velocities": all.velocities,
         "count": all.rows.len(),
+        "operations": all.operations,
         "inertial": inertial,
         "of_joints": joints,
         "definitions": definitions,
