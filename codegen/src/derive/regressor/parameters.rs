@@ -23,7 +23,7 @@ pub const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2)
 /// What a parameter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// One of [`PLACES`] of a link.
+    /// Of a link: Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h = m s, m, by their places in this order.
     Inertia(usize),
     /// J of a joint.
     Armature,
