@@ -2,7 +2,7 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `compare`, `import` | one subcommand each |
+//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `compare`, `import` | one subcommand each |
 //! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
 //! | `robot` | robots in URDF as descriptions, and the options for them |
@@ -30,6 +30,7 @@ mod method;
 mod names;
 mod ops;
 mod progress;
+mod regressor;
 mod robot;
 mod simulate;
 mod singular;
@@ -46,6 +47,7 @@ const EXAMPLES: &str = "\
 Examples:
   hamel check heavy_top.eom                     prove the identities behind the equations
   hamel tables heavy_top.eom --of gamma,M       what stands in the paper
+  hamel regressor arm.urdf                      which inertias forces depend on
   hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
   hamel simulate heavy_top.eom --until 10       a first run
   hamel compare heavy_top.eom --until 10        error of methods against what they cost
@@ -66,6 +68,7 @@ struct Line {
 #[derive(Subcommand)]
 enum Command {
     Tables(tables::Arguments),
+    Regressor(regressor::Arguments),
     Check(check::Arguments),
     Ops(ops::Arguments),
     Emit(emit::Arguments),
@@ -83,6 +86,7 @@ fn main() -> ExitCode {
     };
     let result = match line.command {
         Command::Tables(arguments) => tables::run(&arguments),
+        Command::Regressor(arguments) => regressor::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Ops(arguments) => ops::run(&arguments),
         Command::Emit(arguments) => emit::run(&arguments),

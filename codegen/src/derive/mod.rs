@@ -15,6 +15,7 @@
 //! | `linearize` | the linearisation, in displacement coordinates | (12) |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
 //! | `tree` | links and joints: inverse dynamics, M, ξ̇ and slopes by recursion | |
+//! | `regressor` | forces as linear functions of inertial parameters, and base parameters | |
 //! | `adviser` | other velocity coordinates for the same motion, and their cost | |
 //! | `program`, `assemble` | the program of all generated functions | |
 //! | `quantity` | momenta and energies that claims of constancy are about | |
@@ -46,6 +47,7 @@ mod program;
 pub(crate) mod quantity;
 mod reactions;
 pub(crate) mod reduction;
+pub mod regressor;
 pub mod structure;
 pub mod tables;
 pub(crate) mod tree;

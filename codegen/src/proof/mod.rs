@@ -11,6 +11,7 @@
 //! | `splitting` | the functions of a system that splits | |
 //! | `numbers` | the three forms at points modulo p: what every build is compared with | (30) |
 //! | `slopes` | the linearisation, by dual numbers modulo p | |
+//! | `regressor` | base parameters and the columns that go with them | |
 //! | `states` | rates of states of first order, and their slopes | |
 //! | `virtual_power` | loads as forces on points, motion of points | (28) |
 //! | `hamel_form` | equations of Lagrange and Hamel, from T and γ | (30a) |
@@ -37,6 +38,7 @@ pub(crate) mod motion;
 mod numbers;
 mod points;
 mod reference;
+pub mod regressor;
 mod slopes;
 mod splitting;
 mod states;

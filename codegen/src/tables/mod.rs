@@ -11,6 +11,7 @@
 //! | `expression` | products, sums, calls |
 //! | `listing`, `rows` | entries in order, and grouped by value |
 //! | `geometry` | the report on integrable velocities, Lie algebras, symmetries |
+//! | `regressor` | base parameters, in all four forms |
 //! | `notation`, `print` | names and expressions as text or LaTeX |
 //! | `text`, `markdown`, `latex`, `json` | a whole set of tables |
 
@@ -28,6 +29,7 @@ mod naming;
 mod notation;
 mod polish;
 mod print;
+pub mod regressor;
 mod rows;
 mod simplify;
 mod style;

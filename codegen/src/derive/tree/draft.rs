@@ -113,12 +113,24 @@ struct Place {
 
 /// The links of a model.
 pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
+    Some(draft_with_carriers(model, calculus)?.0)
+}
+
+/// The frame that a joint carries: its index, and its axes in those of the link. Both have one origin.
+pub type Carrier = (usize, Mat3);
+
+/// The links of a model, and the frame that each of them was made from.
+pub fn draft_with_carriers(
+    model: &mut Model,
+    calculus: &mut Calculus,
+) -> Option<(Vec<Draft>, Vec<Carrier>)> {
     if model.bodies.len() + model.particles.len() == 0 || has_more_inertia(model) {
         return None;
     }
     let mut links: Vec<Draft> = Vec::new();
     let mut places: Vec<Place> = Vec::new();
-    for frame in model.frames.clone() {
+    let mut carriers: Vec<Carrier> = Vec::new();
+    for (index, frame) in model.frames.clone().into_iter().enumerate() {
         let world = Place {
             link: None,
             rotation: identity3(&model.graph),
@@ -150,6 +162,7 @@ pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
             motion,
             mass: Mass::none(graph),
         });
+        carriers.push((index, rotation));
         places.push(Place {
             link: Some(links.len() - 1),
             rotation,
@@ -165,7 +178,7 @@ pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
         let mass = Mass::point(&model.graph, particle.mass).shifted(&mut model.graph, position);
         load(&mut model.graph, &mut links, places.get(frame)?, &mass);
     }
-    Some(links)
+    Some((links, carriers))
 }
 
 /// Whether there is kinetic energy beside that of bodies, particles and armatures.

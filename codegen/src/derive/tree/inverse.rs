@@ -36,19 +36,19 @@ impl Wrench {
 
 /// A link's motion in its axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motion {
+pub(crate) struct Motion {
     /// Angular velocity.
-    pub(super) omega: Vec3,
+    pub(crate) omega: Vec3,
     /// Angular acceleration.
-    pub(super) alpha: Vec3,
+    pub(crate) alpha: Vec3,
     /// Acceleration of the origin, less gravity.
-    pub(super) a: Vec3,
+    pub(crate) a: Vec3,
     /// α̂ + ω̂ ω̂.
-    pub(super) u: Mat3,
+    pub(crate) u: Mat3,
     /// What the link would do if its joint were locked: ω, α, a.
-    pub(super) carried: [Vec3; 3],
+    pub(crate) carried: [Vec3; 3],
     /// Its joint's own angular velocity and velocity.
-    pub(super) relative: (Vec3, Vec3),
+    pub(crate) relative: (Vec3, Vec3),
 }
 
 /// What the motion of every link needs, at rates ξ (the model's, or zero) and ξ̇ and under gravity (world
@@ -68,7 +68,7 @@ pub fn wrenches(
 }
 
 /// The motion of every link.
-pub(super) fn motions(
+pub(crate) fn motions(
     graph: &mut Graph,
     tree: &Tree,
     xi: &[Edge],

@@ -7,7 +7,7 @@
 
 pub mod articulated;
 pub mod composite;
-mod draft;
+pub(crate) mod draft;
 pub mod inverse;
 pub mod mass;
 pub mod momentum;
@@ -24,6 +24,7 @@ use super::calculus::Calculus;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::Vec3;
 use crate::model::Model;
+use draft::Carrier;
 use inverse::Wrench;
 use mass::Mass;
 use turn::Turn;
@@ -127,6 +128,20 @@ impl Tree {
             links: links.collect(),
             armature: model.armature.clone(),
         })
+    }
+
+    /// The tree with the frames of the description, and for each link the frame that its joint carries, with the
+    /// frame's axes in those of the link; `None` as above.
+    pub fn with_frames(model: &mut Model, calculus: &mut Calculus) -> Option<(Tree, Vec<Carrier>)> {
+        let (mut draft, carriers) = draft::draft_with_carriers(model, calculus)?;
+        let safe = safe::Safe::of(model, &draft);
+        reframe::keep(&mut model.graph, &mut draft, &safe);
+        let links = draft.into_iter().map(|link| link.finish(&mut model.graph));
+        let tree = Tree {
+            links: links.collect(),
+            armature: model.armature.clone(),
+        };
+        Some((tree, carriers))
     }
 
     /// Whether every ξⁱ is the rate of one freedom of its own, but for those that are given ahead.

@@ -1,0 +1,63 @@
+//! `hamel regressor`: base parameters, the combinations of inertial parameters that forces depend on.
+
+use crate::failure::{Failure, print};
+use crate::robot::RobotOptions;
+use crate::source::Source;
+use clap::{Args, ValueEnum};
+use hamel_codegen::derive::regressor::regressor;
+use hamel_codegen::proof::regressor::prove;
+use hamel_codegen::tables::regressor::{BaseParameters, json, latex, markdown, text};
+use std::path::PathBuf;
+
+/// Prints the base parameters: what of all masses, centres of mass and inertias can be told from forces and motion.
+///
+/// Inverse dynamics is linear in m, h = m s and Theta (about the frame's origin) of every link, and in armatures,
+/// damping and stiffness of joints: F = Y(x, xi, xi_dot) beta. A link is all that moves rigidly together, in the frame
+/// that its joint carries. The factors are exact: fractions, or expressions in run-time parameters.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel regressor arm.eom
+  hamel regressor robot.urdf --floating
+  hamel regressor arm.eom --format json | jq '.base[].kept'
+  hamel regressor arm.eom --format latex > base.tex")]
+pub struct Arguments {
+    /// Description, or robot in URDF; `-` for standard input.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// How to write them.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    #[command(flatten)]
+    robot: RobotOptions,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Markdown,
+    Latex,
+    Json,
+}
+
+/// Derives and prints.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let model = source.model()?;
+    let derived = regressor(&model).and_then(|regressor| {
+        prove(&model, &regressor)?;
+        Ok(regressor)
+    });
+    let regressor = derived.map_err(|why| {
+        Failure::failed(format!(
+            "{}: `{}` has no regressor: {why}",
+            source.path, model.name
+        ))
+    })?;
+    let all = BaseParameters::new(&regressor);
+    print(&match arguments.format {
+        Format::Text => text(&all),
+        Format::Markdown => markdown(&all),
+        Format::Latex => latex(&all),
+        Format::Json => format!("{:#}\n", json(&all)),
+    })
+}

@@ -1,0 +1,216 @@
+//! Relations between the parameters of a link and those of the link before, with exact coefficients.
+//!
+//! Which inertia δ of a link its joint cannot feel is found at random states; its coefficients depend on the axis of the
+//! joint in the link's frame. To the link before it is the same inertia at rest there: δ carried over in any
+//! configuration of the joint, here that in which all coordinates are zero or the identity. So lengths and mount
+//! angles come in as the description has them.
+
+use super::parameters::{Link, moments, ten};
+use super::samples::Samples;
+use crate::algebra::echelon::Echelon;
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::linear::{
+    Mat3, Vec3, add3, apply_transposed, apply3, multiply3, sub3, transpose3,
+};
+use crate::algebra::transplant::substitute;
+use crate::derive::tree::turn::Turn;
+use crate::model::Model;
+use crate::model::layout::Block;
+use rustc_hash::FxHashMap;
+
+/// Numerators and denominators of coefficients that are recognised by their values.
+const BITS: u32 = 29;
+
+/// Σ v_k Y_k = 0: the factors that are not 0.
+pub type Relation = Vec<(usize, Edge)>;
+
+/// Exact constants by their values modulo p.
+pub struct Known {
+    by_value: FxHashMap<Fp, Edge>,
+}
+
+impl Known {
+    /// The entries of poses in the configuration of zeros, their products and quotients.
+    pub fn new(model: &mut Model, samples: &Samples) -> Self {
+        let poses: Vec<(Mat3, Vec3)> = model.frames.iter().map(|frame| frame.relative).collect();
+        let entries: Vec<Edge> = poses
+            .iter()
+            .flat_map(|(turn, shift)| {
+                turn.iter()
+                    .flatten()
+                    .chain(shift)
+                    .copied()
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        let mut entries = at_zero(model, &entries);
+        let graph = &mut model.graph;
+        let (zero, one) = (graph.zero(), graph.one());
+        entries.iter_mut().for_each(|entry| *entry = entry.abs());
+        entries.retain(|entry| *entry != zero && *entry != one);
+        entries.sort_unstable();
+        entries.dedup();
+        let mut all = entries.clone();
+        for &a in &entries {
+            for &b in &entries {
+                all.push(graph.mul(a, b));
+                all.extend(graph.div(a, b));
+            }
+            all.extend(graph.div(one, a));
+        }
+        let mut by_value = FxHashMap::default();
+        for edge in all {
+            if let Some(&[value]) = samples.constants(graph, &[edge]).as_deref() {
+                by_value.entry(value).or_insert(edge);
+                by_value.entry(-value).or_insert(-edge);
+            }
+        }
+        Known { by_value }
+    }
+
+    /// The exact constant of a value.
+    pub fn exact(&self, graph: &mut Graph, value: Fp) -> Option<Edge> {
+        match value.to_small_rational(BITS) {
+            Some((n, d)) => Some(graph.ratio(n, d)),
+            None => self.by_value.get(&value).copied(),
+        }
+    }
+
+    /// The same for all entries of a vector.
+    pub fn all(&self, graph: &mut Graph, values: &[Fp]) -> Option<Vec<Edge>> {
+        values
+            .iter()
+            .map(|&value| self.exact(graph, value))
+            .collect()
+    }
+}
+
+/// The relations within each link, and between each link and the one before.
+pub fn candidates(
+    model: &mut Model,
+    samples: &Samples,
+    known: &Known,
+    links: &[Link],
+) -> Vec<Relation> {
+    let mut relations = Vec::new();
+    for (index, link) in links.iter().enumerate() {
+        let own: Vec<usize> = (10 * index..10 * index + 10).collect();
+        for values in samples.relations(&own) {
+            if let Some(exact) = known.all(&mut model.graph, &values) {
+                relations.push(joined(&model.graph, &own, &exact));
+            }
+        }
+        // A link that stands in the world may be placed by expressions that follow another one.
+        for parent in link.parent.map_or(0..index, |parent| parent..parent + 1) {
+            relations.extend(between(model, samples, known, links, (index, parent)));
+        }
+    }
+    relations
+}
+
+/// The relations between a link and another one before it.
+fn between(
+    model: &mut Model,
+    samples: &Samples,
+    known: &Known,
+    links: &[Link],
+    (index, parent): (usize, usize),
+) -> Vec<Relation> {
+    let mut relations = Vec::new();
+    let own: Vec<usize> = (10 * index..10 * index + 10).collect();
+    let before: Vec<usize> = (10 * parent..10 * parent + 10).collect();
+    let both = [&own[..], &before[..]].concat();
+    let pairs = samples.relations(&both);
+    let halves: Vec<Vec<Fp>> = pairs.iter().map(|pair| pair[..10].to_vec()).collect();
+    let pose = pose_at_zero(model, links[index].frame, links[parent].frame);
+    for values in Echelon::new(halves).rows {
+        let graph = &mut model.graph;
+        let Some(exact) = known.all(graph, &values) else {
+            continue;
+        };
+        let carried = moments(graph, &exact)
+            .turned(graph, &Turn::By(pose.0))
+            .shifted(graph, pose.1);
+        let carried: Vec<Edge> = ten(graph, &carried).iter().map(|&entry| -entry).collect();
+        let mut relation = joined(graph, &own, &exact);
+        relation.extend(joined(graph, &before, &carried));
+        if holds(graph, samples, &relation) {
+            relations.push(relation);
+        }
+    }
+    relations
+}
+
+/// The factors that are not 0, with the parameters that they belong to.
+pub fn joined(graph: &Graph, parameters: &[usize], factors: &[Edge]) -> Relation {
+    let pairs = parameters.iter().copied().zip(factors.iter().copied());
+    pairs
+        .filter(|(_, factor)| *factor != graph.zero())
+        .collect()
+}
+
+/// Whether a relation holds at the samples.
+pub fn holds(graph: &Graph, samples: &Samples, relation: &Relation) -> bool {
+    let factors: Vec<Edge> = relation.iter().map(|&(_, factor)| factor).collect();
+    let Some(values) = samples.constants(graph, &factors) else {
+        return false;
+    };
+    let parameters = relation.iter().map(|&(k, _)| k);
+    samples.vanishes(&parameters.zip(values).collect::<Vec<_>>())
+}
+
+/// The pose of a frame in another one, where all coordinates are zero or the identity.
+fn pose_at_zero(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
+    let (turn, shift) = relative(model, frame, on);
+    let entries: Vec<Edge> = turn.iter().flatten().chain(&shift).copied().collect();
+    let entries = at_zero(model, &entries);
+    let turn = std::array::from_fn(|i| std::array::from_fn(|j| entries[3 * i + j]));
+    (turn, std::array::from_fn(|i| entries[9 + i]))
+}
+
+/// The pose of a frame in one that it hangs on, or else that of two frames in the world.
+fn relative(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
+    let (mut turn, mut shift) = model.frames[frame].relative;
+    let mut at = model.frames[frame].parent;
+    let graph = &mut model.graph;
+    while let Some(index) = at {
+        if index == on {
+            return (turn, shift);
+        }
+        let (outer, origin) = model.frames[index].relative;
+        turn = multiply3(graph, &outer, &turn);
+        shift = apply3(graph, &outer, shift);
+        shift = add3(graph, origin, shift);
+        at = model.frames[index].parent;
+    }
+    let (outer, origin) = (model.frames[on].rotation, model.frames[on].position);
+    let away = sub3(graph, model.frames[frame].position, origin);
+    let turn = multiply3(graph, &transpose3(&outer), &model.frames[frame].rotation);
+    (turn, apply_transposed(graph, &outer, away))
+}
+
+/// Expressions in the configuration in which all coordinates are zero or the identity.
+fn at_zero(model: &mut Model, edges: &[Edge]) -> Vec<Edge> {
+    let graph = &mut model.graph;
+    let (zero, one) = (graph.zero(), graph.one());
+    let values = model.blocks.iter().flat_map(|block| match block {
+        Block::Flat(n) => vec![zero; *n],
+        Block::Circle => vec![one, zero],
+        Block::Quaternion => vec![one, zero, zero, zero],
+        Block::Rotation => (0..9)
+            .map(|k| if k % 4 == 0 { one } else { zero })
+            .collect(),
+    });
+    let symbol = |edge: &Edge| match graph.node(edge.node()) {
+        Node::Symbol(index) => Some(index as usize),
+        _ => None,
+    };
+    let set: Vec<(usize, Edge)> = model
+        .x
+        .iter()
+        .zip(values)
+        .filter_map(|(x, value)| Some((symbol(x)?, value)))
+        .collect();
+    substitute(graph, edges, &set)
+}

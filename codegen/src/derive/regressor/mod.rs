@@ -1,0 +1,149 @@
+//! The force that a motion needs as a linear function of inertial parameters, F = Y(x, ξ, ξ̇) π, and the base
+//! parameters β, with F = Y_b β and the columns of Y_b independent (Gautier and Khalil 1990; Khalil and Dombre,
+//! *Modeling, Identification and Control of Robots*, chapter 9).
+//!
+//! | file | owns |
+//! |---|---|
+//! | `parameters` | the standard parameters: ten of each link, and those of joints; their names and values |
+//! | `columns` | the columns of Y, as expressions |
+//! | `samples` | Y at random states, modulo p, where what is constant at run time has one value |
+//! | `candidates` | relations that hold between a link and the one before, with exact coefficients |
+//! | `relations` | elimination; what remains to be found; the base parameters |
+//!
+//! A link is all that moves rigidly together; its parameters are those in the frame that its joint carries. They are
+//! put in order: links from the root on, of each Θ, then m s, then m; armatures, dampers and springs at the end.
+//! A parameter whose column is a combination of those of earlier ones is regrouped with them, all others stay.
+//!
+//! Rank and relations are found at random states in two fields of 2⁶² elements each, at one random value of every
+//! run-time parameter. A relation is accepted only with exact coefficients, numbers or expressions in run-time
+//! parameters, with which it holds there; if fewer are found than the rank asks for, nothing is returned.
+
+mod candidates;
+mod columns;
+mod parameters;
+mod relations;
+mod samples;
+
+pub use parameters::{Kind, Standard};
+
+use super::calculus::Calculus;
+use super::tree::Tree;
+use crate::algebra::graph::Edge;
+use crate::algebra::transplant::rebuild;
+use crate::model::Model;
+use samples::Samples;
+
+/// A base parameter: Σ k π over standard parameters.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// The standard parameter whose column is that of this one.
+    pub kept: usize,
+    /// The terms, that of `kept` with the factor 1 first.
+    pub terms: Vec<(usize, Edge)>,
+}
+
+/// F = Y π and what follows from it.
+#[derive(Clone, Debug)]
+pub struct Regressor {
+    /// The model, its graph holding all expressions below.
+    pub model: Model,
+    /// Names of the frames that stand for links, in the order of the links that have mass.
+    pub links: Vec<String>,
+    /// The standard parameters.
+    pub standard: Vec<Standard>,
+    /// The column of every standard parameter.
+    pub columns: Vec<Vec<Edge>>,
+    /// The base parameters, in the order of the parameters that are kept.
+    pub base: Vec<Base>,
+    /// Standard parameters that have no effect on the force.
+    pub idle: Vec<usize>,
+    /// What acts besides and is no linear function of these parameters.
+    pub besides: Vec<&'static str>,
+    /// The force of potentials that are no part of it, ∂ᵢV.
+    pub rest: Vec<Edge>,
+}
+
+/// Derives the base parameters of a model.
+///
+/// # Errors
+/// Why a model has none, or why their relations could not be found.
+pub fn regressor(model: &Model) -> Result<Regressor, String> {
+    refused(model)?;
+    let mut model = model.clone();
+    let mut calculus = Calculus::new(&model);
+    let (tree, carriers) = Tree::with_frames(&mut model, &mut calculus).ok_or(
+        "its inertia is not that of bodies on frames and of armatures alone: describe it by bodies, without `kinetic`",
+    )?;
+    let links = parameters::links(&mut model, &tree, &carriers);
+    let mut standard: Vec<Standard> = links
+        .iter()
+        .flat_map(|link| link.standard.clone())
+        .collect();
+    let beside = parameters::beside(&mut model, &mut calculus);
+    // What is emitted is derived apart: equal expressions of one graph are computed in one way.
+    let mut derived = model.clone();
+    let mut columns = columns::inertial(&mut model, &tree, &links);
+    for (parameter, column) in &beside.parameters {
+        standard.push(parameter.clone());
+        columns.push(column.clone());
+    }
+    let samples = Samples::new(&model, &columns)
+        .ok_or("at random states its expressions have no values modulo p")?;
+    let found = relations::find(&mut model, &samples, &links, standard.len())?;
+    let kept: Vec<usize> = found.base.iter().map(|base| base.kept).collect();
+    let mut columns = columns::cheapest(&mut derived, &tree, &links, &kept);
+    columns.extend(beside.parameters.into_iter().map(|(_, column)| column));
+    // Links without mass take part in the relations, and have no parameters.
+    let present: Vec<usize> = (0..standard.len())
+        .filter(|&k| standard[k].present)
+        .collect();
+    let place = |k: usize| present.binary_search(&k).ok();
+    let base = found.base.into_iter().filter_map(|base| {
+        let factors: Vec<Edge> = base.terms.iter().map(|&(_, factor)| factor).collect();
+        let factors = rebuild(&model.graph, &mut derived.graph, &factors);
+        let terms = base.terms.into_iter().zip(factors);
+        Some(Base {
+            kept: place(base.kept)?,
+            terms: terms
+                .filter_map(|((k, _), factor)| Some((place(k)?, factor)))
+                .collect(),
+        })
+    });
+    let base = base.collect();
+    Ok(Regressor {
+        base,
+        idle: found.idle.into_iter().filter_map(place).collect(),
+        links: links
+            .iter()
+            .filter(|link| link.present)
+            .map(|link| link.name.clone())
+            .collect(),
+        standard: present.iter().map(|&k| standard[k].clone()).collect(),
+        columns: present.iter().map(|&k| columns[k].clone()).collect(),
+        besides: beside.besides,
+        rest: beside.rest,
+        model: derived,
+    })
+}
+
+/// What has no regressor here.
+fn refused(model: &Model) -> Result<(), String> {
+    let no = |why: &str| Err(why.to_string());
+    if model.clock.is_some() || !model.prescribed.is_empty() || !model.accelerated.is_empty() {
+        return no(
+            "its motion is prescribed or depends on the time; base parameters are those of a system that moves freely",
+        );
+    }
+    if !model.constraints.is_empty() {
+        return no(
+            "constraints act on its velocities, so that inverse dynamics leaves their forces open; take the tree without loops and constraints",
+        );
+    }
+    if !model.points.constraints.is_empty() || !model.spans {
+        return no("its coordinates are tied by constraints; describe it by joints");
+    }
+    if model.bodies.is_empty() && model.particles.is_empty() {
+        return no("it has no bodies, so that there are no inertial parameters");
+    }
+    Ok(())
+}
