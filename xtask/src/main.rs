@@ -28,6 +28,8 @@ const CI: Task = &[
     "cargo check --manifest-path tests/nostd/Cargo.toml --locked",
     // The URDF files of the robots in tests/reference/robots.
     "bash tests/robots/install.sh",
+    // Compilers of C beside gcc.
+    "bash tests/c99/install.sh",
     // The README's test command.
     "cargo test --workspace --locked",
     // Generated systems in the stiff solvers of another crate.

@@ -1,5 +1,5 @@
-//! Generated C against the interpreter: every model, awkward names, and random descriptions, compiled by gcc as C99, by
-//! g++ as C++17 and, where it is installed, by clang, without a warning; `double` within 1e-13 of scale, `float` within
+//! Generated C against the interpreter: every model, awkward names, and random descriptions, compiled by gcc as C99 and,
+//! where they are installed, by g++ as C++17 and by clang, without a warning; `double` within 1e-13 of scale, `float` within
 //! what its rounding makes. `HAMEL_ATTACK=full` compiles 300 random descriptions instead of 20.
 
 #[path = "c99/case.rs"]

@@ -57,10 +57,12 @@ pub fn faults(name: &str, cases: &[Case]) -> Vec<String> {
     for (precision, file) in [(Precision::Double, "double"), (Precision::Float, "float")] {
         std::fs::write(folder.join(format!("{file}.c")), source(cases, precision))
             .expect("written");
-        let mut lines = vec![
-            format!("gcc -std=c99 -O1 {STRICT} {file}.c -lm -o {file}"),
-            format!("g++ -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"),
-        ];
+        let mut lines = vec![format!("gcc -std=c99 -O1 {STRICT} {file}.c -lm -o {file}")];
+        if installed("g++") {
+            lines.push(format!(
+                "g++ -x c++ -std=c++17 -fsyntax-only {STRICT} {file}.c"
+            ));
+        }
         if installed("clang") {
             lines.push(format!("clang -std=c99 -fsyntax-only {STRICT} {file}.c"));
             lines.push(format!(
