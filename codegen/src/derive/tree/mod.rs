@@ -24,7 +24,6 @@ use super::calculus::Calculus;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::Vec3;
 use crate::model::Model;
-use draft::Carrier;
 use inverse::Wrench;
 use mass::Mass;
 use turn::Turn;
@@ -132,7 +131,10 @@ impl Tree {
 
     /// The tree with the frames of the description, and for each link the frame that its joint carries, with the
     /// frame's axes in those of the link; `None` as above.
-    pub fn with_frames(model: &mut Model, calculus: &mut Calculus) -> Option<(Tree, Vec<Carrier>)> {
+    pub fn with_frames(
+        model: &mut Model,
+        calculus: &mut Calculus,
+    ) -> Option<(Tree, Vec<draft::Carrier>)> {
         let (mut draft, carriers) = draft::draft_with_carriers(model, calculus)?;
         let safe = safe::Safe::of(model, &draft);
         reframe::keep(&mut model.graph, &mut draft, &safe);
