@@ -3,7 +3,8 @@
 use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
 use crate::source::Source;
-use clap::{Args, ValueEnum};
+use crate::tables::Format;
+use clap::Args;
 use hamel_codegen::derive::regressor::regressor;
 use hamel_codegen::proof::regressor::prove;
 use hamel_codegen::tables::regressor::{BaseParameters, json, latex, markdown, text};
@@ -29,14 +30,6 @@ pub struct Arguments {
     format: Format,
     #[command(flatten)]
     robot: RobotOptions,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Markdown,
-    Latex,
-    Json,
 }
 
 /// Derives and prints.

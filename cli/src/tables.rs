@@ -37,8 +37,9 @@ pub struct Arguments {
     robot: RobotOptions,
 }
 
+/// How tables are written.
 #[derive(Clone, Copy, ValueEnum)]
-enum Format {
+pub enum Format {
     Text,
     Markdown,
     Latex,

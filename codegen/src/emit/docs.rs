@@ -190,6 +190,31 @@ pub fn shape(shape: ShapeKind) -> String {
     }
 }
 
+/// The sizes of lists of numbers: a name, what it is, the number of the first symbol, the size.
+pub fn sizes(program: &Program) -> Vec<(&'static str, &'static str, usize, usize)> {
+    let [_, x, xi, u, z, ..] = program.symbols();
+    let states =
+        "The number of states of first order z, which stand behind the velocities: `xi` is (ξ, z).";
+    let mut sizes = vec![
+        (
+            "COORDINATES",
+            "ν, the number of coordinates x.",
+            x,
+            program.nu,
+        ),
+        (
+            "VELOCITIES",
+            "n, the number of velocities ξ.",
+            xi,
+            program.n,
+        ),
+        ("STATES", states, z, program.n_z),
+        ("INPUTS", "The number of inputs u.", u, program.m),
+    ];
+    sizes.retain(|(name, .., size)| *name != "STATES" || *size > 0);
+    sizes
+}
+
 /// "ν, the length of x = [r[1], r[2], …]", broken in lines; `first` is the first symbol's number.
 pub fn entries(program: &Program, what: &str, first: usize, length: usize) -> Vec<String> {
     let symbols = program.graph.symbols().iter().skip(first).take(length);

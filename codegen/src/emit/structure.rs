@@ -67,32 +67,10 @@ pub fn structure(emitter: &Emitter) -> String {
 /// Sizes and `new`.
 pub fn sizes(emitter: &Emitter) -> String {
     let program = emitter.program;
-    let [params, x, xi, u, z, ..] = program.symbols();
-    let mut sizes = vec![
-        (
-            "COORDINATES",
-            "ν, the number of coordinates x.",
-            x,
-            program.nu,
-        ),
-        (
-            "VELOCITIES",
-            "n, the number of velocities ξ.",
-            xi,
-            program.n,
-        ),
-        ("INPUTS", "The number of inputs u.", u, program.m),
-        (
-            "PARAMETERS",
-            "The number of parameters, entry by entry.",
-            params,
-            x - params,
-        ),
-    ];
-    if program.n_z > 0 {
-        let what = "The number of states of first order z, which stand behind the velocities: `xi` is (ξ, z).";
-        sizes.insert(2, ("STATES", what, z, program.n_z));
-    }
+    let [params, x, ..] = program.symbols();
+    let mut sizes = docs::sizes(program);
+    let what = "The number of parameters, entry by entry.";
+    sizes.push(("PARAMETERS", what, params, x - params));
     let mut text = String::new();
     for (name, what, first, size) in sizes {
         let lines = docs::comment(&docs::entries(program, what, first, size));

@@ -62,32 +62,12 @@ fn opening(capitals: &str) -> String {
 /// The sizes of all arrays, and the place of every name in them.
 fn sizes(texts: &Texts) -> String {
     let program = texts.program();
-    let [_, x, xi, u, z, ..] = program.symbols();
-    let mut sizes = vec![
-        (
-            "COORDINATES",
-            "ν, the number of coordinates x.",
-            x,
-            program.nu,
-        ),
-        (
-            "VELOCITIES",
-            "n, the number of velocities ξ.",
-            xi,
-            program.n,
-        ),
-        ("INPUTS", "The number of inputs u.", u, program.m),
-    ];
-    if program.n_z > 0 {
-        let what = "The number of states of first order z, which stand behind the velocities: `xi` is (ξ, z).";
-        sizes.push(("STATES", what, z, program.n_z));
-    }
     let capitals = &texts.names.capitals;
     let mut text = "/** Sizes, and places of entries by name. */\nenum {\n".to_string();
     let entry = |text: &mut String, docs: String, name: String, value: usize| {
         text.push_str(&format!("{docs}    {capitals}_{name} = {value},\n"));
     };
-    for (name, what, first, size) in sizes {
+    for (name, what, first, size) in docs::sizes(program) {
         let docs = comment::documentation(&docs::entries(program, what, first, size), 4);
         entry(&mut text, docs, name.into(), size);
     }
