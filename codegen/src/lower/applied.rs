@@ -4,8 +4,8 @@
 //! all other names are those of the description. Functions may call others, but not themselves.
 
 use super::expression::Evaluator;
-use super::functions::is_function;
-use super::scope::{NameKind, Scope};
+use super::functions;
+use super::scope::Scope;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
 use crate::syntax::ast::{
@@ -57,16 +57,7 @@ pub fn declare(
 
 /// Takes the name of a function, after all others are taken.
 pub fn claim(function: &Function, scope: &mut Scope, report: &mut Report) {
-    let name = &function.name;
-    if is_function(&name.name) {
-        let message = format!("`{}` is a function of the language", name.name);
-        report.push(
-            Diagnostic::new(name.span, message)
-                .help(format!("choose another name, such as `{}_1`", name.name)),
-        );
-    } else {
-        scope.claim(name, NameKind::Function, report);
-    }
+    functions::claim(&function.name, scope, report);
 }
 
 /// The functions of a description, by their names.

@@ -2,8 +2,8 @@
 
 use super::curve::Curve;
 use super::expression::Evaluator;
-use super::functions::is_function;
-use super::scope::{NameKind, Scope};
+use super::functions;
+use super::scope::Scope;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
@@ -31,14 +31,7 @@ pub fn claim(system: &System, scope: &mut Scope, report: &mut Report) {
         let ItemKind::Table(table) = &item.kind else {
             continue;
         };
-        let name = &table.name;
-        if is_function(&name.name) {
-            let message = format!("`{}` is a function of the language", name.name);
-            let help = format!("choose another name, such as `{}_1`", name.name);
-            report.push(Diagnostic::new(name.span, message).help(help));
-        } else {
-            scope.claim(name, NameKind::Function, report);
-        }
+        functions::claim(&table.name, scope, report);
     }
 }
 

@@ -4,8 +4,8 @@
 //! and rates of states may depend on them; what proofs take slopes of more than once may not.
 
 use super::expression::Evaluator;
-use super::functions::is_function;
-use super::scope::{NameKind, Scope};
+use super::functions;
+use super::scope::Scope;
 use crate::algebra::external;
 use crate::algebra::graph::{Component, Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
@@ -108,14 +108,7 @@ fn check(function: &External, report: &mut Report) {
 /// Takes the names of the functions, after all others are taken.
 pub fn claim(system: &System, scope: &mut Scope, report: &mut Report) {
     for function in all(system) {
-        let name = &function.name;
-        if is_function(&name.name) {
-            let message = format!("`{}` is a function of the language", name.name);
-            let help = format!("choose another name, such as `{}_1`", name.name);
-            report.push(Diagnostic::new(name.span, message).help(help));
-        } else {
-            scope.claim(name, NameKind::Function, report);
-        }
+        functions::claim(&function.name, scope, report);
     }
 }
 

@@ -4,10 +4,10 @@ use super::axes;
 use super::choice::{greater, lesser};
 use super::expression::Evaluator;
 use super::motion::FUNCTIONS;
-use super::scope::{NameKind, reserved};
+use super::scope::{NameKind, Scope, reserved};
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::linear::{apply3, cross, identity3, multiply3, transpose, transpose3};
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
 use crate::model::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use crate::model::value::Value;
@@ -126,8 +126,19 @@ impl Evaluator<'_> {
 /// Functions whose names values and functions of a description may share.
 const NAMES_OF_ALL: [&str; 2] = ["translation", "angle"];
 
+/// Takes the name of a function of the description, which none of the language's has.
+pub fn claim(name: &Ident, scope: &mut Scope, report: &mut Report) {
+    if is_function(&name.name) {
+        let message = format!("`{}` is a function of the language", name.name);
+        let help = format!("choose another name, such as `{}_1`", name.name);
+        report.push(Diagnostic::new(name.span, message).help(help));
+    } else {
+        scope.claim(name, NameKind::Function, report);
+    }
+}
+
 /// Whether a name is that of a function of the language, which no function of a description can have.
-pub fn is_function(name: &str) -> bool {
+fn is_function(name: &str) -> bool {
     usage(name).is_some() && !NAMES_OF_ALL.contains(&name)
         || FUNCTIONS.contains(&name)
         || name == "rate"
