@@ -164,6 +164,19 @@ table! {
         "The linearisation in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,",
         "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).",
     ]
+    CentreOfMass "centre_of_mass" (Coordinates) Vector Asked false true [
+        "Centre of mass c (m) of all that moves, world axes.",
+    ]
+    CentroidalMomentum "centroidal_momentum" (Coordinates, Velocities) Vector Asked false true [
+        "Momentum h of all that moves, world axes: linear (kg m/s), then angular about the centre of mass (kg m²/s).",
+    ]
+    CentroidalMap "centroidal_map" (Coordinates) Linear Asked false true [
+        "Centroidal map A_G(x), 6 rows: the momentum about the centre of mass is h = A_G ξ, linear rows first",
+        "(Orin and Goswami 2008). Where the time moves bodies, h has a part without ξ in addition.",
+    ]
+    CentroidalBias "centroidal_bias" (Coordinates, Velocities) Vector Asked false true [
+        "Bias Ȧ_G ξ of the momentum about the centre of mass: ḣ = A_G ξ̇ + Ȧ_G ξ, linear rows first.",
+    ]
     DisplacementFrame "displacement_frame" (Coordinates) Linear Tangent false false [
         "A(x) without what is there for the time, by rows: displacements h move coordinates by δx = A h (KR18 (5)).",
     ]
@@ -194,6 +207,14 @@ table! {
 }
 
 impl FunctionId {
+    /// What is told of the momentum of everything.
+    pub const CENTROIDAL: [FunctionId; 4] = [
+        FunctionId::CentreOfMass,
+        FunctionId::CentroidalMomentum,
+        FunctionId::CentroidalMap,
+        FunctionId::CentroidalBias,
+    ];
+
     /// Its name in descriptions and in Rust.
     pub fn name(self) -> &'static str {
         self.row().name
@@ -211,6 +232,82 @@ impl AsRef<str> for FunctionId {
     }
 }
 
+/// What is generated of a frame's kinematics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameFunction {
+    /// [R p].
+    Pose,
+    /// (v, ω).
+    Twist,
+    /// J.
+    Jacobian,
+    /// J̇ ξ.
+    BiasAcceleration,
+}
+
+impl FrameFunction {
+    /// All of them, in the order in which they are emitted.
+    pub const ALL: &'static [FrameFunction] = &[
+        FrameFunction::Pose,
+        FrameFunction::Twist,
+        FrameFunction::Jacobian,
+        FrameFunction::BiasAcceleration,
+    ];
+}
+
+/// `jacobian f in world`: a frame whose kinematics is asked for, and whose axes its components are in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Jacobian {
+    /// The name of the frame.
+    pub frame: String,
+    /// Whether components are in the axes of the frame itself, and not in those of the world.
+    pub own: bool,
+}
+
+impl Jacobian {
+    /// The name of a function: `tip_jacobian`, and `tip_body_jacobian` in the frame's own axes.
+    pub fn name_of(&self, function: FrameFunction) -> String {
+        let what = match function {
+            FrameFunction::Pose => return format!("{}_pose", self.frame),
+            FrameFunction::Twist => "twist",
+            FrameFunction::Jacobian => "jacobian",
+            FrameFunction::BiasAcceleration => "bias_acceleration",
+        };
+        let body = if self.own { "body_" } else { "" };
+        format!("{}_{body}{what}", self.frame)
+    }
+
+    /// The names of all its functions.
+    pub fn names(&self) -> impl Iterator<Item = String> + '_ {
+        FrameFunction::ALL.iter().map(|&of| self.name_of(of))
+    }
+
+    /// The documentation of a function, line by line.
+    pub fn docs_of(&self, function: FrameFunction) -> Vec<String> {
+        let frame = &self.frame;
+        let (axes, twist) = match self.own {
+            true => ("its own axes", "(Rᵀ ṗ, Rᵀ ω)"),
+            false => ("world axes", "(ṗ, ω)"),
+        };
+        let lines = match function {
+            FrameFunction::Pose => vec![format!(
+                "Pose [R p] of the frame `{frame}` in the world: its axes by columns, then its origin (m)."
+            )],
+            FrameFunction::Twist => vec![format!(
+                "Twist {twist} of the frame `{frame}` in {axes}: the velocity of its origin (m/s), its angular velocity (rad/s)."
+            )],
+            FrameFunction::Jacobian => vec![
+                format!("Jacobian J(x) of the frame `{frame}` in {axes}: {twist} = J ξ, linear rows first."),
+                "Where the time moves the frame, the twist has a part without ξ in addition to J ξ.".into(),
+            ],
+            FrameFunction::BiasAcceleration => vec![format!(
+                "Bias acceleration J̇ ξ of the frame `{frame}`: d/dt {twist} = J ξ̇ + J̇ ξ, linear rows first."
+            )],
+        };
+        lines
+    }
+}
+
 /// What `generate` asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Asked {
@@ -222,7 +319,14 @@ pub struct Asked {
     pub functions: Vec<FunctionId>,
     /// Outputs and invariants that are asked for by name.
     pub outputs: Vec<String>,
+    /// Outputs whose slopes are asked for.
+    pub slopes: Vec<String>,
+    /// Frames whose kinematics is asked for.
+    pub jacobians: Vec<Jacobian>,
 }
+
+/// What the name of the slopes of an output ends with.
+pub const SLOPES: &str = "_slopes";
 
 impl Asked {
     /// Everything that needs not be asked for by its name: what a description without `generate` gets.
@@ -232,6 +336,8 @@ impl Asked {
             inverse: true,
             functions: Vec::new(),
             outputs: Vec::new(),
+            slopes: Vec::new(),
+            jacobians: Vec::new(),
         }
     }
 
@@ -260,7 +366,10 @@ impl Asked {
     /// Whether a function is wanted: asked for by its name or with everything, or brought along.
     pub fn wants(&self, id: FunctionId) -> bool {
         let row = id.row();
+        let maps = [FunctionId::CentroidalMap, FunctionId::CentroidalBias];
         let along = match row.serves {
+            // Maps and bias are slopes of the momentum, which is emitted with them.
+            _ if id == FunctionId::CentroidalMomentum => maps.iter().any(|&map| self.names(map)),
             Serves::System => self.names(FunctionId::Accel) || self.names(FunctionId::Linearize),
             Serves::Split => self.names(FunctionId::Splitting),
             Serves::Tangent => self.names(FunctionId::Linearize),
@@ -270,9 +379,25 @@ impl Asked {
         self.names(id) || along || (whole && (self.inverse || !row.inverse))
     }
 
-    /// Whether an output or invariant is wanted.
+    /// Whether an output or invariant is wanted, the slopes of one, or a function of a frame.
     pub fn wants_output(&self, name: &str) -> bool {
-        self.everything || self.outputs.iter().any(|output| output == name)
+        let frames = || self.jacobians.iter().flat_map(Jacobian::names);
+        self.everything
+            || self.outputs.iter().any(|output| output == name)
+            || self.wants_slopes(name)
+            || frames().any(|function| function == name)
+    }
+
+    /// Whether the name is that of the slopes of an output that are asked for.
+    pub fn wants_slopes(&self, name: &str) -> bool {
+        let output = name.strip_suffix(SLOPES);
+        output.is_some_and(|output| self.slopes.iter().any(|asked| asked == output))
+    }
+
+    /// Whether nothing is asked for that depends on inertia or forces.
+    pub fn is_kinematic(&self) -> bool {
+        let rate = |id: &FunctionId| *id == FunctionId::Rate;
+        !self.everything && self.slopes.is_empty() && self.functions.iter().all(rate)
     }
 
     /// Whether any function is wanted that has M⁻¹ in it.

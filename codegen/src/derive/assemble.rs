@@ -82,6 +82,8 @@ fn put_together(
     builder.dissipation();
     builder.variety(full)?;
     builder.outputs();
+    builder.frames();
+    builder.centroidal(full)?;
     builder.invariants();
     if let Some(reduction) = reduction {
         builder.constraint_force(full, reduction);

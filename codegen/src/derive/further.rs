@@ -6,7 +6,7 @@ use super::accel::setting::Setting;
 use super::accel::{Acceleration, recursions};
 use super::calculus::Calculus;
 use super::candidates::Candidates;
-use super::linearize::{Displacements, Linear, Motion, linearize, with_states};
+use super::linearize::{Displacements, Linear, Motion, linearize, slopes, with_states};
 use super::program::{Builder, MOST_LITERAL, shape_of};
 use super::reduction::Reduction;
 use super::tree::Placement;
@@ -14,10 +14,12 @@ use super::{momentum, quantity};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::graft;
+use crate::functions::SLOPES;
 use crate::model::Model;
+use crate::model::class;
 use crate::model::invariants::Quantity;
 use crate::program::{Argument, Function, FunctionId, Shape};
-use Argument::{Coordinates, Velocities};
+use Argument::{Coordinates, Inputs, Velocities};
 
 impl Builder<'_> {
     /// ṗ of (x, ξ, u), and ξ of (x, p).
@@ -155,6 +157,59 @@ impl Builder<'_> {
             }
         }
         self.displacements(full, reduction);
+        self.output_slopes(full, reduction, &rows);
+    }
+
+    /// [C D] of the outputs that are asked for: their slopes by (h, δξ, δz, δu), where ξ̇ follows the motion.
+    fn output_slopes(&mut self, full: &Model, reduction: Option<&Reduction>, linear: &[Vec<Edge>]) {
+        let model = self.model;
+        for (name, value) in &model.outputs {
+            if !model.asked.slopes.contains(name) {
+                continue;
+            }
+            let entries = value.entries();
+            let follows = depends_on_acceleration(model, &entries);
+            // What depends on ξ̇ stands where its slopes are; anything else by itself.
+            let mut graph = match follows {
+                true => self.graph.clone(),
+                false => model.graph.clone(),
+            };
+            let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
+                return;
+            };
+            let changes: &[Vec<Edge>] = match follows {
+                true => &linear[nearby.n()..nearby.n() + model.n()],
+                false => &[],
+            };
+            let xi_dot: &[Edge] = if follows { &self.chosen.xi_dot } else { &[] };
+            let rows = slopes(model, &nearby, &mut graph, &entries, (changes, xi_dot));
+            let columns = rows.first().map_or(0, Vec::len);
+            let shape = Shape::Matrix(rows.len(), columns);
+            let mut candidates = Candidates::with(&self.care);
+            candidates.offer_own(graph, rows.concat());
+            let outputs = candidates.cheapest(&mut self.graph);
+            let guards = if follows { self.guards() } else { Vec::new() };
+            let states = if model.states.is_empty() { "" } else { ", δz" };
+            let docs = format!(
+                "Slopes [C D] of the output `{name}`, δ{name} = C (h, δξ{states}) + D δu, by rows, where δx = A(x) h."
+            );
+            let mut function = Function::described(
+                &format!("{name}{SLOPES}"),
+                docs,
+                &[Coordinates, Velocities, Inputs],
+                shape,
+                outputs,
+            );
+            if follows {
+                let text = "It depends on ξ̇, which is that of `accel` and moves with the state.";
+                function.docs.push(text.into());
+            }
+            self.functions.push(Function {
+                guards,
+                fallible: follows,
+                ..function
+            });
+        }
     }
 
     /// What displacements are measured along and read by.
@@ -231,4 +286,10 @@ impl Builder<'_> {
             ));
         }
     }
+}
+
+/// Whether expressions of a model depend on ξ̇.
+fn depends_on_acceleration(model: &Model, entries: &[Edge]) -> bool {
+    let class = |edge: &Edge| model.graph.class(edge.node());
+    entries.iter().any(|edge| class(edge) & class::ACCEL != 0)
 }

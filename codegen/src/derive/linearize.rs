@@ -110,7 +110,7 @@ impl Displacements {
     }
 
     /// Number of displacements.
-    fn n(&self) -> usize {
+    pub fn n(&self) -> usize {
         self.places.len()
     }
 }
@@ -120,50 +120,53 @@ impl Displacements {
 pub fn with_states(
     model: &Model,
     nearby: &Displacements,
-    (graph, rows): (&mut Graph, Vec<Vec<Edge>>),
+    (graph, mut rows): (&mut Graph, Vec<Vec<Edge>>),
     xi_dot: &[Edge],
 ) -> Vec<Vec<Edge>> {
-    let rates = rebuild(&model.graph, graph, &model.state_rates);
+    let inputs = nearby.n() + model.n();
+    for row in &mut rows {
+        row[inputs..].rotate_left(model.m());
+    }
+    let changes = rows[nearby.n()..].to_vec();
+    let below = slopes(model, nearby, graph, &model.state_rates, (&changes, xi_dot));
+    rows.extend(below);
+    rows
+}
+
+/// The slopes of expressions of the model by (h, δξ, δz, δu), by rows, in a graph that grew from the model's: ξ̇ is F
+/// there, and moves as the rows of δξ̇ say.
+pub fn slopes(
+    model: &Model,
+    nearby: &Displacements,
+    graph: &mut Graph,
+    expressions: &[Edge],
+    (changes, xi_dot): (&[Vec<Edge>], &[Edge]),
+) -> Vec<Vec<Edge>> {
+    let expressions = rebuild(&model.graph, graph, expressions);
     let n = nearby.n();
     let one = graph.one();
-    let width = n + model.n() + model.u.len();
-    let moved = &model.xi.iter().chain(&model.u);
-    let slopes: Vec<Edge> = (0..width)
-        .flat_map(|j| {
+    // z stands before u.
+    let (u, z) = model.u.split_at(model.m());
+    let moved: Vec<Edge> = [&model.xi, z, u].concat();
+    let columns: Vec<Vec<Edge>> = (0..n + moved.len())
+        .map(|j| {
             let mut seeds: Vec<(NodeId, Edge)> = match j.checked_sub(n) {
-                None => model
-                    .x
-                    .iter()
-                    .zip(&nearby.a)
-                    .map(|(x, row)| (x.node(), row[j]))
-                    .collect(),
-                Some(i) => moved
-                    .clone()
-                    .nth(i)
-                    .map(|symbol| (symbol.node(), one))
-                    .into_iter()
-                    .collect(),
+                None => {
+                    let x = model.x.iter().zip(&nearby.a);
+                    x.map(|(x, row)| (x.node(), row[j])).collect()
+                }
+                Some(i) => vec![(moved[i].node(), one)],
             };
-            let rows = model.xi_dot.iter().zip(&rows[n..]);
-            seeds.extend(rows.map(|(rate, row)| (rate.node(), row[j])));
-            Derivation::new(seeds).all(graph, &rates)
+            let rates = model.xi_dot.iter().zip(changes);
+            seeds.extend(rates.map(|(rate, row)| (rate.node(), row[j])));
+            Derivation::new(seeds).all(graph, &expressions)
         })
         .collect();
-    let slopes = with_accelerations(graph, &slopes, xi_dot);
-    let below = (0..rates.len()).map(|i| {
-        slopes
-            .iter()
-            .skip(i)
-            .step_by(rates.len())
-            .copied()
-            .collect()
-    });
-    let mut all: Vec<Vec<Edge>> = rows.into_iter().chain(below).collect();
-    let inputs = n + model.n()..n + model.n() + model.m();
-    for row in &mut all {
-        row[inputs.start..].rotate_left(inputs.len());
-    }
-    all
+    let slopes = with_accelerations(graph, &columns.concat(), xi_dot);
+    let row = |i: usize| slopes.iter().skip(i).step_by(expressions.len());
+    (0..expressions.len())
+        .map(|i| row(i).copied().collect())
+        .collect()
 }
 
 /// Linearises; `model` is that of the active velocities. The cheapest of three ways is taken: F itself

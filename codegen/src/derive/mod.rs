@@ -13,6 +13,8 @@
 //! | `energy` | T, V, momentum | |
 //! | `momentum` | ṗ, and ξ from p | (30a) |
 //! | `linearize` | the linearisation, in displacement coordinates | (12) |
+//! | `centroidal` | the centre of mass, the momentum about it and its map | |
+//! | `frames` | poses, twists, Jacobians and bias accelerations of frames | |
 //! | `accel` | ξ̇ by the cheapest of several routes | (30) |
 //! | `tree` | links and joints: inverse dynamics, M, ξ̇ and slopes by recursion | |
 //! | `regressor` | forces as linear functions of inertial parameters, and base parameters | |
@@ -29,11 +31,13 @@ pub(crate) mod assemble;
 pub mod calculus;
 mod candidates;
 pub mod care;
+pub(crate) mod centroidal;
 pub(crate) mod commutation;
 pub(crate) mod complement;
 pub(crate) mod connection;
 pub mod correction;
 pub(crate) mod energy;
+mod frames;
 mod further;
 pub mod geometry;
 pub mod inertia;

@@ -65,14 +65,19 @@ pub fn of_total(
 }
 
 /// One mass in motion, world axes.
-struct Motion {
-    centre: Vec3,
-    momentum: Vec3,
-    spin: Vec3,
+pub struct Motion {
+    /// The mass (kg).
+    pub mass: Edge,
+    /// Its centre of mass (m).
+    pub centre: Vec3,
+    /// m ċ.
+    pub momentum: Vec3,
+    /// R Θ ω, about the centre of mass.
+    pub spin: Vec3,
 }
 
 /// The bodies on a frame, or everything.
-fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) -> Vec<Motion> {
+pub fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) -> Vec<Motion> {
     let graph = &mut model.graph;
     let mut all = Vec::new();
     for body in &model.bodies {
@@ -86,6 +91,7 @@ fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) -> Vec
         let omega = calculus.spin(graph, &frame.rotation);
         let spin = apply3(graph, &body.inertia_com, omega);
         all.push(Motion {
+            mass: body.mass,
             centre,
             momentum: scale3(graph, body.mass, velocity),
             spin: apply3(graph, &frame.rotation, spin),
@@ -95,6 +101,7 @@ fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) -> Vec
         for particle in &model.particles {
             let velocity = calculus.rate3(graph, particle.position);
             all.push(Motion {
+                mass: particle.mass,
                 centre: particle.position,
                 momentum: scale3(graph, particle.mass, velocity),
                 spin: zero3(graph),

@@ -8,10 +8,10 @@ use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::Graph;
 use crate::algebra::linear::zero3;
 use crate::diagnostics::{Diagnostic, Report};
-use crate::functions::{Asked, FunctionId};
+use crate::functions::{Asked, FunctionId, Jacobian, SLOPES};
 use crate::model::Frame;
 use crate::model::elements::Elements;
-use crate::syntax::ast::{Ident, ItemKind, Span, System};
+use crate::syntax::ast::{Ident, ItemKind, Span, System, Wanted};
 use crate::syntax::suggest::closest;
 
 /// Reads the statements about inertia and loads.
@@ -125,15 +125,15 @@ pub fn read(
         let resistance = along.of(graph, dynamics.elements.scalar_dissipation);
         *sum = graph.sub(*sum, resistance);
     }
-    if !has_inertia {
+    let mut outputs = output_names(system, report);
+    outputs.extend(super::invariants::names(system));
+    dynamics.asked = asked(system, &outputs, frames, report);
+    if !has_inertia && !dynamics.asked.is_kinematic() {
         report.push(
             Diagnostic::new(system.name.span, "the system has no inertia")
                 .help("write `body on f { mass m; … }`, `particle mass m at p;` or `kinetic …;`"),
         );
     }
-    let mut outputs = output_names(system, report);
-    outputs.extend(super::invariants::names(system));
-    dynamics.asked = asked(system, &outputs, report);
     dynamics
 }
 
@@ -170,43 +170,124 @@ fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
 }
 
 /// What the statements `generate` ask for, everything where there are none; unknown names are reported.
-fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
+fn asked(system: &System, outputs: &[&Ident], frames: &[Frame], report: &mut Report) -> Asked {
     let statements = system.items.iter().filter_map(|item| match &item.kind {
-        ItemKind::Generate(names) => Some(names),
+        ItemKind::Generate(all) => Some(all),
         _ => None,
     });
-    let names: Vec<&Ident> = statements.flatten().collect();
-    if names.is_empty() {
+    let all: Vec<&Wanted> = statements.flatten().collect();
+    if all.is_empty() {
         return Asked::everything();
     }
     let mut asked = Asked::only(&[]);
-    let functions = FunctionId::ALL.iter().filter(|id| id.row().named);
-    let functions: Vec<&str> = functions.map(|id| id.name()).collect();
-    for name in names {
-        let text = name.name.as_str();
-        let function = FunctionId::named(text).filter(|id| id.row().named);
-        if text == ALL {
-            asked.everything = true;
-        } else if let Some(function) = function {
-            asked.functions.push(function);
-        } else if outputs.iter().any(|output| output.name == text) {
-            asked.outputs.push(text.to_string());
-        } else {
-            let outputs = outputs.iter().map(|output| output.name.as_str());
-            let known = [ALL]
-                .into_iter()
-                .chain(functions.iter().copied())
-                .chain(outputs);
-            let message = format!("no function to generate is called `{text}`");
-            let error = Diagnostic::new(name.span, message);
-            report.push(match closest(text, known) {
-                Some(near) => error.help(format!("did you mean `{near}`?")),
-                None => error.help(format!(
-                    "the functions are {}, and the outputs and invariants by their names; `all` stands for what a description without `generate` gets",
-                    functions.join(", ")
-                )),
-            });
+    for wanted in all {
+        match wanted {
+            Wanted::Function(name) => function(name, (system, outputs), &mut asked, report),
+            Wanted::Jacobian { frame, axes } => {
+                let found = jacobian(frame, axes.as_ref(), frames, report);
+                asked.jacobians.extend(found);
+            }
+        }
+    }
+    for output in outputs {
+        let mut frames = asked.jacobians.iter().flat_map(Jacobian::names);
+        if frames.any(|name| name == output.name) || asked.wants_slopes(&output.name) {
+            let message = format!("`generate` asks for another function `{}`", output.name);
+            report.push(
+                Diagnostic::new(output.span, message).help("choose another name for this output"),
+            );
         }
     }
     asked
+}
+
+/// A function by its name.
+fn function(
+    name: &Ident,
+    (system, outputs): (&System, &[&Ident]),
+    asked: &mut Asked,
+    report: &mut Report,
+) {
+    let text = name.name.as_str();
+    let known = FunctionId::named(text).filter(|id| id.row().named);
+    if text == ALL {
+        asked.everything = true;
+        return;
+    }
+    if let Some(function) = known {
+        asked.functions.push(function);
+        return;
+    }
+    if outputs.iter().any(|output| output.name == text) {
+        asked.outputs.push(text.to_string());
+        return;
+    }
+    let described = || system.items.iter().filter_map(name_of);
+    if let Some(output) = text.strip_suffix(SLOPES)
+        && described().any(|known| known == output)
+    {
+        asked.slopes.push(output.to_string());
+        // They are of use along with [A B], and follow it where they depend on ξ̇.
+        asked.functions.push(FunctionId::Linearize);
+        return;
+    }
+    let functions = FunctionId::ALL.iter().filter(|id| id.row().named);
+    let functions: Vec<&str> = functions.map(|id| id.name()).collect();
+    let slopes: Vec<String> = described().map(|name| name + SLOPES).collect();
+    let names = outputs.iter().map(|output| output.name.as_str());
+    let known = [ALL]
+        .into_iter()
+        .chain(functions.iter().copied())
+        .chain(names)
+        .chain(slopes.iter().map(String::as_str));
+    let message = format!("no function to generate is called `{text}`");
+    let error = Diagnostic::new(name.span, message);
+    report.push(match closest(text, known) {
+        Some(near) => error.help(format!("did you mean `{near}`?")),
+        None => error.help(format!(
+            "the functions are {}, and the outputs and invariants by their names; `y_slopes` are the slopes of an output y, `jacobian f` is the kinematics of a frame f; `all` stands for what a description without `generate` gets",
+            functions.join(", ")
+        )),
+    });
+}
+
+/// `jacobian f in f`: the frame, and whether components are in its own axes.
+fn jacobian(
+    frame: &Ident,
+    axes: Option<&Ident>,
+    frames: &[Frame],
+    report: &mut Report,
+) -> Option<Jacobian> {
+    let mut found = true;
+    if frames.iter().all(|known| known.name != frame.name) {
+        let known = frames.iter().map(|frame| frame.name.as_str());
+        let message = match frame.name.as_str() {
+            "world" => "the world does not move".into(),
+            name => format!("no frame is called `{name}`"),
+        };
+        let error = Diagnostic::new(frame.span, message);
+        report.push(match closest(&frame.name, known) {
+            Some(near) => error.help(format!("did you mean `{near}`?")),
+            None => error.help(
+                "`jacobian f` is the kinematics of a frame f that the description has by `frame` or by a joint's `moves`",
+            ),
+        });
+        found = false;
+    }
+    let own = axes.is_some_and(|axes| axes.name == frame.name || axes.name == "body");
+    if let Some(axes) = axes
+        && !own
+        && axes.name != "world"
+    {
+        let message = format!("components are in axes of `world` or of `{}`", frame.name);
+        report.push(Diagnostic::new(axes.span, message).help(format!(
+            "write `jacobian {0} in world` or `jacobian {0} in {0}`",
+            frame.name
+        )));
+        found = false;
+    }
+    found.then(|| Jacobian {
+        frame: frame.name.clone(),
+        own,
+    })
 }

@@ -6,7 +6,7 @@
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
     Acting, Components, Conserved, Declaration, End, Expr, ExprKind, Ident, Item, ItemKind, Load,
-    Origins, Source, Span, System, Table,
+    Origins, Source, Span, System, Table, Wanted,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -263,7 +263,13 @@ impl<'a> Uses<'a> {
                 self.conserved(conserved);
                 self.all(when.iter().flat_map(|set| [&set.target, &set.value]));
             }
-            ItemKind::Generate(_) => {}
+            ItemKind::Generate(all) => {
+                for wanted in all {
+                    if let Wanted::Jacobian { frame, .. } = wanted {
+                        self.name(frame);
+                    }
+                }
+            }
             // Written out already.
             ItemKind::Include(..)
             | ItemKind::Component(_)

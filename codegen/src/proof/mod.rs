@@ -12,6 +12,9 @@
 //! | `numbers` | the three forms at points modulo p: what every build is compared with | (30) |
 //! | `slopes` | the linearisation, by dual numbers modulo p | |
 //! | `regressor` | base parameters and the columns that go with them | |
+//! | `outputs` | outputs of constrained systems, and slopes of outputs | |
+//! | `centroidal` | the centre of mass, and the momentum about it | |
+//! | `frames` | poses, twists, Jacobians and bias accelerations of frames | |
 //! | `states` | rates of states of first order, and their slopes | |
 //! | `virtual_power` | loads as forces on points, motion of points | (28) |
 //! | `hamel_form` | equations of Lagrange and Hamel, from T and γ | (30a) |
@@ -24,11 +27,13 @@
 //! | `confidence` | what equality at random points says | |
 //! | `verdict` | what a proof says | |
 
+mod centroidal;
 pub mod check;
 pub mod confidence;
 pub(crate) mod constrained;
 pub mod correction;
 pub mod forms;
+mod frames;
 pub(crate) mod gibbs;
 pub(crate) mod hamel_form;
 pub(crate) mod invariants;
@@ -36,6 +41,7 @@ mod kernel;
 pub mod levi_civita;
 pub(crate) mod motion;
 mod numbers;
+mod outputs;
 mod points;
 mod reference;
 pub mod regressor;

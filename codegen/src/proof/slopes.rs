@@ -7,7 +7,7 @@
 
 use super::hamel_form;
 use super::reference::Reference;
-use super::states;
+use super::{centroidal, frames, outputs, states};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
@@ -126,6 +126,12 @@ impl Slopes {
         if !measured_at(&self.model, program, [lane, lane])? {
             return Some(Err(MEASURE.into()));
         }
+        if !frames::hold(&self.model, program, lane)? {
+            return Some(Err(frames::WHAT.into()));
+        }
+        if !centroidal::holds(&self.model, program, lane)? {
+            return Some(Err(centroidal::WHAT.into()));
+        }
         match &self.source {
             None => Some(Ok(())),
             Some(Source::Emitted) => self.emitted_at(program, lane),
@@ -185,6 +191,10 @@ impl Slopes {
         }
         if states::slopes(model, (&xi_dot, changed), lane, &moved)? != state_rates {
             return Some(Err(states::WHAT.into()));
+        }
+        let along = (&moved[..], &nearby.columns[..]);
+        if !outputs::slopes_hold(model, program, (&xi_dot, changed), lane, along)? {
+            return Some(Err(outputs::WHAT.into()));
         }
         Some(Ok(()))
     }
@@ -325,6 +335,10 @@ fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<R
     let moved = nearby.moved(model, &here.a.concat());
     if states::slopes(model, (&xi_dot, changed_rates), lane, &moved)? != state_rates {
         return Some(Err(states::WHAT.into()));
+    }
+    let along = (&moved[..], &nearby.columns[..]);
+    if !outputs::slopes_hold(model, program, (&xi_dot, changed_rates), lane, along)? {
+        return Some(Err(outputs::WHAT.into()));
     }
     Some(Ok(()))
 }

@@ -22,6 +22,17 @@ pub(super) fn rates(model: &Model, xi_dot: &[Fp], lane: &Lane) -> Option<Vec<Fp>
 /// δż along a direction in the symbols, in which ξ̇ moves by δξ̇.
 pub(super) fn slopes(
     model: &Model,
+    motion: (&[Fp], &[Fp]),
+    lane: &Lane,
+    direction: &[Fp],
+) -> Option<Vec<Fp>> {
+    slopes_of(model, &model.state_rates, motion, lane, direction)
+}
+
+/// The same of any expressions of the model.
+pub(super) fn slopes_of(
+    model: &Model,
+    expressions: &[Edge],
     (xi_dot, change): (&[Fp], &[Fp]),
     lane: &Lane,
     direction: &[Fp],
@@ -33,7 +44,7 @@ pub(super) fn slopes(
         lane.set_symbol(place, value);
         direction[place] = slope;
     }
-    let duals = tangent_at(&model.graph, &model.state_rates, &mut lane, &direction)?;
+    let duals = tangent_at(&model.graph, expressions, &mut lane, &direction)?;
     Some(duals.into_iter().map(|dual| dual.1).collect())
 }
 

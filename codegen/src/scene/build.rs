@@ -6,7 +6,7 @@ use super::{Scene, SceneError, print};
 use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::{
     Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, External, Function, Item,
-    ItemKind, Origins, Shape, ShapeKind, Source, Span, System, Table, Target,
+    ItemKind, Origins, Shape, ShapeKind, Source, Span, System, Table, Target, Wanted,
 };
 use crate::syntax::parse_text;
 
@@ -384,8 +384,17 @@ impl SceneBuilder {
 
     /// The functions to generate, such as `accel`; all by default.
     pub fn generate(&mut self, functions: &[&str]) {
-        let functions = functions.iter().map(|name| ident(name));
+        let functions = functions.iter().map(|name| Wanted::Function(ident(name)));
         self.add(ItemKind::Generate(functions.collect()));
+    }
+
+    /// The kinematics of a frame, components in the axes of the world or of the frame itself: pose, twist, Jacobian,
+    /// bias acceleration.
+    pub fn generate_jacobian(&mut self, frame: &str, axes: &str) {
+        self.add(ItemKind::Generate(vec![Wanted::Jacobian {
+            frame: ident(frame),
+            axes: Some(ident(axes)),
+        }]));
     }
 
     /// The scene.

@@ -6,7 +6,7 @@
 use crate::syntax::ast::{
     About, Acting, Body, Component, Components, Conserved, CoordKind, Counter, Declaration, End,
     Expr, Ident, Item, ItemKind, Joint, JointKind, Load, Part, Repeat, Source, System, Table,
-    Target,
+    Target, Wanted,
 };
 use crate::syntax::written::{conditions, equation, list, written};
 use crate::syntax::{joint_field, joint_kind};
@@ -161,7 +161,14 @@ pub fn statement(item: &Item) -> String {
             )
         }
         ItemKind::Generate(names) => {
-            format!("generate {}", each(names, |name| name.name.clone()))
+            let written = |wanted: &Wanted| match wanted {
+                Wanted::Function(name) => name.name.clone(),
+                Wanted::Jacobian { frame, axes } => {
+                    let axes = axes.as_ref().map(|axes| axes.name.clone());
+                    format!("jacobian {}{}", frame.name, after("in", axes))
+                }
+            };
+            format!("generate {}", each(names, written))
         }
         ItemKind::Include(name, _) => format!("include {name:?}"),
         ItemKind::Part(description) => part_of(description),

@@ -467,8 +467,8 @@ pub enum ItemKind {
         /// Where it is.
         when: Vec<Condition>,
     },
-    /// `generate accel, energy;`
-    Generate(Vec<Ident>),
+    /// `generate accel, energy, jacobian tip in world;`
+    Generate(Vec<Wanted>),
     /// `include "leg.eom";` the statements of a file, with the place of its name.
     Include(String, Span),
     /// `component Leg(mount: frame, side = 1) { … }`
@@ -477,4 +477,18 @@ pub enum ItemKind {
     Part(Part),
     /// `for i in 1..n { … }`
     Repeat(Repeat),
+}
+
+/// What `generate` lists.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wanted {
+    /// A function by its name.
+    Function(Ident),
+    /// `jacobian f in f`: the kinematics of a frame, and the frame in whose axes components are.
+    Jacobian {
+        /// The frame.
+        frame: Ident,
+        /// `world` where absent.
+        axes: Option<Ident>,
+    },
 }

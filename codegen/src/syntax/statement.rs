@@ -1,6 +1,6 @@
 //! The statements, by their first word.
 
-use super::ast::{Expr, Ident, Item, ItemKind, Span, Target};
+use super::ast::{Expr, Ident, Item, ItemKind, Span, Target, Wanted};
 use super::blocks::since;
 use super::cursor::{Cursor, Parsed, quoted, shown};
 use super::expression::expression;
@@ -295,12 +295,26 @@ fn frame(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 }
 
 /// `generate accel, energy`
-fn functions(cursor: &mut Cursor<'_>) -> Parsed<Vec<Ident>> {
-    let mut names = vec![function(cursor)?];
+fn functions(cursor: &mut Cursor<'_>) -> Parsed<Vec<Wanted>> {
+    let mut all = vec![wanted(cursor)?];
     while cursor.eat_punct(',') {
-        names.push(function(cursor)?);
+        all.push(wanted(cursor)?);
     }
-    Ok(names)
+    Ok(all)
+}
+
+/// `accel`, `jacobian tip in world`
+fn wanted(cursor: &mut Cursor<'_>) -> Parsed<Wanted> {
+    let function = function(cursor)?;
+    if function.name != "jacobian" || cursor.is_punct(',') || cursor.is_punct(';') {
+        return Ok(Wanted::Function(function));
+    }
+    let frame = path::path(cursor, "a frame")?;
+    let axes = match cursor.eat_word("in") {
+        true => Some(path::path(cursor, "a frame")?),
+        false => None,
+    };
+    Ok(Wanted::Jacobian { frame, axes })
 }
 
 /// `energy`, `leg[3].reach`

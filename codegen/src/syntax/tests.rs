@@ -9,7 +9,7 @@ mod refused_expressions;
 mod rendered;
 mod reuse;
 
-use super::ast::{Acting, BinaryOp, End, Expr, ExprKind, ItemKind, System, Target};
+use super::ast::{Acting, BinaryOp, End, Expr, ExprKind, ItemKind, System, Target, Wanted};
 use super::parse_text;
 
 /// The system of a text that is known to be right.
@@ -329,7 +329,13 @@ fn told(kind: &ItemKind) -> String {
                 "generate {}",
                 names
                     .iter()
-                    .map(|name| name.name.as_str())
+                    .map(|wanted| match wanted {
+                        Wanted::Function(name) => name.name.clone(),
+                        Wanted::Jacobian { frame, axes } => {
+                            let axes = axes.as_ref().map(|axes| axes.name.as_str());
+                            format!("jacobian of {} in {axes:?}", frame.name)
+                        }
+                    })
                     .collect::<Vec<_>>()
                     .join(", ")
             )

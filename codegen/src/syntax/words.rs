@@ -114,7 +114,7 @@ const STATEMENTS: [(&str, &str); 40] = [
     ),
     (
         "generate",
-        "a selection of functions is written `generate accel, energy;`",
+        "a selection of functions is written `generate accel, energy;`, the kinematics of a frame `generate jacobian tip in world;`",
     ),
     (
         "include",

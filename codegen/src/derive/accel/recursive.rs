@@ -12,7 +12,7 @@ use crate::algebra::transplant::map_symbols;
 use crate::derive::calculus::Calculus;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
-use crate::derive::tree::momentum::{swing, total};
+use crate::derive::tree::momentum::{columns, swing, total};
 use crate::derive::tree::nearby::slopes;
 use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;
@@ -296,6 +296,16 @@ impl Recursion {
         let (graph, [linear, angular]) = self.leave(graph, [linear.to_vec(), angular.to_vec()]);
         let three = |list: &[Edge]| std::array::from_fn(|i| list[i]);
         (graph, three(&linear), three(&angular))
+    }
+
+    /// The same for a unit of each velocity alone; `None` where other velocities are given.
+    pub fn momentum_columns(&self) -> Option<(Graph, Vec<(Vec3, Vec3)>)> {
+        if self.free.is_some() {
+            return None;
+        }
+        let mut graph = self.model.graph.clone();
+        let columns = columns(&mut graph, &self.tree, self.model.n());
+        Some((graph, columns))
     }
 
     /// ξ = M⁻¹ p by articulated bodies: what ξ̇ is where nothing but p acts; `None` where a velocity is not

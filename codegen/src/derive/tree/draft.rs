@@ -182,7 +182,7 @@ pub fn draft_with_carriers(
 }
 
 /// Whether there is kinetic energy beside that of bodies, particles and armatures.
-fn has_more_inertia(model: &mut Model) -> bool {
+pub fn has_more_inertia(model: &mut Model) -> bool {
     let graph = &mut model.graph;
     let half = graph.ratio(1, 2);
     let mut rest = model.kinetic;

@@ -8,6 +8,7 @@
 
 use super::Tree;
 use super::inverse::{Motion, Wrench, carried, collect_with, motions, wrench};
+use super::mass::Mass;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, cross, zero3};
 
@@ -38,6 +39,35 @@ pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
         *onto = onto.plus(graph, &moved);
     }
     (total.force, total.torque)
+}
+
+/// The momentum of everything for a unit of each velocity alone, linear and about the origin of the world, in its
+/// axes: that of what hangs on the joint, as one body.
+pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
+    let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
+    for (index, link) in tree.links.iter().enumerate().rev() {
+        if let Some(parent) = link.parent {
+            let moved = composite[index].carried(graph, link);
+            composite[parent] = composite[parent].plus(graph, &moved);
+        }
+    }
+    let none = zero3(graph);
+    let mut columns = vec![(none, none); n];
+    for (index, link) in tree.links.iter().enumerate() {
+        for freedom in &link.freedoms {
+            let (force, torque) = composite[index].wrench(graph, freedom.angular, freedom.linear);
+            let chain = std::iter::successors(Some(index), |&at| tree.links[at].parent);
+            let momentum = chain.fold(Wrench { force, torque }, |momentum, at| {
+                carried(graph, &tree.links[at], &momentum)
+            });
+            for &(i, k) in &freedom.rate {
+                let part = momentum.scaled(graph, k);
+                columns[i].0 = add3(graph, columns[i].0, part.force);
+                columns[i].1 = add3(graph, columns[i].1, part.torque);
+            }
+        }
+    }
+    columns
 }
 
 /// The part of ṗ that is quadratic in ξ; `None` where a freedom's twist varies in the axes of its link.

@@ -8,8 +8,8 @@ use super::confidence::Confidence;
 use super::kernel::{in_kernel, places, rows_at_rest};
 use super::points::{POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
-use super::states;
 use super::verdict::{Identity, Verdict, failure};
+use super::{centroidal, frames, outputs, states};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function};
 use crate::algebra::lane::Lane;
@@ -26,7 +26,7 @@ use num_rational::BigRational;
 use point::At;
 
 /// What is compared, with the label and equation that `check` prints.
-const IDENTITIES: [(&str, &str); 9] = [
+const IDENTITIES: [(&str, &str); 12] = [
     ("C", "B C = 0 for the rows that were solved"),
     (
         "(30c)",
@@ -48,6 +48,18 @@ const IDENTITIES: [(&str, &str); 9] = [
         "the emitted [A B] are the slopes of ẋ and ξ̇ along δx = A h",
     ),
     ("states", "ż as described, with the emitted ξ̇"),
+    (
+        "outputs",
+        "the emitted outputs are those of the description",
+    ),
+    (
+        "frames",
+        "the emitted twists are Ṙ Rᵀ and ṗ, with their slopes by ξ and along ẋ",
+    ),
+    (
+        "momentum",
+        "the emitted centre of mass is Σ m c / Σ m, the momentum about it A_G ξ",
+    ),
 ];
 
 /// The place of the power among them: it is compared at points of its own.
@@ -240,6 +252,15 @@ fn is_there(label: &str, reduction: &Reduction, program: &Program) -> bool {
         "C" => !reduction.solved.is_empty(),
         "B" => !reduction.kept.is_empty() || !reduction.model.accelerated.is_empty(),
         "states" => !reduction.model.states.is_empty(),
+        "outputs" => {
+            let mut outputs = reduction.model.outputs.iter();
+            outputs.any(|(name, _)| program.function(name).is_some())
+        }
+        "frames" => !reduction.model.asked.jacobians.is_empty(),
+        "momentum" => {
+            let mut all = FunctionId::CENTROIDAL.iter();
+            all.any(|id| program.function(id).is_some())
+        }
         "nearby" => program.function(FunctionId::Linearize).is_some(),
         _ => true,
     }
@@ -424,6 +445,9 @@ fn at_point(
         .collect();
     let same_mass = same_mass && equal("momentum", project(&momentum))?;
     let nearby = at.nearby()?;
+    let same_outputs = outputs::values_hold(&full.reduced, program, inner)?;
+    let same_momentum = centroidal::holds(&full.reduced, program, inner)?;
+    let same_frames = frames::hold(&full.reduced, program, inner)?;
     let result = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_string()) };
     Some([
         result(vanish && same_rate, "a row does not vanish, or ẋ differs"),
@@ -435,6 +459,9 @@ fn at_point(
         Ok(()),
         result(nearby, "a slope differs"),
         result(same_states, "ż differs"),
+        result(same_outputs, "an output differs"),
+        result(same_frames, frames::WHAT),
+        result(same_momentum, centroidal::WHAT),
     ])
 }
 

@@ -11,6 +11,7 @@ use crate::derive::reduction::Reduction;
 use crate::model::class;
 use crate::program::{FunctionId, Program};
 use crate::proof::kernel::places;
+use crate::proof::outputs::slopes_hold;
 use crate::proof::slopes::measured_at;
 
 /// A point with ξ = C ξₐ, and the same for the reduced model.
@@ -265,7 +266,19 @@ impl<'a> At<'a> {
                 };
                 sum == ahead[alpha].1 - swept
             });
-            if bent || !moved {
+            let rates: Vec<Fp> = slopes[..na].iter().map(|slope| slope.0).collect();
+            let changes: Vec<Fp> = slopes[..na].iter().map(|slope| slope.1).collect();
+            let mut unit = vec![Fp::ZERO; width];
+            unit[column] = Fp::ONE;
+            let along = (&direction[..], &unit[..]);
+            let observed = slopes_hold(
+                reduced,
+                self.program,
+                (&rates, &changes),
+                &self.inner,
+                along,
+            )?;
+            if bent || !moved || !observed {
                 return Some(false);
             }
         }

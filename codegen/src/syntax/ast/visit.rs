@@ -2,7 +2,7 @@
 
 use super::{
     Acting, Body, Choice, Components, Condition, Conserved, Declaration, End, Expr, ExprKind,
-    External, Function, Ident, Item, ItemKind, Joint, Load, Source, Span, Table, Target,
+    External, Function, Ident, Item, ItemKind, Joint, Load, Source, Span, Table, Target, Wanted,
 };
 
 /// What is done with the parts of a statement.
@@ -188,7 +188,17 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
                 to.expr(value);
             }
         }
-        ItemKind::Generate(names) => names.iter_mut().for_each(|name| to.uses(name)),
+        ItemKind::Generate(all) => {
+            for wanted in all {
+                match wanted {
+                    Wanted::Function(name) => to.uses(name),
+                    Wanted::Jacobian { frame, axes } => {
+                        to.uses(frame);
+                        axes.iter_mut().for_each(|axes| to.uses(axes));
+                    }
+                }
+            }
+        }
         // Made of others.
         ItemKind::Include(..)
         | ItemKind::Component(_)

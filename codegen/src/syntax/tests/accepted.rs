@@ -202,7 +202,7 @@ fn every_statement() {
         generalized force w = -d * w;
         start X.R = I;
         output speed = norm(v);
-        generate accel, energy;
+        generate accel, jacobian f, jacobian leg[2].foot in world, speed_slopes, jacobian f in f;
         /// docs stand anywhere between statements
     ";
     let statements = statements.replace("t,)", "t)");
@@ -244,7 +244,7 @@ fn every_statement() {
     generalized force w = ((-d) * w)
     start X.R = I
     output speed = norm(v)
-    generate accel, energy
+    generate accel, jacobian of f in None, jacobian of leg[2].foot in Some("world"), speed_slopes, jacobian of f in Some("f")
     "#);
 }
 

@@ -293,6 +293,8 @@ fn equations() {
         r#"start = 1;"#,
         r#"output speed;"#,
         r#"generate;"#,
+        r#"generate accel, jacobian f in;"#,
+        r#"generate jacobian f on g;"#,
         r#"frame f;"#,
         r#"frame f on = pose(R, p);"#,
     ];
@@ -313,7 +315,11 @@ fn equations() {
     2:13 expected `=`, found `;` <;>
       an output is written `output speed = norm(v);`
     2:9 expected the name of a function, found `;` <;>
-      a selection of functions is written `generate accel, energy;`
+      a selection of functions is written `generate accel, energy;`, the kinematics of a frame `generate jacobian tip in world;`
+    2:30 expected the name of a frame, found `;` <;>
+      a selection of functions is written `generate accel, energy;`, the kinematics of a frame `generate jacobian tip in world;`
+    2:21 expected `;` after `f`, found `on` <on>
+      a selection of functions is written `generate accel, energy;`, the kinematics of a frame `generate jacobian tip in world;`
     2:8 expected `=`, found `;` <;>
       a frame is written `frame f = pose(R, p);`, `frame f on g = pose(R, p);` or `frame f on g at [x, y, z];`
     2:12 expected the name of a frame, found `=` <=>

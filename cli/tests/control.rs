@@ -1,0 +1,220 @@
+//! What controllers ask for, of real robots against Pinocchio: poses, Jacobians and bias accelerations of frames, the
+//! centre of mass, momenta and the centroidal map, and the slopes of ξ̇.
+//!
+//! `HAMEL_CONTROL_REFERENCE` names a folder with further robots.
+
+#[path = "common/installed.rs"]
+mod installed;
+
+use hamel_codegen::functions::FunctionId;
+use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::model::Model;
+use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::syntax::ast::CoordKind;
+use hamel_codegen::urdf::{Options, import};
+use installed::installed;
+use serde_json::Value;
+use std::path::Path;
+
+/// Of the largest entry of an array.
+const TOLERANCE: f64 = 1e-10;
+
+#[test]
+fn quantities_for_control_agree_with_pinocchio() {
+    let Some(folder) = installed() else {
+        eprintln!("not tested: the URDF files are absent; tests/robots/install.sh installs them");
+        return;
+    };
+    let root = match std::env::var_os("HAMEL_CONTROL_REFERENCE") {
+        Some(folder) => folder.into(),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/reference/control"),
+    };
+    let mut compared = 0;
+    for entry in std::fs::read_dir(root).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|kind| kind == "json") {
+            let json = std::fs::read_to_string(&path).expect("a file");
+            agrees(&folder, &serde_json::from_str(&json).expect("JSON"));
+            compared += 1;
+        }
+    }
+    assert!(compared >= 2);
+}
+
+/// A robot without damping, and all that is compared.
+fn described(folder: &Path, reference: &Value) -> (Generated, Vec<(String, String)>, String) {
+    let urdf = folder.join(reference["urdf"].as_str().expect("a path"));
+    let urdf = std::fs::read_to_string(urdf).expect("a URDF");
+    let floating = reference["floating_base"] == true;
+    let options = Options {
+        floating,
+        tolerance: 0.0,
+        ..Options::default()
+    };
+    let imported = import(&urdf, &options, "robot.urdf", false).expect("a robot");
+    let text: String = imported
+        .text
+        .split(';')
+        .filter(|part| !part.trim().starts_with("damping"))
+        .collect::<Vec<_>>()
+        .join(";");
+    let (text, _) = text.rsplit_once('}').expect("a description");
+    let frames = reference["samples"][0]["frames"]
+        .as_object()
+        .expect("frames");
+    let frames: Vec<String> = frames
+        .keys()
+        .map(|link| word(link, &text))
+        .map(|frame| format!("jacobian {frame} in world, jacobian {frame} in {frame}"))
+        .collect();
+    let text = format!(
+        "{text} generate linearize, centre_of_mass, centroidal_map, {}; }}",
+        frames.join(", ")
+    );
+    (from_text(&text).expect("a program"), imported.joints, text)
+}
+
+fn agrees(folder: &Path, reference: &Value) {
+    let name = reference["robot"].as_str().expect("a name");
+    let (generated, joints, text) = described(folder, reference);
+    let model = &generated.active;
+    let joint = |of: &str| -> String {
+        let pairs = joints.iter();
+        let pair = pairs.filter(|(_, name)| of == name || of.starts_with(&format!("{name}_")));
+        let pair = pair.max_by_key(|(_, name)| name.len());
+        pair.map_or_else(|| "root_joint".into(), |(file, _)| file.clone())
+    };
+    let call = |function: &str, x: &[f64], xi: &[f64], u: &[f64]| -> Vec<f64> {
+        let found = generated.program.function(function);
+        let found = found.unwrap_or_else(|| panic!("{name}: no {function}"));
+        let interpreter = Interpreter::new(&generated.program, found, &model.defaults);
+        interpreter.call(x, xi, u, &[]).expect("a value")
+    };
+    let same = |what: &str, found: &[f64], wanted: &[f64]| {
+        assert_eq!(found.len(), wanted.len(), "{name}: {what}");
+        let size = wanted.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let pairs = found.iter().zip(wanted);
+        let worst = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let error = if size > 0.0 { worst / size } else { worst };
+        assert!(error < TOLERANCE, "{name}: {what} differs by {error:.1e}");
+    };
+    for sample in reference["samples"].as_array().expect("samples") {
+        let x = coordinates(model, sample, &joint);
+        let xi = velocities(model, sample, &joint);
+        let force = list(&sample["force"]);
+        // The wrench on a floating base, force before torque, then the motors.
+        let u = force;
+        for (link, wanted) in sample["frames"].as_object().expect("frames") {
+            let frame = word(link, &text);
+            let pose = call(&format!("{frame}_pose"), &x, &xi, &u);
+            let position: Vec<f64> = pose.chunks(4).map(|row| row[3]).collect();
+            let rotation: Vec<f64> = pose.chunks(4).flat_map(|row| row[..3].to_vec()).collect();
+            same("a position", &position, &list(&wanted["position"]));
+            same("a rotation", &rotation, &list(&wanted["rotation"]));
+            for (axes, body) in [("local_world_aligned", ""), ("local", "body_")] {
+                let rows = &wanted[format!("jacobian_{axes}")];
+                let found = call(&format!("{frame}_{body}jacobian"), &x, &xi, &u);
+                same("a Jacobian", &found, &both(rows));
+                let twist = call(&format!("{frame}_{body}twist"), &x, &xi, &u);
+                same("a twist", &product(&both(rows), &xi), &twist);
+                let bias = call(&format!("{frame}_{body}bias_acceleration"), &x, &xi, &u);
+                let wanted = &wanted[format!("jdot_v_{axes}")];
+                same("a bias acceleration", &bias, &both(wanted));
+            }
+        }
+        let centroidal = &sample["centroidal"];
+        let centre = call("centre_of_mass", &x, &xi, &u);
+        same(
+            "the centre of mass",
+            &centre,
+            &list(&centroidal["com_position"]),
+        );
+        let momentum = call("centroidal_momentum", &x, &xi, &u);
+        let wanted = ["linear_momentum", "angular_momentum"].map(|part| list(&centroidal[part]));
+        same("the linear momentum", &momentum[..3], &wanted[0]);
+        same("the angular momentum", &momentum[3..], &wanted[1]);
+        let map = call("centroidal_map", &x, &xi, &u);
+        same("the map", &product(&map, &xi), &momentum);
+        if centroidal["momentum_matrix"].is_object() {
+            same("the map", &map, &both(&centroidal["momentum_matrix"]));
+        }
+        let forward = &sample["forward_dynamics"];
+        let linear = call("linearize", &x, &xi, &u);
+        let n = model.n();
+        let columns = 2 * n + u.len();
+        let part = |from: usize| -> Vec<f64> {
+            let rows = linear[n * columns..].chunks(columns);
+            rows.flat_map(|row| row[from..from + n].to_vec()).collect()
+        };
+        let slopes = |by: &str| list(&forward[format!("d_acceleration_d_{by}")]);
+        same("∂ξ̇/∂h", &part(0), &slopes("displacement"));
+        same("∂ξ̇/∂ξ", &part(n), &slopes("velocity"));
+        same("∂ξ̇/∂f", &part(2 * n), &slopes("force"));
+    }
+    let count = |function: &str| {
+        let found = generated.program.function(function).expect("a function");
+        hamel_codegen::program::count::count(&generated.program.graph, &found.outputs).flops()
+    };
+    println!(
+        "{name}: {} operations for the slopes, {} for the centroidal map",
+        count(FunctionId::Linearize.name()),
+        count("centroidal_map")
+    );
+}
+
+fn coordinates(model: &Model, sample: &Value, joint: &impl Fn(&str) -> String) -> Vec<f64> {
+    let mut x = Vec::new();
+    for coordinate in &model.coordinates {
+        let value = &sample["configuration"][joint(&coordinate.name)];
+        match coordinate.kind {
+            CoordKind::Euclidean(_) => x.extend(list(&value["position"])),
+            CoordKind::SO3 => x.extend(list(&value["rotation"])),
+            CoordKind::S1 => {
+                let (sin, cos) = value.as_f64().expect("an angle").sin_cos();
+                x.extend([cos, sin]);
+            }
+            _ => x.push(value.as_f64().expect("a number")),
+        }
+    }
+    x
+}
+
+fn velocities(model: &Model, sample: &Value, joint: &impl Fn(&str) -> String) -> Vec<f64> {
+    let groups = model.velocities.iter().flat_map(|group| {
+        let value = &sample["velocity"][joint(&group.name)];
+        match group.name.as_str() {
+            "root_joint_v" => list(&value["linear"]),
+            "root_joint_w" => list(&value["angular"]),
+            _ => list(value),
+        }
+    });
+    groups.collect()
+}
+
+/// The name of a link in a description: that of a joint is taken.
+fn word(link: &str, text: &str) -> String {
+    let word = link.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_");
+    match text.contains(&format!("joint {word}:")) {
+        true => word + "_link",
+        false => word,
+    }
+}
+
+/// A matrix by rows times a vector.
+fn product(rows: &[f64], vector: &[f64]) -> Vec<f64> {
+    let entry = |row: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum();
+    rows.chunks(vector.len()).map(entry).collect()
+}
+
+/// Linear rows, then angular ones.
+fn both(value: &Value) -> Vec<f64> {
+    [list(&value["linear"]), list(&value["angular"])].concat()
+}
+
+/// All numbers of a value, rows one after the other.
+fn list(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(entries) => entries.iter().flat_map(list).collect(),
+        other => vec![other.as_f64().expect("a number")],
+    }
+}

@@ -1,0 +1,142 @@
+//! Sums of angles about parallel axes: with R(a) R(b) = R(a + b) a pose behind such joints takes one rotation.
+
+use super::{by_velocities, chain, relative};
+use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::linear::{Mat3, Vec3, add3, apply3, identity3, multiply3, transpose3, zero3};
+use crate::algebra::transplant::rebuild;
+use crate::derive::calculus::Calculus;
+use crate::model::Model;
+
+/// How poses along a chain are multiplied where sums of angles are known.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// As the description does, from the world outwards.
+    Given,
+    /// R₀ (R₁ R₂), what turns about parallel axes first.
+    Outwards,
+    /// The same from the frame towards the world.
+    Inwards,
+}
+
+/// The model in a graph in which the sines and cosines of sums of angles about parallel axes are known from the start,
+/// so that all that is equal to them is they; `None` where no two joints before the frame have parallel axes.
+pub fn with_sums(model: &Model, index: usize, order: Order) -> Option<Model> {
+    let mut graph = model.graph.clone();
+    let mut calculus = Calculus::new(model);
+    // Runs of joints with parallel axes: signs and coordinates. The frames that begin one.
+    let mut runs: Vec<Vec<(bool, usize)>> = Vec::new();
+    let mut begins = Vec::new();
+    let mut last: Option<Vec3> = None;
+    for at in chain(model, index) {
+        let frame = &model.frames[at];
+        let moved = relative(&mut graph, &mut calculus, frame);
+        let none = zero3(&graph);
+        let joints = by_velocities(model, &mut graph, moved);
+        let mut turning = joints
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, turn))| *turn != none);
+        let (first, second) = (turning.next(), turning.next());
+        let Some((velocity, (_, turn))) = first else {
+            continue;
+        };
+        let coordinate = model
+            .rate
+            .iter()
+            .position(|rate| *rate == model.xi[velocity]);
+        let (None, Some(coordinate)) = (second, coordinate) else {
+            last = None;
+            begins.push(at);
+            continue;
+        };
+        let axis = apply3(&mut graph, &frame.rotation, *turn);
+        let same = last == Some(axis);
+        match (runs.last_mut(), last) {
+            (Some(run), Some(before)) if same || axis.map(|entry| -entry) == before => {
+                let sign = run.last().is_some_and(|(sign, _)| *sign);
+                run.push((sign != !same, coordinate));
+            }
+            _ => {
+                runs.push(vec![(false, coordinate)]);
+                begins.push(at);
+            }
+        }
+        last = Some(axis);
+    }
+    runs.retain(|run| run.len() > 1);
+    if runs.is_empty() {
+        return None;
+    }
+    let mut known = model.graph.fresh();
+    let symbols = model.graph.symbols().iter().enumerate();
+    let mut reals = Vec::new();
+    for (place, symbol) in symbols {
+        let value = model.graph.value(Edge::of(symbol.node));
+        known.symbol(&symbol.name, symbol.class, value);
+        reals.push(model.graph.reals(place));
+    }
+    known.set_reals(reals);
+    for run in &runs {
+        for first in 0..run.len() {
+            let angles = run[first..].iter().map(|&(sign, coordinate)| {
+                let symbol = known.symbols()[model.points.first + coordinate].node;
+                Edge::of(symbol).signed(sign != run[first].0)
+            });
+            let mut sum = known.zero();
+            for angle in angles.collect::<Vec<Edge>>() {
+                sum = known.add(sum, angle);
+                known.apply(Function::Sin, sum);
+                known.apply(Function::Cos, sum);
+            }
+        }
+    }
+    let graph = &mut known;
+    let mut poses: Vec<(bool, Pose)> = Vec::new();
+    for at in chain(model, index) {
+        let (rotation, position) = &model.frames[at].relative;
+        let entries = [rotation.concat(), position.to_vec()].concat();
+        let entries = rebuild(&model.graph, graph, &entries);
+        let rotation: Mat3 = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entries[3 * i + j]));
+        let position: Vec3 = [9, 10, 11].map(|i| entries[i]);
+        poses.push((begins.contains(&at), (rotation, position)));
+    }
+    let identity: Pose = (identity3(graph), zero3(graph));
+    let (mut base, mut inner) = (identity, identity);
+    match order {
+        Order::Given => {}
+        Order::Outwards => {
+            for (begins, pose) in &poses {
+                if *begins {
+                    base = placed(graph, &base, &inner);
+                    inner = identity;
+                }
+                inner = placed(graph, &inner, pose);
+                placed(graph, &base, &inner);
+            }
+        }
+        Order::Inwards => {
+            for (begins, (rotation, position)) in poses.iter().rev() {
+                let back = transpose3(rotation);
+                let moved = apply3(graph, &back, *position);
+                inner = placed(graph, &inner, &(back, moved.map(|entry| -entry)));
+                let whole = placed(graph, &base, &inner);
+                if *begins {
+                    (base, inner) = (whole, identity);
+                }
+            }
+        }
+    }
+    Some(model.carried(known, rebuild))
+}
+
+/// Axes by columns, origin.
+type Pose = (Mat3, Vec3);
+
+/// The pose of what is placed on a frame.
+fn placed(graph: &mut Graph, frame: &Pose, on: &Pose) -> Pose {
+    let moved = apply3(graph, &frame.0, on.1);
+    (
+        multiply3(graph, &frame.0, &on.0),
+        add3(graph, frame.1, moved),
+    )
+}

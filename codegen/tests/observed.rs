@@ -1,0 +1,289 @@
+//! What is observed of a motion, on every model of the tests: poses, twists, Jacobians and bias accelerations of
+//! frames, the momentum about the centre of mass, and the slopes of outputs, against differences of poses, momenta
+//! and outputs in numbers. What a proof says of them is another matter: here no derivative is taken.
+
+use hamel_codegen::functions::{FrameFunction, Jacobian};
+use hamel_codegen::generate::{Generated, from_file};
+use hamel_codegen::lower::build;
+use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::render::render;
+use hamel_codegen::syntax::{parse_text, read_files};
+use std::path::{Path, PathBuf};
+
+/// Step of differences that are extrapolated to fourth order.
+const STEP: f64 = 1e-3;
+/// Of the largest entry: h⁴ with what derivatives there are, and roundings over h.
+const CLOSE: f64 = 1e-8;
+
+struct Case {
+    name: String,
+    generated: Generated,
+    x: Vec<f64>,
+    xi: Vec<f64>,
+    u: Vec<f64>,
+}
+
+impl Case {
+    fn call(&self, function: &str, x: &[f64], xi: &[f64], xi_dot: &[f64]) -> Vec<f64> {
+        self.call_at(function, x, xi, &self.u, xi_dot)
+    }
+
+    fn call_at(
+        &self,
+        function: &str,
+        x: &[f64],
+        xi: &[f64],
+        u: &[f64],
+        xi_dot: &[f64],
+    ) -> Vec<f64> {
+        let found = self.generated.program.function(function);
+        let found = found.unwrap_or_else(|| panic!("{}: no {function}", self.name));
+        let params = &self.generated.model.defaults;
+        let interpreter = Interpreter::new(&self.generated.program, found, params);
+        let value = interpreter.call(x, xi, u, xi_dot);
+        value.unwrap_or_else(|pivot| panic!("{}: {function}: pivot {pivot}", self.name))
+    }
+
+    /// x a time h later at constant ξ, by one step of Runge and Kutta.
+    fn later(&self, h: f64) -> Vec<f64> {
+        let rate = |x: &[f64]| self.call("rate", x, &self.xi, &[]);
+        let ahead = |k: &[f64], h: f64| -> Vec<f64> {
+            self.x.iter().zip(k).map(|(x, k)| x + h * k).collect()
+        };
+        let k1 = rate(&self.x);
+        let k2 = rate(&ahead(&k1, h / 2.0));
+        let k3 = rate(&ahead(&k2, h / 2.0));
+        let k4 = rate(&ahead(&k3, h));
+        let sum = |i: usize| k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i];
+        let steps = (0..self.x.len()).map(|i| self.x[i] + h / 6.0 * sum(i));
+        steps.collect()
+    }
+
+    fn same(&self, what: &str, found: &[f64], wanted: &[f64]) {
+        assert_eq!(found.len(), wanted.len(), "{}: {what}", self.name);
+        let size = wanted.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
+        let pairs = found.iter().zip(wanted);
+        let worst = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        assert!(
+            worst <= CLOSE * size,
+            "{}: {what} differs by {worst:.1e}: {found:?}, {wanted:?}",
+            self.name
+        );
+    }
+}
+
+/// d/dh of f at 0, fourth order.
+fn slope(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
+    let central = |h: f64| -> Vec<f64> {
+        let (ahead, behind) = (f(h), f(-h));
+        let pairs = ahead.iter().zip(&behind);
+        pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect()
+    };
+    let (near, far) = (central(STEP), central(2.0 * STEP));
+    near.iter()
+        .zip(&far)
+        .map(|(n, f)| (4.0 * n - f) / 3.0)
+        .collect()
+}
+
+/// All models, with their folder for files that they name.
+fn models() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
+    let mut found: Vec<PathBuf> = std::fs::read_dir(root)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|kind| kind == "eom"))
+        .collect();
+    found.sort();
+    found
+}
+
+/// A model that is asked for everything that is observed; `None` where there is nothing.
+fn case(path: &Path) -> Option<Case> {
+    let text = std::fs::read_to_string(path).expect("a text");
+    let mut open = |name: &str| std::fs::read_to_string(path.with_file_name(name));
+    let mut system = parse_text(&text).expect("a description");
+    read_files(&mut system, &mut open).expect("files");
+    let model = build(&system).expect("a model");
+    let frame = model.frames.last().map(|frame| frame.name.clone());
+    let mut asked = vec!["rate".to_string()];
+    if let Some(name) = frame {
+        asked.push(format!("jacobian {name}, jacobian {name} in {name}"));
+    }
+    // What `kinetic` says has no momentum in space, nor has what stands still.
+    if !model.bodies.is_empty() && !text.contains("kinetic") {
+        asked.push("centroidal_map, centroidal_bias, centre_of_mass".into());
+    }
+    let slopes = model
+        .outputs
+        .iter()
+        .map(|(name, _)| format!("{name}_slopes, {name}"));
+    asked.extend(slopes);
+    if asked.len() == 1 {
+        return None;
+    }
+    let kept = text
+        .lines()
+        .filter(|line| !line.trim().starts_with("generate"));
+    let kept = kept.collect::<Vec<_>>().join("\n");
+    let (kept, _) = kept.rsplit_once('}')?;
+    let text = format!("{kept}\n    generate {};\n}}\n", asked.join(", "));
+    let name = path.file_stem()?.to_string_lossy().into_owned();
+    let generated = from_file(&text, &mut open)
+        .unwrap_or_else(|errors| panic!("{name}:\n{}", render(&errors, &name, &text, false)));
+    let model = &generated.active;
+    // Somewhere near the start, and not at rest.
+    let moving = |i: usize| 0.3 + 0.17 * i as f64 - 0.01 * (i * i) as f64;
+    let xi = [&model.start_xi[..], &model.start_z].concat();
+    let n = model.n();
+    let xi = xi.iter().enumerate();
+    let xi = xi.map(|(i, v)| if i < n { v + moving(i) } else { *v });
+    Some(Case {
+        x: model.start_x.clone(),
+        xi: xi.collect(),
+        u: (0..model.m()).map(moving).collect(),
+        name,
+        generated,
+    })
+}
+
+#[test]
+fn what_is_observed_agrees_with_differences() {
+    let (mut frames, mut centroidal, mut slopes) = (0, 0, 0);
+    for path in models() {
+        let Some(case) = case(&path) else {
+            continue;
+        };
+        let asked = &case.generated.active.asked;
+        for jacobian in &asked.jacobians {
+            frame(&case, jacobian);
+            frames += 1;
+        }
+        if case.generated.program.function("centroidal_map").is_some() {
+            momentum(&case);
+            centroidal += 1;
+        }
+        for output in &asked.slopes {
+            output_slopes(&case, output);
+            slopes += 1;
+        }
+    }
+    assert!(
+        frames > 60 && centroidal > 20 && slopes > 20,
+        "{frames} {centroidal} {slopes}"
+    );
+}
+
+fn frame(case: &Case, jacobian: &Jacobian) {
+    let name = |of: FrameFunction| jacobian.name_of(of);
+    let pose = |h: f64| case.call(&name(FrameFunction::Pose), &case.later(h), &case.xi, &[]);
+    let here = pose(0.0);
+    let rate = slope(pose);
+    let r = |i: usize, j: usize| here[4 * i + j];
+    let spin = |i: usize, j: usize| (0..3).map(|k| rate[4 * i + k] * r(j, k)).sum::<f64>();
+    let axes = |v: [f64; 3]| -> [f64; 3] {
+        match jacobian.own {
+            true => [0, 1, 2].map(|j| (0..3).map(|i| r(i, j) * v[i]).sum()),
+            false => v,
+        }
+    };
+    let twist = [
+        axes([rate[3], rate[7], rate[11]]),
+        axes([spin(2, 1), spin(0, 2), spin(1, 0)]),
+    ];
+    let twist_at = |x: &[f64], xi: &[f64]| case.call(&name(FrameFunction::Twist), x, xi, &[]);
+    let found = twist_at(&case.x, &case.xi);
+    case.same("a twist", &found, &twist.concat());
+    let bias = case.call(
+        &name(FrameFunction::BiasAcceleration),
+        &case.x,
+        &case.xi,
+        &[],
+    );
+    case.same(
+        "a bias",
+        &bias,
+        &slope(|h| twist_at(&case.later(h), &case.xi)),
+    );
+    let map = case.call(&name(FrameFunction::Jacobian), &case.x, &case.xi, &[]);
+    columns(case, "a Jacobian", &map, |xi| twist_at(&case.x, xi));
+}
+
+/// The columns of a map are what each velocity adds.
+fn columns(case: &Case, what: &str, map: &[f64], of: impl Fn(&[f64]) -> Vec<f64>) {
+    let n = case.generated.active.n();
+    let here = of(&case.xi);
+    for j in 0..n {
+        let mut xi = case.xi.clone();
+        xi[j] += 1.0;
+        let more = of(&xi);
+        let added: Vec<f64> = more.iter().zip(&here).map(|(a, b)| a - b).collect();
+        let column: Vec<f64> = map.iter().skip(j).step_by(n).copied().collect();
+        case.same(what, &column, &added);
+    }
+}
+
+fn momentum(case: &Case) {
+    let at = |x: &[f64], xi: &[f64]| case.call("centroidal_momentum", x, xi, &[]);
+    let here = at(&case.x, &case.xi);
+    let map = case.call("centroidal_map", &case.x, &case.xi, &[]);
+    columns(case, "a centroidal map", &map, |xi| at(&case.x, xi));
+    let bias = case.call("centroidal_bias", &case.x, &case.xi, &[]);
+    case.same(
+        "a centroidal bias",
+        &bias,
+        &slope(|h| at(&case.later(h), &case.xi)),
+    );
+    // P = m ċ, m of what moves: the same factor in all directions.
+    let speed = slope(|h| case.call("centre_of_mass", &case.later(h), &case.xi, &[]));
+    let largest = (0..3).max_by(|&i, &j| speed[i].abs().total_cmp(&speed[j].abs()));
+    let largest = largest.expect("three");
+    let mass = here[largest] / speed[largest];
+    if speed[largest].abs() > 1e-6 {
+        let expected: Vec<f64> = speed.iter().map(|v| mass * v).collect();
+        case.same("m ċ", &here[..3], &expected);
+        assert!(mass > 0.0, "{}: {mass}", case.name);
+    }
+}
+
+fn output_slopes(case: &Case, output: &str) {
+    let program = &case.generated.program;
+    let (n_x, moved) = (case.x.len(), case.xi.len());
+    let frame = case.call("displacement_frame", &case.x, &case.xi, &[]);
+    let h = frame.len() / n_x;
+    let columns = h + moved + case.u.len();
+    let found = case.call(&format!("{output}_slopes"), &case.x, &case.xi, &[]);
+    let follows = program.function(output).is_some_and(|function| {
+        let mut arguments = function.arguments.iter();
+        arguments.any(|argument| *argument == hamel_codegen::functions::Argument::Accelerations)
+    });
+    let value = |column: usize, d: f64| -> Vec<f64> {
+        let (mut x, mut xi, mut u) = (case.x.clone(), case.xi.clone(), case.u.clone());
+        match column {
+            j if j < h => x
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, x)| *x += d * frame[i * h + j]),
+            j if j < h + moved => xi[j - h] += d,
+            j => u[j - h - moved] += d,
+        }
+        let xi_dot = match follows {
+            true => case.call_at("accel", &x, &xi, &u, &[]),
+            false => vec![0.0; moved],
+        };
+        case.call_at(output, &x, &xi, &u, &xi_dot)
+    };
+    for column in 0..columns {
+        let ours: Vec<f64> = found
+            .iter()
+            .skip(column)
+            .step_by(columns)
+            .copied()
+            .collect();
+        case.same(
+            &format!("the slopes of `{output}`"),
+            &ours,
+            &slope(|d| value(column, d)),
+        );
+    }
+}
