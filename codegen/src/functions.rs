@@ -289,7 +289,7 @@ impl Jacobian {
             true => ("its own axes", "(Rᵀ ṗ, Rᵀ ω)"),
             false => ("world axes", "(ṗ, ω)"),
         };
-        let lines = match function {
+        match function {
             FrameFunction::Pose => vec![format!(
                 "Pose [R p] of the frame `{frame}` in the world: its axes by columns, then its origin (m)."
             )],
@@ -303,8 +303,7 @@ impl Jacobian {
             FrameFunction::BiasAcceleration => vec![format!(
                 "Bias acceleration J̇ ξ of the frame `{frame}`: d/dt {twist} = J ξ̇ + J̇ ξ, linear rows first."
             )],
-        };
-        lines
+        }
     }
 }
 

@@ -17,6 +17,14 @@ pub(super) const WHAT: &str = "the centre of mass, or the momentum about it";
 
 type V = [Fp; 3];
 
+/// Mass, centre, its velocity, and the momentum about the centre.
+struct Part {
+    mass: Fp,
+    centre: V,
+    velocity: V,
+    moment: V,
+}
+
 /// Whether the emitted functions are those of the model; the lane is one of the symbols of both.
 pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<bool> {
     let emitted = |id: FunctionId| program.function(id).map(|f| f.outputs.as_slice());
@@ -77,8 +85,7 @@ fn described(model: &Model, lane: &Lane, along: &[Fp]) -> Option<(Vec<Fp>, Vec<F
     let points = tangent_at(graph, &points, &mut lane.clone(), along)?;
     let fixed = evaluate_at(graph, &fixed, &mut lane.clone())?;
     let masses = evaluate_at(graph, &masses, &mut lane.clone())?;
-    // Mass, centre, its velocity, and the momentum about the centre, of each.
-    let mut parts: Vec<(Fp, V, V, V)> = Vec::new();
+    let mut parts: Vec<Part> = Vec::new();
     for (pose, constants) in duals.chunks(12).zip(fixed.chunks(13)) {
         let r = |i: usize, j: usize| pose[3 * i + j].0;
         let turned = |i: usize, j: usize| pose[3 * i + j].1;
@@ -91,26 +98,34 @@ fn described(model: &Model, lane: &Lane, along: &[Fp]) -> Option<(Vec<Fp>, Vec<F
         let omega = [spin(2, 1), spin(0, 2), spin(1, 0)];
         let own: V = [0, 1, 2].map(|i| sum(&|k| constants[4 + 3 * i + k] * omega[k]));
         let moment: V = [0, 1, 2].map(|i| sum(&|k| r(i, k) * own[k]));
-        parts.push((constants[0], centre, velocity, moment));
+        parts.push(Part {
+            mass: constants[0],
+            centre,
+            velocity,
+            moment,
+        });
     }
     for (point, &mass) in points.chunks(3).zip(&masses) {
-        let centre: V = [0, 1, 2].map(|i| point[i].0);
-        let velocity: V = [0, 1, 2].map(|i| point[i].1);
-        parts.push((mass, centre, velocity, [Fp::ZERO; 3]));
+        parts.push(Part {
+            mass,
+            centre: [0, 1, 2].map(|i| point[i].0),
+            velocity: [0, 1, 2].map(|i| point[i].1),
+            moment: [Fp::ZERO; 3],
+        });
     }
     let moving = parts.iter().zip(moves(model)).filter(|(_, moves)| *moves);
-    let moving: Vec<&(Fp, V, V, V)> = moving.map(|(part, _)| part).collect();
-    let total = |term: &dyn Fn(&(Fp, V, V, V)) -> Fp| {
-        moving.iter().fold(Fp::ZERO, |sum, part| sum + term(part))
-    };
-    let inverse = total(&|part| part.0).inv()?;
-    let centre: V = [0, 1, 2].map(|i| total(&|part| part.0 * part.1[i]) * inverse);
-    let linear = [0, 1, 2].map(|i| total(&|part| part.0 * part.2[i]));
+    let moving: Vec<&Part> = moving.map(|(part, _)| part).collect();
+    let total =
+        |term: &dyn Fn(&Part) -> Fp| moving.iter().fold(Fp::ZERO, |sum, part| sum + term(part));
+    let inverse = total(&|part| part.mass).inv()?;
+    let centre: V = [0, 1, 2].map(|i| total(&|part| part.mass * part.centre[i]) * inverse);
+    let linear = [0, 1, 2].map(|i| total(&|part| part.mass * part.velocity[i]));
     let angular = [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        total(&|(mass, c, v, moment)| {
+        total(&|part| {
+            let (c, v) = (&part.centre, &part.velocity);
             let lever = (c[j] - centre[j]) * v[k] - (c[k] - centre[k]) * v[j];
-            *mass * lever + moment[i]
+            part.mass * lever + part.moment[i]
         })
     });
     Some((centre.to_vec(), [linear, angular].concat()))

@@ -54,7 +54,7 @@ pub fn with_sums(model: &Model, index: usize, order: Order) -> Option<Model> {
         match (runs.last_mut(), last) {
             (Some(run), Some(before)) if same || axis.map(|entry| -entry) == before => {
                 let sign = run.last().is_some_and(|(sign, _)| *sign);
-                run.push((sign != !same, coordinate));
+                run.push((sign == same, coordinate));
             }
             _ => {
                 runs.push(vec![(false, coordinate)]);
