@@ -64,7 +64,7 @@ fn described(folder: &Path, reference: &Value) -> (Generated, Vec<(String, Strin
         .expect("frames");
     let frames: Vec<String> = frames
         .keys()
-        .map(|link| word(link, &text))
+        .map(|link| word(link, text))
         .map(|frame| format!("jacobian {frame} in world, jacobian {frame} in {frame}"))
         .collect();
     let text = format!(
