@@ -5,16 +5,16 @@ mod common;
 
 use common::{hamel, text};
 use serde_json::Value;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The numbers of a member of what `eval` prints for a description at a state.
 fn evaluated(description: &str, state: &str, member: &str) -> Vec<f64> {
-    let folder = std::env::temp_dir().join(format!("hamel-first-{}-{member}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
-    let path = folder.join("state.json");
+    // Tests of one process run at the same time.
+    static STATES: AtomicUsize = AtomicUsize::new(0);
+    let number = STATES.fetch_add(1, Ordering::Relaxed);
+    let path = format!("{}/first-run-{number}.json", env!("CARGO_TARGET_TMPDIR"));
     std::fs::write(&path, state).expect("written");
-    let path = path.to_string_lossy().into_owned();
     let output = hamel(&["eval", "-", "--at", &path], description);
-    std::fs::remove_dir_all(&folder).expect("removed");
     assert!(output.status.success(), "{}", text(&output.stderr));
     let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let list = value[member].as_array().expect("a list");

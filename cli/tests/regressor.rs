@@ -116,7 +116,7 @@ fn largest(values: &[f64]) -> f64 {
 
 /// Y β is the force of inverse dynamics and of dampers; more digits than rounding takes are nowhere lost.
 fn is_force(description: &str, count: usize) {
-    let text = format!("{description} generate inverse_dynamics, dissipation; }}");
+    let text = format!("{description} generate inverse_dynamics, dissipation, regressor; }}");
     let plain = found(&text);
     assert_eq!(plain.base.len(), count, "{}", plain.model.name);
     let generated = from_text(&text).expect("a program");
@@ -126,6 +126,7 @@ fn is_force(description: &str, count: usize) {
         Interpreter::new(&generated.program, function, defaults)
     };
     let (inverse, dissipation) = (function("inverse_dynamics"), function("dissipation"));
+    let (emitted, emitted_beta) = (function("regressor"), function("base_parameters"));
     let random = &mut Random::new(7);
     let model = &plain.model;
     for _ in 0..5 {
@@ -149,9 +150,18 @@ fn is_force(description: &str, count: usize) {
                 .zip(column)
                 .for_each(|(sum, entry)| *sum += entry * beta);
         }
-        let difference: Vec<f64> = sum.iter().zip(&force).map(|(a, b)| a - b).collect();
-        let error = largest(&difference) / largest(&force);
-        assert!(error < 1e-12, "{}: {error:.1e}", model.name);
+        // What is emitted.
+        let rows = emitted.call(&x, &xi, &[], &xi_dot).expect("Y");
+        let beta = emitted_beta.call(&[], &[], &[], &[]).expect("β");
+        let product = rows.chunks(count).map(|row| {
+            let terms = row.iter().zip(&beta).map(|(y, beta)| y * beta);
+            terms.sum::<f64>()
+        });
+        for sum in [sum, product.collect()] {
+            let difference: Vec<f64> = sum.iter().zip(&force).map(|(a, b)| a - b).collect();
+            let error = largest(&difference) / largest(&force);
+            assert!(error < 1e-12, "{}: {error:.1e}", model.name);
+        }
     }
 }
 

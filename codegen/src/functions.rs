@@ -164,6 +164,13 @@ table! {
         "The linearisation in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,",
         "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).",
     ]
+    Regressor "regressor" (Coordinates, Velocities, Accelerations) Linear Asked false true [
+        "Regressor Y(x, ξ, ξ̇), n rows of as many columns as there are base parameters: the force f = Y β that ξ̇ needs,",
+        "with that of dampers. Columns are those of these standard parameters, in this order:",
+    ]
+    BaseParameters "base_parameters" () Vector Asked false true [
+        "Base parameters β by the values of the description, in the order of the columns of `regressor`:",
+    ]
     CentreOfMass "centre_of_mass" (Coordinates) Vector Asked false true [
         "Centre of mass c (m) of all that moves, world axes.",
     ]
@@ -368,6 +375,7 @@ impl Asked {
         let maps = [FunctionId::CentroidalMap, FunctionId::CentroidalBias];
         let along = match row.serves {
             // Maps and bias are slopes of the momentum, which is emitted with them.
+            _ if id == FunctionId::BaseParameters => self.names(FunctionId::Regressor),
             _ if id == FunctionId::CentroidalMomentum => maps.iter().any(|&map| self.names(map)),
             Serves::System => self.names(FunctionId::Accel) || self.names(FunctionId::Linearize),
             Serves::Split => self.names(FunctionId::Splitting),

@@ -1,8 +1,10 @@
 //! From a description to its program: what all front ends call.
 
 use crate::algebra::graph::{Function, Graph, Node};
+use crate::derive;
 use crate::derive::assemble::assemble;
 use crate::derive::reduction::reduce;
+use crate::derive::regressor::Regressor;
 use crate::diagnostics::Diagnostic;
 use crate::emit::NotRust;
 use crate::functions::{Asked, FunctionId};
@@ -176,10 +178,11 @@ impl Generated {
 
     fn proved(model: Model, hash: u64, linearized: bool) -> Result<Self, Vec<Diagnostic>> {
         let reduction = reduce(&model).map_err(|error| vec![error])?;
-        let program = assemble(&model, reduction.as_ref(), linearized);
+        let regressor = regressor(&model).map_err(|error| vec![error])?;
+        let program = assemble(&model, reduction.as_ref(), regressor.as_ref(), linearized);
         let program = program.map_err(|error| vec![error])?;
         curved(&model, &program).map_or(Ok(()), |error| Err(vec![error]))?;
-        proof::prove(&model, reduction.as_ref(), &program)?;
+        proof::prove(&model, reduction.as_ref(), regressor.as_ref(), &program)?;
         let solved = reduction.as_ref().map_or(Vec::new(), |reduction| {
             reduction
                 .solved
@@ -195,6 +198,20 @@ impl Generated {
             hash,
         })
     }
+}
+
+/// The base parameters of a model, where they are asked for.
+fn regressor(model: &Model) -> Result<Option<Regressor>, Diagnostic> {
+    let asked = [FunctionId::Regressor, FunctionId::BaseParameters];
+    if !asked.iter().any(|&id| model.asked.names(id)) {
+        return Ok(None);
+    }
+    derive::regressor::regressor(model)
+        .map(Some)
+        .map_err(|why| {
+            let message = format!("`{}` has no regressor: {why}", model.name);
+            Diagnostic::new(model.span, message).help("leave `regressor` out of `generate`")
+        })
 }
 
 /// What is wrong where a function of the program needs slopes of slopes of a function in Rust, which has none.

@@ -7,6 +7,7 @@ use super::care::{self, Care};
 use super::multipliers::with_accelerations;
 use super::program::{Builder, MOST_LITERAL, shape_of};
 use super::reduction::Reduction;
+use super::regressor::Regressor;
 use super::structure::{self, Found, Functions};
 use super::{correction, energy, inertia, kinematics};
 use crate::algebra::graph::{Edge, Graph, Node, NodeId};
@@ -17,21 +18,25 @@ use crate::program::structure::Structure;
 use crate::program::{Argument, Function, FunctionId, Program};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 
-/// Derives the functions of a model that are wanted; `reduction` solves its constraints. The program is
+/// Derives the functions of a model that are wanted; `reduction` solves its constraints, `regressor` are its base
+/// parameters where they are wanted. The program is
 /// the cheapest one, or, where rounding takes too much of that, the one that keeps more digits.
 pub fn assemble(
     full: &Model,
     reduction: Option<&Reduction>,
+    regressor: Option<&Regressor>,
     linearized: bool,
 ) -> Result<Program, Diagnostic> {
     let model = reduction.map_or(full, |reduction| &reduction.model);
-    let (mut program, mass) = put_together(full, reduction, linearized, &Care::default())?;
+    let (mut program, mass) =
+        put_together(full, reduction, regressor, linearized, &Care::default())?;
     // Rows that depend on one another amplify how far a start is off the loop, whatever is emitted.
     if !model.overconstrained {
         let mut losses = care::losses(model, &program);
         let excess = care::excess(model, &program, &mass, &losses);
         if excess > 0.0 {
-            let (careful, mass) = put_together(full, reduction, linearized, &Care::of(model))?;
+            let (careful, mass) =
+                put_together(full, reduction, regressor, linearized, &Care::of(model))?;
             let kept = care::losses(model, &careful);
             if care::excess(model, &careful, &mass, &kept) < excess {
                 (program, losses) = (careful, kept);
@@ -46,6 +51,7 @@ pub fn assemble(
 fn put_together(
     full: &Model,
     reduction: Option<&Reduction>,
+    regressor: Option<&Regressor>,
     linearized: bool,
     care: &Care,
 ) -> Result<(Program, Vec<Vec<Edge>>), Diagnostic> {
@@ -84,6 +90,9 @@ fn put_together(
     builder.outputs();
     builder.frames();
     builder.centroidal(full)?;
+    if let Some(regressor) = regressor {
+        builder.regressor(regressor);
+    }
     builder.invariants();
     if let Some(reduction) = reduction {
         builder.constraint_force(full, reduction);

@@ -9,6 +9,7 @@ use super::candidates::Candidates;
 use super::linearize::{Displacements, Linear, Motion, linearize, slopes, with_states};
 use super::program::{Builder, MOST_LITERAL, shape_of};
 use super::reduction::Reduction;
+use super::regressor::Regressor;
 use super::tree::Placement;
 use super::{momentum, quantity};
 use crate::algebra::fp::Fp;
@@ -227,6 +228,61 @@ impl Builder<'_> {
                 let columns = rows.first().map_or(0, Vec::len);
                 function.shape = Shape::Matrix(rows.len(), columns);
             }
+        }
+    }
+
+    /// Y of the base parameters, and β by the values of the description.
+    pub(super) fn regressor(&mut self, regressor: &Regressor) {
+        let (from, n) = (&regressor.model.graph, regressor.model.n());
+        let kept = regressor.base.iter();
+        let columns: Vec<&Vec<Edge>> = kept.map(|base| &regressor.columns[base.kept]).collect();
+        let rows = (0..n).flat_map(|row| columns.iter().map(move |column| column[row]));
+        let outputs = graft(from, &mut self.graph, &rows.collect::<Vec<_>>());
+        self.push(FunctionId::Regressor, outputs);
+        let names = regressor
+            .base
+            .iter()
+            .map(|base| format!("`{}`", regressor.standard[base.kept].name()));
+        let names: Vec<String> = names.collect();
+        // Four to a line.
+        let listed: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();
+        let mut lines = vec![format!(
+            "{}.",
+            listed.join(
+                ",
+"
+            )
+        )];
+        if !regressor.besides.is_empty() {
+            let besides = regressor.besides.join(", ");
+            lines.push(format!(
+                "Not part of it, and no linear function of them: {besides}."
+            ));
+        }
+        if let Some(function) = self.functions.last_mut() {
+            function.shape = Shape::Matrix(n, columns.len());
+            function.docs.extend(lines.clone());
+        }
+        let mut graph = from.clone();
+        let beta: Vec<Edge> = regressor
+            .base
+            .iter()
+            .map(|base| {
+                let terms = base
+                    .terms
+                    .iter()
+                    .map(|&(k, factor)| graph.mul(factor, regressor.standard[k].value));
+                let terms: Vec<Edge> = terms.collect();
+                graph.sum(&terms)
+            })
+            .collect();
+        let outputs = graft(&graph, &mut self.graph, &beta);
+        self.push(FunctionId::BaseParameters, outputs);
+        if let Some(function) = self.functions.last_mut() {
+            function.docs.push(lines.swap_remove(0));
+            function.docs.push(
+                "Each has others regrouped with it: `hamel regressor` prints the sums.".into(),
+            );
         }
     }
 

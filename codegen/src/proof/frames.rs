@@ -124,7 +124,7 @@ mod tests {
     fn one_wrong_entry_is_refused() {
         let generated = from_text(ARM).expect("a program");
         let model = &generated.model;
-        assert!(prove(model, None, &generated.program).is_ok());
+        assert!(prove(model, None, None, &generated.program).is_ok());
         let names = generated.program.functions.iter().map(|f| f.name.clone());
         let observed = |name: &String| {
             ["g_", "y_", "felt_", "cent"]
@@ -144,7 +144,7 @@ mod tests {
                 .rposition(varying)
                 .expect("an entry that varies");
             outputs[place] = -outputs[place];
-            assert!(prove(model, None, &program).is_err(), "{name}");
+            assert!(prove(model, None, None, &program).is_err(), "{name}");
         }
     }
 }

@@ -53,18 +53,21 @@ mod verdict;
 pub(crate) mod virtual_power;
 
 use crate::derive::reduction::Reduction;
+use crate::derive::regressor::Regressor;
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::program::Program;
 
 /// Proves the functions of a program, and that what the description claims to be constant along the motion is;
-/// `reduction` solves its constraints.
+/// `reduction` solves its constraints,
+/// `regressor` are the base parameters where they are asked for.
 ///
 /// # Errors
 /// A fault of the generator, with the identities that are broken; or the claims that are false.
 pub fn prove(
     model: &Model,
     reduction: Option<&Reduction>,
+    regressor: Option<&Regressor>,
     program: &Program,
 ) -> Result<(), Vec<Diagnostic>> {
     let one = |error| vec![error];
@@ -73,6 +76,9 @@ pub fn prove(
         None => validate::validate(model, program).map_err(one)?,
     }
     correction::validate(model, program).map_err(one)?;
+    if let Some(derived) = regressor {
+        regressor::validate(model, derived, program).map_err(one)?;
+    }
     match reduction {
         Some(reduction) => invariants::constrained::refute(&reduction.model, program),
         None => invariants::refute(model),

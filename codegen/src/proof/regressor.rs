@@ -4,12 +4,16 @@
 
 use super::numbers::Numbers;
 use super::points::{Unequal, at_fresh_points};
+use super::verdict::failure;
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
+use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tape::Tape;
 use crate::derive::regressor::{Kind, Regressor};
+use crate::diagnostics::Diagnostic;
 use crate::model::Model;
+use crate::program::{FunctionId, Program};
 
 /// Proves the base parameters of a model.
 ///
@@ -34,6 +38,45 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
         Err(Unequal::Differs(what)) => Err(failed(&what)),
         Err(Unequal::Nowhere) => Err(failed("there are too few points to compare its forces at")),
     }
+}
+
+/// Proves the base parameters, and that what is emitted are they and their columns.
+///
+/// # Errors
+/// A fault of the generator, never emitted.
+pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Result<(), Diagnostic> {
+    prove(model, regressor).map_err(|what| failure(model, &what))?;
+    let kept = regressor.base.iter();
+    let columns: Vec<&Vec<Edge>> = kept.map(|base| &regressor.columns[base.kept]).collect();
+    let n = regressor.model.n();
+    let rows = (0..n).flat_map(|row| columns.iter().map(move |column| column[row]));
+    let rows: Vec<Edge> = rows.collect();
+    let values: Vec<Edge> = regressor.standard.iter().map(|one| one.value).collect();
+    let terms = regressor.base.iter().flat_map(|base| &base.terms);
+    let factors: Vec<Edge> = terms.map(|&(_, factor)| factor).collect();
+    let compared = at_fresh_points(
+        |seed| model.points.lane(0x4e_9e55 + seed),
+        |lane, _| {
+            let of = |edges: &[Edge]| evaluate_at(&regressor.model.graph, edges, &mut lane.clone());
+            let emitted = |id: FunctionId| match program.function(id) {
+                None => Some(None),
+                Some(f) => evaluate_at(&program.graph, &f.outputs, &mut lane.clone()).map(Some),
+            };
+            let (values, factors) = (of(&values)?, of(&factors)?);
+            let mut factors = factors.iter();
+            let beta = regressor.base.iter().map(|base| {
+                let terms = base.terms.iter().zip(&mut factors);
+                terms.fold(Fp::ZERO, |beta, (&(k, _), &factor)| {
+                    beta + factor * values[k]
+                })
+            });
+            let beta: Vec<Fp> = beta.collect();
+            let same = emitted(FunctionId::Regressor)?.is_none_or(|found| Some(found) == of(&rows))
+                && emitted(FunctionId::BaseParameters)?.is_none_or(|found| found == beta);
+            Some(if same { Ok(()) } else { Err(()) })
+        },
+    );
+    compared.map_err(|_| failure(model, "the emitted regressor is Y, the base parameters β"))
 }
 
 /// Compares at a point; `None` where something has no value.
@@ -93,5 +136,39 @@ fn at(
 fn increase(sum: &mut [Fp], by: &[Fp], k: Fp) {
     for (sum, &by) in sum.iter_mut().zip(by) {
         *sum = *sum + by * k;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::validate;
+    use crate::derive::regressor::regressor;
+    use crate::generate::from_text;
+
+    #[test]
+    fn one_wrong_entry_is_refused() {
+        let text = "system Arm {
+            param l = 0.3;
+            joint a: revolute [0, 1, 0] moves f { armature 0.02; damping 0.1; }
+            joint b: revolute [1, 2, 2] on f at translation([l, 0, 0]) moves g;
+            body on f { mass 2; com [0.1, 0, 0]; inertia diag(0.03, 0.03, 0.04) about com; }
+            body on g { mass 1; com [0.2, 0.1, 0]; inertia diag(0.02, 0.03, 0.04) about com; }
+            gravity [0, 0, -9.81];
+            generate regressor;
+        }";
+        let generated = from_text(text).expect("a program");
+        let model = &generated.model;
+        let derived = regressor(model).expect("base parameters");
+        assert!(validate(model, &derived, &generated.program).is_ok());
+        for name in ["regressor", "base_parameters"] {
+            let mut program = generated.program.clone();
+            let function = program.functions.iter_mut().find(|f| f.name == name);
+            let outputs = &mut function.expect("a function").outputs;
+            let zero = program.graph.zero();
+            let place = outputs.iter().rposition(|edge| *edge != zero);
+            let place = place.expect("an entry that is not 0");
+            outputs[place] = -outputs[place];
+            assert!(validate(model, &derived, &program).is_err(), "{name}");
+        }
     }
 }

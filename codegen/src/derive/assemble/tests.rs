@@ -47,8 +47,9 @@ fn the_cheapest_candidate_is_rejected_for_its_digits() {
     let model = build(&system.expect("a system")).expect("a model");
     let reduction = reduce(&model).expect("rows that are solved");
     let reduction = reduction.as_ref();
-    let (cheapest, _) = put_together(&model, reduction, true, &Care::default()).expect("a program");
-    let emitted = assemble(&model, reduction, true).expect("a program");
+    let (cheapest, _) =
+        put_together(&model, reduction, None, true, &Care::default()).expect("a program");
+    let emitted = assemble(&model, reduction, None, true).expect("a program");
     for x in [1000.1, 1000.7, 1001.3] {
         let (lost, cost) = digits_and_cost(&cheapest, x);
         let (kept, price) = digits_and_cost(&emitted, x);
