@@ -250,9 +250,20 @@ impl Source {
         Ok(generated)
     }
 
-    /// Derives all functions and the linearisation, whatever the description's `generate` says.
+    /// Derives all functions, the linearisation and the slopes of outputs, whatever the description's `generate` says.
     pub fn derive_linearized(&self) -> Result<Generated, Failure> {
-        self.derived(|model| Generated::all(model, 0))
+        self.derived(|mut model| {
+            model.asked = Asked::everything();
+            model.asked.functions.push(FunctionId::Linearize);
+            // Rates of functions in Rust have no slopes.
+            let outputs = model.outputs.iter();
+            let smooth = outputs.filter(|(_, value)| {
+                let rate = model.graph.find_external(&value.entries(), 1);
+                rate.is_none()
+            });
+            model.asked.slopes = smooth.map(|(name, _)| name.clone()).collect();
+            Generated::of(model, 0)
+        })
     }
 
     /// Shows the warnings on standard error, once. The text of a robot is the importer's, not the user's.

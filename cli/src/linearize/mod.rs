@@ -1,5 +1,7 @@
 //! `hamel linearize`: the motion near a state, with its eigenvalues.
 
+mod minimal;
+
 use crate::columns::aligned;
 use crate::eigenvalues::eigenvalues;
 use crate::failure::{Failure, print};
@@ -11,6 +13,8 @@ use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
+use hamel_codegen::functions::SLOPES;
+use hamel_codegen::program::Shape;
 use std::path::PathBuf;
 
 /// A larger acceleration is no rounding of zero.
@@ -20,8 +24,11 @@ const AT_REST: f64 = 1e-9;
 ///
 /// The state (h, δξ) has no redundant directions: h are displacements along the columns of A(x),
 /// δx = A(x) h, one for each velocity coordinate, and δξ the changes of the velocities. Then
-/// d/dt (h, δξ) = A (h, δξ) + B δu. Where the system is neither at rest nor in steady motion, the
-/// matrices hold for that instant alone.
+/// d/dt (h, δξ) = A (h, δξ) + B δu, and δy = C (h, δξ) + D δu of all outputs. Where the system is
+/// neither at rest nor in steady motion, the matrices hold for that instant alone.
+///
+/// Loops and other constraints leave some displacements and velocities, which the matrices are about: those that
+/// `independent` names in the description, of the others those with the best-conditioned equations at the state.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel linearize heavy_top.eom
@@ -34,6 +41,9 @@ pub struct Arguments {
     /// State, by coordinates or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
+    /// All displacements and velocities, also those that constraints give by others.
+    #[arg(long)]
+    full: bool,
     /// How to write the matrices.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -59,6 +69,12 @@ struct Linear {
     inputs: Vec<String>,
     a: Vec<Vec<f64>>,
     b: Vec<Vec<f64>>,
+    /// Names of the entries of y.
+    outputs: Vec<String>,
+    c: Vec<Vec<f64>>,
+    d: Vec<Vec<f64>>,
+    /// How many displacements and velocities constraints give by these; none in the full form.
+    given: usize,
     /// Real and imaginary parts, the fastest growing first; `None` where they were not found.
     eigenvalues: Option<Vec<(f64, f64)>>,
     /// Whether there are states of first order.
@@ -102,25 +118,56 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             entry / (states.len() + inputs.len()).max(1) + 1
         )));
     }
-    let rows: Vec<&[f64]> = flat.chunks((states.len() + inputs.len()).max(1)).collect();
-    let a: Vec<Vec<f64>> = rows
-        .iter()
-        .map(|row| row[..states.len()].to_vec())
-        .collect();
-    let b = rows
-        .iter()
-        .map(|row| row[states.len()..].to_vec())
-        .collect();
-    let linear = Linear {
+    let split = |flat: &[f64]| -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let rows = flat.chunks((states.len() + inputs.len()).max(1));
+        let rows = rows.map(|row| row.split_at(states.len()));
+        rows.map(|(left, right)| (left.to_vec(), right.to_vec()))
+            .unzip()
+    };
+    let (a, b) = split(&flat);
+    let (mut outputs, mut slopes) = (Vec::new(), Vec::new());
+    for (name, _) in &generated.model.outputs {
+        let Ok(function) = function(program, &format!("{name}{SLOPES}"), params) else {
+            continue;
+        };
+        slopes.extend(
+            function
+                .call(x, xi, u, &[])
+                .map_err(|_| none(system.at(x)))?,
+        );
+        let shape = program.function(name).map_or(Shape::Scalar, |f| f.shape);
+        outputs.extend(names::shaped(name, shape));
+    }
+    let (c, d) = split(&slopes);
+    let mut linear = Linear {
         system: generated.model.name.clone(),
-        eigenvalues: eigenvalues(&a),
+        eigenvalues: None,
         with_states: !generated.model.states.is_empty(),
         states,
         inputs,
         a,
         b,
+        outputs,
+        c,
+        d,
+        given: 0,
         xi_dot,
     };
+    if !arguments.full {
+        let flat = function(program, "displacement_frame", params)?
+            .call(x, &[], &[], &[])
+            .map_err(|_| none(system.at(x)))?;
+        let columns = flat.len() / x.len().max(1);
+        let rows: Vec<Vec<f64>> = flat.chunks(columns.max(1)).map(<[f64]>::to_vec).collect();
+        if let Some(tangent) = minimal::tangent(&generated, &state, &rows) {
+            linear.given = linear.states.len() - tangent.kept.len();
+            linear.a = tangent.of_square(&linear.a);
+            linear.b = tangent.of_list(&linear.b);
+            linear.c = tangent.of_columns(&linear.c);
+            linear.states = tangent.of_list(&linear.states);
+        }
+    }
+    linear.eigenvalues = eigenvalues(&linear.a);
     print(&match arguments.format {
         Format::Text => text(&linear),
         Format::Json => json(&linear).pretty(),
@@ -148,11 +195,25 @@ fn text(linear: &Linear) -> String {
             ""
         }
     );
+    if linear.given > 0 {
+        text.push_str(&format!(
+            "constraints give {} further ones by these; `--full` prints all\n",
+            linear.given
+        ));
+    }
     text.push_str("\n\x1b[1mA\x1b[0m\n");
     text.push_str(&table(&linear.states, &linear.states, &linear.a));
     if !linear.inputs.is_empty() {
         text.push_str("\n\x1b[1mB\x1b[0m\n");
         text.push_str(&table(&linear.states, &linear.inputs, &linear.b));
+    }
+    if !linear.outputs.is_empty() {
+        text.push_str("\n\x1b[1mC\x1b[0m\n");
+        text.push_str(&table(&linear.outputs, &linear.states, &linear.c));
+        if !linear.inputs.is_empty() {
+            text.push_str("\n\x1b[1mD\x1b[0m\n");
+            text.push_str(&table(&linear.outputs, &linear.inputs, &linear.d));
+        }
     }
     text.push_str("\n\x1b[1meigenvalues of A\x1b[0m\n");
     let size = linear
@@ -208,6 +269,9 @@ fn json(linear: &Linear) -> Json {
         ("inputs", Json::texts(&linear.inputs)),
         ("A", Json::matrix(&linear.a)),
         ("B", Json::matrix(&linear.b)),
+        ("outputs", Json::texts(&linear.outputs)),
+        ("C", Json::matrix(&linear.c)),
+        ("D", Json::matrix(&linear.d)),
         (
             "eigenvalues",
             match &linear.eigenvalues {
@@ -234,6 +298,10 @@ mod tests {
             inputs: vec!["u".into()],
             a: vec![vec![0.0, 1.0], vec![-2.5, 0.0]],
             b: vec![vec![0.0], vec![0.75]],
+            outputs: Vec::new(),
+            c: Vec::new(),
+            d: Vec::new(),
+            given: 0,
             eigenvalues: None,
             xi_dot: vec![3.0],
         };

@@ -1,0 +1,250 @@
+//! The minimal form of a linearisation where constraints act: what they leave of displacements and velocities.
+//!
+//! Rows B h = 0 of position, loops and coordinates that are given, leave the displacements h = T η. Rows
+//! g = B(x) ξ + b = 0 of any kind leave δξ with B δξ = −(∂g/∂h) h, that is δξ = T δζ + S η. So
+//! (h, δξ, δz) = L (η, δζ, δz), and the independent rows of A L and B are those of d/dt (η, δζ, δz), n_q displacements
+//! and d velocities: 2 d where all constraints are on position. Independent are those that the description names, and
+//! of the others those that elimination with the largest pivots at the state leaves.
+
+use hamel_codegen::algebra::graph::Edge;
+use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::algebra::slopes::slopes;
+use hamel_codegen::generate::Generated;
+
+use crate::state::State;
+
+/// Smaller pivots, beside rows whose largest entry is 1, are those of rows that follow from others.
+const REDUNDANT: f64 = 1e-8;
+
+/// What constraints leave of (h, δξ, δz).
+pub struct Tangent {
+    /// Places of η, δζ and δz among h, δξ and δz.
+    pub kept: Vec<usize>,
+    /// L, by rows.
+    pub lift: Vec<Vec<f64>>,
+}
+
+/// What constraints leave at a state; `None` where none are kept by multipliers or act on displacements. `frame` are
+/// the rows of A(x) that displacements are measured along.
+pub fn tangent(generated: &Generated, state: &State, frame: &[Vec<f64>]) -> Option<Tangent> {
+    let (full, active) = (&generated.model, &generated.active);
+    let time = full.clock.map(|clock| clock.xi);
+    let places: Vec<usize> = (0..full.n()).filter(|&i| Some(i) != time).collect();
+    let (n, na) = (places.len(), active.n());
+    let named = |place: &usize| full.independent.iter().any(|(named, _)| named == place);
+    // Velocities of the state, by their places in the full frame.
+    let solved = |place: &usize| {
+        generated
+            .solved
+            .iter()
+            .any(|(velocity, _)| velocity == place)
+    };
+    let moving: Vec<usize> = places.iter().copied().filter(|i| !solved(i)).collect();
+    let none = vec![0.0; full.n()];
+    let numbers = full.numbers(&state.params, &state.x, &none, &state.u, &none);
+    let holonomic = full.constraints.iter().filter(|row| row.is_holonomic());
+    let displaced = holonomic.map(|constraint| -> Vec<f64> {
+        let row: Vec<Edge> = places.iter().map(|&i| constraint.row[i]).collect();
+        evaluate(&full.graph, &row, &numbers)
+    });
+    let spared: Vec<usize> = (0..n).filter(|&i| named(&places[i])).collect();
+    let position = Eliminated::new(displaced.collect(), n, &spared);
+    if position.pivots.is_empty() && active.constraints.is_empty() {
+        return None;
+    }
+    let free = position.free(n);
+    let lift_h = position.lift(n, &free);
+    // g and its slopes along h, then along η.
+    let numbers = active.numbers(&state.params, &state.x, &state.xi, &state.u, &vec![0.0; na]);
+    let first = active.points.first;
+    let directions: Vec<Vec<f64>> = (0..n)
+        .map(|j| {
+            let mut direction = vec![0.0; first];
+            direction.extend(frame.iter().map(|row| row[j]));
+            direction
+        })
+        .collect();
+    let rows = active.constraints.iter().map(|constraint| {
+        let mut entries = constraint.row.clone();
+        entries.push(constraint.shift);
+        let sloped = slopes(&active.graph, &entries, &numbers, &directions);
+        let xi = state.xi[..na].iter().chain(&[1.0]);
+        let along_h: Vec<f64> = (0..n)
+            .map(|j| {
+                let terms = sloped.iter().zip(xi.clone());
+                terms.map(|(entry, xi)| entry.slope(j) * xi).sum()
+            })
+            .collect();
+        let along = (0..free.len()).map(|k| {
+            let terms = along_h
+                .iter()
+                .zip(&lift_h)
+                .map(|(slope, row)| slope * row[k]);
+            terms.sum::<f64>()
+        });
+        let row = sloped[..na].iter().map(|entry| entry.value);
+        row.chain(along).collect()
+    });
+    let spared: Vec<usize> = (0..na).filter(|&i| named(&moving[i])).collect();
+    let velocity = Eliminated::new(rows.collect(), na, &spared);
+    let free_v = velocity.free(na);
+    let states = active.state_rates.len();
+    let width = free.len() + free_v.len() + states;
+    let mut lift: Vec<Vec<f64>> = Vec::new();
+    for row in lift_h {
+        lift.push([row, vec![0.0; width - free.len()]].concat());
+    }
+    for place in 0..na {
+        let mut row = vec![0.0; width];
+        match velocity.pivots.iter().find(|(_, column)| *column == place) {
+            None => {
+                let k = free_v.iter().position(|free| *free == place);
+                k.into_iter().for_each(|k| row[free.len() + k] = 1.0);
+            }
+            Some((found, _)) => {
+                let given = &velocity.rows[*found];
+                for k in 0..free.len() {
+                    row[k] = -given[na + k];
+                }
+                for (k, &column) in free_v.iter().enumerate() {
+                    row[free.len() + k] = -given[column];
+                }
+            }
+        }
+        lift.push(row);
+    }
+    for state in 0..states {
+        let mut row = vec![0.0; width];
+        row[free.len() + free_v.len() + state] = 1.0;
+        lift.push(row);
+    }
+    let velocities = free_v.iter().map(|place| n + place);
+    let behind = (0..states).map(|state| n + na + state);
+    Some(Tangent {
+        kept: free
+            .iter()
+            .copied()
+            .chain(velocities)
+            .chain(behind)
+            .collect(),
+        lift,
+    })
+}
+
+impl Tangent {
+    /// The independent rows of a matrix times L.
+    pub fn of_square(&self, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let kept: Vec<Vec<f64>> = self.kept.iter().map(|&row| rows[row].clone()).collect();
+        self.of_columns(&kept)
+    }
+
+    /// A matrix times L.
+    pub fn of_columns(&self, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let entry = |row: &[f64], column: usize| -> f64 {
+            let terms = row.iter().zip(&self.lift);
+            terms.map(|(a, lift)| a * lift[column]).sum()
+        };
+        let columns = self.kept.len();
+        let lifted = rows
+            .iter()
+            .map(|row| (0..columns).map(|k| entry(row, k)).collect());
+        lifted.collect()
+    }
+
+    /// The independent ones of a list.
+    pub fn of_list<T: Clone>(&self, list: &[T]) -> Vec<T> {
+        self.kept.iter().map(|&place| list[place].clone()).collect()
+    }
+}
+
+/// Rows after elimination: 1 in the column of each pivot, 0 there in all other rows.
+struct Eliminated {
+    rows: Vec<Vec<f64>>,
+    /// Rows and columns.
+    pivots: Vec<(usize, usize)>,
+}
+
+impl Eliminated {
+    /// Eliminates with the largest pivots among the first n columns; in those that are spared only where there is no
+    /// other.
+    fn new(mut rows: Vec<Vec<f64>>, n: usize, spared: &[usize]) -> Self {
+        for row in &mut rows {
+            let most = row[..n]
+                .iter()
+                .fold(0.0_f64, |most, entry| most.max(entry.abs()));
+            if most > 0.0 {
+                row.iter_mut().for_each(|entry| *entry /= most);
+            }
+        }
+        let mut pivots: Vec<(usize, usize)> = Vec::new();
+        loop {
+            let largest = |spare: bool| {
+                let mut best = (REDUNDANT, None);
+                for (i, row) in rows.iter().enumerate() {
+                    if pivots.iter().any(|(used, _)| *used == i) {
+                        continue;
+                    }
+                    for (j, entry) in row[..n].iter().enumerate() {
+                        if entry.abs() > best.0 && (spare || !spared.contains(&j)) {
+                            best = (entry.abs(), Some((i, j)));
+                        }
+                    }
+                }
+                best.1
+            };
+            let Some((i, j)) = largest(false).or_else(|| largest(true)) else {
+                return Eliminated { rows, pivots };
+            };
+            let pivot = rows[i][j];
+            rows[i].iter_mut().for_each(|entry| *entry /= pivot);
+            let by = rows[i].clone();
+            for (other, row) in rows.iter_mut().enumerate() {
+                let factor = row[j];
+                if other != i && factor != 0.0 {
+                    let pairs = row.iter_mut().zip(&by);
+                    pairs.for_each(|(entry, by)| *entry -= factor * by);
+                }
+            }
+            pivots.push((i, j));
+        }
+    }
+
+    /// The columns without pivots.
+    fn free(&self, n: usize) -> Vec<usize> {
+        let pivot = |column: &usize| self.pivots.iter().any(|(_, pivot)| pivot == column);
+        (0..n).filter(|column| !pivot(column)).collect()
+    }
+
+    /// What the entries of all columns are by those of the free ones, by rows.
+    fn lift(&self, n: usize, free: &[usize]) -> Vec<Vec<f64>> {
+        let row = |place: usize| -> Vec<f64> {
+            match self.pivots.iter().find(|(_, column)| *column == place) {
+                Some((row, _)) => free.iter().map(|&k| -self.rows[*row][k]).collect(),
+                None => free
+                    .iter()
+                    .map(|&k| f64::from(u8::from(k == place)))
+                    .collect(),
+            }
+        };
+        (0..n).map(row).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Eliminated;
+
+    #[test]
+    fn rows_that_follow_from_others_have_no_pivot() {
+        let rows = vec![
+            vec![1.0, 2.0, 0.0, 5.0],
+            vec![2.0, 4.0, 1e-12, 10.0],
+            vec![0.0, 0.0, 3.0, 6.0],
+        ];
+        let found = Eliminated::new(rows.clone(), 3, &[]);
+        assert_eq!(found.free(3), [0]);
+        assert_eq!(found.lift(3, &[0]), [[1.0], [-0.5], [0.0]]);
+        let spared = Eliminated::new(rows, 3, &[1]);
+        assert_eq!(spared.free(3), [1]);
+    }
+}
