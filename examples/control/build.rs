@@ -1,7 +1,5 @@
 //! What is too long for a macro.
 
 fn main() -> Result<(), hamel_codegen::BuildError> {
-    hamel_codegen::Builder::new()
-        .file("bicycle.eom")
-        .generate()
+    hamel_codegen::Builder::new().file("bicycle.eom").generate()
 }
