@@ -2,13 +2,19 @@
 //! frames, the momentum about the centre of mass, and the slopes of outputs, against differences of poses, momenta
 //! and outputs in numbers. What a proof says of them is another matter: here no derivative is taken.
 
+mod common;
+#[path = "common/tree/mod.rs"]
+mod tree;
+
+use common::{Random, attack};
 use hamel_codegen::functions::{FrameFunction, Jacobian};
-use hamel_codegen::generate::{Generated, from_file};
+use hamel_codegen::generate::{Generated, from_file, from_text};
 use hamel_codegen::lower::build;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 use hamel_codegen::syntax::{parse_text, read_files};
 use std::path::{Path, PathBuf};
+use tree::{ALL, Kind, Link, text};
 
 /// Step of differences that are extrapolated to fourth order.
 const STEP: f64 = 1e-3;
@@ -172,6 +178,47 @@ fn what_is_observed_agrees_with_differences() {
         frames > 60 && centroidal > 20 && slopes > 20,
         "{frames} {centroidal} {slopes}"
     );
+}
+
+/// Random trees with all kinds of joints, mounts in any direction, frames placed on frames, joints that follow others.
+#[test]
+fn frames_of_random_trees_agree_with_differences() {
+    attack(24, 600, |seed| {
+        let mut random = Random::new(0xf4a3e + seed);
+        let count = 2 + random.below(5);
+        let mut links: Vec<Link> = Vec::new();
+        while links.len() < count || links.iter().all(|link| link.freedoms() == 0) {
+            let kinds = if links.len() > 6 {
+                &[Kind::Revolute][..]
+            } else {
+                &ALL
+            };
+            links.push(Link::random(&mut random, &links, kinds));
+        }
+        let plain = from_text(&text(&links, "rate")).expect("a tree");
+        let frames = &plain.model.frames;
+        let name = &frames[random.below(frames.len())].name;
+        let asked = format!(
+            "rate, jacobian {name}, jacobian {name} in body, centroidal_map, centroidal_bias, centre_of_mass"
+        );
+        let text = text(&links, &asked);
+        let name = format!("tree {seed}");
+        let generated = from_text(&text)
+            .unwrap_or_else(|errors| panic!("{}", render(&errors, &name, &text, false)));
+        let program = &generated.program;
+        let case = Case {
+            x: random.configuration(&program.blocks),
+            xi: random.numbers(program.n),
+            u: random.numbers(program.m),
+            name,
+            generated,
+        };
+        for jacobian in &case.generated.active.asked.jacobians {
+            frame(&case, jacobian);
+        }
+        momentum(&case);
+        Vec::new()
+    });
 }
 
 fn frame(case: &Case, jacobian: &Jacobian) {

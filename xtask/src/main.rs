@@ -41,7 +41,7 @@ const CI: Task = &[
 
 /// The random attacks at full size: an hour.
 const ATTACK: Task = &[
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test expressions --test mounts --test rounding --test constrained --test prescribed --test trees --test work",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test expressions --test mounts --test rounding --test constrained --test prescribed --test trees --test work --test observed",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test functions",
     "HAMEL_FUZZ_CASES=100000 cargo test --release --locked -p hamel-tests --test mutations",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test free_rotation --test stiff",
