@@ -9,6 +9,7 @@ mod installed;
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::Model;
+use hamel_codegen::program::count::count;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::syntax::ast::CoordKind;
 use hamel_codegen::urdf::{Options, import};
@@ -151,14 +152,14 @@ fn agrees(folder: &Path, reference: &Value) {
         same("∂ξ̇/∂ξ", &part(n), &slopes("velocity"));
         same("∂ξ̇/∂f", &part(2 * n), &slopes("force"));
     }
-    let count = |function: &str| {
+    let operations = |function: &str| {
         let found = generated.program.function(function).expect("a function");
-        hamel_codegen::program::count::count(&generated.program.graph, &found.outputs).flops()
+        count(&generated.program.graph, &found.outputs).flops()
     };
     println!(
         "{name}: {} operations for the slopes, {} for the centroidal map",
-        count(FunctionId::Linearize.name()),
-        count("centroidal_map")
+        operations(FunctionId::Linearize.name()),
+        operations("centroidal_map")
     );
 }
 
@@ -216,5 +217,66 @@ fn list(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(entries) => entries.iter().flat_map(list).collect(),
         other => vec![other.as_f64().expect("a number")],
+    }
+}
+
+/// What a Jacobian of a last link takes, in axes of the world and in its own.
+#[test]
+fn jacobians_cost_no_more_than_they_did() {
+    let Some(folder) = installed() else {
+        eprintln!("not tested: the URDF files are absent; tests/robots/install.sh installs them");
+        return;
+    };
+    for (urdf, floating, link, world, own) in [
+        (
+            "ur_description/urdf/ur5_robot.urdf",
+            false,
+            "wrist_3_link",
+            56,
+            108,
+        ),
+        (
+            "ur_description/urdf/ur5_robot.urdf",
+            false,
+            "tool0",
+            76,
+            116,
+        ),
+        (
+            "panda_description/urdf/panda.urdf",
+            false,
+            "panda_link7",
+            137,
+            134,
+        ),
+        (
+            "solo_description/robots/solo12.urdf",
+            true,
+            "FL_FOOT",
+            110,
+            45,
+        ),
+    ] {
+        let text = std::fs::read_to_string(folder.join(urdf)).expect("a URDF");
+        let options = Options {
+            floating,
+            ..Options::default()
+        };
+        let imported = import(&text, &options, "robot.urdf", false).expect("a robot");
+        let (text, _) = imported.text.rsplit_once('}').expect("a description");
+        let asked = format!("generate jacobian {link}, jacobian {link} in {link};");
+        let generated = from_text(&format!("{text} {asked} }}")).expect("a program");
+        let program = &generated.program;
+        // Nothing else of the robot.
+        assert_eq!(program.functions.len(), 7, "{link}");
+        for (function, most) in [("jacobian", world), ("body_jacobian", own)] {
+            let function = program.function(format!("{link}_{function}"));
+            let outputs = &function.expect("a function").outputs;
+            let operations = count(&program.graph, outputs).flops();
+            assert!(
+                operations <= most,
+                "{link}: {operations} operations, {most} before"
+            );
+        }
     }
 }
