@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             print(&format!("{gap}\x1b[1m{}\x1b[0m\n", path.display()))?;
         }
         let checked = Source::open(path, &arguments.robot).and_then(|source| {
-            let generated = source.derive_available()?;
+            let generated = source.derive_available(&[])?;
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
             print(&rounding(&generated))?;

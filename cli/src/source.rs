@@ -5,7 +5,7 @@ use crate::failure::{self, Failure};
 use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
-use hamel_codegen::functions::{Asked, FunctionId};
+use hamel_codegen::functions::{Asked, FunctionId, Jacobian};
 use hamel_codegen::generate::{Generated, at_some_point, available_in, from_file};
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
@@ -164,8 +164,15 @@ impl Source {
 
     /// Derives these functions, whatever the description's `generate` says; those with M⁻¹ in them are
     /// left out, with a warning, where M is not positive definite.
-    pub fn derive_only(&self, functions: &[FunctionId]) -> Result<Generated, Failure> {
-        self.available(Asked::only(functions))
+    pub fn derive_only(
+        &self,
+        functions: &[FunctionId],
+        frames: &[Jacobian],
+    ) -> Result<Generated, Failure> {
+        self.available(Asked {
+            jacobians: frames.to_vec(),
+            ..Asked::only(functions)
+        })
     }
 
     /// What is derived of the model, with its warnings.
@@ -185,6 +192,10 @@ impl Source {
 
     fn available(&self, asked: Asked) -> Result<Generated, Failure> {
         let (generated, singular) = self.derived(|mut model| {
+            let unknown: Vec<Diagnostic> = unknown_frames(&model, &asked.jacobians);
+            if !unknown.is_empty() {
+                return Err(unknown);
+            }
             model.asked = asked.clone();
             Generated::available(model, 0)
         })?;
@@ -227,10 +238,13 @@ impl Source {
         })
     }
 
-    /// Derives all functions that exist: those with M⁻¹ in them are left out, with a warning, where M is
-    /// not positive definite.
-    pub fn derive_available(&self) -> Result<Generated, Failure> {
-        self.available(Asked::everything())
+    /// Derives all functions that exist, and the kinematics of frames: those with M⁻¹ in them are left out, with a
+    /// warning, where M is not positive definite.
+    pub fn derive_available(&self, frames: &[Jacobian]) -> Result<Generated, Failure> {
+        self.available(Asked {
+            jacobians: frames.to_vec(),
+            ..Asked::everything()
+        })
     }
 
     /// Derives all functions and the linearisation, of a robot without an inverse of M what exists.
@@ -280,4 +294,24 @@ impl Source {
             None => render(errors, &self.path, &self.text, true),
         })
     }
+}
+/// An error for each frame that a model does not have.
+fn unknown_frames(model: &Model, asked: &[Jacobian]) -> Vec<Diagnostic> {
+    let known = |name: &str| model.frames.iter().any(|frame| frame.name == name);
+    let mut names: Vec<&str> = asked.iter().map(|one| one.frame.as_str()).collect();
+    names.dedup();
+    let unknown = names.into_iter().filter(|name| !known(name));
+    let frames: Vec<&str> = model
+        .frames
+        .iter()
+        .map(|frame| frame.name.as_str())
+        .collect();
+    let error = |name: &str| {
+        let message = format!("no frame is called `{name}`");
+        Diagnostic::new(model.span, message).help(match frames.as_slice() {
+            [] => "the description has no frames".into(),
+            frames => format!("the frames are {}", frames.join(", ")),
+        })
+    };
+    unknown.map(error).collect()
 }

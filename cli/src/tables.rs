@@ -49,7 +49,7 @@ pub enum Format {
 /// Derives and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
-    let generated = source.derive_available()?;
+    let generated = source.derive_available(&[])?;
     let tables = tables::tables(&generated, &arguments.of)
         .map_err(|why| Failure::failed(format!("{}: {why}", source.path)))?;
     let text = match arguments.format {

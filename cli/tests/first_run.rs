@@ -141,3 +141,43 @@ fn tables_in_files_are_read_by_all_commands() {
         );
     }
 }
+
+/// Poses and Jacobians of frames by their names, for states by coordinates and by joints.
+#[test]
+fn frames_are_evaluated_by_their_names() {
+    let arm = "system Arm {
+        joint a: revolute [0, 0, 1] moves f;
+        joint b: revolute [0, 0, 1] on f at pose(identity(3), [1, 0, 0]) moves g;
+        frame tip on g = pose(identity(3), [0.5, 0, 0]);
+        body on g { mass 1; inertia diag(1, 1, 1) about com; }
+        start a = 0.3, b = 0.5, a_dot = 2, b_dot = -1;
+    }";
+    let state = r#"{"configuration": {"a": 0.3, "b": 0.5}, "velocity": {"a": 2, "b": -1}}"#;
+    let file = format!("{}/frames-by-joints.json", env!("CARGO_TARGET_TMPDIR"));
+    std::fs::write(&file, state).expect("written");
+    for at in [&[][..], &["--at", &file]] {
+        let output = hamel(&[&["eval", "-", "--frame", "tip"], at].concat(), arm);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let tip = &value["kinematics"]["tip"];
+        let number = |value: &Value| value.as_f64().expect("a number");
+        let (elbow, angle) = (0.3_f64, 0.8_f64);
+        // The tip turns with 2 about the base, and with −1 about the elbow.
+        let x = elbow.cos() + 0.5 * angle.cos();
+        let speed = 2.0 * x - 0.5 * angle.cos();
+        let close =
+            |found: f64, wanted: f64| assert!((found - wanted).abs() < 1e-14, "{found} {wanted}");
+        close(number(&tip["pose"][0][3]), x);
+        close(number(&tip["jacobian"][1][0]), x);
+        close(number(&tip["twist"][1]), speed);
+        close(number(&tip["body_twist"][5]), 1.0);
+        assert!(tip["bias_acceleration"][0].is_number() && tip["body_jacobian"][5][1] == 1.0);
+    }
+    let output = hamel(&["eval", "-", "--frame", "top"], arm);
+    assert_eq!(output.status.code(), Some(1));
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("no frame is called `top`") && said.contains("the frames are f, g, tip"),
+        "{said}"
+    );
+}

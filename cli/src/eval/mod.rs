@@ -1,5 +1,6 @@
 //! `hamel eval`: numbers of everything at a state.
 
+mod frames;
 mod geometry;
 mod sample;
 
@@ -45,6 +46,7 @@ const MOST_SHOWN: usize = 64;
   hamel eval heavy_top.eom
   hamel eval heavy_top.eom --at state.json
   hamel eval quadruped.urdf --floating --at sample.json
+  hamel eval arm.urdf --frame tool0
   echo '{\"velocity\": {\"w\": [0, 0, 9]}}' | hamel eval heavy_top.eom --at -")]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
@@ -53,6 +55,9 @@ pub struct Arguments {
     /// State, by coordinates or by joints; `-` for standard input.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
+    /// Pose, twist, Jacobian and bias acceleration of a frame, or of a robot's link; once for each.
+    #[arg(long, value_name = "NAME")]
+    frame: Vec<String>,
     /// Print γ and Γ of systems with more than 64 velocities, too.
     #[arg(long)]
     tables: bool,
@@ -66,9 +71,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let at = arguments.at.as_deref();
     let at = at.map(|path| File::read(path, &source)).transpose()?;
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {
-        return sample::run(&source, at);
+        return sample::run(&source, at, &arguments.frame);
     }
-    let generated = source.derive_available()?;
+    let generated = source.derive_available(&frames::asked(&arguments.frame))?;
     let state = match &at {
         Some(at) => at.state(&source, &generated)?,
         None => State::start(&generated.active),
@@ -107,6 +112,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut missing: Vec<String> = Vec::new();
     members.extend(motion(&generated, (&state, source.shown()), &mut missing)?);
+    members.extend(frames::kinematics(&generated, &state)?.map(|all| ("kinematics", all)));
     let infinite = members.iter().filter(|(_, value)| !finite(value));
     let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
     if !infinite.is_empty() {

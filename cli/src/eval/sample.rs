@@ -1,6 +1,7 @@
 //! Numbers at a state that is given by joints: what other programs call M, bias and acceleration.
 
 use super::finite;
+use super::frames::{asked, kinematics};
 use crate::failure::{Failure, print};
 use crate::interpreted::{constant_singular, function};
 use crate::json::Json;
@@ -34,9 +35,9 @@ const REACHED: f64 = 1e-9;
 /// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
 /// friction and other loads of the description are part of it, not added to it. Without a force
 /// the loads of the description act, with zero input.
-pub fn run(source: &Source, at: &File) -> Result<(), Failure> {
+pub fn run(source: &Source, at: &File, frames: &[String]) -> Result<(), Failure> {
     let File { path, json } = at;
-    let generated = source.derive_only(&FUNCTIONS)?;
+    let generated = source.derive_only(&FUNCTIONS, &asked(frames))?;
     let (list, several) = match json.get("samples") {
         Some(Value::Array(list)) => (list.as_slice(), true),
         _ => (std::slice::from_ref(json), false),
@@ -116,7 +117,7 @@ fn members((generated, text): (&Generated, &str), sample: &Sample) -> Result<Mem
         .map(|row| row.iter().copied().collect())
         .collect();
     let number = |values: Vec<f64>| Json::Number(values.first().copied().unwrap_or(f64::NAN));
-    let members = vec![
+    let mut members = vec![
         ("system", Json::Text(generated.model.name.clone())),
         ("coordinates", Json::texts(&names::coordinates(model))),
         ("velocities", Json::texts(&rows(model, &sample.joints))),
@@ -134,6 +135,7 @@ fn members((generated, text): (&Generated, &str), sample: &Sample) -> Result<Mem
         ("kinetic_energy", number(call("kinetic_energy")?)),
         ("potential_energy", number(call("potential_energy")?)),
     ];
+    members.extend(kinematics(generated, state)?.map(|all| ("kinematics", all)));
     let mut missing = Vec::new();
     // Where there is no such function, that was said before.
     if accel.value.is_none() && generated.program.function(FunctionId::Accel).is_some() {
