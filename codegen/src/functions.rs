@@ -374,8 +374,8 @@ impl Asked {
         let row = id.row();
         let maps = [FunctionId::CentroidalMap, FunctionId::CentroidalBias];
         let along = match row.serves {
-            // Maps and bias are slopes of the momentum, which is emitted with them.
             _ if id == FunctionId::BaseParameters => self.names(FunctionId::Regressor),
+            // Map and bias are slopes of the momentum, which is emitted with them.
             _ if id == FunctionId::CentroidalMomentum => maps.iter().any(|&map| self.names(map)),
             Serves::System => self.names(FunctionId::Accel) || self.names(FunctionId::Linearize),
             Serves::Split => self.names(FunctionId::Splitting),

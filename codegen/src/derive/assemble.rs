@@ -247,7 +247,7 @@ impl Builder<'_> {
             let graph = &self.graph;
             let varies = |pivot: &Edge| !graph.is_free(pivot.node());
             if self.chosen.pivots.iter().any(varies) {
-                self.split_guards = pivots;
+                self.constant_guards.extend(pivots);
             }
         }
         Ok(found.structure)
@@ -276,7 +276,7 @@ impl Builder<'_> {
         } else {
             Vec::new()
         };
-        constant_guards.extend(&self.split_guards);
+        constant_guards.extend(&self.constant_guards);
         let loops = self.loops().len();
         Program {
             name: model.name.clone(),

@@ -2,6 +2,7 @@
 
 use super::care::Care;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::resubstitute::resubstitute;
 use crate::algebra::transplant::{graft, rebuild};
 use crate::program::count::count;
 use std::borrow::Cow;
@@ -48,6 +49,15 @@ impl<'a> Candidates<'a> {
     pub fn offer_own(&mut self, graph: Graph, roots: Vec<Edge>) {
         let cost = self.cost(&graph, &roots);
         self.keep(cost, Cow::Owned(graph), roots);
+    }
+
+    /// One more computation, as it stands and after resubstitution, where that finds something; `base` holds what
+    /// is there anyway.
+    pub fn offer_polished(&mut self, graph: Graph, roots: Vec<Edge>, base: &Graph) {
+        if let Some((graph, roots)) = resubstitute(&graph, &roots, base) {
+            self.offer_own(graph, roots);
+        }
+        self.offer_own(graph, roots);
     }
 
     /// One more computation, as it stands and as what it becomes where other things are computed already.

@@ -11,17 +11,18 @@ use super::accel::recursive::Recursion;
 use super::accel::setting::Setting;
 use super::calculus::Calculus;
 use super::candidates::Candidates;
-use super::frames::{Twist, by_velocities, change, flat};
+use super::frames::{Twist, by_rows, by_velocities, change, flat};
 use super::program::Builder;
 use super::quantity::{Motion, motions};
 use super::tree::Placement;
 use super::tree::draft::has_more_inertia;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, cross, scale3, sub3, zero3};
-use crate::algebra::resubstitute::resubstitute;
+use crate::algebra::transplant::rebuild;
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
 use crate::program::{FunctionId, Shape};
+use num_traits::Signed;
 
 impl Builder<'_> {
     /// The functions that are asked for.
@@ -40,7 +41,9 @@ impl Builder<'_> {
         };
         let mut bodies = model.clone();
         let found = moving(&mut bodies, &mut Calculus::new(model));
-        if found.is_empty() {
+        let mass = mass(&mut bodies.graph, &found);
+        let number = bodies.graph.as_rational(mass);
+        if number.as_ref().is_some_and(|mass| !mass.is_positive()) {
             return refused(
                 "nothing with mass moves",
                 "describe masses by `body` or `particle`",
@@ -52,6 +55,11 @@ impl Builder<'_> {
                 "describe all masses by `body` or `particle`",
             );
         }
+        // By which the centre of mass is divided: run-time parameters may leave none.
+        if number.is_none() {
+            let mass = rebuild(&bodies.graph, &mut self.graph, &[mass]);
+            self.constant_guards.extend(mass);
+        }
         let recursion = Recursion::of(&Setting::given(model), Placement::Described);
         for id in FunctionId::CENTROIDAL {
             if !model.asked.wants(id) {
@@ -59,10 +67,7 @@ impl Builder<'_> {
             }
             let mut candidates = Candidates::with(&self.care);
             let mut offer = |graph: Graph, roots: Vec<Edge>| {
-                if let Some((graph, roots)) = resubstitute(&graph, &roots, &model.graph) {
-                    candidates.offer_own(graph, roots);
-                }
-                candidates.offer_own(graph, roots);
+                candidates.offer_polished(graph, roots, &model.graph);
             };
             let (graph, roots) = entries(model, id, None);
             offer(graph, roots);
@@ -109,15 +114,22 @@ pub(crate) fn moves(model: &Model) -> Vec<bool> {
     bodies.chain(particles).collect()
 }
 
-/// m c, and m.
-fn centre(graph: &mut Graph, moving: &[Motion]) -> (Vec3, Edge) {
-    let (mut first, mut mass) = (zero3(graph), graph.zero());
+/// The mass of what moves.
+fn mass(graph: &mut Graph, moving: &[Motion]) -> Edge {
+    let masses: Vec<Edge> = moving.iter().map(|motion| motion.mass).collect();
+    graph.sum(&masses)
+}
+
+/// c, where there is mass.
+fn centre(graph: &mut Graph, moving: &[Motion]) -> Vec3 {
+    let mut first = zero3(graph);
     for motion in moving {
         let part = scale3(graph, motion.mass, motion.centre);
         first = add3(graph, first, part);
-        mass = graph.add(mass, motion.mass);
     }
-    (first, mass)
+    let mass = mass(graph, moving);
+    let inverse = graph.div(graph.one(), mass).unwrap_or(graph.zero());
+    scale3(graph, inverse, first)
 }
 
 /// A function's entries, by rows; with the momentum of everything about the origin, where it is known.
@@ -130,9 +142,7 @@ fn entries(model: &Model, id: FunctionId, total: Option<(Graph, Twist)>) -> (Gra
     });
     let moving = moving(&mut own, &mut calculus);
     let mut graph = own.graph;
-    let (first, mass) = centre(&mut graph, &moving);
-    let inverse = graph.div(graph.one(), mass).unwrap_or(graph.zero());
-    let centre = scale3(&mut graph, inverse, first);
+    let centre = centre(&mut graph, &moving);
     if id == FunctionId::CentreOfMass {
         return (graph, centre.to_vec());
     }
@@ -154,7 +164,9 @@ fn entries(model: &Model, id: FunctionId, total: Option<(Graph, Twist)>) -> (Gra
         }
     };
     let roots = match id {
-        FunctionId::CentroidalMap => by_rows(by_velocities(model, &mut graph, momentum)),
+        FunctionId::CentroidalMap => {
+            by_rows(by_velocities(model, &mut graph, momentum).into_iter())
+        }
         FunctionId::CentroidalBias => flat(change(&mut graph, &mut calculus, momentum)),
         _ => flat(momentum),
     };
@@ -169,20 +181,11 @@ fn about_centre(model: &Model, graph: Graph, columns: Vec<Twist>) -> (Graph, Vec
     };
     let moving = moving(&mut own, &mut Calculus::new(model));
     let mut graph = own.graph;
-    let (first, mass) = centre(&mut graph, &moving);
-    let inverse = graph.div(graph.one(), mass).unwrap_or(graph.zero());
-    let centre = scale3(&mut graph, inverse, first);
+    let centre = centre(&mut graph, &moving);
     let columns = columns.into_iter().map(|(linear, angular)| {
         let lever = cross(&mut graph, centre, linear);
         (linear, sub3(&mut graph, angular, lever))
     });
     let columns: Vec<Twist> = columns.collect();
-    (graph, by_rows(columns))
-}
-
-fn by_rows(columns: Vec<Twist>) -> Vec<Edge> {
-    let columns: Vec<Vec<Edge>> = columns.into_iter().map(flat).collect();
-    (0..6)
-        .flat_map(|row| columns.iter().map(move |column| column[row]))
-        .collect()
+    (graph, by_rows(columns.into_iter()))
 }

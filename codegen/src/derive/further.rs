@@ -16,9 +16,8 @@ use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::graft;
 use crate::functions::SLOPES;
-use crate::model::Model;
-use crate::model::class;
 use crate::model::invariants::Quantity;
+use crate::model::{Model, class};
 use crate::program::{Argument, Function, FunctionId, Shape};
 use Argument::{Coordinates, Inputs, Velocities};
 
@@ -246,13 +245,7 @@ impl Builder<'_> {
         let names: Vec<String> = names.collect();
         // Four to a line.
         let listed: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();
-        let mut lines = vec![format!(
-            "{}.",
-            listed.join(
-                ",
-"
-            )
-        )];
+        let mut lines = vec![format!("{}.", listed.join(",\n"))];
         if !regressor.besides.is_empty() {
             let besides = regressor.besides.join(", ");
             lines.push(format!(

@@ -32,8 +32,9 @@ pub(super) struct Builder<'a> {
     pub(super) care: Care,
     /// Pivots of [Y; Φ].
     pub(super) kinematic_guards: Vec<Edge>,
-    /// Pivots of the inertias of a system that splits, where M has none that are constant.
-    pub(super) split_guards: Vec<Edge>,
+    /// What else has to be positive when parameters are set: pivots of the inertias of a system that splits, where M has
+    /// none that are constant; the mass that centres of mass are divided by.
+    pub(super) constant_guards: Vec<Edge>,
 }
 
 impl<'a> Builder<'a> {
@@ -59,7 +60,7 @@ impl<'a> Builder<'a> {
             functions: Vec::new(),
             care: care.clone(),
             kinematic_guards,
-            split_guards: Vec::new(),
+            constant_guards: Vec::new(),
         }
     }
 

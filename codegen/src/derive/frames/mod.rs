@@ -21,12 +21,11 @@ use crate::algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, cross, identity3, multiply3, sub3, transpose3,
     zero3,
 };
-use crate::algebra::resubstitute::resubstitute;
 use crate::functions::FrameFunction;
 use crate::model::{Frame, Model};
 use crate::program::{Argument, Function, Shape};
 use Argument::{Coordinates, Velocities};
-use sums::{Order, with_sums};
+use sums::with_sums;
 
 /// A linear and an angular part: velocities, their rates, or a column of J.
 pub(in crate::derive) type Twist = (Vec3, Vec3);
@@ -39,9 +38,8 @@ impl Builder<'_> {
             let Some(index) = model.frames.iter().position(|f| f.name == jacobian.frame) else {
                 continue;
             };
-            let summed = [Order::Given, Order::Outwards, Order::Inwards];
-            let summed = summed.map(|order| with_sums(model, index, order));
-            let sources: Vec<&Model> = [model].into_iter().chain(summed.iter().flatten()).collect();
+            let summed = with_sums(model, index);
+            let sources: Vec<&Model> = [model].into_iter().chain(&summed).collect();
             for &of in FrameFunction::ALL {
                 let name = jacobian.name_of(of);
                 if self.functions.iter().any(|known| known.name == name) {
@@ -76,10 +74,7 @@ impl Builder<'_> {
             for route in Route::all(chain(model, index).len(), of) {
                 let mut graph = model.graph.clone();
                 let roots = route.entries(model, &mut graph, (index, own), of);
-                if let Some((graph, roots)) = resubstitute(&graph, &roots, &model.graph) {
-                    candidates.offer_own(graph, roots);
-                }
-                candidates.offer_own(graph, roots);
+                candidates.offer_polished(graph, roots, &model.graph);
             }
         }
         candidates.cheapest(&mut self.graph)
@@ -156,10 +151,7 @@ impl Route {
                 (true, false) => out(graph, &frame.rotation, column),
                 _ => column,
             });
-            let columns: Vec<Vec<Edge>> = turned.map(flat).collect();
-            return (0..6)
-                .flat_map(|row| columns.iter().map(move |column| column[row]))
-                .collect();
+            return by_rows(turned);
         }
         let (twist, rates, from) = match self {
             Route::Defined => {
@@ -198,6 +190,14 @@ impl Route {
 
 pub(in crate::derive) fn flat((linear, angular): Twist) -> Vec<Edge> {
     [linear, angular].concat()
+}
+
+/// The entries of a matrix of these columns, by rows.
+pub(in crate::derive) fn by_rows(columns: impl Iterator<Item = Twist>) -> Vec<Edge> {
+    let columns: Vec<Vec<Edge>> = columns.map(flat).collect();
+    (0..6)
+        .flat_map(|row| columns.iter().map(move |column| column[row]))
+        .collect()
 }
 
 fn out(graph: &mut Graph, rotation: &Mat3, (linear, angular): Twist) -> Twist {
@@ -315,7 +315,6 @@ fn outwards_in_world(
         twist = (add3(graph, v, moved), add3(graph, w, own));
         from = Some(at);
     }
-    // R ẇ is the change of w as the frame sees it.
     (twist, rates)
 }
 
@@ -372,6 +371,38 @@ fn levers(model: &Model, graph: &mut Graph, chain: &[usize], border: usize) -> V
     levers
 }
 
+/// What a joint adds to the columns of J: its freedoms' velocities (q̇, w), of the frame before and of its own, with the
+/// axes of both where the columns are written.
+fn add_joint(
+    graph: &mut Graph,
+    columns: &mut [Twist],
+    freedoms: Vec<Twist>,
+    [outer, own]: [&Mat3; 2],
+    arm: &Arm,
+) {
+    for (column, (slide, turn)) in columns.iter_mut().zip(freedoms) {
+        let slide = apply3(graph, outer, slide);
+        let turned = apply3(graph, own, turn);
+        let lever = match arm {
+            Arm::Placed(arm) => cross(graph, turned, *arm),
+            Arm::Own(arm) => {
+                let lever = cross(graph, turn, *arm);
+                apply3(graph, own, lever)
+            }
+        };
+        let speed = add3(graph, slide, lever);
+        *column = (add3(graph, column.0, speed), add3(graph, column.1, turned));
+    }
+}
+
+/// The way from a joint's frame to the frame of a Jacobian.
+enum Arm {
+    /// In the axes that columns are written in.
+    Placed(Vec3),
+    /// In the axes of the joint's frame.
+    Own(Vec3),
+}
+
 /// The columns of J, world axes.
 fn columns_in_world(
     model: &Model,
@@ -379,8 +410,7 @@ fn columns_in_world(
     calculus: &mut Calculus,
     (index, border): (usize, usize),
 ) -> Vec<Twist> {
-    let still = (zero3(graph), zero3(graph));
-    let mut columns = vec![still; model.n()];
+    let mut columns = vec![(zero3(graph), zero3(graph)); model.n()];
     let tip = model.frames[index].position;
     let chain = chain(model, index);
     let levers = levers(model, graph, &chain, border);
@@ -388,20 +418,13 @@ fn columns_in_world(
     for (place, &at) in chain.iter().enumerate() {
         let frame = &model.frames[at];
         let moved = relative(graph, calculus, frame);
-        for (column, (slide, turn)) in columns.iter_mut().zip(by_velocities(model, graph, moved)) {
-            let slide = apply3(graph, &outer, slide);
-            let lever = if place < border {
-                let turned = apply3(graph, &frame.rotation, turn);
-                let arm = sub3(graph, tip, frame.position);
-                cross(graph, turned, arm)
-            } else {
-                let lever = cross(graph, turn, levers[place]);
-                apply3(graph, &frame.rotation, lever)
-            };
-            let turn = apply3(graph, &frame.rotation, turn);
-            let speed = add3(graph, slide, lever);
-            *column = (add3(graph, column.0, speed), add3(graph, column.1, turn));
-        }
+        let freedoms = by_velocities(model, graph, moved);
+        let arm = match place < border {
+            true => Arm::Placed(sub3(graph, tip, frame.position)),
+            false => Arm::Own(levers[place]),
+        };
+        let axes = [&outer, &frame.rotation];
+        add_joint(graph, &mut columns, freedoms, axes, &arm);
         outer = frame.rotation;
     }
     columns
@@ -414,32 +437,24 @@ fn columns_in_frame(
     calculus: &mut Calculus,
     (index, border): (usize, usize),
 ) -> Vec<Twist> {
-    let still = (zero3(graph), zero3(graph));
-    let mut columns = vec![still; model.n()];
+    let mut columns = vec![(zero3(graph), zero3(graph)); model.n()];
     let chain = chain(model, index);
     let levers = levers(model, graph, &chain, border);
     // Axes of the frame that is looked at, and the way from its origin to that of f, both in axes of f.
-    let (mut axes, mut arm) = (identity3(graph), zero3(graph));
+    let (mut axes, mut way) = (identity3(graph), zero3(graph));
     for (place, &at) in chain.iter().enumerate().rev() {
         let frame = &model.frames[at];
         let (rotation, position) = &frame.relative;
         let moved = relative(graph, calculus, frame);
+        let freedoms = by_velocities(model, graph, moved);
         let before = multiply3(graph, &axes, &transpose3(rotation));
-        for (column, (slide, turn)) in columns.iter_mut().zip(by_velocities(model, graph, moved)) {
-            let slide = apply3(graph, &before, slide);
-            let lever = if place < border {
-                let turned = apply3(graph, &axes, turn);
-                cross(graph, turned, arm)
-            } else {
-                let lever = cross(graph, turn, levers[place]);
-                apply3(graph, &axes, lever)
-            };
-            let turn = apply3(graph, &axes, turn);
-            let speed = add3(graph, slide, lever);
-            *column = (add3(graph, column.0, speed), add3(graph, column.1, turn));
-        }
-        let way = apply3(graph, &before, *position);
-        arm = add3(graph, arm, way);
+        let arm = match place < border {
+            true => Arm::Placed(way),
+            false => Arm::Own(levers[place]),
+        };
+        add_joint(graph, &mut columns, freedoms, [&before, &axes], &arm);
+        let further = apply3(graph, &before, *position);
+        way = add3(graph, way, further);
         axes = before;
     }
     columns

@@ -9,7 +9,7 @@ use crate::model::Model;
 
 /// How poses along a chain are multiplied where sums of angles are known.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+enum Order {
     /// As the description does, from the world outwards.
     Given,
     /// R₀ (R₁ R₂), what turns about parallel axes first.
@@ -18,12 +18,31 @@ pub enum Order {
     Inwards,
 }
 
-/// The model in a graph in which the sines and cosines of sums of angles about parallel axes are known from the start,
-/// so that all that is equal to them is they; `None` where no two joints before the frame have parallel axes.
-pub fn with_sums(model: &Model, index: usize, order: Order) -> Option<Model> {
+/// What turns about parallel axes one after the other, before a frame.
+struct Runs {
+    /// Signs and coordinates of the joints.
+    joints: Vec<Vec<(bool, usize)>>,
+    /// The frames that begin a run, or another motion.
+    begins: Vec<usize>,
+}
+
+/// The model in graphs in which the sines and cosines of sums of angles about parallel axes are known from the start,
+/// so that all that is equal to them is they; none where no two joints before the frame have parallel axes.
+pub fn with_sums(model: &Model, index: usize) -> Vec<Model> {
+    let runs = runs(model, index);
+    if runs.joints.is_empty() {
+        return Vec::new();
+    }
+    let orders = [Order::Given, Order::Outwards, Order::Inwards];
+    orders
+        .map(|order| summed(model, index, &runs, order))
+        .into()
+}
+
+/// The runs of joints with parallel axes.
+fn runs(model: &Model, index: usize) -> Runs {
     let mut graph = model.graph.clone();
     let mut calculus = Calculus::new(model);
-    // Runs of joints with parallel axes: signs and coordinates. The frames that begin one.
     let mut runs: Vec<Vec<(bool, usize)>> = Vec::new();
     let mut begins = Vec::new();
     let mut last: Option<Vec3> = None;
@@ -64,9 +83,14 @@ pub fn with_sums(model: &Model, index: usize, order: Order) -> Option<Model> {
         last = Some(axis);
     }
     runs.retain(|run| run.len() > 1);
-    if runs.is_empty() {
-        return None;
+    Runs {
+        joints: runs,
+        begins,
     }
+}
+
+/// The model in such a graph.
+fn summed(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
     let mut known = model.graph.fresh();
     let symbols = model.graph.symbols().iter().enumerate();
     let mut reals = Vec::new();
@@ -76,7 +100,7 @@ pub fn with_sums(model: &Model, index: usize, order: Order) -> Option<Model> {
         reals.push(model.graph.reals(place));
     }
     known.set_reals(reals);
-    for run in &runs {
+    for run in &runs.joints {
         for first in 0..run.len() {
             let angles = run[first..].iter().map(|&(sign, coordinate)| {
                 let symbol = known.symbols()[model.points.first + coordinate].node;
@@ -98,7 +122,7 @@ pub fn with_sums(model: &Model, index: usize, order: Order) -> Option<Model> {
         let entries = rebuild(&model.graph, graph, &entries);
         let rotation: Mat3 = [0, 1, 2].map(|i| [0, 1, 2].map(|j| entries[3 * i + j]));
         let position: Vec3 = [9, 10, 11].map(|i| entries[i]);
-        poses.push((begins.contains(&at), (rotation, position)));
+        poses.push((runs.begins.contains(&at), (rotation, position)));
     }
     let identity: Pose = (identity3(graph), zero3(graph));
     let (mut base, mut inner) = (identity, identity);
@@ -126,7 +150,7 @@ pub fn with_sums(model: &Model, index: usize, order: Order) -> Option<Model> {
             }
         }
     }
-    Some(model.carried(known, rebuild))
+    model.carried(known, rebuild)
 }
 
 /// Axes by columns, origin.
