@@ -7,6 +7,7 @@
 //!
 //! `cargo run --release -p control --bin bicycle`
 
+use control::Noise;
 use hamel::methods::Rkmk4;
 use hamel::{State, StepError, System, step, step_slopes};
 use nalgebra::{Matrix1, SMatrix, SVector};
@@ -91,22 +92,6 @@ fn regulator(speed: f64) -> Result<Option<SMatrix<f64, 1, STATES>>, StepError> {
         p = weight + a.transpose() * p * (a - b * gain);
     }
     Ok(Some(gain * t.transpose()))
-}
-
-/// Normal numbers by Box and Muller from a linear congruential generator, so that every ride is the same.
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        let next = self.0.wrapping_mul(6_364_136_223_846_793_005);
-        self.0 = next.wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
 }
 
 /// A ride from a push: the greatest lean (rad) and the greatest distance from the line in the last second (m), or the

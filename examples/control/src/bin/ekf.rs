@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release -p control --bin ekf`
 
+use control::Noise;
 use hamel::methods::Rkmk4;
 use hamel::{State, StepError, System, manifold, step, step_slopes};
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -39,23 +40,6 @@ const N: usize = 12;
 const M: usize = 9;
 
 type Square = SMatrix<f64, N, N>;
-
-/// Numbers of the normal distribution, by Box and Muller from a linear congruential generator.
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-}
 
 /// What is measured, y = (r, Rᵀ e₃, Rᵀ e₁).
 fn measured(state: &State<Drone<f64>>) -> SVector<f64, M> {

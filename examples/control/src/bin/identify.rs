@@ -4,6 +4,7 @@
 //!
 //! `cargo run --release -p control --bin identify`
 
+use control::Noise;
 use nalgebra::{DMatrix, DVector};
 
 hamel::rigid_eom! {
@@ -41,24 +42,6 @@ const NOISE: f64 = 0.05;
 
 /// Angles, rates and accelerations.
 type Sample = [[f64; N]; 3];
-
-/// Random numbers by a linear congruential generator, so that every run is the same.
-struct Noise(u64);
-
-impl Noise {
-    /// A number between 0 and 1.
-    fn uniform(&mut self) -> f64 {
-        let next = self.0.wrapping_mul(6_364_136_223_846_793_005);
-        self.0 = next.wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-    }
-
-    /// A normal one, by Box and Muller.
-    fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
-    }
-}
 
 /// A motion that is a sum of five harmonics in each joint, with random phases.
 fn motion(noise: &mut Noise) -> Vec<Sample> {
