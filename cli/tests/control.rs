@@ -5,15 +5,16 @@
 
 #[path = "common/installed.rs"]
 mod installed;
+#[path = "common/pinocchio.rs"]
+mod pinocchio;
 
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::{Generated, from_text};
-use hamel_codegen::model::Model;
 use hamel_codegen::program::count::count;
 use hamel_codegen::program::interpret::Interpreter;
-use hamel_codegen::syntax::ast::CoordKind;
 use hamel_codegen::urdf::{Options, import};
 use installed::installed;
+use pinocchio::{control, coordinates, list, velocities};
 use serde_json::Value;
 use std::path::Path;
 
@@ -26,20 +27,9 @@ fn quantities_for_control_agree_with_pinocchio() {
         eprintln!("not tested: the URDF files are absent; tests/robots/install.sh installs them");
         return;
     };
-    let root = match std::env::var_os("HAMEL_CONTROL_REFERENCE") {
-        Some(folder) => folder.into(),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/reference/control"),
-    };
-    let mut compared = 0;
-    for entry in std::fs::read_dir(root).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.extension().is_some_and(|kind| kind == "json") {
-            let json = std::fs::read_to_string(&path).expect("a file");
-            agrees(&folder, &serde_json::from_str(&json).expect("JSON"));
-            compared += 1;
-        }
+    for robot in control() {
+        agrees(&folder, &robot);
     }
-    assert!(compared >= 2);
 }
 
 /// A robot without damping, and all that is compared.
@@ -79,12 +69,6 @@ fn agrees(folder: &Path, reference: &Value) {
     let name = reference["robot"].as_str().expect("a name");
     let (generated, joints, text) = described(folder, reference);
     let model = &generated.active;
-    let joint = |of: &str| -> String {
-        let pairs = joints.iter();
-        let pair = pairs.filter(|(_, name)| of == name || of.starts_with(&format!("{name}_")));
-        let pair = pair.max_by_key(|(_, name)| name.len());
-        pair.map_or_else(|| "root_joint".into(), |(file, _)| file.clone())
-    };
     let call = |function: &str, x: &[f64], xi: &[f64], u: &[f64]| -> Vec<f64> {
         let found = generated.program.function(function);
         let found = found.unwrap_or_else(|| panic!("{name}: no {function}"));
@@ -100,8 +84,8 @@ fn agrees(folder: &Path, reference: &Value) {
         assert!(error < TOLERANCE, "{name}: {what} differs by {error:.1e}");
     };
     for sample in reference["samples"].as_array().expect("samples") {
-        let x = coordinates(model, sample, &joint);
-        let xi = velocities(model, sample, &joint);
+        let x = coordinates(model, sample, &joints);
+        let xi = velocities(model, sample, &joints);
         let force = list(&sample["force"]);
         // The wrench on a floating base, force before torque, then the motors.
         let u = force;
@@ -163,35 +147,6 @@ fn agrees(folder: &Path, reference: &Value) {
     );
 }
 
-fn coordinates(model: &Model, sample: &Value, joint: &impl Fn(&str) -> String) -> Vec<f64> {
-    let mut x = Vec::new();
-    for coordinate in &model.coordinates {
-        let value = &sample["configuration"][joint(&coordinate.name)];
-        match coordinate.kind {
-            CoordKind::Euclidean(_) => x.extend(list(&value["position"])),
-            CoordKind::SO3 => x.extend(list(&value["rotation"])),
-            CoordKind::S1 => {
-                let (sin, cos) = value.as_f64().expect("an angle").sin_cos();
-                x.extend([cos, sin]);
-            }
-            _ => x.push(value.as_f64().expect("a number")),
-        }
-    }
-    x
-}
-
-fn velocities(model: &Model, sample: &Value, joint: &impl Fn(&str) -> String) -> Vec<f64> {
-    let groups = model.velocities.iter().flat_map(|group| {
-        let value = &sample["velocity"][joint(&group.name)];
-        match group.name.as_str() {
-            "root_joint_v" => list(&value["linear"]),
-            "root_joint_w" => list(&value["angular"]),
-            _ => list(value),
-        }
-    });
-    groups.collect()
-}
-
 /// The name of a link in a description: that of a joint is taken.
 fn word(link: &str, text: &str) -> String {
     let word = link.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_");
@@ -210,14 +165,6 @@ fn product(rows: &[f64], vector: &[f64]) -> Vec<f64> {
 /// Linear rows, then angular ones.
 fn both(value: &Value) -> Vec<f64> {
     [list(&value["linear"]), list(&value["angular"])].concat()
-}
-
-/// All numbers of a value, rows one after the other.
-fn list(value: &Value) -> Vec<f64> {
-    match value {
-        Value::Array(entries) => entries.iter().flat_map(list).collect(),
-        other => vec![other.as_f64().expect("a number")],
-    }
 }
 
 /// What a Jacobian of a last link takes, in axes of the world and in its own.

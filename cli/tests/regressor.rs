@@ -4,6 +4,8 @@
 mod common;
 #[path = "common/installed.rs"]
 mod installed;
+#[path = "common/pinocchio.rs"]
+mod pinocchio;
 
 use common::{hamel, text};
 use hamel_codegen::algebra::fp::Random;
@@ -18,9 +20,10 @@ use hamel_codegen::model::layout::Block;
 use hamel_codegen::program::count::count;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::proof::regressor::prove;
-use hamel_codegen::syntax::{ast::CoordKind, parse_text};
+use hamel_codegen::syntax::parse_text;
 use hamel_codegen::urdf::{Options, import};
 use installed::installed;
+use pinocchio::{control, coordinates, joint, list, velocities};
 use serde_json::Value;
 use std::path::Path;
 
@@ -73,7 +76,7 @@ fn many(random: &mut Random, count: usize) -> Vec<f64> {
 }
 
 /// Random coordinates of a model.
-fn coordinates(model: &Model, random: &mut Random) -> Vec<f64> {
+fn anywhere(model: &Model, random: &mut Random) -> Vec<f64> {
     let mut x = Vec::new();
     for block in &model.blocks {
         match block {
@@ -130,7 +133,7 @@ fn is_force(description: &str, count: usize) {
     let random = &mut Random::new(7);
     let model = &plain.model;
     for _ in 0..5 {
-        let x = coordinates(model, random);
+        let x = anywhere(model, random);
         let (xi, xi_dot) = (many(random, model.n()), many(random, model.n()));
         let numbers = numbers(model, &x, &xi, &xi_dot);
         let beta = beta(&plain, &numbers);
@@ -290,23 +293,9 @@ fn columns_agree_with_pinocchio() {
         eprintln!("not tested: the URDF files are absent; tests/robots/install.sh installs them");
         return;
     };
-    let root = match std::env::var_os("HAMEL_CONTROL_REFERENCE") {
-        Some(folder) => folder.into(),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/reference/control"),
-    };
-    let mut compared = 0;
-    for entry in std::fs::read_dir(root).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path
-            .extension()
-            .is_some_and(|extension| extension == "json")
-        {
-            let json = std::fs::read_to_string(&path).expect("a file");
-            agrees(&folder, &serde_json::from_str(&json).expect("JSON"));
-            compared += 1;
-        }
+    for robot in control() {
+        agrees(&folder, &robot);
     }
-    assert!(compared >= 2);
 }
 
 fn agrees(folder: &Path, reference: &Value) {
@@ -320,41 +309,12 @@ fn agrees(folder: &Path, reference: &Value) {
     let imported = import(&urdf, &options, "robot.urdf", false).expect("a robot");
     let found = found(&imported.text);
     let model = &found.model;
-    let joint = |of: &str| -> String {
-        let pairs = imported.joints.iter();
-        let pair = pairs.filter(|(_, name)| of == name || of.starts_with(&format!("{name}_")));
-        let pair = pair.max_by_key(|(_, name)| name.len());
-        pair.map_or_else(|| "root_joint".into(), |(file, _)| file.clone())
-    };
-    let flat = |value: &Value| -> Vec<f64> { list(value) };
+    let joints = &imported.joints;
     let (mut worst, mut size) = (0.0_f64, 0.0_f64);
     for sample in reference["samples"].as_array().expect("samples") {
-        let mut x = Vec::new();
-        for coordinate in &model.coordinates {
-            let value = &sample["configuration"][joint(&coordinate.name)];
-            match coordinate.kind {
-                CoordKind::Euclidean(_) => x.extend(flat(&value["position"])),
-                CoordKind::SO3 => x.extend(flat(&value["rotation"])),
-                CoordKind::S1 => {
-                    let (sin, cos) = value.as_f64().expect("an angle").sin_cos();
-                    x.extend([cos, sin]);
-                }
-                _ => x.push(value.as_f64().expect("a number")),
-            }
-        }
-        let velocity = |of: &Value| -> Vec<f64> {
-            let groups = model.velocities.iter().flat_map(|group| {
-                let value = &of[joint(&group.name)];
-                match group.name.as_str() {
-                    "root_joint_v" => flat(&value["linear"]),
-                    "root_joint_w" => flat(&value["angular"]),
-                    _ => flat(value),
-                }
-            });
-            groups.collect()
-        };
-        let xi = velocity(&sample["velocity"]);
-        let xi_dot = flat(&sample["regressor"]["acceleration"]);
+        let x = coordinates(model, sample, joints);
+        let xi = velocities(model, sample, joints);
+        let xi_dot = list(&sample["regressor"]["acceleration"]);
         let numbers = numbers(model, &x, &xi, &xi_dot);
         let rows = sample["regressor"]["matrix"].as_array().expect("rows");
         let order: Vec<&str> = reference["velocity_order"]
@@ -366,7 +326,7 @@ fn agrees(folder: &Path, reference: &Value) {
         let ours: Vec<String> = model
             .velocities
             .iter()
-            .flat_map(|group| vec![joint(&group.name); group.len])
+            .flat_map(|group| vec![joint(joints, &group.name); group.len])
             .collect();
         assert_eq!(ours, order, "{name}");
         for (body, one) in reference["bodies"]
@@ -375,7 +335,7 @@ fn agrees(folder: &Path, reference: &Value) {
             .iter()
             .enumerate()
         {
-            let moved = |of: &&Joint| one["joint"] == joint(&of.name).as_str();
+            let moved = |of: &&Joint| one["joint"] == joint(joints, &of.name).as_str();
             let frame = &model.joints.iter().find(moved).expect("a joint").frame;
             let own: Vec<usize> = (0..found.standard.len())
                 .filter(|&k| found.standard[k].of == *frame)
@@ -405,12 +365,4 @@ fn agrees(folder: &Path, reference: &Value) {
         found.base.len()
     );
     assert!(worst <= 1e-9 * size, "{name}: {:.1e}", worst / size);
-}
-
-/// All numbers of a value, rows one after the other.
-fn list(value: &Value) -> Vec<f64> {
-    match value {
-        Value::Array(entries) => entries.iter().flat_map(list).collect(),
-        other => vec![other.as_f64().expect("a number")],
-    }
 }
