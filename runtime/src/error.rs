@@ -5,16 +5,22 @@ use core::fmt;
 
 /// Why ξ̇ has no value: a pivot that has to be positive is zero, negative or not finite.
 ///
-/// Pivots are counted from 0. Those that depend on parameters alone are checked when parameters are set, and
-/// counted on their own.
+/// Rows and pivots are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Singular {
-    /// The mass matrix M is not positive definite: some motion has no inertia. With constraints that multipliers
-    /// keep, also S = B M⁻¹ Bᵀ, where rows of B depend on one another.
+    /// The mass matrix M is not positive definite: some motion along one velocity, with others free to follow or
+    /// held as they were eliminated, has no inertia.
     Inertia {
-        /// The pivot of the factorisation that is not positive, in the order of elimination.
-        pivot: usize,
+        /// The velocity by its name in the description: `q_dot`, `w[2]`.
+        velocity: &'static str,
+    },
+    /// The mass matrix M is not positive definite, or an inertia that parameters give is not.
+    Mass,
+    /// The constraints B ξ = 0 that multipliers keep depend on one another: S = B M⁻¹ Bᵀ is singular.
+    Constraints {
+        /// The row of B that depends on others.
+        row: usize,
     },
     /// The mechanism is at a kinematic singularity (a linkage is locked, a lever has no length): the definitions
     /// of the velocities and the constraints, [Y; Φ] of KR18 (5), do not determine ẋ.
@@ -26,8 +32,18 @@ pub enum Singular {
 
 impl Singular {
     /// [`Inertia`](Self::Inertia), as generated code writes it.
-    pub const fn inertia(pivot: usize) -> Self {
-        Self::Inertia { pivot }
+    pub const fn inertia(velocity: &'static str) -> Self {
+        Self::Inertia { velocity }
+    }
+
+    /// [`Mass`](Self::Mass), as generated code writes it.
+    pub const fn mass() -> Self {
+        Self::Mass
+    }
+
+    /// [`Constraints`](Self::Constraints), as generated code writes it.
+    pub const fn constraints(row: usize) -> Self {
+        Self::Constraints { row }
     }
 
     /// [`Kinematics`](Self::Kinematics), as generated code writes it.
@@ -39,10 +55,14 @@ impl Singular {
 impl fmt::Display for Singular {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Inertia { pivot } => write!(
+            Self::Inertia { velocity } => write!(
                 f,
-                "the mass matrix is not positive definite: pivot {pivot} (from 0) of its factorisation is \
-                 not positive"
+                "the mass matrix is not positive definite: the velocity `{velocity}` has no inertia"
+            ),
+            Self::Mass => f.write_str("the mass matrix is not positive definite"),
+            Self::Constraints { row } => write!(
+                f,
+                "the constraints depend on one another: row {row} (from 0) adds nothing to the others"
             ),
             Self::Kinematics { pivot } => write!(
                 f,

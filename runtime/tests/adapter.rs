@@ -77,7 +77,7 @@ fn what_fails_is_told() {
             if x[0] < 1.0 {
                 Ok([0.0])
             } else {
-                Err(Singular::Inertia { pivot: 0 })
+                Err(Singular::Mass)
             }
         },
     };
@@ -88,7 +88,7 @@ fn what_fails_is_told() {
     equations.rates(0.25, &[1.5, 1.0], &mut y_dot);
     assert!(y_dot.iter().all(|rate| rate.is_nan()));
     let cause = StepError::Singular {
-        cause: Singular::Inertia { pivot: 0 },
+        cause: Singular::Mass,
         time: 0.25,
     };
     assert_eq!(equations.failure(), Some(cause));

@@ -250,7 +250,7 @@ const WALL: Points<1> = Points {
         if x[0] < 1.0 {
             Ok([0.0])
         } else {
-            Err(Singular::Inertia { pivot: 0 })
+            Err(Singular::Mass)
         }
     },
 };

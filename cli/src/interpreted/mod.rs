@@ -11,7 +11,7 @@ use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::layout;
 use hamel_codegen::program::interpret::Interpreter;
-use hamel_codegen::program::{Argument, Program, Shape};
+use hamel_codegen::program::{Argument, Cause, Program, Shape};
 use momenta::Functions;
 use std::cell::{Cell, RefCell};
 
@@ -39,7 +39,7 @@ pub struct Interpreted {
     potential: Interpreter,
     outputs: Vec<Output>,
     /// For every guard of `accel` its number among the pivots of [Y; Φ], if it is one.
-    kinematic: Vec<Option<usize>>,
+    causes: Vec<Cause>,
     invariants: Vec<Output>,
     functions: Functions,
     evaluations: Cell<u64>,
@@ -104,7 +104,7 @@ impl Interpreted {
             kinetic: function("kinetic_energy")?,
             potential: function("potential_energy")?,
             outputs: outputs.collect::<Result<_, Failure>>()?,
-            kinematic: kinematic(program),
+            causes: causes(program),
             invariants: invariants.collect::<Result<_, Failure>>()?,
             functions: Functions::new(program, &state.params)?,
             evaluations: Cell::new(0),
@@ -154,7 +154,17 @@ impl Interpreted {
 
     fn projection(&self, pivot: usize) -> Singular {
         self.fails(Failed::Projection);
-        Singular::Inertia { pivot }
+        self.cause(pivot)
+    }
+
+    /// What it means that a guard of ξ̇ is not positive; the projections have the same ones.
+    fn cause(&self, guard: usize) -> Singular {
+        match self.causes.get(guard) {
+            Some(&Cause::Kinematics(pivot)) => Singular::Kinematics { pivot },
+            Some(&Cause::Constraint(row)) => Singular::Constraints { row },
+            // The velocity is named where the failure is told, with its line.
+            _ => Singular::Mass,
+        }
     }
 
     fn fails(&self, what: Failed) {
@@ -235,13 +245,11 @@ impl Interpreted {
     }
 }
 
-/// Which guards of `accel` are pivots of [Y; Φ].
-fn kinematic(program: &Program) -> Vec<Option<usize>> {
-    let guards = program
-        .function("accel")
-        .map_or(&[][..], |accel| &accel.guards);
-    let pivots = guards.iter().map(|&guard| program.kinematic_pivot(guard));
-    pivots.collect()
+/// What the guards of `accel` belong to.
+fn causes(program: &Program) -> Vec<Cause> {
+    let accel = program.function("accel");
+    let guards = accel.into_iter().flat_map(|accel| &accel.guards);
+    guards.map(|&guard| program.cause(guard)).collect()
 }
 
 /// Compiles one function.
@@ -327,14 +335,11 @@ impl System for Interpreted {
     fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         self.count();
         let Some(accel) = &self.accel else {
-            return Err(Singular::Inertia { pivot: 0 });
+            return Err(Singular::Mass);
         };
         accel.call(x, xi, u, &[]).map_err(|pivot| {
             self.fails(Failed::Motion(x.clone()));
-            match self.kinematic.get(pivot).copied().flatten() {
-                Some(pivot) => Singular::Kinematics { pivot },
-                None => Singular::Inertia { pivot },
-            }
+            self.cause(pivot)
         })
     }
 

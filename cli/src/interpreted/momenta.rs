@@ -148,9 +148,9 @@ impl Canonical for Interpreted {
 
     fn velocity_from_momentum(&self, x: &Vec<f64>, p: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         match &self.functions.velocity {
-            Some(velocity) => velocity.call_with([x, &[], &[], &[], p]).map_err(|pivot| {
+            Some(velocity) => velocity.call_with([x, &[], &[], &[], p]).map_err(|_| {
                 self.fails(Failed::Motion(x.clone()));
-                Singular::Inertia { pivot }
+                Singular::Mass
             }),
             None => Ok(vec![f64::NAN; p.len()]),
         }

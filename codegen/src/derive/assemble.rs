@@ -15,8 +15,9 @@ use crate::algebra::transplant::{copy, rebuild};
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
 use crate::program::structure::Structure;
-use crate::program::{Argument, Function, FunctionId, Program};
+use crate::program::{Argument, Cause, Function, FunctionId, Program};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
+use rustc_hash::FxHashSet;
 
 /// Derives the functions of a model that are wanted; `reduction` solves its constraints, `regressor` are its base
 /// parameters where they are wanted. The program is
@@ -261,8 +262,12 @@ impl Builder<'_> {
             None => model.asked.wants_output(&function.name),
         });
         let constants = &model.completion.constants;
+        let first = self.kinematic_guards.len();
         self.kinematic_guards
             .extend(rebuild(&model.graph, &mut self.graph, constants));
+        let all = self.kinematic_guards.iter().copied().enumerate();
+        let new = all.map(|(number, pivot)| (pivot, Cause::Kinematics(number)));
+        self.causes.splice(first..first, new.skip(first));
         let of_parameters = |edge: &Edge| self.graph.is_free(edge.node());
         let kinematic = self.kinematic_guards.iter().copied().filter(of_parameters);
         let mut constant_guards: Vec<Edge> = if self.functions.iter().any(|f| f.fallible) {
@@ -277,7 +282,14 @@ impl Builder<'_> {
             Vec::new()
         };
         constant_guards.extend(&self.constant_guards);
+        // What fails first is told: later pivots are computed from earlier ones.
+        constant_guards.sort_by_key(|guard| guard.node());
         let loops = self.loops().len();
+        // What is a number, or guards nothing, asks nobody.
+        let guards = self.functions.iter().flat_map(|function| &function.guards);
+        let guards: FxHashSet<Edge> = guards.chain(&constant_guards).copied().collect();
+        let mut causes = self.causes;
+        causes.retain(|(pivot, _)| guards.contains(pivot));
         Program {
             name: model.name.clone(),
             public: model.public,
@@ -300,7 +312,7 @@ impl Builder<'_> {
             start_xi: [&model.start_xi[..], &model.start_z].concat(),
             names,
             constant_guards,
-            kinematic_guards: self.kinematic_guards,
+            causes,
             functions: self.functions,
             structure,
         }

@@ -18,7 +18,7 @@ use crate::algebra::transplant::graft;
 use crate::functions::SLOPES;
 use crate::model::invariants::Quantity;
 use crate::model::{Model, class};
-use crate::program::{Argument, Function, FunctionId, Shape};
+use crate::program::{Argument, Cause, Function, FunctionId, Shape};
 use Argument::{Coordinates, Inputs, Velocities};
 
 impl Builder<'_> {
@@ -89,6 +89,8 @@ impl Builder<'_> {
             return;
         }
         let pivots = xi.split_off(n);
+        let causes = (0..n).map(Cause::Velocity);
+        self.causes.extend(pivots.iter().copied().zip(causes));
         let varying = |edge: &Edge| !self.graph.is_free(edge.node());
         let guards = pivots.into_iter().filter(varying).collect();
         let id = FunctionId::VelocityFromMomentum;
@@ -110,14 +112,17 @@ impl Builder<'_> {
             motions.push((chosen, apart(chosen)));
         }
         motions.extend(chosen.other.as_deref().map(|other| (other, apart(other))));
-        let mut best: Option<((usize, usize), Linear)> = None;
+        let mut best: Option<((usize, usize), Linear, Vec<Cause>)> = None;
         for (motion, Computation { mut graph, parts }) in motions {
             let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
                 return;
             };
             let right = parts.right(&mut graph);
             let varying = |edge: &Edge| !graph.is_free(edge.node());
-            let guards: Vec<Edge> = motion.pivots.iter().copied().filter(varying).collect();
+            let causes = self.causes_of(motion).into_iter();
+            let known = motion.pivots.iter().copied().zip(causes);
+            let (guards, causes): (Vec<Edge>, Vec<Cause>) =
+                known.filter(|(pivot, _)| varying(pivot)).unzip();
             let nearby = Motion {
                 graph: &graph,
                 xi_dot: &motion.xi_dot,
@@ -129,15 +134,16 @@ impl Builder<'_> {
             };
             let linear = linearize(self.model, &nearby, &self.care);
             let cost = linear.cost();
-            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                best = Some((cost, linear));
+            if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+                best = Some((cost, linear, causes));
             }
         }
-        let Some((_, linear)) = best else {
+        let Some((_, linear, causes)) = best else {
             return;
         };
         let mut outputs = graft(&linear.graph, &mut self.graph, &linear.roots());
         let guards = outputs.split_off(outputs.len() - linear.guards.len());
+        self.causes.extend(guards.iter().copied().zip(causes));
         let columns = linear.rows.first().map_or(1, Vec::len);
         let mut rows: Vec<Vec<Edge>> = outputs.chunks(columns).map(<[Edge]>::to_vec).collect();
         if !self.model.states.is_empty() {

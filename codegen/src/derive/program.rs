@@ -8,7 +8,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
 use crate::model::Model;
 use crate::model::value::Value;
-use crate::program::{Function, FunctionId, Shape};
+use crate::program::{Cause, Function, FunctionId, Shape};
 
 /// Models with more velocities are looked at for lack of inertia by M as it is traced: the literal one, n²
 /// entries of all bodies, would take longer than all else.
@@ -32,6 +32,8 @@ pub(super) struct Builder<'a> {
     pub(super) care: Care,
     /// Pivots of [Y; Φ].
     pub(super) kinematic_guards: Vec<Edge>,
+    /// What it means where a guard is not positive.
+    pub(super) causes: Vec<(Edge, Cause)>,
     /// What else has to be positive when parameters are set: pivots of the inertias of a system that splits, where M has
     /// none that are constant; the mass that centres of mass are divided by.
     pub(super) constant_guards: Vec<Edge>,
@@ -51,9 +53,12 @@ impl<'a> Builder<'a> {
             graph: around,
         };
         let kinematic_guards = rebuild(&model.graph, &mut graph, &model.completion.pivots);
-        Builder {
+        let numbered = kinematic_guards.iter().copied().enumerate();
+        let causes = numbered.map(|(number, pivot)| (pivot, Cause::Kinematics(number)));
+        let mut builder = Builder {
             model,
             graph,
+            causes: causes.collect(),
             chosen,
             parts,
             shared,
@@ -61,7 +66,22 @@ impl<'a> Builder<'a> {
             care: care.clone(),
             kinematic_guards,
             constant_guards: Vec::new(),
-        }
+        };
+        let causes = builder.causes_of(&builder.chosen);
+        let pivots = builder.chosen.pivots.iter().copied();
+        builder.causes.extend(pivots.zip(causes));
+        builder
+    }
+
+    /// What the pivots of a computation of ξ̇ belong to.
+    pub(super) fn causes_of(&self, motion: &Acceleration) -> Vec<Cause> {
+        let n = self.model.n();
+        let of = |number: usize| match number.checked_sub(n) {
+            None if motion.twist => Cause::Mass,
+            None => Cause::Velocity(number),
+            Some(row) => Cause::Constraint(row),
+        };
+        (0..motion.pivots.len()).map(of).collect()
     }
 
     /// Adds a function that always has a value.

@@ -1,11 +1,11 @@
 //! Doc comments.
 
 use super::names;
-use crate::algebra::graph::{Edge, NodeId};
+use crate::algebra::graph::NodeId;
 use crate::model::layout::Block;
 use crate::model::{Coordinate, Group};
 use crate::program::count::{Count, count_nodes};
-use crate::program::{Argument, Function, Program, Shape};
+use crate::program::{Argument, Cause, Function, Program, Shape};
 use crate::syntax::ast::{CoordKind, ShapeKind};
 
 /// Width at which lists of names are broken.
@@ -67,19 +67,33 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
     lines.extend([String::new(), format!("Returns {result}.")]);
     if function.fallible {
         lines.extend([String::new(), "# Errors".into()]);
-        lines.push(
-            "`Singular::Inertia` where a pivot of the mass matrix is not positive and finite."
-                .into(),
-        );
-        let kinematic = |guard: &Edge| program.kinematic_pivot(*guard).is_some();
-        if function.guards.iter().any(kinematic) {
-            lines.push(
-                "`Singular::Kinematics` where a pivot of [Y; Φ] has changed sign: the mechanism is at a kinematic singularity."
-                    .into(),
-            );
-        }
+        let why = missing(program, function);
+        lines.push(format!("`Singular` where {why}."));
     }
     lines
+}
+
+/// When a function has no value: what its guards see.
+pub fn missing(program: &Program, function: &Function) -> String {
+    let causes = function.guards.iter().map(|&guard| program.cause(guard));
+    let causes: Vec<Cause> = causes.collect();
+    let has = |of: fn(&Cause) -> bool| causes.iter().any(of);
+    let reasons = [
+        (
+            has(|cause| matches!(cause, Cause::Constraint(_))),
+            "constraints depend on one another",
+        ),
+        (
+            has(|cause| matches!(cause, Cause::Kinematics(_))),
+            "the mechanism is at a kinematic singularity, where a pivot of [Y; Φ] changes its sign",
+        ),
+    ];
+    let mut text = String::from("the mass matrix is not positive definite");
+    for (_, reason) in reasons.iter().filter(|(holds, _)| *holds) {
+        text += ", or ";
+        text += reason;
+    }
+    text
 }
 
 /// What a function evaluates, its cost, and its arguments.

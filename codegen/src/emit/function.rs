@@ -9,7 +9,7 @@ use super::places::Time;
 use super::print::{Printer, Used};
 use super::{Emitter, names};
 use crate::algebra::graph::{Edge, NodeId};
-use crate::program::{Argument, Shape};
+use crate::program::{Argument, Cause, Shape};
 use rustc_hash::FxHashSet;
 
 /// What a function is.
@@ -41,12 +41,16 @@ pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
     let locals = Locals::new(&emitter.words, &emitter.program.names, &spec.nodes);
     let named = locals.named();
     let places = &emitter.places;
+    let guards = spec.guards.iter();
+    let guards: Vec<(Edge, Cause)> = guards
+        .map(|&guard| (guard, emitter.program.cause(guard)))
+        .collect();
     let body = super::lower::lower(
         places,
         spec.time,
         &spec.nodes,
         &spec.outputs,
-        &spec.guards,
+        &guards,
         &named,
     );
     (locals, body)

@@ -2,6 +2,7 @@
 
 use super::number;
 use crate::algebra::graph::{Function, Graph, NodeId};
+use crate::program::{Cause, Program};
 
 /// A value that an operation reads.
 pub struct Operand {
@@ -51,7 +52,7 @@ pub trait Language {
     fn function(&self, function: Function, operand: &Operand) -> String;
     /// Leaves the function unless a pivot is positive: a pivot of [Y; Φ], by its number among these, or of the
     /// mass matrix, by its number among the pivots.
-    fn check(&self, pivot: &Operand, kinematic: Option<usize>, number: usize) -> String;
+    fn check(&self, pivot: &Operand, cause: Cause, program: &Program) -> String;
 }
 
 /// Rust, generic over the scalar `S`.
@@ -100,10 +101,14 @@ impl Language for Rust {
         format!("{}.{}", operand.receiver(), function.row().rust)
     }
 
-    fn check(&self, pivot: &Operand, kinematic: Option<usize>, number: usize) -> String {
-        let error = match kinematic {
-            Some(number) => format!("::hamel::Singular::kinematics({number})"),
-            None => format!("::hamel::Singular::inertia({number})"),
+    fn check(&self, pivot: &Operand, cause: Cause, program: &Program) -> String {
+        let error = match cause {
+            Cause::Velocity(place) => {
+                format!("::hamel::Singular::inertia({:?})", program.velocity(place))
+            }
+            Cause::Mass => "::hamel::Singular::mass()".into(),
+            Cause::Constraint(row) => format!("::hamel::Singular::constraints({row})"),
+            Cause::Kinematics(number) => format!("::hamel::Singular::kinematics({number})"),
         };
         let pivot = pivot.receiver();
         format!("if !{pivot}.is_positive() {{ return Err({error}); }}\n")

@@ -6,6 +6,7 @@
 use super::places::{Place, Places, Time};
 use super::sums::sums;
 use crate::algebra::graph::{Component, Edge, Function, Graph, Node, NodeId};
+use crate::program::Cause;
 use num_traits::Signed;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -31,7 +32,7 @@ pub enum Operation {
     /// A function in Rust, or its slopes.
     Call(Call),
     /// Leaves the function unless a pivot is positive.
-    Check(usize, Edge),
+    Check(Cause, Edge),
 }
 
 /// A call of a function in Rust.
@@ -79,7 +80,7 @@ impl Operation {
             Operation::Apply(function, a) => Operation::Apply(function, to(a)),
             Operation::Atan2(y, x) => Operation::Atan2(to(y), to(x)),
             Operation::Select(c, a, b) => Operation::Select(to(c), to(a), to(b)),
-            Operation::Check(pivot, a) => Operation::Check(pivot, to(a)),
+            Operation::Check(cause, a) => Operation::Check(cause, to(a)),
             Operation::Call(call) => Operation::Call(Call {
                 arguments: call.arguments.iter().map(|&a| to(a)).collect(),
                 ..call
@@ -128,11 +129,11 @@ pub fn lower(
     time: Time,
     nodes: &[NodeId],
     outputs: &[Edge],
-    guards: &[Edge],
+    guards: &[(Edge, Cause)],
     named: &FxHashSet<NodeId>,
 ) -> Body {
     let graph = places.graph();
-    let roots = outputs.iter().chain(guards);
+    let roots = outputs.iter().chain(guards.iter().map(|(guard, _)| guard));
     let mut sums = sums(places, time, nodes, roots, named);
     // Functions that hold off X too are copied into the graph unmerged, so that a sine or cosine may have
     // several nodes. All are read from the first.
@@ -152,22 +153,25 @@ pub fn lower(
         let known = first.get(&edge.node());
         known.map_or(edge, |&node| Edge::of(node).signed(edge.is_negative()))
     };
-    let guards: Vec<Edge> = guards.iter().map(|&guard| read(guard)).collect();
-    let mut checks: FxHashMap<NodeId, Vec<usize>> = FxHashMap::default();
+    let guards = guards.iter().map(|&(guard, cause)| (read(guard), cause));
+    let mut checks: FxHashMap<NodeId, Vec<(Edge, Cause)>> = FxHashMap::default();
     let mut statements = Vec::new();
-    for (pivot, &guard) in guards.iter().enumerate() {
+    for (guard, cause) in guards {
         match places.of(guard.node(), time) {
-            Place::Temporary => checks.entry(guard.node()).or_default().push(pivot),
+            Place::Temporary => {
+                let checked = checks.entry(guard.node()).or_default();
+                checked.push((guard, cause));
+            }
             Place::Number if graph.as_rational(guard).is_some_and(|n| n.is_positive()) => {}
-            _ => statements.push(check(pivot, guard)),
+            _ => statements.push(check((guard, cause))),
         }
     }
     let mut push = |mut statement: Statement| {
         statement.operation = statement.operation.map(read);
         let checked = statement.defined().flat_map(|node| checks.remove(&node));
-        let pivots: Vec<usize> = checked.flatten().collect();
+        let pivots: Vec<(Edge, Cause)> = checked.flatten().collect();
         statements.push(statement);
-        statements.extend(pivots.iter().map(|&pivot| check(pivot, guards[pivot])));
+        statements.extend(pivots.into_iter().map(check));
     };
     for (index, &id) in nodes.iter().enumerate() {
         let mut results = [Some(id), None];
@@ -241,9 +245,9 @@ fn calls(graph: &Graph, nodes: &[NodeId]) -> FxHashMap<Key, Call> {
     calls
 }
 
-fn check(pivot: usize, guard: Edge) -> Statement {
+fn check((guard, cause): (Edge, Cause)) -> Statement {
     Statement {
-        operation: Operation::Check(pivot, guard),
+        operation: Operation::Check(cause, guard),
         results: [None, None],
     }
 }

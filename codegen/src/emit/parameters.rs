@@ -70,8 +70,7 @@ pub fn kept_value(group: &Group, name: &str) -> String {
 
 /// What a doc comment says about errors.
 pub fn errors() -> Vec<String> {
-    let text =
-        "`Singular::Inertia` where a constant pivot of the mass matrix is not positive and finite.";
+    let text = "`Singular` where the mass matrix is not positive definite with these parameters.";
     vec![String::new(), "# Errors".into(), text.into()]
 }
 
@@ -150,7 +149,7 @@ pub fn checks(
 ) -> String {
     let program = emitter.program;
     let graph = &program.graph;
-    let check = |(pivot, guard): (usize, &Edge)| {
+    let check = |guard: &Edge| {
         let node = guard.node();
         let value = match is_hoisted(graph, node) {
             true => {
@@ -166,8 +165,7 @@ pub fn checks(
             value: value.unwrap_or_else(|| language.literal(graph, node)),
             negative: guard.is_negative(),
         };
-        language.check(&operand, program.kinematic_pivot(*guard), pivot)
+        language.check(&operand, program.cause(*guard), program)
     };
-    let guards = program.constant_guards.iter().enumerate();
-    guards.map(check).collect()
+    program.constant_guards.iter().map(check).collect()
 }

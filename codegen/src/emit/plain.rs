@@ -1,8 +1,9 @@
 //! The part of Rust that most lines of the generated text are written in, and its parser.
 //!
 //! ```text
-//! statement  let PATTERN = SUM;   PLACE = SUM;   if !SUM { return Err(PATH(NUMBER)); }
+//! statement  let PATTERN = SUM;   PLACE = SUM;   if !SUM { return Err(PATH(WHAT)); }
 //! value      [ENTRY, …]   Ok([ENTRY, …])                          entries are sums, or rows of them
+//! WHAT       nothing, NUMBER or "NAME"
 //! SUM        OPERAND (+ - * /) OPERAND …
 //! OPERAND    - & before a name, a path, a number or (SUM), and behind it [NUMBER] .name .0 (SUM, …)
 //! ```
@@ -156,8 +157,22 @@ impl<'a> Reader<'a> {
     fn leaves(&mut self) -> bool {
         let returns = self.take(b'{') && self.word("return") && self.word("Err") && self.take(b'(');
         let error = returns && self.path();
-        let of = self.take(b'(') && self.integer() && self.take(b')');
+        let of = self.take(b'(') && self.what() && self.take(b')');
         error && of && self.take(b')') && self.take(b';') && self.take(b'}')
+    }
+
+    /// Nothing, a number, or a name in quotes.
+    fn what(&mut self) -> bool {
+        if self.next() == b')' {
+            return true;
+        }
+        if !self.take(b'"') {
+            return self.integer();
+        }
+        !self
+            .run(|byte| !matches!(byte, b'"' | b'\\' | 0))
+            .is_empty()
+            && self.take(b'"')
     }
 
     /// `a`, `mut a`, `_` or `(a, _)`.
@@ -275,7 +290,9 @@ mod tests {
             "out[1][2] = -t1;",
             "*out = t1;",
             "slots[3] = x[0] / a;",
-            "if !(-a).is_positive() { return Err(::hamel::Singular::inertia(1)); }",
+            "if !(-a).is_positive() { return Err(::hamel::Singular::inertia(\"w[2]\")); }",
+            "if !(-a).is_positive() { return Err(::hamel::Singular::inertia(\"ω\")); }",
+            "if !a.is_positive() { return Err(::hamel::Singular::mass()); }",
             "if !k[3].is_positive() { return Err(::hamel::Singular::kinematics(1)); }",
         ] {
             assert!(is_statement(text), "{text}");
@@ -314,6 +331,8 @@ mod tests {
             "a[b] = c;",
             "x;",
             "if !a.is_positive() { return Err(::hamel::Singular::inertia(1); }",
+            "if !a.is_positive() { return Err(::hamel::Singular::inertia(\"w)); }",
+            "if !a.is_positive() { return Err(::hamel::Singular::inertia(w)); }",
             "",
         ] {
             assert!(!is_statement(text), "{text}");

@@ -125,11 +125,10 @@ impl Printer<'_> {
 
     /// A statement; its values go to their slots at once.
     pub fn statement(&mut self, statement: &Statement) -> String {
-        if let Operation::Check(pivot, edge) = statement.operation {
+        if let Operation::Check(cause, edge) = statement.operation {
             self.used.checks = true;
-            let kinematic = self.program.kinematic_pivot(edge);
             let operand = self.operand(edge);
-            return self.language.check(&operand, kinematic, pivot);
+            return self.language.check(&operand, cause, self.program);
         }
         let name = |node: NodeId| self.locals.name(node);
         let mut text = match &statement.operation {

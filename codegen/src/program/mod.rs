@@ -14,6 +14,7 @@ use structure::Structure;
 
 use crate::functions::Returns;
 pub use crate::functions::{Argument, FunctionId};
+use crate::syntax::ast::ShapeKind;
 
 /// The shape of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +25,19 @@ pub enum Shape {
     Vector(usize),
     /// `[[S; columns]; rows]`
     Matrix(usize, usize),
+}
+
+/// What it means where a pivot is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Cause {
+    /// This velocity has no inertia, with those held that were eliminated before it.
+    Velocity(usize),
+    /// The mass matrix, or an inertia that parameters give, is not positive definite.
+    Mass,
+    /// This constraint of those that multipliers keep depends on others.
+    Constraint(usize),
+    /// This pivot of [Y; Φ] has changed its sign, KR18 (5): a kinematic singularity.
+    Kinematics(usize),
 }
 
 /// One generated function.
@@ -137,8 +151,8 @@ pub struct Program {
     pub names: Vec<(String, Edge)>,
     /// Pivots of a mass matrix that is constant at run time: checked when parameters are set.
     pub constant_guards: Vec<Edge>,
-    /// Those guards that are pivots of [Y; Φ], not of the mass matrix, KR18 (5).
-    pub kinematic_guards: Vec<Edge>,
+    /// What it means where a guard is not positive.
+    pub causes: Vec<(Edge, Cause)>,
     /// The functions.
     pub functions: Vec<Function>,
     /// What methods of integration ask of the system.
@@ -146,11 +160,21 @@ pub struct Program {
 }
 
 impl Program {
-    /// The number of a guard among the pivots of [Y; Φ], if it is one.
-    pub fn kinematic_pivot(&self, guard: Edge) -> Option<usize> {
-        self.kinematic_guards
-            .iter()
-            .position(|&pivot| pivot == guard)
+    /// What it means where a guard is not positive.
+    pub fn cause(&self, guard: Edge) -> Cause {
+        let known = self.causes.iter().find(|(pivot, _)| *pivot == guard);
+        known.map_or(Cause::Mass, |(_, cause)| *cause)
+    }
+
+    /// The name of a velocity as the language writes it: `q_dot`, `w[2]`.
+    pub fn velocity(&self, place: usize) -> String {
+        let all = self.velocities.iter();
+        let group = all.rev().find(|group| group.offset <= place);
+        match group {
+            Some(group) if group.shape == ShapeKind::Scalar => group.name.clone(),
+            Some(group) => format!("{}[{}]", group.name, 1 + place - group.offset),
+            None => String::new(),
+        }
     }
 
     /// The length of an argument: states of first order stand behind the velocities, their rates behind ξ̇.

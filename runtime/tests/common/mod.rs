@@ -29,7 +29,7 @@ pub fn solve<S: Scalar, const N: usize>(
                 let pivot = m[j][j];
                 m[i][j] /= pivot;
             } else if !m[i][i].is_positive() {
-                return Err(Singular::Inertia { pivot: i });
+                return Err(Singular::Mass);
             }
         }
     }

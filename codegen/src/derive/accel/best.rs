@@ -15,8 +15,11 @@ pub struct Acceleration {
     pub graph: Graph,
     /// ξ̇.
     pub xi_dot: Vec<Edge>,
-    /// Pivots that have to be positive, in order of elimination.
+    /// Pivots that have to be positive: one for each velocity in their order, then one for each constraint that the
+    /// model keeps.
     pub pivots: Vec<Edge>,
+    /// Whether the velocities that were eliminated are the twist of the one body, not the model's.
+    pub twist: bool,
     /// Multipliers of the constraints that the model keeps.
     pub multipliers: Vec<Edge>,
     /// What leads back to these constraints, where there are some.
@@ -40,6 +43,7 @@ impl Acceleration {
             graph,
             xi_dot: Vec::new(),
             pivots: Vec::new(),
+            twist: false,
             multipliers: Vec::new(),
             projections: None,
             loss: 0,
@@ -155,6 +159,7 @@ fn polished(chosen: Acceleration, model: &Model, care: &Care) -> Acceleration {
         other: None,
         xi_dot: xi_dot.to_vec(),
         pivots: pivots.to_vec(),
+        twist: chosen.twist,
         multipliers: Vec::new(),
         projections: None,
         graph,

@@ -51,6 +51,15 @@ pub fn whole(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
         .collect()
 }
 
+/// Pivots of all velocities from those that are free: 1 where the rate is given, which asks for no inertia.
+pub fn pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
+    let mut all = vec![model.graph.one(); model.n()];
+    for (place, pivot) in free_places(model).into_iter().zip(free) {
+        all[place] = pivot;
+    }
+    all
+}
+
 /// Rows of B ξ̇ = b, one for each rate that is given.
 pub fn rows(model: &Model) -> impl Iterator<Item = Vec<Edge>> {
     let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());

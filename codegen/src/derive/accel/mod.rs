@@ -170,6 +170,7 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
                 graph,
                 xi_dot: hybrid::exact(&setting.model, solution.xi_dot),
                 pivots,
+                twist: false,
                 multipliers: solution.multipliers,
                 projections: Some(projections),
                 loss,
@@ -269,13 +270,9 @@ fn attempt(
     let solution = solve(&mut graph, parts, plan)?;
     let xi_dot = hybrid::whole(&setting.model, solution.xi_dot);
     let xi_dot = setting.leave(&mut graph, xi_dot);
+    let pivots = hybrid::pivots(&setting.model, solution.pivots);
     let mut roots = xi_dot.clone();
-    roots.extend(
-        solution
-            .pivots
-            .iter()
-            .filter(|pivot| !graph.is_free(pivot.node())),
-    );
+    roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
     let (count, depth) = (count(&graph, &roots), depth(&graph, &roots));
     let mut route = route(traced, &plan.order, variant);
     if setting.back.is_some() {
@@ -285,7 +282,8 @@ fn attempt(
         other: None,
         graph,
         xi_dot,
-        pivots: solution.pivots,
+        pivots,
+        twist: setting.back.is_some(),
         multipliers: Vec::new(),
         projections: None,
         loss: 0,

@@ -256,6 +256,7 @@ impl System {
             graph,
             xi_dot,
             pivots,
+            twist: false,
             count,
             depth,
         }

@@ -156,6 +156,7 @@ impl Recursion {
             if let Some(Solution { xi_dot, pivots }) = solution {
                 let route = "links traced, articulated bodies".to_string();
                 let xi_dot = self.driven(&active, |i| xi_dot[i]);
+                let pivots = active.iter().map(|&i| pivots[i]).collect();
                 let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
                 let candidate = candidate(graph, xi_dot, pivots, route);
                 best.keep(Family::Links, candidate);
@@ -191,6 +192,11 @@ impl Recursion {
                 let route = format!("links traced, composite bodies, M eliminated {way}");
                 let place = |i: usize| solved.iter().position(|&place| place == i);
                 let xi_dot = self.driven(&active, |i| place(i).map_or(xi_dot[0], |at| xi_dot[at]));
+                let one = graph.one();
+                let pivots = active
+                    .iter()
+                    .map(|&i| place(i).map_or(one, |at| pivots[at]));
+                let pivots = pivots.collect();
                 let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
                 let candidate = candidate(graph, xi_dot, pivots, route);
                 best.keep(Family::Links, candidate);
@@ -381,6 +387,7 @@ fn candidate(graph: Graph, xi_dot: Vec<Edge>, pivots: Vec<Edge>, route: String) 
         graph,
         xi_dot,
         pivots,
+        twist: false,
         multipliers: Vec::new(),
         projections: None,
         loss: 0,

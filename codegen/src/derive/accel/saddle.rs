@@ -106,10 +106,15 @@ pub fn factored(
 }
 
 impl Factored {
-    /// Pivots of M in order of elimination, then of S in order of rows; a pivot of S vanishes where
+    /// Pivots of M in order of velocities, then of S in order of rows; a pivot of S vanishes where
     /// the rows of B become dependent, at a singular configuration.
     pub fn pivots(&self) -> Vec<Edge> {
-        [self.mass.pivots.clone(), self.inner.pivots.clone()].concat()
+        let mut pivots = self.mass.pivots.clone();
+        for (&i, &pivot) in self.order.iter().zip(&self.mass.pivots) {
+            pivots[i] = pivot;
+        }
+        pivots.extend(&self.inner.pivots);
+        pivots
     }
 
     /// ξ̇ and λ of M ξ̇ = f + Bᵀ λ, B ξ̇ = right.

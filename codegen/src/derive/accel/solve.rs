@@ -25,7 +25,7 @@ pub struct Plan {
 pub struct Solution {
     /// ξ̇.
     pub xi_dot: Vec<Edge>,
-    /// Pivots of D, in order of elimination.
+    /// Pivots of D, one for each velocity in their order, whatever the order of elimination; 1 where a rate is given.
     pub pivots: Vec<Edge>,
 }
 
@@ -112,11 +112,15 @@ pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> 
             w[c] = graph.sub(w[c], product);
         }
     }
-    let mut xi_dot = vec![zero; n];
+    let mut solution = Solution {
+        xi_dot: vec![zero; n],
+        pivots: vec![zero; n],
+    };
     for (place, &i) in plan.order.iter().enumerate() {
-        xi_dot[i] = w[place];
+        solution.xi_dot[i] = w[place];
+        solution.pivots[i] = pivots[place];
     }
-    Some(Solution { xi_dot, pivots })
+    Some(solution)
 }
 
 /// M⁻¹ B for n rows of B, M factored once from the last velocity to the first: what is zero in M

@@ -47,7 +47,7 @@ pub fn forward(
     }
     let mut bias = wrenches.to_vec();
     let mut pivots: Vec<Vec<Pivot>> = tree.links.iter().map(|_| Vec::new()).collect();
-    let mut guards = Vec::new();
+    let mut guards = vec![graph.one(); load.len()];
     for (index, link) in tree.links.iter().enumerate().rev() {
         for freedom in link.freedoms.iter().filter(|f| !f.is_given(given)) {
             let whole = inertia[index].wrench(graph, freedom.angular, freedom.linear);
@@ -57,7 +57,7 @@ pub fn forward(
             let own = freedom.felt(graph, &whole);
             let pivot = graph.add(own, tree.armature[i]);
             let inverse = graph.div(graph.one(), pivot)?;
-            guards.push(pivot);
+            guards[i] = pivot;
             let felt = freedom.felt(graph, &bias[index]);
             let rest = graph.sub(load[i], felt);
             let share = whole.scaled(graph, inverse);

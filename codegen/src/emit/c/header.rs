@@ -5,7 +5,7 @@ use crate::emit::function::Spec;
 use crate::emit::names::{Unique, argument};
 use crate::emit::views::{Field, input_fields, state_fields};
 use crate::emit::{docs, limits};
-use crate::program::Program;
+use crate::program::{Cause, Program};
 use crate::syntax::ast::ShapeKind;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -172,45 +172,42 @@ fn types(texts: &Texts) -> String {
 /// All that a function can return.
 fn status(texts: &Texts) -> String {
     let names = &texts.names;
-    let [inertia, kinematics] = pivots(texts.program());
+    let program = texts.program();
     let mut text = format!(
-        "/** Whether there is a value, and else why there is none. Pivots are counted from 0; those that depend on\n * parameters alone are checked when these are set, and counted on their own. */\ntypedef enum {} {{\n    /** There is one. */\n    {} = 0",
+        "/** Whether there is a value, and else why there is none. Velocities, rows and pivots are counted from 0. */\ntypedef enum {} {{\n    /** There is one. */\n    {} = 0",
         names.own("status"),
         names.done()
     );
-    for pivot in kinematics {
+    for (number, cause) in causes(program).into_iter().enumerate() {
+        let meaning = match cause {
+            Cause::Velocity(place) => format!(
+                "The mass matrix is not positive definite: the velocity `{}` has no inertia.",
+                program.velocity(place)
+            ),
+            Cause::Mass => "The mass matrix is not positive definite.".into(),
+            Cause::Constraint(row) => {
+                format!("The constraint of row {row} depends on the others.")
+            }
+            Cause::Kinematics(pivot) => format!(
+                "The mechanism is at a kinematic singularity: pivot {pivot} of [Y; Φ] has changed sign."
+            ),
+        };
         let _ = write!(
             text,
-            ",\n    /** The mechanism is at a kinematic singularity: pivot {pivot} of [Y; Φ] has changed sign. */\n    {} = -{}",
-            names.status(Some(pivot), 0),
-            pivot + 1
-        );
-    }
-    for pivot in inertia {
-        let _ = write!(
-            text,
-            ",\n    /** The mass matrix is not positive definite: pivot {pivot} of its factorisation is not positive. */\n    {} = {}",
-            names.status(None, pivot),
-            pivot + 1
+            ",\n    /** {meaning} */\n    {} = {}",
+            names.status(cause),
+            number + 1
         );
     }
     text + &format!("\n}} {};\n\n", names.own("status"))
 }
 
-/// The pivots of the mass matrix and of [Y; Φ] that are checked anywhere.
-fn pivots(program: &Program) -> [BTreeSet<usize>; 2] {
-    let mut sets = [BTreeSet::new(), BTreeSet::new()];
+/// What can be missing in any function, or when parameters are set.
+fn causes(program: &Program) -> BTreeSet<Cause> {
     let functions = program.functions.iter().filter(|f| f.fallible);
-    let lists = functions.map(|function| &function.guards);
-    for guards in lists.chain([&program.constant_guards]) {
-        for (index, &guard) in guards.iter().enumerate() {
-            match program.kinematic_pivot(guard) {
-                Some(number) => sets[1].insert(number),
-                None => sets[0].insert(index),
-            };
-        }
-    }
-    sets
+    let guards = functions.flat_map(|function| &function.guards);
+    let guards = guards.chain(&program.constant_guards);
+    guards.map(|&guard| program.cause(guard)).collect()
 }
 
 /// The functions that are not those of the description.

@@ -3,6 +3,7 @@
 use super::names::Identifiers;
 use crate::algebra::graph::{Function, Graph, Node, NodeId};
 use crate::emit::language::{Language, Operand};
+use crate::program::{Cause, Program};
 use num_traits::ToPrimitive;
 use std::fmt;
 use std::str::FromStr;
@@ -148,9 +149,9 @@ impl Language for C<'_> {
         format!("{name}({})", operand.signed())
     }
 
-    fn check(&self, pivot: &Operand, kinematic: Option<usize>, number: usize) -> String {
+    fn check(&self, pivot: &Operand, cause: Cause, _: &Program) -> String {
         let positive = self.names.own("is_positive");
-        let (pivot, status) = (pivot.signed(), self.names.status(kinematic, number));
+        let (pivot, status) = (pivot.signed(), self.names.status(cause));
         format!("if (!{positive}({pivot})) {{\n    return {status};\n}}\n")
     }
 }

@@ -22,7 +22,7 @@ mod source;
 
 use super::function::{Spec, draw};
 use super::{Emitter, docs};
-use crate::algebra::graph::{Edge, NodeId};
+use crate::algebra::graph::NodeId;
 use crate::program::{Function, Program};
 use language::C;
 pub use language::Precision;
@@ -125,14 +125,10 @@ fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Ve
     };
     lines.push(format!("- `out`: {result}{rows}"));
     if function.fallible {
-        let kinematic = |guard: &Edge| program.kinematic_pivot(*guard).is_some();
-        let either = match function.guards.iter().any(kinematic) {
-            true => "a pivot of the mass matrix or of [Y; Φ]",
-            false => "a pivot of the mass matrix",
-        };
+        let why = docs::missing(program, function);
         lines.extend([
             String::new(),
-            format!("Returns a status other than 0, and leaves `out` alone, where {either} is not positive and finite."),
+            format!("Returns a status other than 0, and leaves `out` alone, where {why}."),
         ]);
     }
     lines

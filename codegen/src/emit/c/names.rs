@@ -11,7 +11,7 @@
 //! themselves gets `_`, whether it would do harm in its place or not: so a name depends on nothing but itself.
 
 use crate::emit::names::{Names, Unique, Words, snake};
-use crate::program::Program;
+use crate::program::{Cause, Program};
 
 /// Keywords of C up to C23 and of C++ up to C++20 beyond those of Rust, names of the headers that generated text
 /// includes, and what common systems define as macros; in lines of words.
@@ -136,11 +136,13 @@ impl Identifiers {
     }
 
     /// The name of a status.
-    pub fn status(&self, kinematic: Option<usize>, number: usize) -> String {
+    pub fn status(&self, cause: Cause) -> String {
         let capitals = &self.capitals;
-        match kinematic {
-            Some(number) => format!("{capitals}_STATUS_KINEMATICS_{number}"),
-            None => format!("{capitals}_STATUS_INERTIA_{number}"),
+        match cause {
+            Cause::Velocity(place) => format!("{capitals}_STATUS_INERTIA_{place}"),
+            Cause::Mass => format!("{capitals}_STATUS_INERTIA"),
+            Cause::Constraint(row) => format!("{capitals}_STATUS_CONSTRAINT_{row}"),
+            Cause::Kinematics(number) => format!("{capitals}_STATUS_KINEMATICS_{number}"),
         }
     }
 

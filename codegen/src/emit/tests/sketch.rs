@@ -111,7 +111,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
         start_xi: vec![0.25; xi.len()],
         names: Vec::new(),
         constant_guards: Vec::new(),
-        kinematic_guards: Vec::new(),
+        causes: Vec::new(),
         functions: Vec::new(),
         structure: Structure {
             split: Err(Vec::new()),

@@ -7,7 +7,8 @@ use hamel_codegen::emit::c::Precision;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::states::states;
 use hamel_codegen::program::interpret::Interpreter;
-use hamel_codegen::program::{Argument, Function, Program};
+use hamel_codegen::program::{Argument, Cause, Function, Program};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// States at random, besides those that the generator measures its programs at.
@@ -253,12 +254,17 @@ fn interpreted(
             _ => f64::INFINITY,
         };
     }
+    // Statuses are numbered in the order of what can be missing, 0 where nothing is.
+    let guards = program
+        .functions
+        .iter()
+        .filter(|function| function.fallible);
+    let guards = guards.flat_map(|function| &function.guards);
+    let guards = guards.chain(&program.constant_guards);
+    let causes: BTreeSet<Cause> = guards.map(|&guard| program.cause(guard)).collect();
     let status = |pivot: usize| -> i64 {
-        let guard = function.guards[pivot];
-        match program.kinematic_pivot(guard) {
-            Some(number) => -1 - number as i64,
-            None => 1 + pivot as i64,
-        }
+        let cause = program.cause(function.guards[pivot]);
+        1 + causes.range(..cause).count() as i64
     };
     (value.map_err(status), doubt)
 }
