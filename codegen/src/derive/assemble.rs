@@ -268,7 +268,10 @@ impl Builder<'_> {
         let all = self.kinematic_guards.iter().copied().enumerate();
         let new = all.map(|(number, pivot)| (pivot, Cause::Kinematics(number)));
         self.causes.splice(first..first, new.skip(first));
-        let of_parameters = |edge: &Edge| self.graph.is_free(edge.node());
+        // Numbers were found positive when M was.
+        let of_parameters = |edge: &Edge| {
+            self.graph.is_free(edge.node()) && self.graph.as_rational(*edge).is_none()
+        };
         let kinematic = self.kinematic_guards.iter().copied().filter(of_parameters);
         let mut constant_guards: Vec<Edge> = if self.functions.iter().any(|f| f.fallible) {
             self.chosen
