@@ -164,6 +164,13 @@ table! {
         "The linearisation in displacement coordinates, [A B] with d/dt (h, δξ) = A (h, δξ) + B δu,",
         "where δx = A(x) h: ḣᵏ = δξᵏ − γᵢⱼᵏ ξⁱ hʲ, δξ̇ = ∂ⱼF hʲ + ∂F/∂ξ δξ + ∂F/∂u δu for ξ̇ = F(x, ξ, u).",
     ]
+    InverseDynamicsSlopes "inverse_dynamics_slopes" (Coordinates, Velocities, Accelerations) Linear Asked false true [
+        "Slopes [∂f/∂h ∂f/∂ξ] of the force f of `inverse_dynamics` by displacements δx = A(x) h and by velocities, by rows;",
+        "∂f/∂ξ̇ is the mass matrix.",
+    ]
+    ParameterSlopes "parameter_slopes" (Coordinates, Velocities, Inputs) Linear Asked true true [
+        "Slopes ∂ξ̇/∂p of `accel` at constant x, ξ and u by the parameters, by rows; a column for each number of",
+    ]
     Regressor "regressor" (Coordinates, Velocities, Accelerations) Linear Asked false true [
         "Regressor Y(x, ξ, ξ̇), n rows of as many columns as there are base parameters: the force f = Y β that ξ̇ needs,",
         "with that of dampers. Columns are those of these standard parameters, in this order:",
@@ -375,9 +382,21 @@ impl Asked {
         let maps = [FunctionId::CentroidalMap, FunctionId::CentroidalBias];
         let along = match row.serves {
             _ if id == FunctionId::BaseParameters => self.names(FunctionId::Regressor),
+            // What slopes are taken of is emitted with them.
+            _ if id == FunctionId::InverseDynamics
+                && self.names(FunctionId::InverseDynamicsSlopes) =>
+            {
+                true
+            }
             // Map and bias are slopes of the momentum, which is emitted with them.
             _ if id == FunctionId::CentroidalMomentum => maps.iter().any(|&map| self.names(map)),
-            Serves::System => self.names(FunctionId::Accel) || self.names(FunctionId::Linearize),
+            Serves::System => [
+                FunctionId::Accel,
+                FunctionId::Linearize,
+                FunctionId::ParameterSlopes,
+            ]
+            .iter()
+            .any(|&id| self.names(id)),
             Serves::Split => self.names(FunctionId::Splitting),
             Serves::Tangent => self.names(FunctionId::Linearize),
             Serves::Callers | Serves::Asked => false,

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use tree::{ALL, Kind, Link, text};
 
 /// Step of differences that are extrapolated to fourth order.
-const STEP: f64 = 1e-3;
+const STEP: f64 = 2e-4;
 /// Of the largest entry: h⁴ with what derivatives there are, and roundings over h.
 const CLOSE: f64 = 1e-8;
 
@@ -128,15 +128,27 @@ fn case(path: &Path) -> Option<Case> {
     if asked.len() == 1 {
         return None;
     }
+    let case = asked_for(path, &asked.join(", "));
+    Some(case.unwrap_or_else(|errors| panic!("{errors}")))
+}
+
+/// A model that is asked for these functions, near its start and not at rest; what is said where they are refused.
+fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
+    let text = std::fs::read_to_string(path).expect("a text");
+    let mut open = |name: &str| std::fs::read_to_string(path.with_file_name(name));
     let kept = text
         .lines()
         .filter(|line| !line.trim().starts_with("generate"));
     let kept = kept.collect::<Vec<_>>().join("\n");
-    let (kept, _) = kept.rsplit_once('}')?;
-    let text = format!("{kept}\n    generate {};\n}}\n", asked.join(", "));
-    let name = path.file_stem()?.to_string_lossy().into_owned();
+    let (kept, _) = kept.rsplit_once('}').expect("an end");
+    let text = format!("{kept}\n    generate {asked};\n}}\n");
+    let name = path
+        .file_stem()
+        .expect("a name")
+        .to_string_lossy()
+        .into_owned();
     let generated = from_file(&text, &mut open)
-        .unwrap_or_else(|errors| panic!("{name}:\n{}", render(&errors, &name, &text, false)));
+        .map_err(|errors| format!("{name}:\n{}", render(&errors, &name, &text, false)))?;
     let model = &generated.active;
     // Somewhere near the start, and not at rest.
     let moving = |i: usize| 0.3 + 0.17 * i as f64 - 0.01 * (i * i) as f64;
@@ -144,7 +156,7 @@ fn case(path: &Path) -> Option<Case> {
     let n = model.n();
     let xi = xi.iter().enumerate();
     let xi = xi.map(|(i, v)| if i < n { v + moving(i) } else { *v });
-    Some(Case {
+    Ok(Case {
         x: model.start_x.clone(),
         xi: xi.collect(),
         u: (0..model.m()).map(moving).collect(),
@@ -178,6 +190,73 @@ fn what_is_observed_agrees_with_differences() {
         frames > 60 && centroidal > 20 && slopes > 20,
         "{frames} {centroidal} {slopes}"
     );
+}
+
+/// Of inverse dynamics by displacements and velocities, and of ξ̇ by parameters.
+#[test]
+fn slopes_of_dynamics_agree_with_differences() {
+    let (mut inverse, mut parameters) = (0, 0);
+    for path in models() {
+        if let Ok(case) = asked_for(&path, "linearize, inverse_dynamics_slopes") {
+            inverse_slopes(&case);
+            inverse += 1;
+        }
+        match asked_for(&path, "parameter_slopes") {
+            Ok(case) => {
+                parameter_slopes(&case);
+                parameters += 1;
+            }
+            Err(why) => assert!(why.contains("`parameter_slopes` is not known"), "{why}"),
+        }
+    }
+    assert!(inverse > 60 && parameters > 50, "{inverse} {parameters}");
+}
+
+fn inverse_slopes(case: &Case) {
+    let (n_x, n) = (case.x.len(), case.generated.active.n());
+    let frame = case.call("displacement_frame", &case.x, &case.xi, &[]);
+    let h = frame.len() / n_x;
+    let xi_dot: Vec<f64> = (0..case.xi.len()).map(|i| 0.7 - 0.2 * i as f64).collect();
+    let found = case.call("inverse_dynamics_slopes", &case.x, &case.xi, &xi_dot);
+    assert_eq!(found.len(), n * (h + n), "{}", case.name);
+    for column in 0..h + n {
+        let ours: Vec<f64> = found.iter().skip(column).step_by(h + n).copied().collect();
+        let along = |d: f64| {
+            let (mut x, mut xi) = (case.x.clone(), case.xi.clone());
+            match column.checked_sub(h) {
+                None => x
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(i, x)| *x += d * frame[i * h + column]),
+                Some(j) => xi[j] += d,
+            }
+            case.call("inverse_dynamics", &x, &xi, &xi_dot)
+        };
+        case.same("a slope of inverse dynamics", &ours, &slope(along));
+    }
+}
+
+fn parameter_slopes(case: &Case) {
+    let program = &case.generated.program;
+    let defaults = &case.generated.model.defaults;
+    let found = case.call("parameter_slopes", &case.x, &case.xi, &[]);
+    let accel = program.function("accel").expect("ξ̇");
+    for column in 0..defaults.len() {
+        let ours = found.iter().skip(column).step_by(defaults.len());
+        let ours: Vec<f64> = ours.copied().collect();
+        let along = |d: f64| {
+            let mut params = defaults.clone();
+            params[column] += d;
+            let changed = Interpreter::new(program, accel, &params);
+            let value = changed.call(&case.x, &case.xi, &case.u, &[]);
+            value.unwrap_or_else(|pivot| panic!("{}: pivot {pivot}", case.name))
+        };
+        // Steps that are short for parameters of any size.
+        let scale = 1e-2 * defaults[column].abs().clamp(1e-3, 1.0);
+        let slopes = slope(|d| along(d * scale));
+        let ours: Vec<f64> = ours.iter().map(|slope| slope * scale).collect();
+        case.same("a slope by a parameter", &ours, &slopes);
+    }
 }
 
 /// Random trees with all kinds of joints, mounts in any direction, frames placed on frames, joints that follow others.

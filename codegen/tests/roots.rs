@@ -342,3 +342,19 @@ fn products_mean_the_factor_of_the_start() {
     let errors = errors.expect_err("a crossing");
     assert!(!errors[0].message.contains("internal"), "{errors:?}");
 }
+
+/// Whether log n is a square modulo p is a matter of chance, and its root is outside of F_p where it is none.
+#[test]
+fn roots_of_roots_of_logarithms_have_values() {
+    for n in 2..60 {
+        let text = format!(
+            "system A {{ param a = 2; coord x, y; velocity v, w; rate x = v; rate y = w; kinetic v^2/2 + w^2/2; \
+             output o = sqrt(sqrt(log({n})) + x * a); output none = sqrt(sqrt(log({n})) - a - 9); \
+             start x = 1.25; start y = 0.75; }}"
+        );
+        let of = generated(&text);
+        let found = value(&of, "o", [&[1.25, 0.75], &[], &[], &[]])[0];
+        let expected = (f64::from(n).ln().sqrt() + 2.5).sqrt();
+        assert!((found - expected).abs() < CLOSE, "{n}: {found}");
+    }
+}

@@ -91,6 +91,8 @@ fn put_together(
     builder.outputs();
     builder.frames();
     builder.centroidal(full)?;
+    builder.inverse_slopes(full, reduction);
+    builder.parameter_slopes(full)?;
     if let Some(regressor) = regressor {
         builder.regressor(regressor);
     }
@@ -161,7 +163,7 @@ impl Builder<'_> {
     }
 
     /// ż, with ξ̇ as it is computed.
-    fn state_rates(&mut self) -> Vec<Edge> {
+    pub(super) fn state_rates(&mut self) -> Vec<Edge> {
         let model = self.model;
         let rates = rebuild(&model.graph, &mut self.graph, &model.state_rates);
         with_accelerations(&mut self.graph, &rates, &self.chosen.xi_dot)

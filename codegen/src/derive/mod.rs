@@ -36,6 +36,7 @@ pub(crate) mod commutation;
 pub(crate) mod complement;
 pub(crate) mod connection;
 pub mod correction;
+mod derivatives;
 pub(crate) mod energy;
 mod frames;
 mod further;

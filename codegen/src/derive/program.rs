@@ -99,6 +99,14 @@ impl<'a> Builder<'a> {
         });
     }
 
+    /// Gives the function that was added last so many columns.
+    pub(super) fn shaped(&mut self, columns: usize) {
+        if let Some(function) = self.functions.last_mut() {
+            let rows = function.outputs.len() / columns.max(1);
+            function.shape = Shape::Matrix(rows, columns);
+        }
+    }
+
     /// Pivots that vary at run time.
     pub(super) fn guards(&self) -> Vec<Edge> {
         let pivots = self.chosen.pivots.iter().copied();

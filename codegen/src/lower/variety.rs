@@ -174,6 +174,10 @@ impl Variety {
         if let Some(point) = point(&self.points) {
             return point;
         }
+        // Only roots have no values: the graph will say so, and more of them are allowed next.
+        if let Some(point) = point(&self.points.without_roots()) {
+            return point;
+        }
         let statements: Vec<usize> = self
             .origins
             .iter()

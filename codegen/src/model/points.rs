@@ -15,6 +15,8 @@ use rustc_hash::FxHashMap;
 
 /// Points tried until all square roots have values; each root halves the chance.
 const TRIES: usize = 4000;
+/// At so many seeds roots of numbers have to have values: where it is a matter of chance, one of them has none.
+const SEEDS: u64 = 16;
 /// Those after which roots of non-squares are allowed.
 const STRICT_TRIES: usize = 300;
 /// With more independent roots the tries would be too many.
@@ -166,9 +168,9 @@ impl Points {
         // The same roots once more: a graph tells |e| from e by another sign, which is no square.
         let again = !self.radicals.is_empty() && graph.is_stuck();
         self.radicals = radicals;
-        let varying = |root: &&Edge| self.free.class(root.node()) != 0;
-        let count = self.radicals.iter().filter(varying).count();
-        let many = count > MOST_STRICT;
+        let (varying, fixed): (Vec<Edge>, Vec<Edge>) =
+            (self.radicals.iter()).partition(|root| self.free.class(root.node()) != 0);
+        let many = varying.len() > MOST_STRICT;
         let mut random = Random::new(0x5_71c7);
         for roots in [Roots::OfSquares, Roots::Extended] {
             let skipped = self.roots == Roots::Anything
@@ -188,11 +190,29 @@ impl Points {
                 )
                 .is_some()
             };
-            if found(1) && found(2) {
+            if (0..SEEDS).all(|seed| self.keeps(&fixed, seed)) && found(1) && found(2) {
                 return;
             }
         }
         self.roots = Roots::Anything;
+    }
+
+    /// Whether roots of numbers have values for functions with this seed. No choice of a point helps where log 9 is
+    /// no square: its root is outside of F_p, and x + √log 9 is no square of F_p for any x.
+    fn keeps(&self, fixed: &[Edge], seed: u64) -> bool {
+        let values = self.unconstrained(&mut Random::new(0));
+        let mut lane = self.lane_of(&values, seed);
+        let inside = |value: &Fp| value.0.is_prime() && value.1.is_prime();
+        let found = evaluate_at(&self.free, fixed, &mut lane);
+        found.is_some_and(|found| self.roots != Roots::OfSquares || found.iter().all(inside))
+    }
+
+    /// The same variety where roots need no values.
+    pub fn without_roots(&self) -> Self {
+        Points {
+            radicals: Vec::new(),
+            ..self.clone()
+        }
     }
 
     /// The user's constraints as polynomials in the coordinates.

@@ -32,6 +32,7 @@ pub mod check;
 pub mod confidence;
 pub(crate) mod constrained;
 pub mod correction;
+mod derivatives;
 pub mod forms;
 mod frames;
 pub(crate) mod gibbs;

@@ -7,7 +7,7 @@
 
 use super::hamel_form;
 use super::reference::Reference;
-use super::{centroidal, frames, outputs, states};
+use super::{centroidal, derivatives, frames, outputs, states};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
@@ -125,6 +125,9 @@ impl Slopes {
         }
         if !measured_at(&self.model, program, [lane, lane])? {
             return Some(Err(MEASURE.into()));
+        }
+        if !derivatives::hold(&self.model, program, [lane, lane])? {
+            return Some(Err(derivatives::WHAT.into()));
         }
         if !frames::hold(&self.model, program, lane)? {
             return Some(Err(frames::WHAT.into()));

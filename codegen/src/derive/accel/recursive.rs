@@ -335,14 +335,38 @@ impl Recursion {
     /// ∂(f − M ξ̇ − Γ ξ ξ − ∂V) along displacements, velocities and inputs at constant ξ̇: n rows of
     /// 2 n + m, in `into`, where ξ̇ is F. `None` where a joint varies with x.
     pub fn slopes(&self, into: &mut Graph, rates: &[Edge]) -> Option<Vec<Vec<Edge>>> {
+        let mut graph = self.model.graph.clone();
+        let load = self.load(&mut graph);
+        self.slopes_under(&load, graph, into, rates)
+    }
+
+    /// ∂(M ξ̇ + Γ ξ ξ + ∂V) along displacements and velocities at constant ξ̇: n rows of 2 n, in `into`. `None` where a
+    /// joint varies with x.
+    pub fn inverse_slopes(&self, into: &mut Graph) -> Option<Vec<Vec<Edge>>> {
+        let rates = self.model.xi_dot.clone();
+        let graph = self.model.graph.clone();
+        let mut rows = self.slopes_under(&self.elastic, graph, into, &rates)?;
+        for row in &mut rows {
+            row.truncate(2 * self.model.n());
+            row.iter_mut().for_each(|entry| *entry = -*entry);
+        }
+        Some(rows)
+    }
+
+    /// ∂(load − M ξ̇ − Γ ξ ξ) with what weighs, ξ̇ held and given in `into`.
+    fn slopes_under(
+        &self,
+        load: &[Edge],
+        mut graph: Graph,
+        into: &mut Graph,
+        rates: &[Edge],
+    ) -> Option<Vec<Vec<Edge>>> {
         if self.free.is_some() {
             return None;
         }
-        let mut graph = self.model.graph.clone();
         let model = &self.model;
         let (xi, xi_dot) = (&model.xi, &model.xi_dot);
         let found = slopes(&mut graph, &self.tree, xi, xi_dot, model.gravity)?;
-        let load = self.load(&mut graph);
         let one = graph.one();
         let mut along: Vec<Derivation> = (0..xi.len())
             .map(|j| {

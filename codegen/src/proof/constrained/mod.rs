@@ -9,7 +9,7 @@ use super::kernel::{in_kernel, places, rows_at_rest};
 use super::points::{POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict, failure};
-use super::{centroidal, frames, outputs, states};
+use super::{centroidal, derivatives, frames, outputs, states};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function};
 use crate::algebra::lane::Lane;
@@ -26,7 +26,7 @@ use num_rational::BigRational;
 use point::At;
 
 /// What is compared, with the label and equation that `check` prints.
-const IDENTITIES: [(&str, &str); 12] = [
+const IDENTITIES: [(&str, &str); 13] = [
     ("C", "B C = 0 for the rows that were solved"),
     (
         "(30c)",
@@ -46,6 +46,10 @@ const IDENTITIES: [(&str, &str); 12] = [
     (
         "nearby",
         "the emitted [A B] are the slopes of ẋ and ξ̇ along δx = A h",
+    ),
+    (
+        "slopes",
+        "the emitted slopes are those of inverse dynamics, and of ξ̇ by parameters",
     ),
     ("states", "ż as described, with the emitted ξ̇"),
     (
@@ -251,6 +255,12 @@ fn is_there(label: &str, reduction: &Reduction, program: &Program) -> bool {
     match label {
         "C" => !reduction.solved.is_empty(),
         "B" => !reduction.kept.is_empty() || !reduction.model.accelerated.is_empty(),
+        "slopes" => [
+            FunctionId::InverseDynamicsSlopes,
+            FunctionId::ParameterSlopes,
+        ]
+        .iter()
+        .any(|&id| program.function(id).is_some()),
         "states" => !reduction.model.states.is_empty(),
         "outputs" => {
             let mut outputs = reduction.model.outputs.iter();
@@ -445,6 +455,7 @@ fn at_point(
         .collect();
     let same_mass = same_mass && equal("momentum", project(&momentum))?;
     let nearby = at.nearby()?;
+    let same_slopes = derivatives::hold(&full.reference.model, program, [&at.point, inner])?;
     let same_outputs = outputs::values_hold(&full.reduced, program, inner)?;
     let same_momentum = centroidal::holds(&full.reduced, program, inner)?;
     let same_frames = frames::hold(&full.reduced, program, inner)?;
@@ -458,6 +469,7 @@ fn at_point(
         result(same_loads, "a force or energy differs"),
         Ok(()),
         result(nearby, "a slope differs"),
+        result(same_slopes, derivatives::WHAT),
         result(same_states, "ż differs"),
         result(same_outputs, "an output differs"),
         result(same_frames, frames::WHAT),

@@ -23,7 +23,7 @@ pub(super) struct At<'a> {
     /// c.
     pub(super) shift: Vec<Fp>,
     /// The point of the full model.
-    point: Lane,
+    pub(super) point: Lane,
     /// That of the reduced one.
     pub(super) inner: Lane,
 }
