@@ -1,5 +1,5 @@
 //! What controllers ask for, of real robots against Pinocchio: poses, Jacobians and bias accelerations of frames, the
-//! centre of mass, momenta and the centroidal map, and the slopes of ξ̇.
+//! centre of mass, momenta and the centroidal map, and the slopes of ξ̇ and of inverse dynamics.
 //!
 //! `HAMEL_CONTROL_REFERENCE` names a folder with further robots.
 
@@ -59,7 +59,7 @@ fn described(folder: &Path, reference: &Value) -> (Generated, Vec<(String, Strin
         .map(|frame| format!("jacobian {frame} in world, jacobian {frame} in {frame}"))
         .collect();
     let text = format!(
-        "{text} generate linearize, centre_of_mass, centroidal_map, {}; }}",
+        "{text} generate linearize, inverse_dynamics_slopes, centre_of_mass, centroidal_map, {}; }}",
         frames.join(", ")
     );
     (from_text(&text).expect("a program"), imported.joints, text)
@@ -135,14 +135,26 @@ fn agrees(folder: &Path, reference: &Value) {
         same("∂ξ̇/∂h", &part(0), &slopes("displacement"));
         same("∂ξ̇/∂ξ", &part(n), &slopes("velocity"));
         same("∂ξ̇/∂f", &part(2 * n), &slopes("force"));
+        let inverse = &sample["inverse_dynamics"];
+        let xi_dot = list(&inverse["acceleration"]);
+        let function = generated.program.function("inverse_dynamics_slopes");
+        let function = function.expect("slopes of inverse dynamics");
+        let interpreter = Interpreter::new(&generated.program, function, &model.defaults);
+        let found = interpreter.call(&x, &xi, &[], &xi_dot).expect("a value");
+        let rows = found.chunks(2 * n);
+        let (left, right): (Vec<&[f64]>, Vec<&[f64]>) = rows.map(|row| row.split_at(n)).unzip();
+        let wanted = |by: &str| list(&inverse[format!("d_force_d_{by}")]);
+        same("∂f/∂h", &left.concat(), &wanted("displacement"));
+        same("∂f/∂ξ", &right.concat(), &wanted("velocity"));
     }
     let operations = |function: &str| {
         let found = generated.program.function(function).expect("a function");
         count(&generated.program.graph, &found.outputs).flops()
     };
     println!(
-        "{name}: {} operations for the slopes, {} for the centroidal map",
+        "{name}: {} operations for the slopes, {} for those of inverse dynamics, {} for the centroidal map",
         operations(FunctionId::Linearize.name()),
+        operations("inverse_dynamics_slopes"),
         operations("centroidal_map")
     );
 }

@@ -14,7 +14,6 @@ use structure::Structure;
 
 use crate::functions::Returns;
 pub use crate::functions::{Argument, FunctionId};
-use crate::syntax::ast::ShapeKind;
 
 /// The shape of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,7 +170,7 @@ impl Program {
         let all = self.velocities.iter();
         let group = all.rev().find(|group| group.offset <= place);
         match group {
-            Some(group) if group.shape == ShapeKind::Scalar => group.name.clone(),
+            Some(group) if group.len == 1 => group.name.clone(),
             Some(group) => format!("{}[{}]", group.name, 1 + place - group.offset),
             None => String::new(),
         }
