@@ -14,7 +14,7 @@ use core::cell::Cell;
 
 use crate::adaptive::control::power;
 use crate::error::StepError;
-use crate::integrate::{acceleration, projected};
+use crate::integrate::{acceleration, project};
 use crate::manifold;
 use crate::scalar::Scalar;
 use crate::state::State;
@@ -69,9 +69,10 @@ where
     pub fn state(&self, t: f64, y: &[Sys::Scalar]) -> Result<State<Sys>, StepError> {
         let (mut x, xi) = self.read(y.iter().copied())?;
         manifold::normalise(self.system.blocks(), x.as_mut());
-        let state = State { t, x, xi };
+        let mut state = State { t, x, xi };
         if state.is_finite() {
-            Ok(projected(self.system, state)?.0)
+            project(self.system, &mut state)?;
+            Ok(state)
         } else {
             Err(StepError::NonFinite { time: t })
         }

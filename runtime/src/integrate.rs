@@ -25,19 +25,17 @@ where
     M: Method<Sys>,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
-    let next = method.step(system, state, h, inputs)?;
-    *state = projected(system, next)?.0;
+    let mut next = method.step(system, state, h, inputs)?;
+    project(system, &mut next)?;
+    *state = next;
     Ok(())
 }
 
-/// The state on the constraints that multipliers keep: loops closed by one Newton step, velocities
-/// by the projection that is orthogonal in kinetic energy. Nothing is done where there are none; the
-/// flag says whether something was.
+/// Moves a state onto the constraints that multipliers keep: loops closed by one Newton step, velocities
+/// by the projection that is orthogonal in kinetic energy. Nothing is done where there are none; whether
+/// something was. In place, as states with slopes are long.
 #[inline]
-pub(crate) fn projected<Sys>(
-    system: &Sys,
-    mut state: State<Sys>,
-) -> Result<(State<Sys>, bool), StepError>
+pub(crate) fn project<Sys>(system: &Sys, state: &mut State<Sys>) -> Result<bool, StepError>
 where
     Sys: System + ?Sized,
 {
@@ -62,7 +60,7 @@ where
         moved = true;
     }
     if state.is_finite() {
-        Ok((state, moved))
+        Ok(moved)
     } else {
         Err(StepError::NonFinite { time })
     }
@@ -102,9 +100,8 @@ where
     observe(state);
     let mut force = None;
     for index in 1..=grid.count {
-        let next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
-        let (next, moved) = projected(system, next)?;
-        if moved {
+        let mut next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
+        if project(system, &mut next)? {
             force = None;
         }
         *state = next;

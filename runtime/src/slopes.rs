@@ -11,7 +11,7 @@
 
 use crate::dual::Dual;
 use crate::error::{Singular, StepError};
-use crate::integrate::step;
+use crate::integrate::project;
 use crate::methods::{InChart, Method};
 use crate::scalar::Scalar;
 use crate::split::Split;
@@ -325,11 +325,11 @@ impl<Sys: Tangent<Dual: Split>> Split for Nearby<Sys> {
 /// A step of length `h` from a state at inputs that are held, and its slopes [A_d B_d].
 ///
 /// Every method that moves coordinates in the chart will do; nothing is allocated. Constraints that multipliers keep
-/// are projected on as in [`step`], slopes with them. Implicit methods end where slopes have converged, too. A run of
+/// are projected on as in [`step`](crate::step()), slopes with them. Implicit methods end where slopes have converged, too. A run of
 /// many steps makes [`Nearby`] once and calls [`step_nearby`].
 ///
 /// # Errors
-/// Those of [`step`].
+/// Those of [`step`](crate::step()).
 pub fn step_slopes<Sys, M>(
     method: &M,
     system: &Sys,
@@ -347,7 +347,7 @@ where
 /// The same of a system that is in dual numbers already.
 ///
 /// # Errors
-/// Those of [`step`].
+/// Those of [`step`](crate::step()).
 pub fn step_nearby<Sys, M>(
     method: &M,
     nearby: &Nearby<Sys>,
@@ -364,16 +364,16 @@ where
     let mut slopes = Sys::Slopes::zero();
     let frame = system.frame(&state.x);
     let displacements = slopes.rows() - state.xi.as_ref().len();
-    let mut varied = State::<Nearby<Sys>> {
+    let mut begin = State::<Nearby<Sys>> {
         t: state.t,
         x: nearby.zero_coordinates(),
         xi: nearby.zero_velocities(),
     };
-    let x = varied.x.as_mut().iter_mut().zip(state.x.as_ref());
+    let x = begin.x.as_mut().iter_mut().zip(state.x.as_ref());
     for (i, (varied, value)) in x.enumerate() {
         *varied = Sys::Number::varying(*value, frame.row(i));
     }
-    let xi = varied.xi.as_mut().iter_mut().zip(state.xi.as_ref());
+    let xi = begin.xi.as_mut().iter_mut().zip(state.xi.as_ref());
     for (i, (varied, value)) in xi.enumerate() {
         *varied = Sys::Number::along(*value, displacements + i);
     }
@@ -382,7 +382,8 @@ where
     for (i, (varied, value)) in held.as_mut().iter_mut().zip(u.as_ref()).enumerate() {
         *varied = Sys::Number::along(*value, first + i);
     }
-    step(nearby, method, &mut varied, h, &|_, _, _| held.clone())?;
+    let mut varied = method.step(nearby, &begin, h, &|_, _, _| held.clone())?;
+    project(nearby, &mut varied)?;
     let mut end = State::<Sys> {
         t: varied.t,
         x: system.zero_coordinates(),

@@ -37,6 +37,8 @@ const CI: Task = &[
     // Thousands of statements, and wrong signs in the generator itself.
     "cargo test --manifest-path tests/big/Cargo.toml --locked",
     "cargo test --manifest-path tests/mutants/Cargo.toml --locked",
+    // A controller on microcontrollers, in QEMU.
+    "bash tests/cortex/run.sh",
 ];
 
 /// The random attacks at full size: an hour.

@@ -67,7 +67,7 @@ pub use step::Step;
 use crate::adaptive::control::{Controller, power};
 use crate::adaptive::stiff::Stiffness;
 use crate::error::StepError;
-use crate::integrate::{acceleration, projected};
+use crate::integrate::{acceleration, project};
 use crate::methods::tableau::{Stages, Sums};
 use crate::methods::{rkmk8, rkmk54};
 use crate::scalar::Scalar;
@@ -230,7 +230,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             let Some((elapsed, index, time)) = next else {
                 return Ok(None);
             };
-            let state = projected(step.system, step.at(time))?.0;
+            let mut state = step.at(time);
+            project(step.system, &mut state)?;
             observe(Report::Event {
                 index,
                 state: &state,
@@ -318,7 +319,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             if is_last {
                 end.t = until;
             }
-            let (mut end, moved) = projected(system, end)?;
+            let moved = project(system, &mut end)?;
             let mut stopped_by = None;
             if dense {
                 let mut step = Step::new(system, state, end, h, &stages, self.pair, change);

@@ -54,6 +54,7 @@ pub use splitting::Splitting;
 use crate::error::StepError;
 use crate::manifold;
 use crate::state::State;
+use crate::store::is_finite;
 use crate::system::System;
 
 /// A one-step method for systems of the type `Sys`.
@@ -172,9 +173,9 @@ pub(crate) fn arrive<Sys: System + ?Sized>(
 ) -> Result<State<Sys>, StepError> {
     manifold::normalise(system.blocks(), x.as_mut());
     let t = state.t + h;
-    let next = State { t, x, xi };
-    if next.is_finite() {
-        Ok(next)
+    // Before the state is there, which would be moved once more.
+    if t.is_finite() && is_finite(x.as_ref()) && is_finite(xi.as_ref()) {
+        Ok(State { t, x, xi })
     } else {
         Err(StepError::NonFinite { time: state.t })
     }

@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# Generated code on microcontrollers: builds the controller for a Cortex-M4F and a Cortex-M7, looks for what must not be in
+# the programs, runs them in QEMU, and holds instructions, stack and costs against bounds.
+#
+# The compiler is the one at hand where it has the target (`rustup target add thumbv7em-none-eabihf`). Elsewhere, and for
+# QEMU, Debian's packages are unpacked below `target`, and nothing of the machine changes: Debian's older compiler comes
+# with the sources of its `core`, which is then built for the board, too. Where neither can be had the script says so and
+# ends well; what is wrong ends it with an error.
+set -euo pipefail
+cd "$(dirname "$0")"
+# They would take the place of those in `.cargo/config.toml`.
+unset RUSTFLAGS CARGO_ENCODED_RUSTFLAGS
+
+target=thumbv7em-none-eabihf
+debian=$PWD/target/debian
+libraries=$debian/usr/lib/x86_64-linux-gnu:$debian/lib/x86_64-linux-gnu
+
+cannot() {
+    echo "not run on a board: $1"
+    exit 0
+}
+
+# Packages with all that they need and that is not installed, unpacked below $debian.
+unpack() {
+    command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null && [ "$(id -u)" = 0 ] || return 1
+    local archives=$debian/archives
+    mkdir -p "$archives/partial"
+    local download=(apt-get install -y -qq --no-install-recommends --download-only
+        -o "Dir::Cache::archives=$archives" "$@")
+    "${download[@]}" >/dev/null 2>&1 ||
+        { apt-get update -qq >/dev/null 2>&1 && "${download[@]}" >/dev/null 2>&1; } || return 1
+    local archive
+    for archive in "$archives"/*.deb; do
+        dpkg-deb -x "$archive" "$debian" || return 1
+        rm "$archive"
+    done
+}
+
+if command -v qemu-system-arm >/dev/null; then
+    qemu=(qemu-system-arm)
+else
+    [ -x "$debian/usr/bin/qemu-system-arm" ] || unpack qemu-system-arm ||
+        cannot "no qemu-system-arm, and no packages of Debian to take it from"
+    qemu=(env "LD_LIBRARY_PATH=$libraries" "$debian/usr/bin/qemu-system-arm")
+fi
+command -v nm >/dev/null || cannot "no nm, which lists what a program consists of"
+
+# The library of the target is there, or Debian's compiler makes one.
+build=(cargo build)
+library=$(rustc --print target-libdir --target "$target" 2>/dev/null || true)
+if [ -z "$library" ] || ! compgen -G "$library/libcore-*.rlib" >/dev/null; then
+    [ -x "$debian/usr/bin/rustc" ] && [ -x "$debian/usr/bin/ld.lld-19" ] ||
+        unpack rustc-web cargo-web rust-web-src lld-19 ||
+        cannot "no library for $target, and no packages of Debian to build one with"
+    build=(env -u RUSTUP_TOOLCHAIN "LD_LIBRARY_PATH=$libraries" "RUSTC=$debian/usr/bin/rustc"
+        RUSTC_BOOTSTRAP=1 "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER=$debian/usr/bin/ld.lld-19"
+        "$debian/usr/bin/cargo" build -Z build-std=core --ignore-rust-version
+        # The one thing that the runtime uses and this compiler does not have yet.
+        -Z profile-rustflags
+        --config 'profile.release.package.hamel.rustflags=["-Zcrate-attr=feature(let_chains)"]')
+fi
+
+# The model, by the generator of this repository.
+mkdir -p target
+cargo run --quiet --locked --manifest-path ../../Cargo.toml --package hamel-cli -- \
+    emit drone.eom -o target/drone.rs
+cargo build --quiet --locked --release --bin report
+
+# Whatever could stop a program is a symbol of it; `main` has to be among them, else there would be nothing to look at.
+symbols() {
+    local all
+    all=$(nm "$1")
+    grep -q ' main$' <<<"$all" || { echo "$1 has no symbols"; exit 1; }
+    if grep -E 'panic|rust_begin_unwind|unwrap_failed|expect_failed|bounds|__rust_(re)?alloc|__rg_|malloc' <<<"$all"; then
+        echo "$1 can panic or allocates"
+        exit 1
+    fi
+}
+
+# A board runs a program to its end, a nanosecond of its time for each instruction, in numbers of one kind:
+# NAME BOARD PROGRAM INSTRUCTIONS BYTES, the latter two at most.
+run() {
+    local said=target/$1.txt
+    timeout 60 "${qemu[@]}" -machine "$2" -icount shift=0,sleep=off -nographic -monitor none -serial none \
+        -semihosting-config enable=on,target=native -kernel "$programs/$3" >"$said" ||
+        { cat "$said"; echo "$1: the board did not come to an end"; exit 1; }
+    target/release/report "$1" "$3" "$4" "$5" <"$said"
+}
+
+# Both programs, with further arguments for the compiler's manager.
+programs=target/board/$target/release
+programs() {
+    "${build[@]}" --quiet --locked --release --features board --target "$target" --bin single --bin double \
+        --target-dir target/board "$@" 2>target/messages || { cat target/messages; exit 1; }
+    symbols "$programs/single"
+    symbols "$programs/double"
+}
+
+programs
+run cortex-m4f-f32 mps2-an386 single 1700000 32768
+run cortex-m4f-f64-in-software mps2-an386 double 34000000 65536
+programs --config "target.$target.rustflags=['-Ctarget-cpu=cortex-m7', '-Ctarget-feature=+fp64']"
+run cortex-m7-f32 mps2-an500 single 1700000 32768
+run cortex-m7-f64 mps2-an500 double 1700000 65536
+echo "no allocator and no panic in any of these programs"
