@@ -1,8 +1,10 @@
 //! What is observed of a motion, on every model of the tests: poses, twists, Jacobians and bias accelerations of
-//! frames, the momentum about the centre of mass, and the slopes of outputs, against differences of poses, momenta
-//! and outputs in numbers. What a proof says of them is another matter: here no derivative is taken.
+//! frames, the momentum about the centre of mass, and the slopes of outputs, of inverse dynamics and of ξ̇ by parameters,
+//! against differences of what they are slopes of, in numbers. What a proof says of them is another matter: here no derivative is taken.
 
 mod common;
+#[path = "common/models.rs"]
+mod models;
 #[path = "common/tree/mod.rs"]
 mod tree;
 
@@ -92,18 +94,6 @@ fn slope(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
         .collect()
 }
 
-/// All models, with their folder for files that they name.
-fn models() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
-    let mut found: Vec<PathBuf> = std::fs::read_dir(root)
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").path())
-        .filter(|path| path.extension().is_some_and(|kind| kind == "eom"))
-        .collect();
-    found.sort();
-    found
-}
-
 /// A model that is asked for everything that is observed; `None` where there is nothing.
 fn case(path: &Path) -> Option<Case> {
     let text = std::fs::read_to_string(path).expect("a text");
@@ -134,21 +124,8 @@ fn case(path: &Path) -> Option<Case> {
 
 /// A model that is asked for these functions, near its start and not at rest; what is said where they are refused.
 fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
-    let text = std::fs::read_to_string(path).expect("a text");
-    let mut open = |name: &str| std::fs::read_to_string(path.with_file_name(name));
-    let kept = text
-        .lines()
-        .filter(|line| !line.trim().starts_with("generate"));
-    let kept = kept.collect::<Vec<_>>().join("\n");
-    let (kept, _) = kept.rsplit_once('}').expect("an end");
-    let text = format!("{kept}\n    generate {asked};\n}}\n");
-    let name = path
-        .file_stem()
-        .expect("a name")
-        .to_string_lossy()
-        .into_owned();
-    let generated = from_file(&text, &mut open)
-        .map_err(|errors| format!("{name}:\n{}", render(&errors, &name, &text, false)))?;
+    let generated = models::asked_for(path, asked)?;
+    let name = path.display().to_string();
     let model = &generated.active;
     // Somewhere near the start, and not at rest.
     let moving = |i: usize| 0.3 + 0.17 * i as f64 - 0.01 * (i * i) as f64;
@@ -168,7 +145,7 @@ fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
 #[test]
 fn what_is_observed_agrees_with_differences() {
     let (mut frames, mut centroidal, mut slopes) = (0, 0, 0);
-    for path in models() {
+    for path in models::models() {
         let Some(case) = case(&path) else {
             continue;
         };
@@ -196,7 +173,7 @@ fn what_is_observed_agrees_with_differences() {
 #[test]
 fn slopes_of_dynamics_agree_with_differences() {
     let (mut inverse, mut parameters) = (0, 0);
-    for path in models() {
+    for path in models::models() {
         if let Ok(case) = asked_for(&path, "linearize, inverse_dynamics_slopes") {
             inverse_slopes(&case);
             inverse += 1;

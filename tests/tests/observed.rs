@@ -1,5 +1,5 @@
-//! Frames, momenta, slopes of outputs and base parameters of a type that rustc compiled, against closed forms and
-//! differences of its own poses; single precision, and a mass that parameters leave out.
+//! Frames, momenta, slopes of outputs and of the dynamics, and base parameters of a type that rustc compiled, against
+//! closed forms and differences of its own poses; single precision, and a mass that parameters leave out.
 
 hamel::rigid_eom! {
     /// A turret on a mount at 45°, and a slide almost parallel to its axis.
@@ -15,7 +15,7 @@ hamel::rigid_eom! {
         output height = position(barrel, [0, 0, 0.5])[3];
         output felt = acceleration(barrel);
         generate all, jacobian barrel, jacobian barrel in barrel, centroidal_map, centroidal_bias, centre_of_mass,
-            height_slopes, felt_slopes, regressor;
+            height_slopes, felt_slopes, regressor, inverse_dynamics_slopes, parameter_slopes;
     }
 }
 
@@ -142,6 +142,52 @@ fn compiled_functions_are_what_their_definitions_say() {
         );
         let of_height = slope(|h| [turret.height(&moved(h).0)]);
         close("slopes of height", [height[0][column]], of_height);
+    }
+}
+
+/// Lagrange's equations by hand: T = ½ a q̇² + ½ k ṡ² + 0.4 k ε q̇ ṡ with a = 0.35 + 0.01 m + k (0.16 + ε² s²), ε the slant
+/// of the slide, and V = g/√2 (0.1 m sin q + k (0.4 sin q + ε s cos q + s)).
+#[test]
+fn slopes_of_the_dynamics_are_those_of_lagrange() {
+    let turret = Turret::<f64>::default();
+    let ([q, s], [v, w], u) = ([0.7, 0.3], [1.3, -0.4], [0.2]);
+    let ((sin, cos), slant) = (f64::sin_cos(q), 1e-7 / f64::hypot(1.0, 1e-7));
+    let (m, k, weight) = (1.5, 0.5, 9.81 * 0.5_f64.sqrt());
+    let forces = |[a, b]: [f64; 2]| {
+        let turning = 0.35 + 0.01 * m + k * (0.16 + slant * slant * s * s);
+        let swing = 2.0 * k * slant * slant * s * w * v;
+        let pull = weight * (0.1 * m * cos + k * (0.4 * cos - slant * s * sin));
+        [
+            turning * a + 0.4 * k * slant * b + swing + pull,
+            k * b + 0.4 * k * slant * a - k * slant * slant * s * v * v
+                + weight * k * (slant * cos + 1.0),
+        ]
+    };
+    let (x, xi, rates) = ([q, s], [v, w], [0.3, 0.9]);
+    close("f", turret.inverse_dynamics(&x, &xi, &rates), forces(rates));
+    let [turn, slide] = turret.inverse_dynamics_slopes(&x, &xi, &rates);
+    let twice = 2.0 * k * slant * slant;
+    let turned = -weight * ((0.1 * m + 0.4 * k) * sin + k * slant * s * cos);
+    let slid = twice * (s * rates[0] + w * v) - weight * k * slant * sin;
+    close("∂f₁", turn, [turned, slid, twice * s * w, twice * s * v]);
+    let lifted = -weight * k * slant * sin;
+    let thrown = -k * slant * slant * v * v;
+    close("∂f₂", slide, [lifted, thrown, -twice * s * v, 0.0]);
+    // M ∂ξ̇/∂p = −∂f/∂p at constant ξ̇.
+    let [a, b] = turret.accel(&x, &xi, &u).expect("regular");
+    let by_mass = [0.01 * a + weight * 0.1 * cos, 0.0];
+    let by_load = {
+        let [one, other] = forces([a, b]);
+        [
+            (one - (0.35 + 0.01 * m) * a - weight * 0.1 * m * cos) / k,
+            other / k,
+        ]
+    };
+    let mass = turret.mass_matrix(&x);
+    let slopes = turret.parameter_slopes(&x, &xi, &u).expect("regular");
+    for (column, by) in [by_mass, by_load].into_iter().enumerate() {
+        let moved = product(mass, [slopes[0][column], slopes[1][column]]);
+        close("M ∂ξ̇/∂p", moved, by.map(|f| -f));
     }
 }
 

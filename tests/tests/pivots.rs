@@ -1,13 +1,15 @@
 //! What a guard is said to belong to: the pivot of a velocity lies between what inertia it has with all others held,
 //! Mᵢᵢ, and with all others free to follow, 1/(M⁻¹)ᵢᵢ, in whatever order M was factored; on every model of the tests.
 
+#[path = "../../codegen/tests/common/models.rs"]
+mod models;
+
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::numeric::evaluate;
-use hamel_codegen::generate::{Generated, from_file};
+use hamel_codegen::generate::Generated;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Cause, Program};
 use nalgebra::DMatrix;
-use std::path::Path;
 
 /// Roundings of M and of its inverse.
 const CLOSE: f64 = 1e-9;
@@ -45,27 +47,10 @@ fn mass(generated: &Generated) -> DMatrix<f64> {
 
 #[test]
 fn pivots_lie_between_the_inertias_of_their_velocities() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
-    let mut paths: Vec<_> = std::fs::read_dir(root)
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").path())
-        .filter(|path| path.extension().is_some_and(|kind| kind == "eom"))
-        .collect();
-    paths.sort();
     let (mut models, mut compared) = (0, 0);
-    for path in paths {
-        let text = std::fs::read_to_string(&path).expect("a text");
-        let kept = text
-            .lines()
-            .filter(|line| !line.trim().starts_with("generate"));
-        let kept = kept.collect::<Vec<_>>().join("\n");
-        let Some((kept, _)) = kept.rsplit_once('}') else {
-            panic!("{} has no end", path.display());
-        };
-        let asked = "generate accel, mass_matrix, linearize, velocity_from_momentum;";
-        let text = format!("{kept}\n    {asked}\n}}\n");
-        let mut open = |name: &str| std::fs::read_to_string(path.with_file_name(name));
-        let Ok(generated) = from_file(&text, &mut open) else {
+    for path in models::models() {
+        let asked = "accel, mass_matrix, linearize, velocity_from_momentum";
+        let Ok(generated) = models::asked_for(&path, asked) else {
             // M of systems with constraints is not asked for everywhere.
             continue;
         };

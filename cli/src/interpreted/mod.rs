@@ -38,7 +38,7 @@ pub struct Interpreted {
     kinetic: Interpreter,
     potential: Interpreter,
     outputs: Vec<Output>,
-    /// For every guard of `accel` its number among the pivots of [Y; Φ], if it is one.
+    /// What the guards of `accel` belong to, in their order.
     causes: Vec<Cause>,
     invariants: Vec<Output>,
     functions: Functions,

@@ -3,13 +3,13 @@
 
 use super::accel::recursions;
 use super::accel::setting::Setting;
+use super::accel::solve::solve_columns;
 use super::candidates::Candidates;
 use super::linearize::Displacements;
 use super::program::{Builder, MOST_LITERAL};
 use super::reduction::Reduction;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::solve_symmetric;
 use crate::diagnostics::Diagnostic;
 use crate::model::{Model, class};
 use crate::program::FunctionId;
@@ -91,6 +91,13 @@ impl Builder<'_> {
                 "write the lengths in the constraints as numbers, or describe the system in coordinates without constraints",
             );
         }
+        let mut given = full.prescribed.iter();
+        if given.any(|(_, edge)| full.graph.class(edge.node()) & class::PARAM != 0) {
+            return refused(
+                "a prescribed coordinate depends on parameters, and is part of the state",
+                "write the numbers of its `prescribe` as numbers, or prescribe its velocity",
+            );
+        }
         // π stands before them.
         let count = model.params.iter().map(|group| group.len).sum();
         let symbols = model.graph.symbols().iter().skip(1).take(count);
@@ -151,7 +158,7 @@ impl Builder<'_> {
                 entries.collect()
             })
             .collect();
-        let solved = solve_symmetric(&mut graph, &parts.mass, &changes)?;
+        let solved = solve_columns(&mut graph, &parts.mass, &changes)?;
         Some((graph, solved.concat()))
     }
 }

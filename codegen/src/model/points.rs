@@ -190,7 +190,8 @@ impl Points {
                 )
                 .is_some()
             };
-            if (0..SEEDS).all(|seed| self.keeps(&fixed, seed)) && found(1) && found(2) {
+            let steady = fixed.is_empty() || (0..SEEDS).all(|seed| self.keeps(&fixed, seed));
+            if steady && found(1) && found(2) {
                 return;
             }
         }

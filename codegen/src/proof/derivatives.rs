@@ -14,6 +14,10 @@ pub(super) const WHAT: &str = "the slopes of inverse dynamics, or of ξ̇ by par
 
 /// Whether the emitted slopes are those: A of the full model at its point, what is emitted at that of the program.
 pub(super) fn hold(full: &Model, program: &Program, [point, inner]: [&Lane; 2]) -> Option<bool> {
+    let emitted = |id: FunctionId| program.function(id).is_some();
+    if !(emitted(FunctionId::InverseDynamicsSlopes) || emitted(FunctionId::ParameterSlopes)) {
+        return Some(true);
+    }
     let [params, x, xi, u, ..] = program.symbols();
     let a = evaluate_at(&full.graph, &full.a.concat(), &mut point.clone())?;
     let time = full.clock.map(|clock| clock.xi);

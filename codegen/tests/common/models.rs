@@ -1,0 +1,32 @@
+//! The models of the tests, each asked for what a test wants.
+
+use hamel_codegen::generate::{Generated, from_file};
+use hamel_codegen::render::render;
+use std::path::{Path, PathBuf};
+
+/// All models, with their folder for files that they name.
+pub fn models() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
+    let mut found: Vec<PathBuf> = std::fs::read_dir(root)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|kind| kind == "eom"))
+        .collect();
+    found.sort();
+    found
+}
+
+/// A model that is asked for these functions alone; what is said where they are refused.
+pub fn asked_for(path: &Path, asked: &str) -> Result<Generated, String> {
+    let text = std::fs::read_to_string(path).expect("a text");
+    let kept = text
+        .lines()
+        .filter(|line| !line.trim().starts_with("generate"));
+    let kept = kept.collect::<Vec<_>>().join("\n");
+    let (kept, _) = kept.rsplit_once('}').expect("an end");
+    let text = format!("{kept}\n    generate {asked};\n}}\n");
+    let mut open = |name: &str| std::fs::read_to_string(path.with_file_name(name));
+    let name = path.display().to_string();
+    from_file(&text, &mut open)
+        .map_err(|errors| format!("{name}:\n{}", render(&errors, &name, &text, false)))
+}
