@@ -341,6 +341,19 @@ pub struct Asked {
 /// What the name of the slopes of an output ends with.
 pub const SLOPES: &str = "_slopes";
 
+/// What is emitted along with others: values with their slopes, the parameters that a regressor is multiplied by.
+const BROUGHT: [(FunctionId, &[FunctionId]); 3] = [
+    (FunctionId::BaseParameters, &[FunctionId::Regressor]),
+    (
+        FunctionId::InverseDynamics,
+        &[FunctionId::InverseDynamicsSlopes],
+    ),
+    (
+        FunctionId::CentroidalMomentum,
+        &[FunctionId::CentroidalMap, FunctionId::CentroidalBias],
+    ),
+];
+
 impl Asked {
     /// Everything that needs not be asked for by its name: what a description without `generate` gets.
     pub fn everything() -> Self {
@@ -379,24 +392,15 @@ impl Asked {
     /// Whether a function is wanted: asked for by its name or with everything, or brought along.
     pub fn wants(&self, id: FunctionId) -> bool {
         let row = id.row();
-        let maps = [FunctionId::CentroidalMap, FunctionId::CentroidalBias];
+        let named = |ids: &[FunctionId]| ids.iter().any(|&id| self.names(id));
+        let mut brought = BROUGHT.iter().filter(|(what, _)| *what == id);
         let along = match row.serves {
-            _ if id == FunctionId::BaseParameters => self.names(FunctionId::Regressor),
-            // What slopes are taken of is emitted with them.
-            _ if id == FunctionId::InverseDynamics
-                && self.names(FunctionId::InverseDynamicsSlopes) =>
-            {
-                true
-            }
-            // Map and bias are slopes of the momentum, which is emitted with them.
-            _ if id == FunctionId::CentroidalMomentum => maps.iter().any(|&map| self.names(map)),
-            Serves::System => [
+            _ if brought.any(|(_, by)| named(by)) => true,
+            Serves::System => named(&[
                 FunctionId::Accel,
                 FunctionId::Linearize,
                 FunctionId::ParameterSlopes,
-            ]
-            .iter()
-            .any(|&id| self.names(id)),
+            ]),
             Serves::Split => self.names(FunctionId::Splitting),
             Serves::Tangent => self.names(FunctionId::Linearize),
             Serves::Callers | Serves::Asked => false,

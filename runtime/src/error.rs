@@ -9,8 +9,8 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Singular {
-    /// The mass matrix M is not positive definite: some motion along one velocity, with others free to follow or
-    /// held as they were eliminated, has no inertia.
+    /// The mass matrix M is not positive definite: one velocity has no inertia where some of the others follow freely
+    /// and the rest is held.
     Inertia {
         /// The velocity by its name in the description: `q_dot`, `w[2]`.
         velocity: &'static str,

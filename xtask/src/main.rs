@@ -41,7 +41,7 @@ const CI: Task = &[
     "bash tests/cortex/run.sh",
 ];
 
-/// The random attacks at full size: an hour.
+/// The random attacks at full size: some two hours.
 const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test expressions --test mounts --test rounding --test constrained --test prescribed --test trees --test work --test observed",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test functions",
@@ -82,7 +82,7 @@ const TASKS: [(&str, Task, &str); 4] = [
     (
         "attack",
         ATTACK,
-        "the random attacks at full size, and all robots against Pinocchio: an hour",
+        "the random attacks at full size, and all robots against Pinocchio: some two hours",
     ),
     ("bless", BLESS, "takes the snapshots as they are now"),
 ];

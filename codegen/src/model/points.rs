@@ -209,7 +209,7 @@ impl Points {
     }
 
     /// The same variety where roots need no values.
-    pub fn without_roots(&self) -> Self {
+    pub(crate) fn without_roots(&self) -> Self {
         Points {
             radicals: Vec::new(),
             ..self.clone()

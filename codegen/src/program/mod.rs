@@ -29,7 +29,7 @@ pub enum Shape {
 /// What it means where a pivot is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cause {
-    /// This velocity has no inertia, with those held that were eliminated before it.
+    /// This velocity has no inertia where those that were eliminated before it follow freely, and the others are held.
     Velocity(usize),
     /// The mass matrix, or an inertia that parameters give, is not positive definite.
     Mass,
