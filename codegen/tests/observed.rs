@@ -10,12 +10,12 @@ mod tree;
 
 use common::{Random, attack};
 use hamel_codegen::functions::{FrameFunction, Jacobian};
-use hamel_codegen::generate::{Generated, from_file, from_text};
+use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::lower::build;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 use hamel_codegen::syntax::{parse_text, read_files};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tree::{ALL, Kind, Link, text};
 
 /// Step of differences that are extrapolated to fourth order.
