@@ -289,6 +289,7 @@ impl Builder<'_> {
         constant_guards.extend(&self.constant_guards);
         // What fails first is told: later pivots are computed from earlier ones.
         constant_guards.sort_by_key(|guard| guard.node());
+        constant_guards.dedup();
         let loops = self.loops().len();
         // What is a number, or guards nothing, asks nobody.
         let guards = self.functions.iter().flat_map(|function| &function.guards);

@@ -1,6 +1,6 @@
 //! Layout of files: the short lines are laid out as the printer would, which prints the rest.
 
-use super::lines::{Line, MARK, NotRust, WIDTH, entries, row, skeleton};
+use super::lines::{Line, NotRust, WIDTH, entries, row, run, skeleton};
 use super::plain;
 
 /// The text as it is written to files.
@@ -12,9 +12,7 @@ pub fn formatted(text: &str) -> Result<String, NotRust> {
     let mut whole = String::with_capacity(2 * text.len());
     for line in prettyplease::unparse(&skeleton.file).lines() {
         let statement = line.trim_start();
-        let number = statement.strip_prefix(MARK);
-        let number = number.and_then(|rest| rest.strip_suffix(';')?.parse::<usize>().ok());
-        match number.and_then(|number| skeleton.taken.get(number)) {
+        match run(statement).and_then(|number| skeleton.taken.get(number)) {
             Some(run) => {
                 let indent = line.len() - statement.len();
                 for line in run {
@@ -34,6 +32,19 @@ impl Line<'_> {
     fn write(&self, text: &mut String, indent: usize) -> Result<(), NotRust> {
         match self {
             Line::Plain(line) => push(text, indent, &[line]),
+            Line::Docs(line) => push(text, indent, &[line.trim_end_matches(' ')]),
+            Line::Attribute(before, list, after) => {
+                if indent + before.len() + list.len() + after.len() <= WIDTH {
+                    return Ok(push(text, indent, &[before, list, after]));
+                }
+                push(text, indent, &[before]);
+                let mut rest = entries(list).peekable();
+                while let Some(entry) = rest.next() {
+                    let comma = if rest.peek().is_some() { "," } else { "" };
+                    push(text, indent + 4, &[entry, comma]);
+                }
+                push(text, indent, &[after]);
+            }
             Line::Guard(condition, statement) => {
                 push(text, indent, &[condition, " {"]);
                 push(text, indent + 4, &[statement]);
@@ -149,8 +160,26 @@ mod tests {
     }
 
     #[test]
+    fn attributes_and_documentation_come_back_as_the_printer_leaves_them() {
+        for count in 1..12 {
+            let lints = "clippy::some_lint, ".repeat(count);
+            let text = format!(
+                "/// A structure, `x` and \"y\".\n///\n///   - set in, with a tail   \n#[rustfmt::skip]\n\
+                 #[allow({lints}dead_code, reason = \"of use\")]\n#[allow({lints}dead_code, reason = \"a, b (c)\")]\n\
+                 #[derive(Clone, Debug)]\n#[cfg(feature = \"a\")]\npub struct A {{\n/// A field: 'ω' \\ a.\npub a: f64,\n}}\n\
+                 #[rustfmt::skip]\nimpl A {{\n//// A remark.\n/// A method.\n#[allow({lints}dead_code)]\n#[must_use]\nfn f(&self) {{\nlet a = 2.0;\n}}\n}}\n"
+            );
+            assert_eq!(formatted(&text), Ok(printed(&text)));
+        }
+    }
+
+    #[test]
     fn what_is_no_rust_is_refused() {
         for text in [
+            "/// Nothing is documented.\n",
+            "#[must_use]\n",
+            "#[allow(dead_code]\nfn f() {}\n",
+            "#[allow(a, reason = \"b)]\nfn f() {}\n",
             "fn (",
             "fn f() {\nlet a = no value for node 3;\n}\n",
             "fn f() {\nlet a = k[3;\n}\n",

@@ -1,8 +1,8 @@
 //! The generated text without the short lines in it, which `syn` would take most of the time for.
 //!
-//! Most lines are short statements that already look as the printer would leave them, guards, and
-//! results in one line. Runs of these are taken out while the rest is parsed; they are parsed by
-//! [`plain`], and laid out by `format`.
+//! Most lines are short statements that already look as the printer would leave them, guards,
+//! results in one line, and documentation with other attributes. Runs of these are taken out while the
+//! rest is parsed; they are parsed by [`plain`], and laid out by `format`.
 
 use super::plain;
 use std::fmt;
@@ -13,8 +13,10 @@ pub const WIDTH: usize = 89;
 const INDENT: usize = 8;
 /// Longer statements may be broken by the printer.
 const SHORT: usize = WIDTH - INDENT - 1;
-/// What a run of lines leaves behind; the printer keeps it as it is.
-pub const MARK: &str = "let hamel_line_";
+/// What a run of statements leaves behind, up to its number; the printer keeps it as it is.
+const STATEMENT: (&str, &str) = ("let hamel_line_", ";");
+/// What a run of attributes leaves behind.
+const ATTRIBUTE: (&str, &str) = ("#[hamel_line_", "]");
 
 /// Text that is no Rust was generated: an error in the generator, whatever the description is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,6 +47,28 @@ pub enum Line<'a> {
     Guard(&'a str, &'a str),
     /// What stands before a list, the list, what stands behind it.
     List(&'a str, &'a str, &'a str),
+    /// The same, of an attribute.
+    Attribute(&'a str, &'a str, &'a str),
+    /// Documentation.
+    Docs(&'a str),
+}
+
+impl Line<'_> {
+    /// What a run of such lines leaves behind.
+    fn mark(&self) -> (&'static str, &'static str) {
+        match self {
+            Line::Plain(_) | Line::Guard(..) | Line::List(..) => STATEMENT,
+            Line::Attribute(..) | Line::Docs(_) => ATTRIBUTE,
+        }
+    }
+}
+
+/// The number of the run that left a line behind.
+pub fn run(line: &str) -> Option<usize> {
+    [STATEMENT, ATTRIBUTE].iter().find_map(|(before, after)| {
+        let number = line.strip_prefix(before)?.strip_suffix(after)?;
+        number.parse().ok()
+    })
 }
 
 /// A text in two parts, both parsed.
@@ -69,12 +93,14 @@ pub fn skeleton(text: &str) -> Result<Skeleton<'_>, NotRust> {
             rest.push('\n');
             continue;
         };
-        rest.push_str(&format!("{MARK}{};\n", taken.len()));
+        let mark = first.mark();
+        rest.push_str(&format!("{}{}{}\n", mark.0, taken.len(), mark.1));
         let mut run = vec![first];
         while let Some(&line) = lines.peek() {
             let mut after = lines.clone();
             after.next();
-            let Some(next) = line_of(line, after.peek()) else {
+            let next = line_of(line, after.peek());
+            let Some(next) = next.filter(|next| next.mark() == mark) else {
                 break;
             };
             run.push(next);
@@ -108,6 +134,12 @@ fn line_of<'a>(line: &'a str, next: Option<&&str>) -> Option<Line<'a>> {
     if is_plain(line) {
         return plain::is_statement(line).then_some(Line::Plain(line));
     }
+    if let Some(text) = line.strip_prefix("///") {
+        return (!text.starts_with('/') && !text.contains('\r')).then_some(Line::Docs(line));
+    }
+    if line.starts_with("#[") {
+        return attribute(line);
+    }
     if let Some((condition, rest)) = line.split_once(" { ")
         && condition.starts_with("if !")
         && is_simple(condition)
@@ -122,6 +154,9 @@ fn line_of<'a>(line: &'a str, next: Option<&&str>) -> Option<Line<'a>> {
     // A value ends its function.
     if !next.is_some_and(|next| next.starts_with('}')) {
         return None;
+    }
+    if line.len() <= SHORT && is_simple(line) && plain::is_sum(line) {
+        return Some(Line::Plain(line));
     }
     for (before, after) in [("[", "]"), ("Ok([", "])")] {
         if let Some(list) = line.strip_prefix(before)
@@ -138,12 +173,26 @@ fn line_of<'a>(line: &'a str, next: Option<&&str>) -> Option<Line<'a>> {
     None
 }
 
-/// The entries of a list, rows whole.
+/// An attribute: a name, or a name with a list of names and of `name = "text"`.
+fn attribute(line: &str) -> Option<Line<'_>> {
+    if !plain::is_attribute(line) {
+        return None;
+    }
+    let (before, list, after) = match line.split_once('(') {
+        Some((before, list)) => (&line[..=before.len()], list.strip_suffix(")]")?, ")]"),
+        None => (line, "", ""),
+    };
+    Some(Line::Attribute(before, list, after))
+}
+
+/// The entries of a list, rows and texts in quotes whole.
 pub fn entries(list: &str) -> impl Iterator<Item = &str> {
     let mut depth = 0_i32;
+    let mut quoted = false;
     let mut after_comma = false;
     let parts = list.split(move |c: char| {
-        let ends = c == ',' && depth == 0;
+        quoted ^= c == '"';
+        let ends = c == ',' && depth == 0 && !quoted;
         depth += i32::from(matches!(c, '[' | '(')) - i32::from(matches!(c, ']' | ')'));
         ends
     });
@@ -165,11 +214,7 @@ pub fn row(entry: &str) -> Option<&str> {
 
 /// Whether a line is one short statement in which there is nothing to lay out.
 fn is_plain(line: &str) -> bool {
-    let starts = |word: &str| line.starts_with(word);
-    line.len() <= SHORT
-        && (starts("let ") || starts("slots[") || starts("out[") || starts("*out "))
-        && line.ends_with(';')
-        && is_simple(&line[..line.len() - 1])
+    line.len() <= SHORT && line.strip_suffix(';').is_some_and(is_simple)
 }
 
 /// Whether an entry of a list is a value; lists of numbers are laid out in another way.

@@ -1,11 +1,12 @@
 //! The part of Rust that most lines of the generated text are written in, and its parser.
 //!
 //! ```text
-//! statement  let PATTERN = SUM;   PLACE = SUM;   if !SUM { return Err(PATH(WHAT)); }
-//! value      [ENTRY, …]   Ok([ENTRY, …])                          entries are sums, or rows of them
+//! statement  let PATTERN = SUM;   OPERAND = SUM;   OPERAND;   if !SUM { return Err(PATH(WHAT)); }
+//! value      SUM   [ENTRY, …]   Ok([ENTRY, …])                    entries are sums, or rows of them
 //! WHAT       nothing, NUMBER or "NAME"
+//! attribute  #[PATH]   #[PATH(PATH, …, name = "text")]
 //! SUM        OPERAND (+ - * /) OPERAND …
-//! OPERAND    - & before a name, a path, a number or (SUM), and behind it [NUMBER] .name .0 (SUM, …)
+//! OPERAND    - & before a name, a path, a number, () or (SUM), and behind it [NUMBER] .name .0 ? (SUM, …)
 //! ```
 //!
 //! Every text has to be Rust before it leaves the generator. `syn` reads what is not written in this
@@ -19,6 +20,12 @@ pub fn is_statement(text: &str) -> bool {
     reader.statement() && reader.ends()
 }
 
+/// Whether a text is a sum.
+pub fn is_sum(text: &str) -> bool {
+    let mut reader = Reader::new(text);
+    reader.sum() && reader.ends()
+}
+
 /// Whether a text is a list that stands as the value of a function.
 pub fn is_value(text: &str) -> bool {
     let mut reader = Reader::new(text);
@@ -27,6 +34,12 @@ pub fn is_value(text: &str) -> bool {
         false => reader.list(true),
     };
     whole && reader.ends()
+}
+
+/// Whether a text is an attribute of the language.
+pub fn is_attribute(text: &str) -> bool {
+    let mut reader = Reader::new(text);
+    reader.attribute() && reader.ends()
 }
 
 /// A text, and how far it is read.
@@ -144,13 +157,9 @@ impl<'a> Reader<'a> {
         if self.word("if") {
             return self.take(b'!') && self.sum() && self.leaves();
         }
-        // A place: `out`, `*out` and `out[1][2]`.
+        // A place like `*out` and `out[1][2]` that is given a value, or a call.
         self.take(b'*');
-        let mut place = self.name();
-        while place && self.take(b'[') {
-            place = self.integer() && self.take(b']');
-        }
-        place && self.take(b'=') && self.sum() && self.take(b';')
+        self.operand() && (!self.take(b'=') || self.sum()) && self.take(b';')
     }
 
     /// `{ return Err(…); }`
@@ -166,13 +175,36 @@ impl<'a> Reader<'a> {
         if self.next() == b')' {
             return true;
         }
-        if !self.take(b'"') {
-            return self.integer();
-        }
-        !self
-            .run(|byte| !matches!(byte, b'"' | b'\\' | 0))
-            .is_empty()
+        self.quoted() || self.integer()
+    }
+
+    /// A text in quotes, with nothing in it that would have to be escaped.
+    fn quoted(&mut self) -> bool {
+        self.take(b'"')
+            && !self
+                .run(|byte| !matches!(byte, b'"' | b'\\' | 0))
+                .is_empty()
             && self.take(b'"')
+    }
+
+    fn attribute(&mut self) -> bool {
+        if !(self.take(b'#') && self.take(b'[') && self.path()) {
+            return false;
+        }
+        if self.take(b'(') {
+            loop {
+                if !self.path() || self.take(b'=') && !self.quoted() {
+                    return false;
+                }
+                if !self.take(b',') {
+                    break;
+                }
+            }
+            if !self.take(b')') {
+                return false;
+            }
+        }
+        self.take(b']')
     }
 
     /// `a`, `mut a`, `_` or `(a, _)`.
@@ -206,7 +238,7 @@ impl<'a> Reader<'a> {
     fn operand(&mut self) -> bool {
         let _ = self.take(b'-') || self.take(b'&');
         let whole = match self.next() {
-            b'(' => self.take(b'(') && self.sum() && self.take(b')'),
+            b'(' => self.take(b'(') && (self.take(b')') || self.sum() && self.take(b')')),
             b'0'..=b'9' => self.number(),
             _ => self.word("self") || self.path(),
         };
@@ -223,7 +255,7 @@ impl<'a> Reader<'a> {
         name
     }
 
-    /// Indices, fields and calls.
+    /// Indices, fields, calls, and what hands errors on.
     fn behind(&mut self) -> bool {
         loop {
             let right = if self.take(b'[') {
@@ -232,6 +264,8 @@ impl<'a> Reader<'a> {
                 self.integer() || self.name()
             } else if self.take(b'(') {
                 self.arguments()
+            } else if self.take(b'?') {
+                true
             } else {
                 return true;
             };
@@ -273,7 +307,7 @@ impl<'a> Reader<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{is_statement, is_value};
+    use super::{is_attribute, is_statement, is_sum, is_value};
 
     #[test]
     fn what_is_read_is_rust() {
@@ -290,6 +324,9 @@ mod tests {
             "out[1][2] = -t1;",
             "*out = t1;",
             "slots[3] = x[0] / a;",
+            "*self = next;",
+            "self.theta[1] = value;",
+            "next.update()?;",
             "if !(-a).is_positive() { return Err(::hamel::Singular::inertia(\"w[2]\")); }",
             "if !(-a).is_positive() { return Err(::hamel::Singular::inertia(\"ω\")); }",
             "if !a.is_positive() { return Err(::hamel::Singular::mass()); }",
@@ -306,6 +343,18 @@ mod tests {
         ] {
             assert!(is_value(text), "{text}");
             syn::parse_str::<syn::Expr>(text).expect(text);
+        }
+        for text in ["a", "-self.theta[1]", "self.rate(x, xi)", "Ok(())", "a * b?"] {
+            assert!(is_sum(text), "{text}");
+            syn::parse_str::<syn::Expr>(text).expect(text);
+        }
+        for text in [
+            "#[must_use]",
+            "#[rustfmt::skip]",
+            "#[allow(dead_code, clippy::type_complexity, reason = \"a [b], (c\")]",
+        ] {
+            assert!(is_attribute(text), "{text}");
+            syn::parse_str::<syn::ItemStruct>(&format!("{text} struct A;")).expect(text);
         }
     }
 
@@ -329,7 +378,9 @@ mod tests {
             "let a = b);",
             "let a = b.mul_add(c d);",
             "a[b] = c;",
-            "x;",
+            "a = ;",
+            "a b;",
+            "a??b;",
             "if !a.is_positive() { return Err(::hamel::Singular::inertia(1); }",
             "if !a.is_positive() { return Err(::hamel::Singular::inertia(\"w)); }",
             "if !a.is_positive() { return Err(::hamel::Singular::inertia(w)); }",
@@ -350,6 +401,21 @@ mod tests {
             "[[[a]]]",
         ] {
             assert!(!is_value(text), "{text}");
+        }
+        for text in ["", "a b", "()()b", "a +", "?", "(", "a: b", "a,"] {
+            assert!(!is_sum(text), "{text}");
+        }
+        for text in [
+            "#[]",
+            "#[a",
+            "#[a]]",
+            "#[a b]",
+            "#[a(b]",
+            "#[a(b c)]",
+            "#[a(b = c)]",
+            "#[a(b = \"c)]",
+        ] {
+            assert!(!is_attribute(text), "{text}");
         }
     }
 }

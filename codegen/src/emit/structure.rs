@@ -6,15 +6,14 @@ use super::{Emitter, docs, externals};
 use crate::program::{FunctionId, Shape};
 
 /// Lints that generated functions cannot obey in general.
-pub const ALLOW: &str = r#"#[rustfmt::skip]
-#[allow(dead_code, unreachable_pub, reason = "a program may use a part of what is generated")]
-#[allow(unused_qualifications, reason = "full paths are right whatever is imported")]
-#[allow(
-    clippy::approx_constant, clippy::let_and_return, clippy::too_many_arguments,
-    clippy::type_complexity, clippy::wrong_self_convention,
-    reason = "numbers, names and shapes are those of the description"
-)]
-"#;
+pub const ALLOW: &str = concat!(
+    "#[rustfmt::skip]\n",
+    "#[allow(dead_code, unreachable_pub, reason = \"a program may use a part of what is generated\")]\n",
+    "#[allow(unused_qualifications, reason = \"full paths are right whatever is imported\")]\n",
+    "#[allow(clippy::approx_constant, clippy::let_and_return, clippy::too_many_arguments, \
+     clippy::type_complexity, clippy::wrong_self_convention, \
+     reason = \"numbers, names and shapes are those of the description\")]\n",
+);
 
 /// Lints that generated implementations of traits cannot obey in general.
 pub const ALLOW_TRAIT: &str = r#"#[rustfmt::skip]
