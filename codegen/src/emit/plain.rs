@@ -344,7 +344,13 @@ mod tests {
             assert!(is_value(text), "{text}");
             syn::parse_str::<syn::Expr>(text).expect(text);
         }
-        for text in ["a", "-self.theta[1]", "self.rate(x, xi)", "Ok(())", "a * b?"] {
+        for text in [
+            "a",
+            "-self.theta[1]",
+            "self.rate(x, xi)",
+            "Ok(())",
+            "a * b?",
+        ] {
             assert!(is_sum(text), "{text}");
             syn::parse_str::<syn::Expr>(text).expect(text);
         }
