@@ -34,16 +34,7 @@ impl Line<'_> {
             Line::Plain(line) => push(text, indent, &[line]),
             Line::Docs(line) => push(text, indent, &[line.trim_end_matches(' ')]),
             Line::Attribute(before, list, after) => {
-                if indent + before.len() + list.len() + after.len() <= WIDTH {
-                    return Ok(push(text, indent, &[before, list, after]));
-                }
-                push(text, indent, &[before]);
-                let mut rest = entries(list).peekable();
-                while let Some(entry) = rest.next() {
-                    let comma = if rest.peek().is_some() { "," } else { "" };
-                    push(text, indent + 4, &[entry, comma]);
-                }
-                push(text, indent, &[after]);
+                write_attribute(text, indent, before, list, after);
             }
             Line::Guard(condition, statement) => {
                 push(text, indent, &[condition, " {"]);
@@ -64,6 +55,20 @@ impl Line<'_> {
         }
         Ok(())
     }
+}
+
+/// An attribute in one line, or an entry a line.
+fn write_attribute(text: &mut String, indent: usize, before: &str, list: &str, after: &str) {
+    if indent + before.len() + list.len() + after.len() <= WIDTH {
+        return push(text, indent, &[before, list, after]);
+    }
+    push(text, indent, &[before]);
+    let mut rest = entries(list).peekable();
+    while let Some(entry) = rest.next() {
+        let comma = if rest.peek().is_some() { "," } else { "" };
+        push(text, indent + 4, &[entry, comma]);
+    }
+    push(text, indent, &[after]);
 }
 
 /// A list in one line, or an entry a line; rows that are too long likewise.
