@@ -8,6 +8,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
 use hamel_codegen::proof::check::{Verdict, check};
 use hamel_tests::belt_sleigh::{BeltSleigh, BeltSleighParameters};
+use hamel_tests::driven_crank::{DrivenCrank, DrivenCrankInputs, DrivenCrankParameters};
 use hamel_tests::driven_hoop::{DrivenHoop, DrivenHoopParameters};
 use hamel_tests::kapitza::{Kapitza, KapitzaParameters};
 use hamel_tests::reference::run;
@@ -89,6 +90,62 @@ fn a_bead_on_a_driven_hoop() {
         let kinetic = (inertia * spin * spin + m * r * r * rate * rate) / 2.0;
         assert_near("T", system.kinetic_energy(&x, &xi), kinetic, CLOSE);
         assert_near("φ̇", system.rate(&x, &xi)[1], spin, CLOSE);
+    }
+}
+
+/// Nothing moves by itself: with the slider at x = l₁ cos φ + √(l₂² − l₁² sin² φ) the drive does the work of
+/// d/dt (T + V) and what goes into the gas.
+#[test]
+fn an_engine_at_constant_speed() {
+    let of = DrivenCrankParameters::<f64>::default();
+    let system = DrivenCrank::new(of).expect("an engine");
+    let gas = 25.0;
+    // Angle of the rod, slider, their rates by the crank's, and T + V of all three.
+    let motion = |angle: f64| {
+        let (s, c) = angle.sin_cos();
+        let along = (of.l2 * of.l2 - of.l1 * of.l1 * s * s).sqrt();
+        let (rod, slider) = ((-of.l1 * s).atan2(along), of.l1 * c + along);
+        let (turn, slide) = (-of.l1 * c / along, -of.l1 * s * (1.0 + of.l1 * c / along));
+        (rod, slider, turn, slide)
+    };
+    let energy = |angle: f64| {
+        let (s, c) = angle.sin_cos();
+        let (rod, _, turn, slide) = motion(angle);
+        let (vx, vy) = (
+            -of.l1 * s - turn * of.l2 / 2.0 * rod.sin(),
+            of.l1 * c + turn * of.l2 / 2.0 * rod.cos(),
+        );
+        let crank = of.j1 + of.m1 * of.l1 * of.l1 / 4.0;
+        let inertia =
+            crank + of.m2 * (vx * vx + vy * vy) + of.j2 * turn * turn + of.m3 * slide * slide;
+        let height = of.m1 * of.l1 / 2.0 * s + of.m2 * (of.l1 * s + of.l2 / 2.0 * rod.sin());
+        inertia * of.speed * of.speed / 2.0 + of.g * height
+    };
+    let inputs = DrivenCrankInputs { gas }.to_array();
+    for k in 0..24 {
+        let angle = 0.3 + TAU * f64::from(k) / 24.0;
+        let (rod, slider, turn, slide) = motion(angle);
+        let x = [0.0, angle.cos(), angle.sin(), rod.cos(), rod.sin(), slider];
+        assert_near("T + V", system.energy(&x, &[]), energy(angle), CLOSE);
+        let rate = system.rate(&x, &[]);
+        assert_near("ẋ", rate[5], slide * of.speed, CLOSE);
+        assert_near("rod", rate[4], rod.cos() * turn * of.speed, CLOSE);
+        let []: [f64; 0] = system.accel(&x, &[], &inputs).expect("nothing to move");
+        let centred = |h: f64| (energy(angle + h) - energy(angle - h)) / (2.0 * h);
+        let slope = (64.0 * centred(0.005) - 20.0 * centred(0.01) + centred(0.02)) / 45.0;
+        let [torque] = system.constraint_force(&x, &[], &inputs).expect("a torque");
+        assert_near(
+            "torque",
+            torque,
+            slope + gas * slide,
+            1e-7 * slope.abs().max(1.0),
+        );
+    }
+    // A turn of the crank later the engine is where it was.
+    let start = State::start(&system);
+    let end = run(&system, General::Rkmk8, start.clone(), TAU / of.speed, 200).expect("a run");
+    for (end, start) in end.x[1..].iter().zip(&start.x[1..]) {
+        assert_near("after a turn", *end, *start, 1e-11);
     }
 }
 

@@ -145,7 +145,10 @@ impl Builder<'_> {
         let guards = outputs.split_off(outputs.len() - linear.guards.len());
         self.causes.extend(guards.iter().copied().zip(causes));
         let columns = linear.rows.first().map_or(1, Vec::len);
-        let mut rows: Vec<Vec<Edge>> = outputs.chunks(columns).map(<[Edge]>::to_vec).collect();
+        let mut rows: Vec<Vec<Edge>> = outputs
+            .chunks(columns.max(1))
+            .map(<[Edge]>::to_vec)
+            .collect();
         if !self.model.states.is_empty() {
             let Some(nearby) = Displacements::new(full, reduction, &mut self.graph) else {
                 return;

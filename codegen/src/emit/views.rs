@@ -256,8 +256,12 @@ pub fn state(emitter: &Emitter, system: bool) -> String {
             )
         })
         .collect();
+    let unused = match n {
+        0 => "#[allow(unused_variables, reason = \"there are no velocities\")]\n",
+        _ => "",
+    };
     text.push_str(&format!(
-        "{}impl<S: ::hamel::Scalar> {name}<S> {{\n{ranges}/// The state that x and ξ are.\n#[must_use]\npub fn from_arrays(x: &[S; {nu}], xi: &[S; {n}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
+        "{}impl<S: ::hamel::Scalar> {name}<S> {{\n{ranges}/// The state that x and ξ are.\n{unused}#[must_use]\npub fn from_arrays(x: &[S; {nu}], xi: &[S; {n}]) -> Self {{\nSelf {{ {} }}\n}}\n\n\
          /// x and ξ, as the functions of `{of}` take them.\n#[must_use]\npub fn to_arrays(&self) -> ([S; {nu}], [S; {n}]) {{\n([{}], [{}])\n}}\n}}\n\n",
         super::structure::ALLOW,
         values.join(", "),

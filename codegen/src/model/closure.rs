@@ -187,7 +187,7 @@ impl<'a> Closure<'a> {
                 .filter(|i| (0..x.len()).all(|alpha| !fixed[alpha] || a[alpha * n + i] == 0.0))
                 .collect();
             let jacobian: Vec<Vec<f64>> = b
-                .chunks(n)
+                .chunks(n.max(1))
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
             let target: Vec<f64> = residuals.iter().map(|r| -r).collect();
@@ -203,6 +203,12 @@ impl<'a> Closure<'a> {
         }
         let (_, size) = worst(&self.residuals(&x))?;
         (size <= SOLVED).then_some(x)
+    }
+
+    /// Whether a velocity is given, beside that of time.
+    pub fn any_speed(&self, given: &[bool]) -> bool {
+        let mut given = given.iter().enumerate();
+        given.any(|(i, &given)| given && self.time != Some(i))
     }
 
     /// Keeps all constraints on the velocities by those that are not given; those given are polished
@@ -231,7 +237,7 @@ impl<'a> Closure<'a> {
             let free = (0..n).filter(|&i| !fixed[i] && self.time != Some(i));
             let free: Vec<usize> = free.collect();
             let jacobian: Vec<Vec<f64>> = b
-                .chunks(n)
+                .chunks(n.max(1))
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
             for _ in 0..3 {

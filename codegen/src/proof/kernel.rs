@@ -38,7 +38,7 @@ pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut lane: Lane) -> Opti
 pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
     let n = xi.len();
     let mut rows: Vec<Vec<Fp>> = rows
-        .chunks(n)
+        .chunks(n.max(1))
         .zip(shifts)
         .map(|(row, &shift)| [row, &[shift]].concat())
         .collect();

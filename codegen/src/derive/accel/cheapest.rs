@@ -55,7 +55,12 @@ pub fn cheapest(
             candidates.offer(graph, roots.clone());
         }
     }
-    let rows = |entries: Vec<Edge>| entries.chunks(model.n()).map(<[Edge]>::to_vec).collect();
+    let rows = |entries: Vec<Edge>| {
+        entries
+            .chunks(model.n().max(1))
+            .map(<[Edge]>::to_vec)
+            .collect()
+    };
     let [mass, inertia, conservative, mut momentum, mut whole] = all;
     let mut graph = model.graph.clone();
     let composed = Parts {

@@ -252,7 +252,10 @@ impl Recursion {
             kinetic,
         ] = lists;
         let parts = Parts {
-            mass: mass.chunks(active.len()).map(<[Edge]>::to_vec).collect(),
+            mass: mass
+                .chunks(active.len().max(1))
+                .map(<[Edge]>::to_vec)
+                .collect(),
             groups: Vec::new(),
             inertia,
             conservative,

@@ -268,7 +268,7 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
 pub fn solve_at(mass: &[Fp], force: &[Fp], rows: &[Fp], right: &[Fp]) -> Option<Vec<Fp>> {
     let (n, m) = (force.len(), right.len());
     let mut columns: Vec<Vec<Fp>> = vec![force.to_vec()];
-    columns.extend(rows.chunks(n).map(<[Fp]>::to_vec));
+    columns.extend(rows.chunks(n.max(1)).map(<[Fp]>::to_vec));
     let solved = solve_columns(mass, n, &columns)?;
     let (free, bonds) = solved.split_first()?;
     let dot = |a: &[Fp], b: &[Fp]| a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y);

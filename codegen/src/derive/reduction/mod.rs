@@ -71,15 +71,11 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         .collect();
     let (kept, rank) = keep(&full, &rows, &solved)?;
     accelerated(&full, &active)?;
-    if active.len() <= rank {
+    let drives = |c: &Pfaffian| matches!(c.kind, Kind::Drive { .. });
+    let driven = model.constraints.iter().any(drives);
+    // Where drives leave nothing to move by itself, the equations of motion give the forces that they need.
+    if active.len() < rank || active.len() == rank && !driven {
         let span = model.constraints.last().map_or(model.span, |c| c.span);
-        let drives = |c: &Pfaffian| matches!(c.kind, Kind::Drive { .. });
-        if model.constraints.iter().any(drives) {
-            let error = Diagnostic::new(span, "nothing is left to move by itself");
-            return Err(error.help(
-                "leave one motion free: where all is prescribed, `inverse_dynamics` of the description without `prescribe` gives the forces of the drives",
-            ));
-        }
         return Err(Diagnostic::new(
             span,
             format!(

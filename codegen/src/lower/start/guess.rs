@@ -185,6 +185,6 @@ impl Start {
         let given: Vec<bool> = self.given_xi.iter().map(Option::is_some).collect();
         let mass = mass(&self.x);
         let settled = closure.settle_near(&self.x, &mut self.xi, &given, &mass);
-        settled.map_err(|open| super::violated(constraints, open))
+        settled.map_err(|open| super::violated(constraints, open, closure.any_speed(&given)))
     }
 }

@@ -101,7 +101,7 @@ impl Start {
         })?;
         let given: Vec<bool> = self.given_xi.iter().map(Option::is_some).collect();
         let settled = closure.settle(&self.x, &mut self.xi, &given);
-        settled.map_err(|open| violated(constraints, open))
+        settled.map_err(|open| violated(constraints, open, closure.any_speed(&given)))
     }
 
     fn read(
@@ -224,8 +224,17 @@ pub fn known(graph: &Graph, defaults: &[f64]) -> Vec<f64> {
     symbols
 }
 
-/// Start velocities that contradict a constraint.
-fn violated(constraints: &[Pfaffian], open: Open) -> Diagnostic {
+/// Start velocities that contradict a constraint; whether any of them is given.
+fn violated(constraints: &[Pfaffian], open: Open, given: bool) -> Diagnostic {
+    if !given {
+        let message = format!(
+            "no velocities at the start keep this constraint with the others: it is off by {:.3e}",
+            open.residual
+        );
+        return Diagnostic::new(constraints[open.constraint].span, message).help(
+            "remove a constraint, or what is prescribed; where rows depend on one another at the start alone, start elsewhere",
+        );
+    }
     let message = format!(
         "the start velocities violate this constraint by {:.3e}",
         open.residual

@@ -431,7 +431,7 @@ fn at_point(
             let given = evaluate_at(inner_graph, &given, &mut inner.clone())?;
             let driven = full.reduced.accelerated.iter().zip(&given);
             let mut driven = driven.map(|((place, _), &rate)| xi_dot[*place] == rate);
-            let mut held = right.iter().zip(kept.chunks(na));
+            let mut held = right.iter().zip(kept.chunks(na.max(1)));
             driven.all(|holds| holds) && held.all(|(&right, row)| dot(row, &xi_dot) == right)
         }
     };
@@ -488,7 +488,7 @@ fn virtual_velocity(full: &Full, kept: &[Fp], xi: &[Fp], na: usize) -> Option<Ve
             .fold(na as u64, |seed, xi| seed.rotate_left(7) ^ xi.bits()),
     );
     let random: Vec<Fp> = (0..na).map(|_| random.element()).collect();
-    in_kernel(&rows, &vec![Fp::ZERO; rows.len() / na], &random)
+    in_kernel(&rows, &vec![Fp::ZERO; rows.len() / na.max(1)], &random)
 }
 
 fn dot(a: &[Fp], b: &[Fp]) -> Fp {

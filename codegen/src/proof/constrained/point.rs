@@ -45,8 +45,10 @@ pub(super) struct Values {
 impl Values {
     /// ξ̇ = C ξ̇ₐ + Ċ ξₐ + ċ.
     pub(super) fn lift(&self, c: &[Fp], xi_dot: &[Fp]) -> Vec<Fp> {
-        let rows = c.chunks(xi_dot.len()).zip(&self.drift);
-        rows.map(|(row, &drift)| dot(row, xi_dot) + drift).collect()
+        let na = xi_dot.len();
+        let rows = self.drift.iter().enumerate();
+        rows.map(|(i, &drift)| dot(&c[i * na..][..na], xi_dot) + drift)
+            .collect()
     }
 
     /// M ξ̇ + h + ∂V, the force that a motion of the full frame needs.
@@ -77,9 +79,9 @@ impl<'a> At<'a> {
         let active: Vec<Fp> = active.map(|&i| lane.symbol(velocities[i])).collect();
         let others = [class::ACCEL, class::MOMENTUM].map(|class| places(graph, class));
         let mut point = lane.clone();
-        let rows = c.chunks(active.len()).zip(&shift);
-        for (&symbol, (row, &shift)) in velocities.iter().zip(rows) {
-            point.set_symbol(symbol, dot(row, &active) + shift);
+        let na = active.len();
+        for (i, (&symbol, &shift)) in velocities.iter().zip(&shift).enumerate() {
+            point.set_symbol(symbol, dot(&c[i * na..][..na], &active) + shift);
         }
         let mut inner = point.fresh();
         for index in 0..graph.symbols().len() {

@@ -131,7 +131,10 @@ impl Prover {
         seed_rotations(&mut motion.reference.model);
         let graph = motion.graph();
         let all = substitute(graph, &all, &claim.set);
-        let mass: Vec<Vec<Edge>> = all[..n * n].chunks(n).map(<[Edge]>::to_vec).collect();
+        let mass: Vec<Vec<Edge>> = all[..n * n]
+            .chunks(n.max(1))
+            .map(<[Edge]>::to_vec)
+            .collect();
         let slopes: Vec<Vec<Edge>> = xi
             .iter()
             .map(|xi| vec![Derivation::new([(xi.node(), graph.one())]).of(graph, all[n * n])])
