@@ -26,6 +26,12 @@ pub trait Table<S>: Clone + Debug {
 
     /// Row `i`, to be written; empty beyond the last.
     fn row_mut(&mut self, i: usize) -> &mut [S];
+
+    /// Adds to row `i` multiples of the rows of another table from row `k` on, by factors that are not 0.
+    fn follow(&mut self, i: usize, factors: &[S], other: &Self, k: usize);
+
+    /// Makes row `i` a multiple of row `k`.
+    fn repeat(&mut self, i: usize, factor: S, k: usize);
 }
 
 impl<S: Scalar, const ROWS: usize, const COLUMNS: usize> Table<S> for [[S; COLUMNS]; ROWS] {
@@ -47,6 +53,29 @@ impl<S: Scalar, const ROWS: usize, const COLUMNS: usize> Table<S> for [[S; COLUM
     #[inline]
     fn row_mut(&mut self, i: usize) -> &mut [S] {
         self.get_mut(i).map_or(&mut [], |row| row)
+    }
+
+    #[inline]
+    fn follow(&mut self, i: usize, factors: &[S], other: &Self, k: usize) {
+        let Some(own) = self.get_mut(i) else { return };
+        let mut sum = *own;
+        for (factor, row) in factors.iter().zip(other.iter().skip(k)) {
+            if factor.abs().largest_lane() != 0.0 {
+                for (entry, by) in sum.iter_mut().zip(row) {
+                    *entry = factor.mul_add(*by, *entry);
+                }
+            }
+        }
+        *own = sum;
+    }
+
+    #[inline]
+    fn repeat(&mut self, i: usize, factor: S, k: usize) {
+        if let Some(row) = self.get(k).copied()
+            && let Some(own) = self.get_mut(i)
+        {
+            *own = row.map(|entry| factor * entry);
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use hamel::methods::{
     BackwardEuler, Cf4, InChart, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Splitting,
 };
 use hamel::{Block, Method, Nearby, State, System, Table, Tangent, manifold, step, step_slopes};
+use hamel_tests::dc_pendulum::{DcPendulum, DcPendulumParameters};
 use hamel_tests::linear;
 
 /// Differences over steps of 2⁻⁴ … 2⁻⁹, extrapolated: truncation like 2⁻³⁶ of derivatives of order 13, rounding 1e-13.
@@ -258,6 +259,33 @@ fixtures! {
     angles_with_rates_that_are_none spherical_angles SphericalAngles [];
     a_chain_of_springs spring_chain SpringChain [];
     wheels two_wheeled_robot TwoWheeledRobot [0.4, -0.3];
+}
+
+/// Matrices in the place of dual numbers, with a state of first order behind the velocity.
+#[test]
+fn a_motor_with_a_current() {
+    // A coil that is slower than the steps.
+    let system = DcPendulum::new(DcPendulumParameters {
+        l_upper: 0.5,
+        ..Default::default()
+    });
+    all_methods("dc_pendulum", &system.expect("a motor"), &[3.0]);
+}
+
+/// ẋ = ξ of plain coordinates alone.
+#[test]
+fn where_matrices_are_taken() {
+    const {
+        assert!(linear::spring_chain::SpringChain::<f64>::PLAIN);
+        assert!(linear::cart_pole::CartPole::<f64>::PLAIN);
+        assert!(DcPendulum::<f64>::PLAIN);
+        // A circle, rates that are none, time, multipliers, rotations.
+        assert!(!linear::pendulum_circle::CirclePendulum::<f64>::PLAIN);
+        assert!(!linear::sleigh::Sleigh::<f64>::PLAIN);
+        assert!(!linear::kapitza::Kapitza::<f64>::PLAIN);
+        assert!(!linear::four_bar_loop::FourBarLoop::<f64>::PLAIN);
+        assert!(!linear::drone::Drone::<f64>::PLAIN);
+    }
 }
 
 /// All compositions of free motion and kicks.

@@ -1,9 +1,12 @@
 //! `impl hamel::Split`, `hamel::Canonical` and `hamel::Tangent`, where all that they consist of was generated.
 
 use super::{Emitter, externals, names, structure};
+use crate::algebra::graph::Edge;
+use crate::model::layout::Block;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
-use crate::program::{Argument, FunctionId, Shape};
+use crate::program::{Argument, FunctionId, Program, Shape};
 use crate::syntax::ast::ShapeKind;
+use num_traits::{One, Zero};
 
 /// The implementations for a type that implements `System`.
 pub fn implementations(emitter: &Emitter) -> String {
@@ -170,14 +173,35 @@ fn tangent(emitter: &Emitter) -> Option<String> {
     let own: usize = program.blocks.iter().map(|block| block.constraints()).sum();
     let constraint = program.function(FunctionId::Constraint);
     let charted = constraint.is_none_or(|phi| phi.outputs.len() == own);
+    let plain = charted && plain(program);
     let body = format!(
-        "const CHARTED: bool = {charted};\n\ntype Number = {number};\ntype Dual = {applied};\n{frame}{coframe}\
+        "const CHARTED: bool = {charted};\nconst PLAIN: bool = {plain};\n\ntype Number = {number};\ntype Dual = {applied};\n{frame}{coframe}\
          type Slopes = [[S; {columns}]; {rows}];\n\nfn dual(&self) -> Self::Dual {{\n{name} {{\n{fields}}}\n}}\n{frame_of}{coframe_of}{slopes}"
     );
     Some(format!(
         "{}impl{generics} ::hamel::Tangent for {of} {{\n{body}}}\n\n",
         structure::ALLOW_TRAIT
     ))
+}
+
+/// Whether coordinates are numbers whose displacements are those of the frame, ẋ = ξ, and no velocity is held.
+fn plain(program: &Program) -> bool {
+    let flat = |block: &Block| matches!(block, Block::Flat(_));
+    let held = program.function(FunctionId::ProjectVelocity).is_some();
+    let Some(frame) = program.function(FunctionId::DisplacementFrame) else {
+        return false;
+    };
+    let n = program.n;
+    let entry = |(place, edge): (usize, &Edge)| {
+        let number = program.graph.as_rational(*edge);
+        number.is_some_and(|number| match place / n == place % n {
+            true => number.is_one(),
+            false => number.is_zero(),
+        })
+    };
+    let identity = frame.shape == Shape::Matrix(n, n);
+    let mut entries = frame.outputs.iter().enumerate();
+    !held && program.nu == n && program.blocks.iter().all(flat) && identity && entries.all(entry)
 }
 
 /// The linearisation as the trait has it.

@@ -57,7 +57,7 @@ pub(super) fn holds(model: &Model, program: &Program, lane: &Lane) -> Option<boo
     };
     if let Some(found) = emitted(FunctionId::CentroidalMap) {
         let (eta, turned) = along_velocities(program, &rate);
-        holds &= applied(&value(found)?, &eta) == slopes(&turned)?;
+        holds &= applied(6, &value(found)?, &eta) == slopes(&turned)?;
     }
     if let Some(found) = emitted(FunctionId::CentroidalBias) {
         holds &= value(found)? == slopes(&along)?;

@@ -68,5 +68,5 @@ fn are_slopes(
     let table = evaluate_at(&program.graph, &slopes.outputs, &mut lane.clone())?;
     let duals = tangent_at(&program.graph, &of.outputs, &mut lane.clone(), direction)?;
     let expected: Vec<Fp> = duals.into_iter().map(|dual| dual.1).collect();
-    Some(applied(&table, columns) == expected)
+    Some(applied(expected.len(), &table, columns) == expected)
 }

@@ -79,7 +79,7 @@ fn frame_holds(
     Some(
         value(pose)? == placed
             && value(twist)? == expected
-            && applied(&value(rows)?, &eta) == slopes(&turned)?
+            && applied(6, &value(rows)?, &eta) == slopes(&turned)?
             && value(bias)? == slopes(&moving)?,
     )
 }
@@ -96,13 +96,14 @@ pub(super) fn along_velocities(program: &Program, seeds: &[Fp]) -> (Vec<Fp>, Vec
     (eta, direction)
 }
 
-/// A matrix by rows times a vector.
-pub(super) fn applied(rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
-    let entry = |row: &[Fp]| {
-        let terms = row.iter().zip(vector).map(|(&a, &b)| a * b);
-        terms.fold(Fp::ZERO, |sum, term| sum + term)
+/// A matrix of so many rows times a vector.
+pub(super) fn applied(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
+    let n = vector.len();
+    let entry = |i: usize| {
+        let terms = rows[i * n..][..n].iter().zip(vector);
+        terms.fold(Fp::ZERO, |sum, (&a, &b)| sum + a * b)
     };
-    rows.chunks(vector.len().max(1)).map(entry).collect()
+    (0..count).map(entry).collect()
 }
 
 #[cfg(test)]

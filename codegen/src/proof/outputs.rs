@@ -41,7 +41,7 @@ pub(super) fn slopes_hold(
         };
         let table = evaluate_at(&program.graph, &function.outputs, &mut lane.clone())?;
         let expected = slopes_of(model, &value.entries(), motion, lane, direction)?;
-        if applied(&table, columns) != expected {
+        if applied(expected.len(), &table, columns) != expected {
             return Some(false);
         }
     }

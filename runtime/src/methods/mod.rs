@@ -53,6 +53,7 @@ pub use splitting::Splitting;
 
 use crate::error::StepError;
 use crate::manifold;
+use crate::slopes::{Stepped, Tangent};
 use crate::state::State;
 use crate::store::is_finite;
 use crate::system::System;
@@ -112,19 +113,40 @@ pub trait Method<Sys: System + ?Sized> {
     label = "it evaluates points off the manifold",
     note = "take `Rkmk4`, or another method that implements `InChart`"
 )]
-pub trait InChart {}
+pub trait InChart {
+    /// A step with its slopes, of a system with plain coordinates ([`Tangent::PLAIN`]); `None` where the step has to be
+    /// made in dual numbers.
+    #[inline]
+    fn plain_slopes<Sys: Tangent>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        u: &Sys::Inputs,
+        h: f64,
+    ) -> Option<Stepped<Sys>> {
+        let _ = (system, state, u, h);
+        None
+    }
+}
 
 impl InChart for BackwardEuler {}
 impl InChart for Cf4 {}
 impl InChart for Free {}
 impl InChart for Lgvi {}
-impl InChart for Rkmk4 {}
-impl InChart for Rkmk54 {}
-impl InChart for Rkmk8 {}
-impl InChart for SemiImplicitEuler {}
 impl InChart for Splitting {}
-impl<const N: usize> InChart for tableau::Rkmk<N> {}
-impl<M: InChart + ?Sized> InChart for &M {}
+
+impl<M: InChart + ?Sized> InChart for &M {
+    #[inline]
+    fn plain_slopes<Sys: Tangent>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        u: &Sys::Inputs,
+        h: f64,
+    ) -> Option<Stepped<Sys>> {
+        (**self).plain_slopes(system, state, u, h)
+    }
+}
 
 impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     fn order(&self) -> u32 {

@@ -9,8 +9,10 @@
 use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
-use crate::methods::Method;
+use crate::methods::tableau::{Row, Weights};
+use crate::methods::{InChart, Method};
 use crate::scalar::Scalar;
+use crate::slopes::{Stepped, Tangent, plain};
 use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
@@ -78,3 +80,50 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk4 {
         }
     }
 }
+
+impl InChart for Rkmk4 {
+    #[inline]
+    fn plain_slopes<Sys: Tangent>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        u: &Sys::Inputs,
+        h: f64,
+    ) -> Option<Stepped<Sys>> {
+        Some(plain::explicit::<_, _, 4>(
+            self,
+            (&ROWS, CLOSING),
+            system,
+            state,
+            u,
+            h,
+        ))
+    }
+}
+
+/// The same as a tableau.
+static ROWS: [Row; 4] = [
+    Row {
+        node: 0.0,
+        weights: &[],
+    },
+    Row {
+        node: 0.5,
+        weights: &[(0, 0.5)],
+    },
+    Row {
+        node: 0.5,
+        weights: &[(1, 0.5)],
+    },
+    Row {
+        node: 1.0,
+        weights: &[(2, 1.0)],
+    },
+];
+
+const CLOSING: Weights = &[
+    (0, 1.0 / 6.0),
+    (1, 1.0 / 3.0),
+    (2, 1.0 / 3.0),
+    (3, 1.0 / 6.0),
+];

@@ -7,8 +7,9 @@
 
 use crate::adaptive::pair::Pair;
 use crate::error::StepError;
-use crate::methods::Method;
 use crate::methods::tableau::{Row, Stages};
+use crate::methods::{InChart, Method};
+use crate::slopes::{Stepped, Tangent, plain};
 use crate::state::State;
 use crate::system::System;
 
@@ -42,6 +43,26 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk54 {
             stages.evaluate(system, state, h, inputs, index, row)?;
         }
         stages.sums(system, h, CLOSING).end(system, state, h)
+    }
+}
+
+impl InChart for Rkmk54 {
+    #[inline]
+    fn plain_slopes<Sys: Tangent>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        u: &Sys::Inputs,
+        h: f64,
+    ) -> Option<Stepped<Sys>> {
+        Some(plain::explicit::<_, _, 6>(
+            self,
+            (&PAIR.rows, CLOSING),
+            system,
+            state,
+            u,
+            h,
+        ))
     }
 }
 

@@ -6,8 +6,9 @@
 
 use crate::adaptive::pair::Pair;
 use crate::error::StepError;
-use crate::methods::Method;
 use crate::methods::tableau::{Row, Stages};
+use crate::methods::{InChart, Method};
+use crate::slopes::{Stepped, Tangent, plain};
 use crate::state::State;
 use crate::system::System;
 
@@ -41,6 +42,26 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk8 {
             stages.evaluate(system, state, h, inputs, index, row)?;
         }
         stages.sums(system, h, CLOSING).end(system, state, h)
+    }
+}
+
+impl InChart for Rkmk8 {
+    #[inline]
+    fn plain_slopes<Sys: Tangent>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        u: &Sys::Inputs,
+        h: f64,
+    ) -> Option<Stepped<Sys>> {
+        Some(plain::explicit::<_, _, 12>(
+            self,
+            (&PAIR.rows, CLOSING),
+            system,
+            state,
+            u,
+            h,
+        ))
     }
 }
 

@@ -8,8 +8,9 @@
 use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
-use crate::methods::{Method, arrive};
+use crate::methods::{InChart, Method, arrive};
 use crate::scalar::Scalar;
+use crate::slopes::{Stepped, Tangent, plain};
 use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
@@ -46,5 +47,18 @@ impl<Sys: System + ?Sized> Method<Sys> for SemiImplicitEuler {
         let mut x = state.x.clone();
         manifold::retract(system.blocks(), x.as_mut(), u.as_ref());
         arrive(system, state, h, x, xi)
+    }
+}
+
+impl InChart for SemiImplicitEuler {
+    #[inline]
+    fn plain_slopes<Sys: Tangent>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        u: &Sys::Inputs,
+        h: f64,
+    ) -> Option<Stepped<Sys>> {
+        Some(plain::semi_implicit(self, system, state, u, h))
     }
 }

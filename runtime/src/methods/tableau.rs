@@ -10,8 +10,9 @@ use core::array::from_fn;
 use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
-use crate::methods::{Method, arrive};
+use crate::methods::{InChart, Method, arrive};
 use crate::scalar::Scalar;
+use crate::slopes::{Stepped, Tangent, plain};
 use crate::state::State;
 use crate::store::add_scaled;
 use crate::system::System;
@@ -85,6 +86,26 @@ impl<Sys: System + ?Sized, const N: usize> Method<Sys> for Rkmk<N> {
             stages.evaluate(system, state, h, inputs, index, row)?;
         }
         stages.sums(system, h, self.0.closing).end(system, state, h)
+    }
+}
+
+impl<const N: usize> InChart for Rkmk<N> {
+    #[inline]
+    fn plain_slopes<Sys: Tangent>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        u: &Sys::Inputs,
+        h: f64,
+    ) -> Option<Stepped<Sys>> {
+        Some(plain::explicit::<_, _, N>(
+            self,
+            (&self.0.rows, self.0.closing),
+            system,
+            state,
+            u,
+            h,
+        ))
     }
 }
 

@@ -105,7 +105,7 @@ impl Case {
         let most = program.functions.iter().map(|f| f.outputs.len()).max();
         let (count, times) = (self.states.len(), self.times);
         let text = format!(
-            "void run_{prefix}(void);\nvoid run_{prefix}(void)\n{{\n{tables}    {prefix}_parameters parameters;\n    {prefix}_system of;\n    {real} start_x[{}], start_xi[{}], out[{}];\n    size_t state, entry;\n    {real} *const all = ({real} *)&parameters;\n\
+            "void run_{prefix}(void);\nvoid run_{prefix}(void)\n{{\n{tables}    {prefix}_parameters parameters;\n    {prefix}_system of;\n    {real} start_x[{}], start_xi[{}] = {{0}}, out[{}];\n    size_t state, entry;\n    {real} *const all = ({real} *)&parameters;\n\
              {used}    {prefix}_default_parameters(&parameters);\n    for (entry = 0; entry < sizeof parameters / sizeof({real}); entry++) {{\n        all[entry] *= ({real}){times:?};\n    }}\n\
              \x20   printf(\"%d\\n\", (int){prefix}_set_parameters(&of, &parameters));\n    {prefix}_start(start_x, start_xi);\n    show(0, start_x, {});\n    show(0, start_xi, {});\n\
              \x20   for (state = 0; state < {count}; state++) {{\n{calls}    }}\n}}\n",

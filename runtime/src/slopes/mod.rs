@@ -7,7 +7,10 @@
 //!
 //! has no redundant direction, whatever coordinates x are. A_d and B_d are those of the discrete map itself, not of
 //! a truncated variational equation: the step is made in dual numbers, with the emitted linearisation for the slopes
-//! of ξ̇, which is several times shorter than ξ̇ in such numbers.
+//! of ξ̇, which is several times shorter than ξ̇ in such numbers. Where coordinates are plain and ẋ = ξ, explicit methods
+//! multiply matrices instead ([`plain`]).
+
+pub(crate) mod plain;
 
 use crate::dual::Dual;
 use crate::error::{Singular, StepError};
@@ -106,6 +109,9 @@ pub trait Tangent: System + Clone {
     /// Whether the coordinate kinds alone keep φ(x) = 0: all that a method moves in the chart then lies on the
     /// manifold, where the linearisation holds.
     const CHARTED: bool;
+    /// Whether all coordinates are plain numbers with ẋ = ξ, none of them held by a multiplier: explicit methods then
+    /// take matrices in the place of dual numbers.
+    const PLAIN: bool;
 
     /// Numbers with a slope for each entry of η, ξ, z and u, in this order.
     type Number: Directions<Value = Self::Scalar>;
@@ -138,6 +144,9 @@ pub trait Tangent: System + Clone {
         u: &Self::Inputs,
     ) -> Result<Self::Slopes, Singular>;
 }
+
+/// The state at the end of a step, and the slopes [A_d B_d] of the step.
+pub type Stepped<Sys> = Result<(State<Sys>, <Sys as Tangent>::Slopes), StepError>;
 
 /// A system in dual numbers, with the slopes of ξ̇ from its linearisation.
 #[derive(Clone, Debug)]
@@ -336,12 +345,30 @@ pub fn step_slopes<Sys, M>(
     state: &State<Sys>,
     u: &Sys::Inputs,
     h: f64,
-) -> Result<(State<Sys>, Sys::Slopes), StepError>
+) -> Stepped<Sys>
 where
     Sys: Tangent,
     M: Method<Nearby<Sys>> + InChart,
 {
-    step_nearby(method, &Nearby::new(system), state, u, h)
+    match plainly(method, system, state, u, h) {
+        Some(stepped) => stepped,
+        None => step_nearby(method, &Nearby::new(system), state, u, h),
+    }
+}
+
+/// The same by matrices, where coordinates are plain and the method is explicit.
+#[inline]
+fn plainly<Sys: Tangent, M: InChart>(
+    method: &M,
+    system: &Sys,
+    state: &State<Sys>,
+    u: &Sys::Inputs,
+    h: f64,
+) -> Option<Stepped<Sys>> {
+    match Sys::PLAIN {
+        true => method.plain_slopes(system, state, u, h),
+        false => None,
+    }
 }
 
 /// The same of a system that is in dual numbers already.
@@ -354,12 +381,15 @@ pub fn step_nearby<Sys, M>(
     state: &State<Sys>,
     u: &Sys::Inputs,
     h: f64,
-) -> Result<(State<Sys>, Sys::Slopes), StepError>
+) -> Stepped<Sys>
 where
     Sys: Tangent,
     M: Method<Nearby<Sys>> + InChart,
 {
     let system = &nearby.system;
+    if let Some(stepped) = plainly(method, system, state, u, h) {
+        return stepped;
+    }
     state.check_shape(system)?;
     let mut slopes = Sys::Slopes::zero();
     let frame = system.frame(&state.x);

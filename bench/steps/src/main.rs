@@ -1,0 +1,102 @@
+//! Steps with slopes [A_d B_d]: their operations, and their time beside that of the emitted linearisation [A B], by turns
+//! in one process.
+//!
+//! Started by `bench/steps/run.sh`; inputs, rounds and medians are those of `bench/casadi`.
+
+#[path = "../../casadi/src/measure.rs"]
+mod measure;
+mod operations;
+
+use hamel::methods::{InChart, Rkmk4, SemiImplicitEuler};
+use hamel::{Method, Nearby, State, System, Tangent, manifold, step_nearby};
+use measure::INPUTS;
+use operations::{Counted, counted};
+use std::hint::black_box;
+
+mod ur5 {
+    include!(concat!(env!("OUT_DIR"), "/ur5.rs"));
+}
+mod solo12 {
+    include!(concat!(env!("OUT_DIR"), "/solo12.rs"));
+}
+
+/// s
+const STEP: f64 = 1e-3;
+
+/// The start moved along its manifold, other velocities and loads for every k.
+fn input<S: System>(system: &S, k: usize) -> (State<S>, S::Inputs) {
+    let fill = |list: &mut [S::Scalar], first: usize| {
+        for (i, entry) in list.iter_mut().enumerate() {
+            *entry = hamel::Scalar::from_f64(((k * 37 + (first + i) * 11) as f64 * 0.618).sin());
+        }
+    };
+    let (mut x, mut xi) = system.start();
+    let (mut chart, mut u) = (system.zero_chart(), system.zero_inputs());
+    fill(chart.as_mut(), 0);
+    fill(xi.as_mut(), 100);
+    fill(u.as_mut(), 200);
+    manifold::retract(system.blocks(), x.as_mut(), chart.as_ref());
+    (State { t: 0.0, x, xi }, u)
+}
+
+/// Operations of [A B] and of a step with [A_d B_d].
+fn operations<S, M>(system: &S, method: &M) -> [u64; 2]
+where
+    S: Tangent<Scalar = Counted>,
+    M: Method<Nearby<S>> + InChart,
+{
+    let nearby = Nearby::new(system);
+    let (state, u) = input(system, 3);
+    [
+        counted(|| drop(black_box(system.slopes(&state.x, &state.xi, &u)))),
+        counted(|| drop(black_box(step_nearby(method, &nearby, &state, &u, STEP)))),
+    ]
+}
+
+/// ns of [A B] and of a step with [A_d B_d].
+fn times<S, M>(system: &S, method: &M) -> (f64, f64)
+where
+    S: Tangent<Scalar = f64>,
+    M: Method<Nearby<S>> + InChart,
+{
+    let inputs: Vec<_> = (0..INPUTS).map(|k| input(system, k)).collect();
+    let nearby = Nearby::new(system);
+    let linear = |count: u32| {
+        for _ in 0..count {
+            for (state, u) in &inputs {
+                let _ = black_box(black_box(system).slopes(&state.x, &state.xi, u));
+            }
+        }
+    };
+    let stepped = |count: u32| {
+        for _ in 0..count {
+            for (state, u) in &inputs {
+                let _ = black_box(step_nearby(method, black_box(&nearby), state, u, STEP));
+            }
+        }
+    };
+    measure::by_turns(&linear, &stepped)
+}
+
+/// A row of the table.
+macro_rules! row {
+    ($name:literal, $system:ty, $counted:ty, $method:expr) => {
+        let [linear, step] = operations(&<$counted>::default(), &$method);
+        let (before, after) = times(&<$system>::default(), &$method);
+        println!(
+            "| {} | {:?} | {linear} | {step} | {before:.0} ns | {after:.0} ns | {:.2} |",
+            $name,
+            $method,
+            after / before
+        );
+    };
+}
+
+fn main() {
+    println!("| robot | method | [A B], operations | step with [A_d B_d] | [A B], time | step | ratio |");
+    println!("|---|---|---|---|---|---|---|");
+    row!("UR5", ur5::Ur5<f64>, ur5::Ur5<Counted>, SemiImplicitEuler);
+    row!("UR5", ur5::Ur5<f64>, ur5::Ur5<Counted>, Rkmk4);
+    row!("Solo12", solo12::Solo<f64>, solo12::Solo<Counted>, SemiImplicitEuler);
+    row!("Solo12", solo12::Solo<f64>, solo12::Solo<Counted>, Rkmk4);
+}
