@@ -85,6 +85,48 @@ fn models_give_what_the_interpreter_gives() {
     attack("models", cases);
 }
 
+/// Functions that models have only where they are asked for.
+#[test]
+fn what_is_asked_for_gives_what_the_interpreter_gives() {
+    let models = [
+        "cart_pole",
+        "double_pendulum_angles",
+        "drone",
+        "free_body",
+        "heavy_top",
+        "lagging_drone",
+        "satellite",
+        "spring_chain",
+    ];
+    const ASKED: [&str; 5] = [
+        "linearize",
+        "inverse_dynamics_slopes",
+        "parameter_slopes",
+        "regressor, base_parameters",
+        "centre_of_mass, centroidal_momentum, centroidal_map, centroidal_bias",
+    ];
+    let asked: Vec<(&str, usize)> = (models.iter())
+        .flat_map(|model| (0..ASKED.len()).map(move |k| (*model, k)))
+        .collect();
+    let cases: Vec<Case> = asked
+        .par_iter()
+        .filter_map(|&(model, k)| {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/{model}.eom"));
+            let text = std::fs::read_to_string(path).expect("readable");
+            let kept = text
+                .lines()
+                .filter(|line| !line.trim().starts_with("generate"));
+            let kept = kept.collect::<Vec<_>>().join("\n");
+            let (kept, _) = kept.rsplit_once('}').expect("an end");
+            // What a model has none of is the business of other tests.
+            let generated = from_text(&format!("{kept}\n    generate {};\n}}\n", ASKED[k])).ok()?;
+            Some(Case::new(generated, Some(&format!("{model}_{k}")), 1.0))
+        })
+        .collect();
+    assert!(cases.len() >= 30, "{} functions", cases.len());
+    attack("asked", cases);
+}
+
 #[test]
 fn names_of_c_and_of_the_generated_text_are_names_in_descriptions() {
     let texts = names::descriptions();
