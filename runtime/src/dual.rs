@@ -14,8 +14,8 @@ use crate::scalar::Scalar;
 /// A number and its slopes along N directions.
 ///
 /// Choices go by the value: a slope at a jump or a corner is that of the side taken. |a| has the slope 0 at 0, and so
-/// has a length √(a·a) at rest, as in generated code; √a of a number that grows from 0 has a large one. Tests of convergence ([`largest_lane`](Scalar::largest_lane)) see slopes
-/// and value alike.
+/// has a length √(a·a) at rest, as in generated code; √a of a number that grows from 0 has a large one. Tests of
+/// convergence ([`largest_lane`](Scalar::largest_lane)) see slopes and value alike.
 ///
 /// ```
 /// use hamel::{Dual, Scalar};
