@@ -2,6 +2,8 @@
 
 use hamel::methods::General;
 use hamel::{State, System};
+use hamel_codegen::generate::from_text;
+use hamel_codegen::program::interpret::Interpreter;
 use hamel_tests::bouncing_ball::{BouncingBall, BouncingBallParameters};
 use hamel_tests::cart_pole_friction::FrictionCartPole;
 use hamel_tests::drag_ball::DragBall;
@@ -121,6 +123,48 @@ fn drag_linearises_at_rest() {
                 let row: &[f64] = rows[3 + i].as_ref();
                 near("by v", row[3 + j], -0.25 * slope, 1e-14);
                 near("by the wind", row[6 + j], 0.25 * slope, 1e-14);
+            }
+        }
+    }
+}
+
+/// f(|v|) v however f is written: ∂/∂v is f I + f′ v vᵀ/|v|, and f(0) I at rest.
+#[test]
+fn drag_of_any_law_linearises_at_rest() {
+    type Law = fn(f64) -> (f64, f64);
+    let laws: [(&str, Law); 9] = [
+        ("sqrt(v^2 + w^2)", |a| (a, 1.0)),
+        ("(w * w + v * v)^0.5", |a| (a, 1.0)),
+        ("hypot(v, w)", |a| (a, 1.0)),
+        ("sqrt(norm([v, w]))", |a| (a.sqrt(), 0.5 / a.sqrt())),
+        ("sqrt(sqrt(v^2 + w^2))", |a| (a.sqrt(), 0.5 / a.sqrt())),
+        ("norm([v, w])^1.5", |a| (a.powf(1.5), 1.5 * a.sqrt())),
+        ("tanh(norm([v, w]))", |a| (a.tanh(), 1.0 - a.tanh().powi(2))),
+        ("exp(-norm([v, w]))", |a| ((-a).exp(), -(-a).exp())),
+        ("(1 + norm([v, w]))", |a| (1.0 + a, 1.0)),
+    ];
+    for (law, of) in laws {
+        let text = format!(
+            "system A {{ coord x, y; velocity v, w; rate x = v, y = w; particle mass 1 at [x, y, 0];
+             generalized force v = -{law} * v; generalized force w = -{law} * w; generate linearize; }}"
+        );
+        let generated = from_text(&text).unwrap_or_else(|errors| panic!("{law}: {errors:?}"));
+        let program = &generated.program;
+        let function = program.function("linearize").expect("asked for");
+        let linearize = Interpreter::new(program, function, &program.defaults);
+        for v in [[0.0, 0.0], [0.3, -0.4], [-1.2, 0.5]] {
+            let length = f64::hypot(v[0], v[1]);
+            let (f, slope) = of(length);
+            let rows = linearize.call(&[0.0; 2], &v, &[], &[]).expect("regular");
+            for i in 0..2 {
+                for j in 0..2 {
+                    let same = f64::from(u8::from(i == j));
+                    let expected = match length > 0.0 {
+                        true => f * same + slope * v[i] * v[j] / length,
+                        false => f * same,
+                    };
+                    near(law, rows[4 * (2 + i) + 2 + j], -expected, 1e-14);
+                }
             }
         }
     }

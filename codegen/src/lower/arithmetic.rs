@@ -1,6 +1,7 @@
 //! Sums, products, quotients and powers of shaped values.
 
 use super::expression::Evaluator;
+use super::functions;
 use crate::algebra::graph::{Edge, Function};
 use crate::algebra::linear::{add3, apply3, multiply, multiply3};
 use crate::diagnostics::Diagnostic;
@@ -216,7 +217,7 @@ impl Evaluator<'_> {
             }
             self.graph.powi(base, n)
         } else if let Some(n) = whole(&twice) {
-            let root = self.graph.apply(Function::Sqrt, base);
+            let root = functions::root(self.graph, base);
             self.graph.powi(root, n)
         } else if number.is_some_and(|n| n.is_one()) {
             Some(base)

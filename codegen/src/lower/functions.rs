@@ -5,7 +5,7 @@ use super::choice::{greater, lesser};
 use super::expression::Evaluator;
 use super::motion::FUNCTIONS;
 use super::scope::{NameKind, Scope, reserved};
-use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::linear::{apply3, cross, identity3, multiply3, transpose, transpose3};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
@@ -428,7 +428,34 @@ fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {
             "check the argument: it is this number for every configuration",
         ));
     }
-    Ok(graph.apply(Function::Sqrt, square))
+    Ok(root(graph, square))
+}
+
+/// √a. Of a sum of squares of velocities, and of a length, it is a length: at rest it counts as level, too.
+pub fn root(graph: &mut Graph, a: Edge) -> Edge {
+    let moves = graph.class(a.node()) & class::VELOCITY != 0;
+    let function = match moves && is_length(graph, a) {
+        true => Function::Norm,
+        false => Function::Sqrt,
+    };
+    graph.apply(function, a)
+}
+
+/// Whether the root of an expression is a length as it is written, `v^2 + w^2`, or that of one.
+fn is_length(graph: &Graph, edge: Edge) -> bool {
+    if matches!(graph.node(edge.node()), Node::Apply(Function::Norm, _)) {
+        return !edge.is_negative();
+    }
+    let mut open = vec![edge];
+    while let Some(edge) = open.pop() {
+        match graph.node(edge.node()) {
+            _ if edge.is_negative() => return false,
+            Node::Add(a, b) => open.extend([a, b]),
+            Node::Mul(a, b) if a == b => {}
+            _ => return false,
+        }
+    }
+    true
 }
 
 fn diagonal(graph: &Graph, entries: &[Edge]) -> Value {
