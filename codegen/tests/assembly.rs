@@ -44,6 +44,44 @@ fn near(angle: f64, other: f64) -> f64 {
     other + (angle - other + PI).rem_euclid(TAU) - PI
 }
 
+/// Where a crank is prescribed to be is known before the guesses are asked: a four-bar is assembled as guessed at any
+/// angle of its crank, in both modes.
+#[test]
+fn guesses_beside_a_driven_crank_choose_the_mode() {
+    let (l1, l2, l3, d) = (0.4, 1.2, 0.8, 0.9);
+    for k in 0..24 {
+        let crank = 0.1 + TAU * f64::from(k) / 24.0;
+        let (px, py) = (l1 * f64::cos(crank), l1 * f64::sin(crank));
+        let way = f64::hypot(d - px, -py);
+        let towards = f64::atan2(-py, d - px);
+        for side in [1.0, -1.0] {
+            let opening = (l2 * l2 + way * way - l3 * l3) / (2.0 * l2 * way);
+            let b = towards + side * opening.acos();
+            let c = (py + l2 * b.sin()).atan2(px + l2 * b.cos() - d);
+            let text = format!(
+                "system A {{
+                    time t;
+                    coord a, b, c;
+                    velocity u, v, w;
+                    rate a = u, b = v, c = w;
+                    kinetic u^2 + v^2 + w^2;
+                    loop {l1} * cos(a) + {l2} * cos(b) = {d} + {l3} * cos(c);
+                    loop {l1} * sin(a) + {l2} * sin(b) = {l3} * sin(c);
+                    prescribe a = {crank} + 2 * t;
+                    start b ~ {}, c ~ {};
+                }}",
+                b + 0.05,
+                c - 0.05
+            );
+            let model = build(&parse_text(&text).expect("a description")).expect("a start");
+            for (found, expected) in model.start_x.iter().zip([0.0, crank, b, c]) {
+                let off = (found - expected).abs();
+                assert!(off < 1e-8, "{side} {:?} {crank} {b} {c}", model.start_x);
+            }
+        }
+    }
+}
+
 #[test]
 fn guesses_choose_between_both_ways_to_assemble_a_five_bar() {
     let (q1, q2) = (2.0, 1.0);

@@ -223,6 +223,7 @@ impl<'a> Reading<'a> {
                 &defaults,
             );
             let known = !defaults.iter().any(|number| number.is_nan());
+            start.follow(graph, &prescribed, &numbers);
             report.keep(match start::guess::any(system) && known {
                 true => {
                     let inertia = (&frames[..], &dynamics);

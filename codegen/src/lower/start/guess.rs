@@ -171,7 +171,7 @@ impl Start {
         constraints: &[Pfaffian],
         mass: impl Fn(&[f64]) -> Vec<Vec<f64>>,
     ) -> Result<(), Diagnostic> {
-        let given: Vec<bool> = self.given_x.iter().map(Option::is_some).collect();
+        let given = self.settled_x();
         let inertia = mass(&self.x);
         closure.assemble(&mut self.x, &given, &inertia).map_err(|open| {
             let message = format!(

@@ -3,7 +3,7 @@
 pub mod check;
 pub mod guess;
 
-use crate::algebra::graph::{Function, Graph};
+use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::numeric::evaluate;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::declare::Declared;
@@ -25,6 +25,8 @@ pub struct Start {
     pub given_xi: Vec<Option<Span>>,
     guessed_x: Vec<Option<Span>>,
     guessed_xi: Vec<Option<Span>>,
+    /// The entries of x whose motion is prescribed.
+    driven_x: Vec<bool>,
 }
 
 /// x and ξ from the `start` statements; what is not given is at the identity and at rest.
@@ -44,6 +46,7 @@ pub fn read(
     let xi = vec![0.0; declared.xi.len()];
     let (no_x, no_xi) = (vec![None; x.len()], vec![None; xi.len()]);
     let mut start = Start {
+        driven_x: vec![false; x.len()],
         x,
         xi,
         given_x: no_x.clone(),
@@ -68,6 +71,25 @@ pub fn read(
 }
 
 impl Start {
+    /// Puts coordinates where they are prescribed to be at the start; an exact start stays, and is judged later.
+    pub fn follow(&mut self, graph: &Graph, prescribed: &[(usize, Edge)], numbers: &[f64]) {
+        let values: Vec<Edge> = prescribed.iter().map(|(_, value)| *value).collect();
+        for (&(alpha, _), value) in prescribed.iter().zip(evaluate(graph, &values, numbers)) {
+            if self.given_x[alpha].is_none() && value.is_finite() {
+                self.x[alpha] = value;
+                self.driven_x[alpha] = true;
+            }
+        }
+    }
+
+    /// The entries of x that closing a loop leaves alone.
+    fn settled_x(&self) -> Vec<bool> {
+        let entries = self.given_x.iter().zip(&self.driven_x);
+        entries
+            .map(|(given, &driven)| given.is_some() || driven)
+            .collect()
+    }
+
     /// Solves for what the description does not give, so that its loops are closed and its constraints kept.
     pub fn close(
         &mut self,
@@ -78,7 +100,7 @@ impl Start {
         if defaults.iter().any(|number| number.is_nan()) {
             return Ok(());
         }
-        let given: Vec<bool> = self.given_x.iter().map(Option::is_some).collect();
+        let given = self.settled_x();
         closure.close_loops(&mut self.x, &given).map_err(|open| {
             let row = &constraints[open.constraint];
             if matches!(row.kind, Kind::Drive { .. }) {
