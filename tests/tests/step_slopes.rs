@@ -4,9 +4,23 @@
 use hamel::methods::{
     BackwardEuler, Cf4, InChart, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Splitting,
 };
-use hamel::{Block, Method, Nearby, State, System, Table, Tangent, manifold, step, step_slopes};
+use hamel::{
+    Block, Method, Nearby, State, StepError, System, Table, Tangent, manifold, step, step_slopes,
+};
 use hamel_tests::dc_pendulum::{DcPendulum, DcPendulumParameters};
 use hamel_tests::linear;
+
+hamel::rigid_eom! {
+    /// The resistance of a turbulent flow by a power of the speed, which has no slope at rest by the logarithm.
+    system Turbulent {
+        coord x;
+        velocity v;
+        rate x = v;
+        kinetic v^2 / 2;
+        generalized force v = -norm([v])^1.7 * v;
+        generate all, linearize;
+    }
+}
 
 /// Differences over steps of 2⁻⁴ … 2⁻⁹, extrapolated: truncation like 2⁻³⁶ of derivatives of order 13, rounding 1e-13.
 const DIFFERENCE: f64 = 2e-10;
@@ -440,6 +454,34 @@ fn short_steps_have_the_slopes_of_the_motion() {
     for (coarse, fine) in errors(1e-3).into_iter().zip(errors(5e-4)) {
         assert!(fine < 0.27 * coarse && coarse < 0.1, "{coarse} {fine}");
     }
+}
+
+/// Where ξ̇ has a value and its slope has none there is no slope of the step: by matrices and by dual numbers.
+#[test]
+fn slopes_without_a_value_are_errors() {
+    let system = Turbulent::<f64>::default();
+    const { assert!(Turbulent::<f64>::PLAIN) }
+    let state = |v: f64| State {
+        t: 0.0,
+        x: [0.0],
+        xi: [v],
+    };
+    let mut rest = state(0.0);
+    step(&system, Rkmk4, &mut rest, 0.1, &|_, _, _| []).expect("at rest");
+    let error = |result: Result<_, StepError>| match result {
+        Err(StepError::NonFinite { .. }) => (),
+        other => panic!("{:?}", other.map(|_: (State<_>, [[f64; 2]; 2])| ())),
+    };
+    error(step_slopes(&Rkmk4, &system, &state(0.0), &[], 0.1));
+    error(step_slopes(
+        &SemiImplicitEuler,
+        &system,
+        &state(0.0),
+        &[],
+        0.1,
+    ));
+    error(step_slopes(&Cf4, &system, &state(0.0), &[], 0.1));
+    assert!(step_slopes(&Rkmk4, &system, &state(0.3), &[], 0.1).is_ok());
 }
 
 /// What cannot be stepped is no slope.

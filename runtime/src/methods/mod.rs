@@ -53,7 +53,7 @@ pub use splitting::Splitting;
 
 use crate::error::StepError;
 use crate::manifold;
-use crate::slopes::{Stepped, Tangent};
+use crate::slopes::{PlainStep, Stepped, Tangent};
 use crate::state::State;
 use crate::store::is_finite;
 use crate::system::System;
@@ -117,14 +117,8 @@ pub trait InChart {
     /// A step with its slopes, of a system with plain coordinates ([`Tangent::PLAIN`]); `None` where the step has to be
     /// made in dual numbers.
     #[inline]
-    fn plain_slopes<Sys: Tangent>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        u: &Sys::Inputs,
-        h: f64,
-    ) -> Option<Stepped<Sys>> {
-        let _ = (system, state, u, h);
+    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
+        let _ = step;
         None
     }
 }
@@ -137,14 +131,8 @@ impl InChart for Splitting {}
 
 impl<M: InChart + ?Sized> InChart for &M {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        u: &Sys::Inputs,
-        h: f64,
-    ) -> Option<Stepped<Sys>> {
-        (**self).plain_slopes(system, state, u, h)
+    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
+        (**self).plain_slopes(step)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::manifold;
 use crate::methods::tableau::{Row, Weights};
 use crate::methods::{InChart, Method};
 use crate::scalar::Scalar;
-use crate::slopes::{Stepped, Tangent, plain};
+use crate::slopes::{PlainStep, Stepped, Tangent};
 use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
@@ -83,21 +83,8 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk4 {
 
 impl InChart for Rkmk4 {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        u: &Sys::Inputs,
-        h: f64,
-    ) -> Option<Stepped<Sys>> {
-        Some(plain::explicit::<_, _, 4>(
-            self,
-            (&ROWS, CLOSING),
-            system,
-            state,
-            u,
-            h,
-        ))
+    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
+        Some(step.explicit::<_, 4>(self, &ROWS, CLOSING))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::adaptive::pair::Pair;
 use crate::error::StepError;
 use crate::methods::tableau::{Row, Stages};
 use crate::methods::{InChart, Method};
-use crate::slopes::{Stepped, Tangent, plain};
+use crate::slopes::{PlainStep, Stepped, Tangent};
 use crate::state::State;
 use crate::system::System;
 
@@ -47,21 +47,8 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk8 {
 
 impl InChart for Rkmk8 {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        u: &Sys::Inputs,
-        h: f64,
-    ) -> Option<Stepped<Sys>> {
-        Some(plain::explicit::<_, _, 12>(
-            self,
-            (&PAIR.rows, CLOSING),
-            system,
-            state,
-            u,
-            h,
-        ))
+    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
+        Some(step.explicit::<_, 12>(self, &PAIR.rows, CLOSING))
     }
 }
 

@@ -10,7 +10,7 @@ use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::{InChart, Method, arrive};
 use crate::scalar::Scalar;
-use crate::slopes::{Stepped, Tangent, plain};
+use crate::slopes::{PlainStep, Stepped, Tangent};
 use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
@@ -52,13 +52,7 @@ impl<Sys: System + ?Sized> Method<Sys> for SemiImplicitEuler {
 
 impl InChart for SemiImplicitEuler {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        u: &Sys::Inputs,
-        h: f64,
-    ) -> Option<Stepped<Sys>> {
-        Some(plain::semi_implicit(self, system, state, u, h))
+    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
+        Some(step.semi_implicit(self))
     }
 }

@@ -12,7 +12,7 @@ use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::{InChart, Method, arrive};
 use crate::scalar::Scalar;
-use crate::slopes::{Stepped, Tangent, plain};
+use crate::slopes::{PlainStep, Stepped, Tangent};
 use crate::state::State;
 use crate::store::add_scaled;
 use crate::system::System;
@@ -91,21 +91,8 @@ impl<Sys: System + ?Sized, const N: usize> Method<Sys> for Rkmk<N> {
 
 impl<const N: usize> InChart for Rkmk<N> {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(
-        &self,
-        system: &Sys,
-        state: &State<Sys>,
-        u: &Sys::Inputs,
-        h: f64,
-    ) -> Option<Stepped<Sys>> {
-        Some(plain::explicit::<_, _, N>(
-            self,
-            (&self.0.rows, self.0.closing),
-            system,
-            state,
-            u,
-            h,
-        ))
+    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
+        Some(step.explicit::<_, N>(self, &self.0.rows, self.0.closing))
     }
 }
 

@@ -10,7 +10,9 @@
 //! of ξ̇, which is several times shorter than ξ̇ in such numbers. Where coordinates are plain and ẋ = ξ, explicit methods
 //! multiply matrices instead ([`plain`]).
 
-pub(crate) mod plain;
+mod plain;
+
+pub use plain::PlainStep;
 
 use crate::dual::Dual;
 use crate::error::{Singular, StepError};
@@ -365,10 +367,13 @@ fn plainly<Sys: Tangent, M: InChart>(
     u: &Sys::Inputs,
     h: f64,
 ) -> Option<Stepped<Sys>> {
-    match Sys::PLAIN {
-        true => method.plain_slopes(system, state, u, h),
-        false => None,
-    }
+    let step = PlainStep {
+        system,
+        state,
+        u,
+        h,
+    };
+    Sys::PLAIN.then(|| method.plain_slopes(&step)).flatten()
 }
 
 /// The same of a system that is in dual numbers already.

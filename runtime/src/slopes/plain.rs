@@ -16,84 +16,93 @@ use crate::methods::tableau::{Row, Weights};
 use crate::scalar::Scalar;
 use crate::slopes::{Stepped, Tangent};
 use crate::state::State;
-use crate::store::{Table, scale};
+use crate::store::{Table, is_finite, scale};
 
-/// A step of an explicit method of N stages, whose tableau is given.
-#[inline]
-pub(crate) fn explicit<Sys: Tangent, M: Method<Sys>, const N: usize>(
-    method: &M,
-    (rows, closing): (&[Row], Weights),
-    system: &Sys,
-    state: &State<Sys>,
-    u: &Sys::Inputs,
-    h: f64,
-) -> Stepped<Sys> {
-    // The method asks for the inputs at every stage, in their order.
-    let points: [(Sys::Coordinates, Sys::Velocities); N] =
-        from_fn(|_| (state.x.clone(), state.xi.clone()));
-    let (points, stage) = (RefCell::new(points), Cell::new(0));
-    let held = |_: f64, x: &Sys::Coordinates, xi: &Sys::Velocities| {
-        if let Ok(mut points) = points.try_borrow_mut()
-            && let Some(point) = points.get_mut(stage.get())
-        {
-            *point = (x.clone(), xi.clone());
-        }
-        stage.set(stage.get() + 1);
-        u.clone()
-    };
-    let end = method.step(system, state, h, &held)?;
-    let first = linear(system, state.t, &state.x, &state.xi, u)?;
-    let n = state.x.as_ref().len();
-    let mut g: [Sys::Slopes; N] = from_fn(|_| first.clone());
-    let stages = rows.iter().zip(points.into_inner()).enumerate();
-    for (index, (row, (x, xi))) in stages.take(N).skip(1) {
-        let table = linear(system, state.t, &x, &xi, u)?;
-        let rates = match row.weights {
-            [(0, weight)] => second(&table, &first, n, h * weight),
-            weights => later(&table, &moved(&g, weights, h), n),
+/// A step of length h from a state, at inputs that are held over it, of a system with plain coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct PlainStep<'a, Sys: Tangent> {
+    pub(crate) system: &'a Sys,
+    pub(crate) state: &'a State<Sys>,
+    pub(crate) u: &'a Sys::Inputs,
+    pub(crate) h: f64,
+}
+
+impl<Sys: Tangent> PlainStep<'_, Sys> {
+    /// The step of an explicit method of N stages, whose tableau is given.
+    #[inline]
+    pub(crate) fn explicit<M: Method<Sys>, const N: usize>(
+        &self,
+        method: &M,
+        rows: &[Row],
+        closing: Weights,
+    ) -> Stepped<Sys> {
+        let (state, u, h) = (self.state, self.u, self.h);
+        // The method asks for the inputs at every stage, in their order.
+        let points: [(Sys::Coordinates, Sys::Velocities); N] =
+            from_fn(|_| (state.x.clone(), state.xi.clone()));
+        let (points, stage) = (RefCell::new(points), Cell::new(0));
+        let held = |_: f64, x: &Sys::Coordinates, xi: &Sys::Velocities| {
+            if let Ok(mut points) = points.try_borrow_mut()
+                && let Some(point) = points.get_mut(stage.get())
+            {
+                *point = (x.clone(), xi.clone());
+            }
+            stage.set(stage.get() + 1);
+            u.clone()
         };
-        if let Some(slot) = g.get_mut(index) {
-            *slot = rates;
+        let end = method.step(self.system, state, h, &held)?;
+        let first = self.linear(&state.x, &state.xi)?;
+        let n = state.x.as_ref().len();
+        let mut g: [Sys::Slopes; N] = from_fn(|_| first.clone());
+        let stages = rows.iter().zip(points.into_inner()).enumerate();
+        for (index, (row, (x, xi))) in stages.take(N).skip(1) {
+            let table = self.linear(&x, &xi)?;
+            let rates = match row.weights {
+                [(0, weight)] => second(&table, &first, n, h * weight),
+                weights => later(&table, &moved(&g, weights, h), n),
+            };
+            if let Some(slot) = g.get_mut(index) {
+                *slot = rates;
+            }
+        }
+        self.end(end, moved(&g, closing, h))
+    }
+
+    /// The step of the semi-implicit Euler method: the rows of ξ are I + h T, those of x move by h times these.
+    #[inline]
+    pub(crate) fn semi_implicit<M: Method<Sys>>(&self, method: &M) -> Stepped<Sys> {
+        let (state, h) = (self.state, self.h);
+        let end = method.step(self.system, state, h, &|_, _, _| self.u.clone())?;
+        let mut w = self.linear(&state.x, &state.xi)?;
+        let length = Sys::Scalar::from_f64(h);
+        let n = state.x.as_ref().len();
+        for i in n..w.rows() {
+            scale(w.row_mut(i), length);
+            lean(&mut w, i);
+        }
+        for i in 0..n {
+            w.repeat(i, length, n + i);
+            lean(&mut w, i);
+        }
+        self.end(end, w)
+    }
+
+    /// T = [A B] at a point.
+    #[inline]
+    fn linear(&self, x: &Sys::Coordinates, xi: &Sys::Velocities) -> Result<Sys::Slopes, StepError> {
+        let table = self.system.slopes(x, xi, self.u);
+        let time = self.state.t;
+        table.map_err(|cause| StepError::Singular { cause, time })
+    }
+
+    /// What the step gives, where its slopes have values.
+    #[inline]
+    fn end(&self, end: State<Sys>, slopes: Sys::Slopes) -> Stepped<Sys> {
+        match (0..slopes.rows()).all(|i| is_finite(slopes.row(i))) {
+            true => Ok((end, slopes)),
+            false => Err(StepError::NonFinite { time: self.state.t }),
         }
     }
-    Ok((end, moved(&g, closing, h)))
-}
-
-/// A step of the semi-implicit Euler method: the rows of ξ are I + h T, those of x move by h times these.
-#[inline]
-pub(crate) fn semi_implicit<Sys: Tangent, M: Method<Sys>>(
-    method: &M,
-    system: &Sys,
-    state: &State<Sys>,
-    u: &Sys::Inputs,
-    h: f64,
-) -> Stepped<Sys> {
-    let end = method.step(system, state, h, &|_, _, _| u.clone())?;
-    let mut w = linear(system, state.t, &state.x, &state.xi, u)?;
-    let length = Sys::Scalar::from_f64(h);
-    let n = state.x.as_ref().len();
-    for i in n..w.rows() {
-        scale(w.row_mut(i), length);
-        lean(&mut w, i);
-    }
-    for i in 0..n {
-        w.repeat(i, length, n + i);
-        lean(&mut w, i);
-    }
-    Ok((end, w))
-}
-
-/// T = [A B] at a point.
-#[inline]
-fn linear<Sys: Tangent>(
-    system: &Sys,
-    time: f64,
-    x: &Sys::Coordinates,
-    xi: &Sys::Velocities,
-    u: &Sys::Inputs,
-) -> Result<Sys::Slopes, StepError> {
-    let table = system.slopes(x, xi, u);
-    table.map_err(|cause| StepError::Singular { cause, time })
 }
 
 /// Adds 1 to an entry on the diagonal.
