@@ -92,6 +92,11 @@ pub fn multiply(graph: &mut Graph, a: &[Vec<Edge>], b: &[Vec<Edge>]) -> Vec<Vec<
         .collect()
 }
 
+/// A matrix from its entries by rows; none where rows have no entries.
+pub fn matrix<T: Clone>(entries: &[T], columns: usize) -> Vec<Vec<T>> {
+    entries.chunks(columns.max(1)).map(<[T]>::to_vec).collect()
+}
+
 /// Mᵀ for a matrix as rows.
 pub fn transpose(m: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
     let columns = m.first().map_or(0, Vec::len);

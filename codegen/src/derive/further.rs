@@ -14,6 +14,7 @@ use super::tree::Placement;
 use super::{momentum, quantity};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::matrix;
 use crate::algebra::transplant::graft;
 use crate::functions::SLOPES;
 use crate::model::invariants::Quantity;
@@ -145,10 +146,7 @@ impl Builder<'_> {
         let guards = outputs.split_off(outputs.len() - linear.guards.len());
         self.causes.extend(guards.iter().copied().zip(causes));
         let columns = linear.rows.first().map_or(1, Vec::len);
-        let mut rows: Vec<Vec<Edge>> = outputs
-            .chunks(columns.max(1))
-            .map(<[Edge]>::to_vec)
-            .collect();
+        let mut rows: Vec<Vec<Edge>> = matrix(&outputs, columns);
         if !self.model.states.is_empty() {
             let Some(nearby) = Displacements::new(full, reduction, &mut self.graph) else {
                 return;

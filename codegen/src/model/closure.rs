@@ -10,6 +10,7 @@ use super::layout::{Block, blocks};
 use super::pfaffian::Pfaffian;
 use super::{Clock, Coordinate, Model};
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::matrix;
 use crate::algebra::numeric::{evaluate, least_norm};
 
 /// Steps of Newton's method.
@@ -143,7 +144,7 @@ impl<'a> Closure<'a> {
         let rows = self.constraints.iter().flat_map(|c| c.row.iter().copied());
         let rows: Vec<Edge> = rows.collect();
         let b = evaluate(self.graph, &rows, &self.numbers(x));
-        let b: Vec<Vec<f64>> = b.chunks(self.n.max(1)).map(<[f64]>::to_vec).collect();
+        let b: Vec<Vec<f64>> = matrix(&b, self.n);
         let shifts: Vec<Edge> = self.constraints.iter().map(|c| c.shift).collect();
         let shifts = evaluate(self.graph, &shifts, &self.numbers(x));
         let mut fixed = given.to_vec();
@@ -187,7 +188,7 @@ impl<'a> Closure<'a> {
                 .filter(|i| (0..x.len()).all(|alpha| !fixed[alpha] || a[alpha * n + i] == 0.0))
                 .collect();
             let jacobian: Vec<Vec<f64>> = b
-                .chunks(n.max(1))
+                .chunks(n)
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
             let target: Vec<f64> = residuals.iter().map(|r| -r).collect();
@@ -237,7 +238,7 @@ impl<'a> Closure<'a> {
             let free = (0..n).filter(|&i| !fixed[i] && self.time != Some(i));
             let free: Vec<usize> = free.collect();
             let jacobian: Vec<Vec<f64>> = b
-                .chunks(n.max(1))
+                .chunks(n)
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
             for _ in 0..3 {

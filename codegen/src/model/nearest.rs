@@ -5,6 +5,7 @@ use super::points::Points;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::matrix;
 use crate::algebra::numeric::evaluate;
 
 /// Steps from one first guess.
@@ -98,10 +99,7 @@ impl Equations {
     /// components of X meet.
     pub fn volume(&self, numbers: &[f64]) -> f64 {
         let slopes = evaluate(&self.graph, &self.slopes, numbers);
-        let mut rows: Vec<Vec<f64>> = slopes
-            .chunks(self.dimension.max(1))
-            .map(<[f64]>::to_vec)
-            .collect();
+        let mut rows: Vec<Vec<f64>> = matrix(&slopes, self.dimension);
         let mut volume = 1.0;
         // Gram and Schmidt.
         for i in 0..rows.len() {

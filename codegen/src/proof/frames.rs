@@ -96,14 +96,16 @@ pub(super) fn along_velocities(program: &Program, seeds: &[Fp]) -> (Vec<Fp>, Vec
     (eta, direction)
 }
 
-/// A matrix of so many rows times a vector.
+/// A matrix by rows times a vector; of so many rows where they have no entries.
 pub(super) fn applied(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
-    let n = vector.len();
-    let entry = |i: usize| {
-        let terms = rows[i * n..][..n].iter().zip(vector);
-        terms.fold(Fp::ZERO, |sum, (&a, &b)| sum + a * b)
+    if vector.is_empty() {
+        return vec![Fp::ZERO; count];
+    }
+    let entry = |row: &[Fp]| {
+        let terms = row.iter().zip(vector).map(|(&a, &b)| a * b);
+        terms.fold(Fp::ZERO, |sum, term| sum + term)
     };
-    (0..count).map(entry).collect()
+    rows.chunks(vector.len()).map(entry).collect()
 }
 
 #[cfg(test)]

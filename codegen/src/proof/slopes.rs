@@ -11,6 +11,7 @@ use super::{centroidal, derivatives, frames, outputs, states};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
+use crate::algebra::linear::matrix;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
 use crate::derive::calculus::Calculus;
@@ -67,7 +68,7 @@ impl Numbers {
         let (mass, rest) = values.split_at(n * n);
         let (forces, rest) = rest.split_at(3 * n);
         let (a, rate) = rest.split_at(nu * n);
-        let rows = |flat: &[Fp]| flat.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
+        let rows = |flat: &[Fp]| matrix(flat, n);
         Numbers {
             mass: rows(mass),
             force: (0..n)
@@ -151,7 +152,7 @@ impl Slopes {
         let mut xi_dot = value("accel")?;
         xi_dot.truncate(n);
         let mass = value("mass_matrix")?;
-        let mass: Vec<Vec<Fp>> = mass.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
+        let mass: Vec<Vec<Fp>> = matrix(&mass, n);
         let roots: Vec<Edge> = model
             .a
             .concat()
@@ -169,8 +170,7 @@ impl Slopes {
         let moving = kinematics(&nearby.moving)?;
         let linear = value("linearize")?;
         let found = nearby.found(&linear);
-        let matrix =
-            |flat: &[Fp]| -> Vec<Vec<Fp>> { flat.chunks(n.max(1)).map(<[Fp]>::to_vec).collect() };
+        let matrix = |flat: &[Fp]| -> Vec<Vec<Fp>> { matrix(flat, n) };
         let left = difference(
             &changed[nu * n..],
             &product(&matrix(&moving[..nu * n]), &nearby.columns[..n]),
@@ -278,7 +278,7 @@ impl Nearby {
     fn moved(&self, model: &Model, a: &[Fp]) -> Vec<Fp> {
         let n = model.n();
         let (h, rest) = self.columns.split_at(n);
-        let a: Vec<Vec<Fp>> = a.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
+        let a: Vec<Vec<Fp>> = matrix(a, n);
         let mut moved = vec![Fp::ZERO; model.graph.symbols().len()];
         for (&place, value) in self.x.iter().zip(product(&a, h)) {
             moved[place] = value;
@@ -291,9 +291,7 @@ impl Nearby {
 
     /// (ḣ, δξ̇) by the emitted matrices.
     fn found(&self, linear: &[Fp]) -> Vec<Fp> {
-        let rows = linear.chunks(self.columns.len().max(1));
-        let rows: Vec<Vec<Fp>> = rows.map(<[Fp]>::to_vec).collect();
-        product(&rows, &self.columns)
+        product(&matrix(linear, self.columns.len()), &self.columns)
     }
 }
 

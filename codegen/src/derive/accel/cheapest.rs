@@ -3,6 +3,7 @@
 use super::LARGE;
 use super::parts::Parts;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::matrix;
 use crate::algebra::transplant::rebuild;
 use crate::derive::candidates::Candidates;
 use crate::derive::care::Care;
@@ -55,12 +56,7 @@ pub fn cheapest(
             candidates.offer(graph, roots.clone());
         }
     }
-    let rows = |entries: Vec<Edge>| {
-        entries
-            .chunks(model.n().max(1))
-            .map(<[Edge]>::to_vec)
-            .collect()
-    };
+    let rows = |entries: Vec<Edge>| matrix(&entries, model.n());
     let [mass, inertia, conservative, mut momentum, mut whole] = all;
     let mut graph = model.graph.clone();
     let composed = Parts {

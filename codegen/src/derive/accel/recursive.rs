@@ -7,7 +7,7 @@ use super::setting::Setting;
 use super::solve::{Plan, Solution, solve};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
-use crate::algebra::linear::{Vec3, zero3};
+use crate::algebra::linear::{Vec3, matrix, zero3};
 use crate::algebra::transplant::map_symbols;
 use crate::derive::calculus::Calculus;
 use crate::derive::loads;
@@ -252,10 +252,7 @@ impl Recursion {
             kinetic,
         ] = lists;
         let parts = Parts {
-            mass: mass
-                .chunks(active.len().max(1))
-                .map(<[Edge]>::to_vec)
-                .collect(),
+            mass: matrix(&mass, active.len()),
             groups: Vec::new(),
             inertia,
             conservative,

@@ -10,6 +10,7 @@ use super::Geometry;
 use crate::algebra::echelon::solution;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::linear::matrix;
 use crate::algebra::numeric::evaluate_at;
 use crate::model::layout::{Block, entry_names};
 use crate::model::value::Value;
@@ -86,7 +87,7 @@ fn samples(model: &Model, slopes: &[Vec<Edge>], n: usize) -> Vec<Vec<Vec<Fp>>> {
             continue;
         };
         if let Some(values) = evaluate_at(&model.graph, &roots, &mut lane) {
-            samples.push(values.chunks(n.max(1)).map(<[Fp]>::to_vec).collect());
+            samples.push(matrix(&values, n));
         }
     }
     samples

@@ -35,7 +35,7 @@ impl Samples {
 
     fn at(model: &Model, tape: &Tape, columns: usize, seed: u64) -> Option<Self> {
         let n = model.n().max(1);
-        let wanted = FEWEST.max(2 * columns / n.max(1) + SPARE);
+        let wanted = FEWEST.max(2 * columns / n + SPARE);
         let mut rows = Vec::new();
         let mut last = None;
         let mut tried = 0;

@@ -6,7 +6,7 @@ use super::constant::settle;
 use super::rates::{Part, Rates, dependence, measure_alike, rates};
 use super::setting::Setting;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{Mat3, multiply, solve_symmetric, transpose};
+use crate::algebra::linear::{Mat3, matrix, multiply, solve_symmetric, transpose};
 use crate::derive::accel::parts::Parts;
 use crate::model::layout::Block;
 use crate::program::structure::Reason;
@@ -68,10 +68,7 @@ pub fn separate(
     let of_plain = settle(model, graph, parts, variation, &of_plain);
     // K = D⁻¹ M, rows of plain rates.
     let right: Vec<Vec<Edge>> = plain.iter().map(|&f| inertia[f].clone()).collect();
-    let of_plain: Vec<Vec<Edge>> = of_plain
-        .chunks(plain.len().max(1))
-        .map(<[Edge]>::to_vec)
-        .collect();
+    let of_plain: Vec<Vec<Edge>> = matrix(&of_plain, plain.len());
     let Some(coupling) = solve_symmetric(graph, &of_plain, &right) else {
         return Err(depends(graph, &inertia.concat()));
     };

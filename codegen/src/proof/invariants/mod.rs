@@ -23,6 +23,7 @@ use super::verdict::{Identity, Verdict};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::lane::Lane;
+use crate::algebra::linear::matrix;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
 use crate::derive::calculus::Calculus;
@@ -216,7 +217,7 @@ impl Motion {
         let values = evaluate_at(graph, &roots, &mut lane.clone())?;
         let (mass, rest) = values.split_at(n * n);
         let (force, rate) = rest.split_at(n);
-        let rows = mass.chunks(n.max(1)).map(<[Fp]>::to_vec).collect();
+        let rows = matrix(mass, n);
         let xi_dot = solve(rows, force.to_vec())?;
         let direction = direction(model, rate, &xi_dot);
         let duals = tangent_at(graph, entries, &mut lane.clone(), &direction)?;
@@ -232,10 +233,7 @@ impl Motion {
         all.push(entry);
         let all = crate::algebra::transplant::substitute(self.graph(), &all, &set);
         let n = self.reference.model.n();
-        let mass: Vec<Vec<Edge>> = all[..n * n]
-            .chunks(n.max(1))
-            .map(<[Edge]>::to_vec)
-            .collect();
+        let mass: Vec<Vec<Edge>> = matrix(&all[..n * n], n);
         let right: Vec<Vec<Edge>> = all[n * n..n * n + n].iter().map(|&f| vec![f]).collect();
         let entry = all[n * n + n];
         let xi_dot = crate::algebra::linear::solve_symmetric(self.graph(), &mass, &right)?;

@@ -9,7 +9,7 @@ use super::Motion;
 use super::remainder::readable;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
-use crate::algebra::linear::{cross, identity3, solve_symmetric};
+use crate::algebra::linear::{cross, identity3, matrix, solve_symmetric};
 use crate::algebra::transplant::{rebuild, substitute};
 use crate::derive::calculus::{Calculus, into_frame};
 use crate::derive::connection::quadratic;
@@ -131,10 +131,7 @@ impl Prover {
         seed_rotations(&mut motion.reference.model);
         let graph = motion.graph();
         let all = substitute(graph, &all, &claim.set);
-        let mass: Vec<Vec<Edge>> = all[..n * n]
-            .chunks(n.max(1))
-            .map(<[Edge]>::to_vec)
-            .collect();
+        let mass: Vec<Vec<Edge>> = matrix(&all[..n * n], n);
         let slopes: Vec<Vec<Edge>> = xi
             .iter()
             .map(|xi| vec![Derivation::new([(xi.node(), graph.one())]).of(graph, all[n * n])])
