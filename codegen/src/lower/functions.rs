@@ -14,6 +14,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
 use crate::syntax::suggest::closest;
 use num_traits::Signed;
+use rustc_hash::FxHashSet;
 use std::borrow::Cow;
 
 /// Largest number of rows that a function makes.
@@ -446,11 +447,13 @@ fn is_length(graph: &Graph, edge: Edge) -> bool {
     if matches!(graph.node(edge.node()), Node::Apply(Function::Norm, _)) {
         return !edge.is_negative();
     }
-    let mut open = vec![edge];
+    let (mut open, mut seen) = (vec![edge], FxHashSet::default());
     while let Some(edge) = open.pop() {
         match graph.node(edge.node()) {
             _ if edge.is_negative() => return false,
-            Node::Add(a, b) => open.extend([a, b]),
+            // Sums are shared: each is looked at once.
+            Node::Add(a, b) if seen.insert(edge.node()) => open.extend([a, b]),
+            Node::Add(..) => {}
             Node::Mul(a, b) if a == b => {}
             _ => return false,
         }
