@@ -18,6 +18,7 @@ use hamel_codegen::syntax::{parse_text, read_files};
 use std::path::Path;
 use tree::{ALL, Kind, Link, text};
 
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/models");
 /// Step of differences that are extrapolated to fourth order.
 const STEP: f64 = 2e-4;
 /// Of the largest entry: h⁴ with what derivatives there are, and roundings over h.
@@ -145,7 +146,7 @@ fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
 #[test]
 fn what_is_observed_agrees_with_differences() {
     let (mut frames, mut centroidal, mut slopes) = (0, 0, 0);
-    for path in models::models() {
+    for path in models::models(Path::new(FOLDER)) {
         let Some(case) = case(&path) else {
             continue;
         };
@@ -173,7 +174,7 @@ fn what_is_observed_agrees_with_differences() {
 #[test]
 fn slopes_of_dynamics_agree_with_differences() {
     let (mut inverse, mut parameters) = (0, 0);
-    for path in models::models() {
+    for path in models::models(Path::new(FOLDER)) {
         if let Ok(case) = asked_for(&path, "linearize, inverse_dynamics_slopes") {
             inverse_slopes(&case);
             inverse += 1;

@@ -10,6 +10,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Cause, Program};
 use nalgebra::DMatrix;
+use std::path::Path;
 
 /// Roundings of M and of its inverse.
 const CLOSE: f64 = 1e-9;
@@ -48,7 +49,7 @@ fn mass(generated: &Generated) -> DMatrix<f64> {
 #[test]
 fn pivots_lie_between_the_inertias_of_their_velocities() {
     let (mut models, mut compared) = (0, 0);
-    for path in models::models() {
+    for path in models::models(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/models"))) {
         let asked = "accel, mass_matrix, linearize, velocity_from_momentum";
         let Ok(generated) = models::asked_for(&path, asked) else {
             // M of systems with constraints is not asked for everywhere.

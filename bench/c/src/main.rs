@@ -3,10 +3,12 @@
 //! Started by `bench/c/run.sh`; inputs, rounds and medians are those of `bench/casadi`. Both have to agree before they are
 //! timed. Ends with 1 where the C takes more than 1.05 times as long as the Rust.
 
+mod input;
 #[path = "../../casadi/src/measure.rs"]
 mod measure;
 
-use hamel::{Singular, System, manifold};
+use hamel::{Singular, System};
+use input::{Input, input};
 use libloading::Library;
 use measure::INPUTS;
 use std::error::Error;
@@ -34,28 +36,6 @@ type Default = unsafe extern "C" fn(*mut c_void);
 type Set = unsafe extern "C" fn(*mut c_void, *const c_void) -> c_int;
 type Accel =
     unsafe extern "C" fn(*const c_void, *const f64, *const f64, *const f64, *mut f64) -> c_int;
-
-struct Input<S: System> {
-    x: S::Coordinates,
-    xi: S::Velocities,
-    u: S::Inputs,
-}
-
-/// The start moved along its manifold, other velocities and loads for every k.
-fn input<S: System<Scalar = f64>>(system: &S, k: usize) -> Input<S> {
-    let fill = |list: &mut [f64], first: usize| {
-        for (i, entry) in list.iter_mut().enumerate() {
-            *entry = ((k * 37 + (first + i) * 11) as f64 * 0.618).sin();
-        }
-    };
-    let (mut x, mut xi) = system.start();
-    let (mut chart, mut u) = (system.zero_chart(), system.zero_inputs());
-    fill(chart.as_mut(), 0);
-    fill(xi.as_mut(), 100);
-    fill(u.as_mut(), 200);
-    manifold::retract(system.blocks(), x.as_mut(), chart.as_ref());
-    Input { x, xi, u }
-}
 
 /// One row of the table; what the C takes over the Rust.
 fn row<S: System<Scalar = f64>>(

@@ -3,12 +3,15 @@
 //!
 //! Started by `bench/steps/run.sh`; inputs, rounds and medians are those of `bench/casadi`.
 
+#[path = "../../c/src/input.rs"]
+mod input;
 #[path = "../../casadi/src/measure.rs"]
 mod measure;
 mod operations;
 
 use hamel::methods::{InChart, Rkmk4, SemiImplicitEuler};
-use hamel::{Method, Nearby, State, System, Tangent, manifold, step_nearby};
+use hamel::{Method, Nearby, State, System, Tangent, step_nearby};
+use input::{Input, input};
 use measure::INPUTS;
 use operations::{Counted, counted};
 use std::hint::black_box;
@@ -23,19 +26,9 @@ mod solo12 {
 /// s
 const STEP: f64 = 1e-3;
 
-/// The start moved along its manifold, other velocities and loads for every k.
-fn input<S: System>(system: &S, k: usize) -> (State<S>, S::Inputs) {
-    let fill = |list: &mut [S::Scalar], first: usize| {
-        for (i, entry) in list.iter_mut().enumerate() {
-            *entry = hamel::Scalar::from_f64(((k * 37 + (first + i) * 11) as f64 * 0.618).sin());
-        }
-    };
-    let (mut x, mut xi) = system.start();
-    let (mut chart, mut u) = (system.zero_chart(), system.zero_inputs());
-    fill(chart.as_mut(), 0);
-    fill(xi.as_mut(), 100);
-    fill(u.as_mut(), 200);
-    manifold::retract(system.blocks(), x.as_mut(), chart.as_ref());
+/// A state of a system, and inputs.
+fn at<S: System>(system: &S, k: usize) -> (State<S>, S::Inputs) {
+    let Input { x, xi, u } = input(system, k);
     (State { t: 0.0, x, xi }, u)
 }
 
@@ -46,7 +39,7 @@ where
     M: Method<Nearby<S>> + InChart,
 {
     let nearby = Nearby::new(system);
-    let (state, u) = input(system, 3);
+    let (state, u) = at(system, 3);
     [
         counted(|| drop(black_box(system.slopes(&state.x, &state.xi, &u)))),
         counted(|| drop(black_box(step_nearby(method, &nearby, &state, &u, STEP)))),
@@ -59,7 +52,7 @@ where
     S: Tangent<Scalar = f64>,
     M: Method<Nearby<S>> + InChart,
 {
-    let inputs: Vec<_> = (0..INPUTS).map(|k| input(system, k)).collect();
+    let inputs: Vec<_> = (0..INPUTS).map(|k| at(system, k)).collect();
     let nearby = Nearby::new(system);
     let linear = |count: u32| {
         for _ in 0..count {
@@ -93,10 +86,17 @@ macro_rules! row {
 }
 
 fn main() {
-    println!("| robot | method | [A B], operations | step with [A_d B_d] | [A B], time | step | ratio |");
+    println!(
+        "| robot | method | [A B], operations | step with [A_d B_d] | [A B], time | step | ratio |"
+    );
     println!("|---|---|---|---|---|---|---|");
     row!("UR5", ur5::Ur5<f64>, ur5::Ur5<Counted>, SemiImplicitEuler);
     row!("UR5", ur5::Ur5<f64>, ur5::Ur5<Counted>, Rkmk4);
-    row!("Solo12", solo12::Solo<f64>, solo12::Solo<Counted>, SemiImplicitEuler);
+    row!(
+        "Solo12",
+        solo12::Solo<f64>,
+        solo12::Solo<Counted>,
+        SemiImplicitEuler
+    );
     row!("Solo12", solo12::Solo<f64>, solo12::Solo<Counted>, Rkmk4);
 }

@@ -4,10 +4,9 @@ use hamel_codegen::generate::{Generated, from_file};
 use hamel_codegen::render::render;
 use std::path::{Path, PathBuf};
 
-/// All models, with their folder for files that they name.
-pub fn models() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
-    let mut found: Vec<PathBuf> = std::fs::read_dir(root)
+/// All models of a folder, with their folder for files that they name.
+pub fn models(folder: &Path) -> Vec<PathBuf> {
+    let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("a folder")
         .map(|entry| entry.expect("an entry").path())
         .filter(|path| path.extension().is_some_and(|kind| kind == "eom"))

@@ -10,6 +10,8 @@ mod common;
 mod compile;
 #[path = "../../emitted/src/describe.rs"]
 mod describe;
+#[path = "../../../codegen/tests/common/models.rs"]
+mod models;
 #[path = "c99/names.rs"]
 mod names;
 
@@ -88,7 +90,7 @@ fn models_give_what_the_interpreter_gives() {
 /// Functions that models have only where they are asked for.
 #[test]
 fn what_is_asked_for_gives_what_the_interpreter_gives() {
-    let models = [
+    const MODELS: [&str; 8] = [
         "cart_pole",
         "double_pendulum_angles",
         "drone",
@@ -105,22 +107,24 @@ fn what_is_asked_for_gives_what_the_interpreter_gives() {
         "regressor, base_parameters",
         "centre_of_mass, centroidal_momentum, centroidal_map, centroidal_bias",
     ];
-    let asked: Vec<(&str, usize)> = (models.iter())
-        .flat_map(|model| (0..ASKED.len()).map(move |k| (*model, k)))
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
+    let asked: Vec<(PathBuf, usize)> = models::models(&folder)
+        .into_iter()
+        .filter(|path| {
+            MODELS
+                .iter()
+                .any(|model| path.ends_with(format!("{model}.eom")))
+        })
+        .flat_map(|path| (0..ASKED.len()).map(move |k| (path.clone(), k)))
         .collect();
+    assert_eq!(asked.len(), MODELS.len() * ASKED.len());
     let cases: Vec<Case> = asked
         .par_iter()
-        .filter_map(|&(model, k)| {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/{model}.eom"));
-            let text = std::fs::read_to_string(path).expect("readable");
-            let kept = text
-                .lines()
-                .filter(|line| !line.trim().starts_with("generate"));
-            let kept = kept.collect::<Vec<_>>().join("\n");
-            let (kept, _) = kept.rsplit_once('}').expect("an end");
+        .filter_map(|(path, k)| {
             // What a model has none of is the business of other tests.
-            let generated = from_text(&format!("{kept}\n    generate {};\n}}\n", ASKED[k])).ok()?;
-            Some(Case::new(generated, Some(&format!("{model}_{k}")), 1.0))
+            let generated = models::asked_for(path, ASKED[*k]).ok()?;
+            let stem = path.file_stem()?.to_string_lossy();
+            Some(Case::new(generated, Some(&format!("{stem}_{k}")), 1.0))
         })
         .collect();
     assert!(cases.len() >= 30, "{} functions", cases.len());
