@@ -167,8 +167,11 @@ where
     ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
         let mut rate = self.system.rate(x, xi);
         if self.lambda != 0.0 {
-            let lambda = Sys::Scalar::from_f64(self.lambda);
-            add_scaled(rate.as_mut(), lambda, self.system.correction(x).as_ref());
+            add_scaled(
+                rate.as_mut(),
+                self.lambda,
+                self.system.correction(x).as_ref(),
+            );
         }
         let accel = acceleration(self.system, t, 0.0, x, xi, &self.inputs)?;
         Ok((rate, accel))

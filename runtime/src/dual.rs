@@ -10,6 +10,7 @@ use core::array::from_fn;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use crate::scalar::Scalar;
+use crate::{s3, so3};
 
 /// A number and its slopes along N directions.
 ///
@@ -71,6 +72,18 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
             slopes: from_fn(|i| choose(one.slopes[i], other.slopes[i])),
         }
     }
+}
+
+/// The slopes of θ = dexp(u) δu.
+#[inline(always)]
+fn turns<S: Scalar, const N: usize>(by: so3::Vector<S>, u: so3::Vector<Dual<S, N>>) -> [[S; N]; 3] {
+    let dexp = so3::dexp(by);
+    let [x, y, z] = u.map(|entry| entry.slopes);
+    from_fn(|i| {
+        from_fn(|d| {
+            dexp[3 * i].mul_add(x[d], dexp[3 * i + 1].mul_add(y[d], dexp[3 * i + 2] * z[d]))
+        })
+    })
 }
 
 impl<S: Scalar, const N: usize> Default for Dual<S, N> {
@@ -227,6 +240,23 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     }
 
     #[inline]
+    fn scale(&mut self, a: f64) {
+        self.value.scale(a);
+        for slope in &mut self.slopes {
+            slope.scale(a);
+        }
+    }
+
+    #[inline]
+    fn times_plus(self, a: f64, b: Self) -> Self {
+        let a = S::from_f64(a);
+        Dual {
+            value: a.mul_add(self.value, b.value),
+            slopes: from_fn(|i| a.mul_add(self.slopes[i], b.slopes[i])),
+        }
+    }
+
+    #[inline]
     fn max(self, other: Self) -> Self {
         let larger = |one, two| other.value.select_lt(self.value, one, two);
         Dual {
@@ -242,6 +272,52 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
             then,
             otherwise,
         )
+    }
+
+    /// δ(R E) = δR E + R E θ̂ for E = exp(û), θ = dexp(u) δu.
+    #[inline]
+    fn turned_matrix(r: so3::Matrix<Self>, u: so3::Vector<Self>) -> so3::Matrix<Self> {
+        let (values, by) = (r.map(|entry| entry.value), u.map(|entry| entry.value));
+        let e = so3::exp(by);
+        let turned = so3::product(values, e);
+        let theta = turns(by, u);
+        from_fn(|k| {
+            let (i, j) = (k / 3, k % 3);
+            let (next, last) = ((j + 1) % 3, (j + 2) % 3);
+            let slopes = from_fn(|d| {
+                let moved = r[3 * i].slopes[d].mul_add(
+                    e[j],
+                    r[3 * i + 1].slopes[d].mul_add(e[3 + j], r[3 * i + 2].slopes[d] * e[6 + j]),
+                );
+                // Column j of θ̂ has θ_last in row next, −θ_next in row last.
+                turned[3 * i + next].mul_add(
+                    theta[last][d],
+                    (-turned[3 * i + last]).mul_add(theta[next][d], moved),
+                )
+            });
+            Dual {
+                value: turned[k],
+                slopes,
+            }
+        })
+    }
+
+    /// δ(q ⊗ e) = δq ⊗ e + ½ q ⊗ e ⊗ (0, θ) for e = exp(u), θ = dexp(u) δu.
+    #[inline]
+    fn turned_quaternion(q: s3::Quaternion<Self>, u: so3::Vector<Self>) -> s3::Quaternion<Self> {
+        let (values, by) = (q.map(|entry| entry.value), u.map(|entry| entry.value));
+        let e = s3::exp(by);
+        let turned = s3::product(values, e);
+        let theta = turns(by, u);
+        let mut result = turned.map(Dual::constant);
+        for d in 0..N {
+            let moved = s3::product(q.map(|entry| entry.slopes[d]), e);
+            let along = s3::rate(turned, theta.map(|slopes| slopes[d]));
+            for (number, (moved, along)) in result.iter_mut().zip(moved.into_iter().zip(along)) {
+                number.slopes[d] = moved + along;
+            }
+        }
+        result
     }
 
     #[inline]

@@ -9,7 +9,7 @@
 //! accelerations.
 
 use crate::scalar::Scalar;
-use crate::store::add_scaled;
+use crate::store::add;
 use crate::system::Block;
 use crate::{s1, s3, so3};
 
@@ -38,7 +38,7 @@ pub fn retract<S: Scalar>(blocks: &[Block], x: &mut [S], u: &[S]) {
             return;
         };
         match block {
-            Block::Flat(_) => add_scaled(here, S::from_f64(1.0), along),
+            Block::Flat(_) => add(here, along),
             Block::Circle => {
                 if let (Some(p), [u]) = (here.first_chunk_mut(), along) {
                     *p = s1::retract(*p, *u);

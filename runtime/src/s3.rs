@@ -156,7 +156,7 @@ pub fn from_matrix<S: Scalar>(r: Matrix<S>) -> Quaternion<S> {
 /// q ⊗ exp(u): q turned by u in its own (body) axes.
 #[inline(always)]
 pub fn retract<S: Scalar>(q: Quaternion<S>, u: Vector<S>) -> Quaternion<S> {
-    product(q, exp(u))
+    S::turned_quaternion(q, u)
 }
 
 /// q / |q|; NaN for q = 0.

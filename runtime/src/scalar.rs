@@ -3,6 +3,8 @@
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
+use crate::{s3, so3};
+
 /// A real number, or several computed in step (SIMD lanes).
 ///
 /// There is no ordering and no equality: a condition can differ from lane to lane, so code chooses
@@ -88,6 +90,18 @@ pub trait Scalar:
     /// A software routine that rounds once on every target is many times slower.
     fn mul_add(self, a: Self, b: Self) -> Self;
 
+    /// Multiplies it by `a`.
+    #[inline(always)]
+    fn scale(&mut self, a: f64) {
+        *self *= Self::from_f64(a);
+    }
+
+    /// `self · a + b`, like [`mul_add`](Scalar::mul_add).
+    #[inline(always)]
+    fn times_plus(self, a: f64, b: Self) -> Self {
+        Self::from_f64(a).mul_add(self, b)
+    }
+
     /// The larger of two numbers; NaN when either is NaN, so that a maximum cannot hide one.
     fn max(self, other: Self) -> Self;
 
@@ -112,6 +126,18 @@ pub trait Scalar:
         let shortest = Self::from_f64(if Self::EPSILON < 1e-10 { 1e-100 } else { 1e-12 });
         let one = Self::from_f64(1.0);
         one / self.abs().select_lt(shortest, shortest, self)
+    }
+
+    /// [`so3::retract`]; numbers with slopes go by the derivative of exp.
+    #[inline(always)]
+    fn turned_matrix(r: so3::Matrix<Self>, u: so3::Vector<Self>) -> so3::Matrix<Self> {
+        so3::product(r, so3::exp(u))
+    }
+
+    /// [`s3::retract`]; numbers with slopes go by the derivative of exp.
+    #[inline(always)]
+    fn turned_quaternion(q: s3::Quaternion<Self>, u: so3::Vector<Self>) -> s3::Quaternion<Self> {
+        s3::product(q, s3::exp(u))
     }
 
     /// Whether all lanes are positive and finite: a pivot that can be divided by.

@@ -42,6 +42,17 @@ pub(crate) const VERSINE_RATIO: [f64; 7] = [
     1.0 / 87_178_291_200.0,
 ];
 
+/// (t − sin t) / t³: (−1)ᵏ / (2k+3)!
+const SINE_DEFECT: [f64; 7] = [
+    1.0 / 6.0,
+    -1.0 / 120.0,
+    1.0 / 5040.0,
+    -1.0 / 362_880.0,
+    1.0 / 39_916_800.0,
+    -1.0 / 6_227_020_800.0,
+    1.0 / 1_307_674_368_000.0,
+];
+
 /// (1 − (t/2) cot(t/2)) / t²: |B₂ₖ₊₂| / (2k+2)!, Bernoulli numbers.
 const COTANGENT_RATIO: [f64; 7] = [
     1.0 / 12.0,
@@ -187,7 +198,7 @@ pub fn cayley<S: Scalar>(f: Vector<S>) -> Matrix<S> {
     of_parts(factor, factor, f)
 }
 
-/// I + a û + b û², for a rotation.
+/// I + a û + b û².
 ///
 /// û² = u uᵀ − t² I, with the diagonal written out: no difference of nearly equal squares.
 #[inline(always)]
@@ -236,7 +247,24 @@ pub fn dexpinv<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S> {
 /// R exp(û): R turned by u in its own (body) axes.
 #[inline(always)]
 pub fn retract<S: Scalar>(r: Matrix<S>, u: Vector<S>) -> Matrix<S> {
-    product(r, exp(u))
+    S::turned_matrix(r, u)
+}
+
+/// The turn θ in body axes that exp(û) makes where u varies by δu: θ = (I − b û + c û²) δu, by rows, with
+/// b = (1 − cos t) / t² and c = (t − sin t) / t³.
+#[inline(always)]
+pub(crate) fn dexp<S: Scalar>(u: Vector<S>) -> Matrix<S> {
+    let t2 = dot(u, u);
+    let [b, c] = by_series(t2, [VERSINE_RATIO, SINE_DEFECT], || {
+        let t = t2.sqrt();
+        let (sine, cosine) = (t * S::from_f64(0.5)).sin_cos();
+        let twice_ratio = S::from_f64(2.0) * sine / t;
+        [
+            twice_ratio * sine / t,
+            (S::from_f64(1.0) - twice_ratio * cosine) / t2,
+        ]
+    });
+    of_parts(-b, c, u)
 }
 
 /// One Newton step towards the nearest rotation, R (3 I − RᵀR) / 2: squares the defect RᵀR − I.

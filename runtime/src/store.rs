@@ -32,6 +32,9 @@ pub trait Table<S>: Clone + Debug {
 
     /// Makes row `i` a multiple of row `k`.
     fn repeat(&mut self, i: usize, factor: S, k: usize);
+
+    /// Whether every entry is finite.
+    fn is_finite(&self) -> bool;
 }
 
 impl<S: Scalar, const ROWS: usize, const COLUMNS: usize> Table<S> for [[S; COLUMNS]; ROWS] {
@@ -77,26 +80,39 @@ impl<S: Scalar, const ROWS: usize, const COLUMNS: usize> Table<S> for [[S; COLUM
             *own = row.map(|entry| factor * entry);
         }
     }
+
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.iter().fold(true, |all, row| all & is_finite(row))
+    }
+}
+
+/// y ← y + x, element by element.
+#[inline]
+pub(crate) fn add<S: Scalar>(y: &mut [S], x: &[S]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += *x;
+    }
 }
 
 /// y ← y + a x, element by element.
 #[inline]
-pub(crate) fn add_scaled<S: Scalar>(y: &mut [S], a: S, x: &[S]) {
+pub(crate) fn add_scaled<S: Scalar>(y: &mut [S], a: f64, x: &[S]) {
     for (y, x) in y.iter_mut().zip(x) {
-        *y = a.mul_add(*x, *y);
+        *y = x.times_plus(a, *y);
     }
 }
 
 /// y ← a y, element by element.
 #[inline]
-pub(crate) fn scale<S: Scalar>(y: &mut [S], a: S) {
+pub(crate) fn scale<S: Scalar>(y: &mut [S], a: f64) {
     for y in y {
-        *y *= a;
+        y.scale(a);
     }
 }
 
-/// Whether every element is finite.
+/// Whether every element is finite: all are asked, which a processor does several at a time.
 #[inline]
 pub(crate) fn is_finite<S: Scalar>(x: &[S]) -> bool {
-    x.iter().all(|x| x.is_finite())
+    x.iter().fold(true, |all, x| all & x.is_finite())
 }

@@ -10,7 +10,7 @@ mod measure;
 mod operations;
 
 use hamel::methods::{InChart, Rkmk4, SemiImplicitEuler};
-use hamel::{Method, Nearby, State, System, Tangent, step_nearby};
+use hamel::{Method, Nearby, State, System, Table, Tangent, step_nearby};
 use input::{Input, input};
 use measure::INPUTS;
 use operations::{Counted, counted};
@@ -41,7 +41,10 @@ where
     let nearby = Nearby::new(system);
     let (state, u) = at(system, 3);
     [
-        counted(|| drop(black_box(system.slopes(&state.x, &state.xi, &u)))),
+        counted(|| {
+            let mut slopes = S::Slopes::zero();
+            let _ = black_box(system.slopes(&state.x, &state.xi, &u, &mut slopes));
+        }),
         counted(|| drop(black_box(step_nearby(method, &nearby, &state, &u, STEP)))),
     ]
 }
@@ -57,7 +60,9 @@ where
     let linear = |count: u32| {
         for _ in 0..count {
             for (state, u) in &inputs {
-                let _ = black_box(black_box(system).slopes(&state.x, &state.xi, u));
+                let mut slopes = S::Slopes::zero();
+                let _ = black_box(black_box(system).slopes(&state.x, &state.xi, u, &mut slopes));
+                black_box(&slopes);
             }
         }
     };

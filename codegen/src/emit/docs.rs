@@ -66,11 +66,19 @@ pub fn function(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec
     let result = result(function.shape);
     lines.extend([String::new(), format!("Returns {result}.")]);
     if function.fallible {
-        lines.extend([String::new(), "# Errors".into()]);
-        let why = missing(program, function);
-        lines.push(format!("`Singular` where {why}."));
+        lines.extend(errors(program, function));
     }
     lines
+}
+
+/// The section on errors.
+pub fn errors(program: &Program, function: &Function) -> [String; 3] {
+    let why = missing(program, function);
+    [
+        String::new(),
+        "# Errors".into(),
+        format!("`Singular` where {why}."),
+    ]
 }
 
 /// When a function has no value: what its guards see.

@@ -9,8 +9,11 @@ use super::places::Time;
 use super::print::{Printer, Used};
 use super::{Emitter, names};
 use crate::algebra::graph::{Edge, NodeId};
-use crate::program::{Argument, Cause, Shape};
+use crate::program::{Argument, Cause, Program, Shape};
 use rustc_hash::FxHashSet;
+
+/// The argument to which slopes are written besides a result.
+pub const SLOPES: &str = "slopes";
 
 /// What a function is.
 pub struct Spec<'a> {
@@ -24,7 +27,9 @@ pub struct Spec<'a> {
     pub arguments: &'a [Argument],
     /// Shape of the result.
     pub shape: Shape,
-    /// Results.
+    /// Shape of what is written to the argument `slopes` besides.
+    pub beside: Option<Shape>,
+    /// Results, behind them what is written besides.
     pub outputs: Vec<Edge>,
     /// Pivots.
     pub guards: Vec<Edge>,
@@ -156,17 +161,11 @@ impl Drawing<'_> {
             .iter()
             .map(|&edge| printer.signed(edge))
             .collect();
-        let value = match self.spec.shape {
-            Shape::Scalar => results.join(""),
-            Shape::Vector(_) => format!("[{}]", results.join(", ")),
-            Shape::Matrix(_, 0) => zeros(self.spec.shape),
-            Shape::Matrix(_, columns) => {
-                let rows = results
-                    .chunks(columns)
-                    .map(|row| format!("[{}]", row.join(", ")));
-                format!("[{}]", rows.collect::<Vec<_>>().join(", "))
-            }
-        };
+        let (results, besides) = results.split_at(self.spec.shape.entries());
+        if let Some(shape) = self.spec.beside {
+            text.push_str(&format!("*{SLOPES} = {};\n", shaped(shape, besides)));
+        }
+        let value = shaped(self.spec.shape, results);
         let kept = self.bind_kept(&printer.used);
         let body = format!("{kept}{text}{}", self.value(&value));
         self.head(&printer.used, &body)
@@ -191,42 +190,66 @@ impl Drawing<'_> {
 
     /// The function around its body.
     pub fn head(&self, used: &Used, body: &str) -> String {
-        let spec = self.spec;
-        let mut arguments = vec!["&self".to_string()];
-        let mut unused = Vec::new();
-        for &argument in spec.arguments {
-            let name = names::argument(argument);
-            arguments.push(format!(
-                "{name}: &[S; {}]",
-                self.emitter.program.length(argument)
-            ));
-            if !used.arguments.contains(&argument) {
-                unused.push(name);
-            }
-        }
-        let result = shape_type(spec.shape);
-        let result = match spec.fallible {
-            true => format!("::core::result::Result<{result}, ::hamel::Singular>"),
-            false => result,
-        };
-        let mut attributes = String::new();
-        if !unused.is_empty() {
-            let reason = format!("the value does not depend on {}", unused.join(", "));
-            attributes.push_str(&format!(
-                "#[allow(unused_variables, reason = \"{reason}\")]\n"
-            ));
-        }
-        if spec.public && !spec.fallible {
-            attributes.push_str("#[must_use]\n");
-        }
-        let public = if spec.public { "pub " } else { "" };
-        format!(
-            "{}{attributes}{public}fn {}({}) -> {result} {{\n{body}}}\n\n",
-            docs::comment(&spec.docs),
-            spec.name,
-            arguments.join(", ")
-        )
+        let taken = |argument: Argument| used.arguments.contains(&argument);
+        head(self.emitter.program, self.spec, taken, body)
     }
+}
+
+/// Entries in a shape.
+fn shaped(shape: Shape, entries: &[String]) -> String {
+    let list = |entries: &[String]| format!("[{}]", entries.join(", "));
+    match shape {
+        Shape::Scalar => entries.join(""),
+        Shape::Vector(_) => list(entries),
+        Shape::Matrix(_, 0) => zeros(shape),
+        Shape::Matrix(_, columns) => {
+            let rows: Vec<String> = entries.chunks(columns).map(list).collect();
+            list(&rows)
+        }
+    }
+}
+
+/// A function around its body, which depends on the arguments that are taken.
+pub fn head(
+    program: &Program,
+    spec: &Spec,
+    taken: impl Fn(Argument) -> bool,
+    body: &str,
+) -> String {
+    let mut arguments = vec!["&self".to_string()];
+    let mut unused = Vec::new();
+    for &argument in spec.arguments {
+        let name = names::argument(argument);
+        arguments.push(format!("{name}: &[S; {}]", program.length(argument)));
+        if !taken(argument) {
+            unused.push(name);
+        }
+    }
+    if let Some(shape) = spec.beside {
+        arguments.push(format!("{SLOPES}: &mut {}", shape_type(shape)));
+    }
+    let result = shape_type(spec.shape);
+    let result = match spec.fallible {
+        true => format!("::core::result::Result<{result}, ::hamel::Singular>"),
+        false => result,
+    };
+    let mut attributes = String::new();
+    if !unused.is_empty() {
+        let reason = format!("the value does not depend on {}", unused.join(", "));
+        attributes.push_str(&format!(
+            "#[allow(unused_variables, reason = \"{reason}\")]\n"
+        ));
+    }
+    if spec.public && !spec.fallible {
+        attributes.push_str("#[must_use]\n");
+    }
+    let public = if spec.public { "pub " } else { "" };
+    format!(
+        "{}{attributes}{public}fn {}({}) -> {result} {{\n{body}}}\n\n",
+        docs::comment(&spec.docs),
+        spec.name,
+        arguments.join(", ")
+    )
 }
 
 /// The statements of a part; `after` is asked for what follows each value.

@@ -1,6 +1,6 @@
 //! `impl hamel::Split`, `hamel::Canonical` and `hamel::Tangent`, where all that they consist of was generated.
 
-use super::{Emitter, externals, names, structure};
+use super::{Emitter, externals, names, structure, together};
 use crate::algebra::graph::Edge;
 use crate::model::layout::Block;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
@@ -9,8 +9,13 @@ use crate::syntax::ast::ShapeKind;
 use num_traits::{One, Zero};
 
 /// The implementations for a type that implements `System`.
-pub fn implementations(emitter: &Emitter) -> String {
-    let all = [split(emitter), canonical(emitter), tangent(emitter)];
+/// `together` says whether ξ̇ and [A B] have a function in common.
+pub fn implementations(emitter: &Emitter, together: bool) -> String {
+    let all = [
+        split(emitter),
+        canonical(emitter),
+        tangent(emitter, together),
+    ];
     all.into_iter().flatten().collect()
 }
 
@@ -119,7 +124,7 @@ fn canonical(emitter: &Emitter) -> Option<String> {
 }
 
 /// Steps with slopes: the system in dual numbers, and the frame of displacements.
-fn tangent(emitter: &Emitter) -> Option<String> {
+fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
     let program = emitter.program;
     let matrix = |id: FunctionId| match program.function(id)?.shape {
         Shape::Matrix(rows, columns) => Some((rows, columns)),
@@ -168,14 +173,16 @@ fn tangent(emitter: &Emitter) -> Option<String> {
     let of = applied.clone();
     applied = applied.replacen("<S", &format!("<{number}"), 1);
     let name = &emitter.names.type_name;
-    let slopes = slopes(emitter)?;
+    let slopes = slopes(emitter, together)?;
     // What is constant for its coordinate kind, and nothing else.
     let own: usize = program.blocks.iter().map(|block| block.constraints()).sum();
     let constraint = program.function(FunctionId::Constraint);
     let charted = constraint.is_none_or(|phi| phi.outputs.len() == own);
-    let plain = charted && plain(program);
+    let projection = [FunctionId::ProjectPosition, FunctionId::ProjectVelocity];
+    let projected = projection.iter().any(|id| program.function(id).is_some());
+    let plain = charted && !projected && plain(program);
     let body = format!(
-        "const CHARTED: bool = {charted};\nconst PLAIN: bool = {plain};\n\ntype Number = {number};\ntype Dual = {applied};\n{frame}{coframe}\
+        "const CHARTED: bool = {charted};\nconst PROJECTED: bool = {projected};\nconst PLAIN: bool = {plain};\n\ntype Number = {number};\ntype Dual = {applied};\n{frame}{coframe}\
          type Slopes = [[S; {columns}]; {rows}];\n\nfn dual(&self) -> Self::Dual {{\n{name} {{\n{fields}}}\n}}\n{frame_of}{coframe_of}{slopes}"
     );
     Some(format!(
@@ -184,10 +191,9 @@ fn tangent(emitter: &Emitter) -> Option<String> {
     ))
 }
 
-/// Whether coordinates are numbers whose displacements are those of the frame, ẋ = ξ, and no velocity is held.
+/// Whether coordinates are numbers whose displacements are those of the frame, ẋ = ξ.
 fn plain(program: &Program) -> bool {
     let flat = |block: &Block| matches!(block, Block::Flat(_));
-    let held = program.function(FunctionId::ProjectVelocity).is_some();
     let Some(frame) = program.function(FunctionId::DisplacementFrame) else {
         return false;
     };
@@ -201,15 +207,14 @@ fn plain(program: &Program) -> bool {
     };
     let identity = frame.shape == Shape::Matrix(n, n);
     let mut entries = frame.outputs.iter().enumerate();
-    !held && program.nu == n && program.blocks.iter().all(flat) && identity && entries.all(entry)
+    program.nu == n && program.blocks.iter().all(flat) && identity && entries.all(entry)
 }
 
-/// The linearisation as the trait has it.
-fn slopes(emitter: &Emitter) -> Option<String> {
+/// ξ̇ and the linearisation, as the trait has them.
+fn slopes(emitter: &Emitter, together: bool) -> Option<String> {
     let functions = &emitter.program.functions;
-    let index = functions
-        .iter()
-        .position(|f| f.id == Some(FunctionId::Linearize))?;
+    let place = |id: FunctionId| functions.iter().position(|f| f.id == Some(id));
+    let index = place(FunctionId::Linearize)?;
     let function = &functions[index];
     let argument = |argument: Argument, of: &str| {
         let name = match function.arguments.contains(&argument) {
@@ -225,13 +230,21 @@ fn slopes(emitter: &Emitter) -> Option<String> {
     ];
     let given = function.arguments.iter().map(|&a| names::argument(a));
     let given = given.collect::<Vec<_>>().join(", ");
-    let call = format!("self.{}({given})", emitter.names.functions[index]);
-    let call = match function.fallible {
-        true => call,
-        false => format!("Ok({call})"),
+    let call = |index: usize| {
+        let name = &emitter.names.functions[index];
+        let question = if functions[index].fallible { "?" } else { "" };
+        format!("self.{name}({given}){question}")
+    };
+    let body = match (together, function.fallible) {
+        (true, true) => format!("self.{}({given}, slopes)", together::NAME),
+        (true, false) => format!("Ok(self.{}({given}, slopes))", together::NAME),
+        (false, _) => {
+            let accel = call(place(FunctionId::Accel)?);
+            format!("*slopes = {};\nOk({accel})", call(index))
+        }
     };
     let arguments = arguments.join(", ");
     Some(format!(
-        "\nfn slopes(&self, {arguments}) -> ::core::result::Result<Self::Slopes, ::hamel::Singular> {{\n{call}\n}}\n"
+        "\nfn slopes(&self, {arguments}, slopes: &mut Self::Slopes) -> ::core::result::Result<Self::Velocities, ::hamel::Singular> {{\n{body}\n}}\n"
     ))
 }

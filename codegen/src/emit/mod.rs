@@ -17,6 +17,7 @@
 //! | `plain` | the parser of these |
 //! | `format` | layout of files |
 //! | `parts` | a function that is cut |
+//! | `together` | ξ̇ and [A B] by one function |
 //! | `structure` | the type: fields, sizes, constructor, defaults |
 //! | `parameters` | accessors, and the constants kept for parameters |
 //! | `system` | `impl hamel::System` |
@@ -57,6 +58,7 @@ mod sums;
 mod system;
 #[cfg(test)]
 mod tests;
+mod together;
 mod views;
 
 use crate::algebra::graph::{Edge, NodeId};
@@ -147,6 +149,7 @@ impl<'a> Emitter<'a> {
             ],
             arguments: &[],
             shape: crate::program::Shape::Vector(self.kept.len()),
+            beside: None,
             outputs: self.kept.clone(),
             guards: Vec::new(),
             fallible: false,
@@ -170,6 +173,7 @@ impl<'a> Emitter<'a> {
             docs: (self.document)(self.program, function, &nodes),
             arguments: &function.arguments,
             shape: function.shape,
+            beside: None,
             outputs: function.outputs.clone(),
             guards,
             fallible: function.fallible,
@@ -195,12 +199,16 @@ pub fn rust(program: &Program, options: &Options) -> String {
     let emitter = Emitter::new(program, options.chunk);
     let mut methods = structure::sizes(&emitter);
     methods.push_str(&limits::constants(program));
-    for spec in emitter.specs() {
-        methods.push_str(&function::text(&emitter, &spec));
+    let system = system::implementation(&emitter);
+    let together = together::of(&emitter).filter(|_| !system.is_empty());
+    for (index, spec) in emitter.specs().iter().enumerate() {
+        methods.push_str(&match &together {
+            Some((place, both)) if *place == index => together::text(&emitter, spec, both),
+            _ => function::text(&emitter, spec),
+        });
     }
     methods.push_str(&parameters::accessors(&emitter));
     let mut text = structure::structure(&emitter);
-    let system = system::implementation(&emitter);
     text.push_str(&externals::functions(&emitter));
     text.push_str(&views::parameters(&emitter));
     text.push_str(&views::state(&emitter, !system.is_empty()));
@@ -214,7 +222,7 @@ pub fn rust(program: &Program, options: &Options) -> String {
     text.push_str(&structure::default(&emitter));
     if !system.is_empty() {
         text.push_str(&system);
-        text.push_str(&methods::implementations(&emitter));
+        text.push_str(&methods::implementations(&emitter, together.is_some()));
     }
     text
 }

@@ -81,10 +81,13 @@ const METHODS: &[&str] = &[
     "start",
     "constraint_norm",
     "rotors",
+    super::together::NAME,
 ];
 
 /// Local names that a function may use besides those of its values.
-const LOCALS: &[&str] = &["x", "xi", "u", "xi_dot", "momentum", "k", "slots", "out"];
+const LOCALS: &[&str] = &[
+    "x", "xi", "u", "xi_dot", "momentum", "k", "slots", "out", "slopes",
+];
 
 /// The generic parameter, and the primitive types: the text mentions some of them.
 const TYPES: &[&str] = &[

@@ -1,6 +1,6 @@
 //! A long function as a row of calls: its parts share one array of slots and write the results.
 
-use super::function::{Drawing, Spec, shape_type, statements, zeros};
+use super::function::{Drawing, SLOPES, Spec, shape_type, statements, zeros};
 use super::names;
 use super::places::Place;
 use super::print::Used;
@@ -15,7 +15,8 @@ const INLINE: usize = 2000;
 impl Drawing<'_> {
     /// The parts, then the function that calls them.
     pub fn split(&self) -> String {
-        let Spec { name, shape, .. } = self.spec;
+        let Spec { name, .. } = self.spec;
+        let entries = self.spec.shape.entries();
         let inline = if self.body.statements.len() > INLINE {
             "#[inline(never)]\n"
         } else {
@@ -35,10 +36,13 @@ impl Drawing<'_> {
             let mut printer = self.printer();
             let text = statements(&mut printer, self.body, part, |printer, node| {
                 let indices = targets.get(&node).map_or(&[][..], Vec::as_slice);
-                printer.used.out |= !indices.is_empty();
+                let (own, besides): (Vec<usize>, Vec<usize>) =
+                    indices.iter().partition(|&&index| index < entries);
+                printer.used.out |= !own.is_empty();
+                printer.used.besides |= !besides.is_empty();
                 let writes = indices.iter().map(|&index| {
                     let value = printer.signed(self.body.outputs[index]);
-                    format!("{} = {value};\n", target(*shape, index, true))
+                    format!("{} = {value};\n", target(self.spec, index, true))
                 });
                 writes.collect()
             });
@@ -71,16 +75,22 @@ impl Drawing<'_> {
             ));
         }
         let zero = self.emitter.program.graph.zero();
-        let written = self.body.outputs.iter().any(|&output| output != zero);
-        let mutable = if written { "mut " } else { "" };
-        text.push_str(&format!("let {mutable}out = {};\n", zeros(*shape)));
+        let written = self.body.outputs.iter().take(entries);
+        let mutable = match written.clone().any(|&output| output != zero) {
+            true => "mut ",
+            false => "",
+        };
+        text.push_str(&format!("let {mutable}out = {};\n", zeros(self.spec.shape)));
+        if let Some(shape) = self.spec.beside {
+            text.push_str(&format!("*{SLOPES} = {};\n", zeros(shape)));
+        }
         text.push_str(&calls);
         for index in rest
             .into_iter()
             .filter(|&index| self.body.outputs[index] != zero)
         {
             let value = main.result(self.body.outputs[index]);
-            text.push_str(&format!("{} = {value};\n", target(*shape, index, false)));
+            text.push_str(&format!("{} = {value};\n", target(self.spec, index, false)));
         }
         let kept = self.bind_kept(&main.used);
         let body = format!("{kept}{text}{}", self.value("out"));
@@ -113,19 +123,28 @@ impl Drawing<'_> {
             arguments.push(format!("out: &mut {}", shape_type(self.spec.shape)));
             values.push("&mut out".into());
         }
+        if let Some(shape) = self.spec.beside.filter(|_| used.besides) {
+            arguments.push(format!("{SLOPES}: &mut {}", shape_type(shape)));
+            values.push(SLOPES.into());
+        }
         (arguments.join(", "), values.join(", "))
     }
 }
 
 /// The place of a result, behind a reference or not.
-fn target(shape: Shape, index: usize, reference: bool) -> String {
+fn target(spec: &Spec, index: usize, reference: bool) -> String {
+    let entries = spec.shape.entries();
+    let (out, shape, index) = match spec.beside.filter(|_| index >= entries) {
+        Some(shape) => (SLOPES, shape, index - entries),
+        None => ("out", spec.shape, index),
+    };
     match shape {
         Shape::Scalar if reference => "*out".into(),
-        Shape::Scalar => "out".into(),
-        Shape::Vector(_) => format!("out[{index}]"),
+        Shape::Scalar => out.into(),
+        Shape::Vector(_) => format!("{out}[{index}]"),
         Shape::Matrix(_, columns) => {
             let columns = columns.max(1);
-            format!("out[{}][{}]", index / columns, index % columns)
+            format!("{out}[{}][{}]", index / columns, index % columns)
         }
     }
 }

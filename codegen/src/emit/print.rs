@@ -23,6 +23,8 @@ pub struct Used {
     pub writes: bool,
     /// Whether results are written.
     pub out: bool,
+    /// Whether something is written besides.
+    pub besides: bool,
     /// Whether it can return an error.
     pub checks: bool,
 }

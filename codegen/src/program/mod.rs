@@ -26,6 +26,17 @@ pub enum Shape {
     Matrix(usize, usize),
 }
 
+impl Shape {
+    /// How many numbers it consists of.
+    pub fn entries(self) -> usize {
+        match self {
+            Shape::Scalar => 1,
+            Shape::Vector(n) => n,
+            Shape::Matrix(rows, columns) => rows * columns,
+        }
+    }
+}
+
 /// What it means where a pivot is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cause {

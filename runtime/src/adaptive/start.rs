@@ -46,7 +46,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         let trial = (0.01 * size / rate).clamp(smallest, longest);
         let trial = if rate > 1e-5 { trial } else { smallest };
 
-        let h = Sys::Scalar::from_f64(direction * trial);
+        let h = direction * trial;
         let mut euler = Sums::<Sys> {
             u: k.clone(),
             dxi: f.clone(),
@@ -59,9 +59,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         else {
             return Ok(smallest);
         };
-        let minus = Sys::Scalar::from_f64(-1.0);
-        add_scaled(k_change.as_mut(), minus, k.as_ref());
-        add_scaled(f_change.as_mut(), minus, f.as_ref());
+        add_scaled(k_change.as_mut(), -1.0, k.as_ref());
+        add_scaled(f_change.as_mut(), -1.0, f.as_ref());
         let bend = weigh((&k_change, &f_change)) / trial;
 
         let most = rate.max(bend);

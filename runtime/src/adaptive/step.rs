@@ -10,9 +10,8 @@ use core::fmt;
 use crate::adaptive::Pair;
 use crate::manifold;
 use crate::methods::tableau::{Stages, Sums};
-use crate::scalar::Scalar;
 use crate::state::State;
-use crate::store::{add_scaled, scale};
+use crate::store::{add, add_scaled, scale};
 use crate::system::System;
 
 /// An accepted step.
@@ -61,14 +60,12 @@ impl<Sys: System + ?Sized, const D: usize> Step<'_, Sys, D> {
             u: self.system.zero_chart(),
             dxi: self.system.zero_velocities(),
         };
-        let one = Sys::Scalar::from_f64(1.0);
         let mut outwards = (3 + D) % 2 == 1;
         for term in self.further.iter().rev().chain(self.hermite.iter().rev()) {
             let factor = if outwards { theta } else { 1.0 - theta };
-            let factor = Sys::Scalar::from_f64(factor);
             outwards = !outwards;
-            add_scaled(sum.u.as_mut(), one, term.u.as_ref());
-            add_scaled(sum.dxi.as_mut(), one, term.dxi.as_ref());
+            add(sum.u.as_mut(), term.u.as_ref());
+            add(sum.dxi.as_mut(), term.dxi.as_ref());
             scale(sum.u.as_mut(), factor);
             scale(sum.dxi.as_mut(), factor);
         }
@@ -88,13 +85,11 @@ impl<Sys: System + ?Sized, const D: usize> Step<'_, Sys, D> {
         pair: &Pair<M, D>,
         change: Sums<Sys>,
     ) -> Step<'s, Sys, D> {
-        let one = Sys::Scalar::from_f64(1.0);
-        let minus = -one;
         let mut rise = slope(system, stages, 0, h);
-        add_scaled(rise.u.as_mut(), minus, change.u.as_ref());
-        add_scaled(rise.dxi.as_mut(), minus, change.dxi.as_ref());
+        add_scaled(rise.u.as_mut(), -1.0, change.u.as_ref());
+        add_scaled(rise.dxi.as_mut(), -1.0, change.dxi.as_ref());
         let mut fall = slope(system, stages, pair.end, -h);
-        for (sign, other) in [(one, &change), (minus, &rise)] {
+        for (sign, other) in [(1.0, &change), (-1.0, &rise)] {
             add_scaled(fall.u.as_mut(), sign, other.u.as_ref());
             add_scaled(fall.dxi.as_mut(), sign, other.dxi.as_ref());
         }
@@ -120,7 +115,6 @@ fn slope<Sys: System + ?Sized, const M: usize>(
         u: system.zero_chart(),
         dxi: system.zero_velocities(),
     };
-    let h = Sys::Scalar::from_f64(h);
     if let (Some(k), Some(f)) = (stages.k.get(index), stages.f.get(index)) {
         add_scaled(slope.u.as_mut(), h, k.as_ref());
         add_scaled(slope.dxi.as_mut(), h, f.as_ref());

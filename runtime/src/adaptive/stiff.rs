@@ -51,15 +51,14 @@ fn rate<Sys: System + ?Sized, const M: usize, const D: usize>(
     h: f64,
 ) -> Option<f64> {
     let before = pair.end.checked_sub(1)?;
-    let minus = Sys::Scalar::from_f64(-1.0);
     let point = |index: usize| Some(stages.sums(system, h, pair.rows.get(index)?.weights));
     let (mut moved, other) = (point(pair.end)?, point(before)?);
-    add_scaled(moved.u.as_mut(), minus, other.u.as_ref());
-    add_scaled(moved.dxi.as_mut(), minus, other.dxi.as_ref());
+    add_scaled(moved.u.as_mut(), -1.0, other.u.as_ref());
+    add_scaled(moved.dxi.as_mut(), -1.0, other.dxi.as_ref());
     let mut k = stages.k.get(pair.end)?.clone();
     let mut f = stages.f.get(pair.end)?.clone();
-    add_scaled(k.as_mut(), minus, stages.k.get(before)?.as_ref());
-    add_scaled(f.as_mut(), minus, stages.f.get(before)?.as_ref());
+    add_scaled(k.as_mut(), -1.0, stages.k.get(before)?.as_ref());
+    add_scaled(f.as_mut(), -1.0, stages.f.get(before)?.as_ref());
     let square = |sum: Sys::Scalar, entry: &Sys::Scalar| entry.mul_add(*entry, sum);
     let size = |u: &[Sys::Scalar], v: &[Sys::Scalar]| {
         let sum = u.iter().fold(Sys::Scalar::default(), square);

@@ -43,9 +43,15 @@ impl<Sys: System + ?Sized> Unknowns<Sys> {
         }
     }
 
-    fn add_scaled(&mut self, a: Sys::Scalar, other: &Self) {
-        add_scaled(self.u.as_mut(), a, other.u.as_ref());
-        add_scaled(self.xi.as_mut(), a, other.xi.as_ref());
+    fn entries(&mut self) -> impl Iterator<Item = &mut Sys::Scalar> {
+        self.u.as_mut().iter_mut().chain(self.xi.as_mut())
+    }
+
+    fn add_multiple(&mut self, a: Sys::Scalar, other: &Self) {
+        let others = other.u.as_ref().iter().chain(other.xi.as_ref());
+        for (own, other) in self.entries().zip(others) {
+            *own = a.mul_add(*other, *own);
+        }
     }
 
     fn dot(&self, other: &Self) -> Sys::Scalar {
@@ -95,7 +101,6 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
     {
         state.check_shape(system)?;
         let one = Sys::Scalar::from_f64(1.0);
-        let step = Sys::Scalar::from_f64(h);
         let point = |u: &Sys::Chart| {
             let mut x = state.x.clone();
             manifold::retract(system.blocks(), x.as_mut(), u.as_ref());
@@ -105,12 +110,12 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
         let defect = |z: &Unknowns<Sys>| {
             let x = point(&z.u);
             let mut u = system.chart_rate(&x, &z.xi);
-            scale(u.as_mut(), step);
+            scale(u.as_mut(), h);
             let mut xi = state.xi.clone();
             let f = acceleration(system, state.t, h, &x, &z.xi, inputs)?;
-            add_scaled(xi.as_mut(), step, f.as_ref());
+            add_scaled(xi.as_mut(), h, f.as_ref());
             let mut defect: Unknowns<Sys> = Unknowns { u, xi };
-            defect.add_scaled(-one, z);
+            defect.add_multiple(-one, z);
             Ok(defect)
         };
 
@@ -118,7 +123,7 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
             u: system.chart_rate(&state.x, &state.xi),
             xi: state.xi.clone(),
         };
-        scale(z.u.as_mut(), step);
+        scale(z.u.as_mut(), h);
         let mut steps: [Unknowns<Sys>; MEMORY] = from_fn(|_| Unknowns::zero(system));
         let mut known = 0;
         for iterations in 1..=MOST {
@@ -140,15 +145,14 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
                 if index + 1 == known {
                     latest = Some(along);
                 } else if let Some(following) = steps.get(index + 1) {
-                    next.add_scaled(along, following);
+                    next.add_multiple(along, following);
                 }
             }
             if let Some(along) = latest {
                 let gain = ratio(one, one - along);
-                scale(next.u.as_mut(), gain);
-                scale(next.xi.as_mut(), gain);
+                next.entries().for_each(|entry| *entry *= gain);
             }
-            z.add_scaled(one, &next);
+            z.add_multiple(one, &next);
             known = if known == MEMORY { 0 } else { known };
             if let Some(slot) = steps.get_mut(known) {
                 *slot = next;

@@ -10,9 +10,8 @@ use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::{Method, arrive};
-use crate::scalar::Scalar;
 use crate::state::State;
-use crate::store::{add_scaled, scale};
+use crate::store::{add, add_scaled, scale};
 use crate::system::System;
 
 /// Order 4, four evaluations of ξ̇ and five moves a step; for any system.
@@ -38,19 +37,18 @@ impl<Sys: System + ?Sized> Method<Sys> for Cf4 {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         state.check_shape(system)?;
-        let number = Sys::Scalar::from_f64;
-        let half = number(0.5 * h);
+        let half = 0.5 * h;
         // x ⊕ Σ cⱼ wⱼ
         let moved = |x: &Sys::Coordinates, weights: &[(f64, &Sys::Chart)]| {
             let mut u = system.zero_chart();
             for (weight, w) in weights {
-                add_scaled(u.as_mut(), number(h * weight), w.as_ref());
+                add_scaled(u.as_mut(), h * weight, w.as_ref());
             }
             let mut x = x.clone();
             manifold::retract(system.blocks(), x.as_mut(), u.as_ref());
             x
         };
-        let later = |a: Sys::Scalar, f: &Sys::Velocities| {
+        let later = |a: f64, f: &Sys::Velocities| {
             let mut xi = state.xi.clone();
             add_scaled(xi.as_mut(), a, f.as_ref());
             xi
@@ -73,7 +71,7 @@ impl<Sys: System + ?Sized> Method<Sys> for Cf4 {
         let f3 = force(0.5 * h, &x3, &xi3)?;
 
         let x4 = moved(&x2, &[(1.0, &w3), (-0.5, &w1)]);
-        let xi4 = later(number(h), &f3);
+        let xi4 = later(h, &f3);
         let w4 = system.chart_rate(&x4, &xi4);
         let f4 = force(h, &x4, &xi4)?;
 
@@ -83,11 +81,11 @@ impl<Sys: System + ?Sized> Method<Sys> for Cf4 {
         let x = moved(&moved(&state.x, &first), &second);
 
         let mut sum = f1;
-        add_scaled(sum.as_mut(), number(2.0), f2.as_ref());
-        add_scaled(sum.as_mut(), number(2.0), f3.as_ref());
-        add_scaled(sum.as_mut(), number(1.0), f4.as_ref());
-        scale(sum.as_mut(), number(h / 6.0));
-        let xi = later(number(1.0), &sum);
+        add_scaled(sum.as_mut(), 2.0, f2.as_ref());
+        add_scaled(sum.as_mut(), 2.0, f3.as_ref());
+        add(sum.as_mut(), f4.as_ref());
+        scale(sum.as_mut(), h / 6.0);
+        let xi = later(1.0, &sum);
 
         arrive(system, state, h, x, xi)
     }

@@ -15,7 +15,7 @@ use crate::manifold;
 use crate::methods::Method;
 use crate::scalar::{Scalar, epsilon};
 use crate::state::State;
-use crate::store::{add_scaled, is_finite};
+use crate::store::{add, add_scaled, is_finite};
 use crate::system::Block;
 use crate::{s1, s3, so3};
 
@@ -144,7 +144,7 @@ where
     let moved = |weights: &[f64; N], rates: &[(Sys::Coordinates, Sys::Velocities); N]| {
         let (mut z, mut p) = (start.clone(), p.clone());
         for (weight, (k, f)) in weights.iter().zip(rates) {
-            let weight = Sys::Scalar::from_f64(weight * h);
+            let weight = weight * h;
             add_scaled(z.as_mut(), weight, k.as_ref());
             add_scaled(p.as_mut(), weight, f.as_ref());
         }
@@ -231,7 +231,7 @@ fn compose<S: Scalar>(blocks: &[Block], x: &mut [S], z: &[S]) {
             return;
         };
         match block {
-            Block::Flat(_) => add_scaled(here, S::from_f64(1.0), by),
+            Block::Flat(_) => add(here, by),
             Block::Circle => {
                 if let (Some(point), Some(by)) = (here.first_chunk_mut::<2>(), by.first_chunk()) {
                     let [c, s] = s1::normalise(*by);

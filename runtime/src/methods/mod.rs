@@ -53,7 +53,7 @@ pub use splitting::Splitting;
 
 use crate::error::StepError;
 use crate::manifold;
-use crate::slopes::{PlainStep, Stepped, Tangent};
+use crate::slopes::{Stepped, Tangent, TangentStep};
 use crate::state::State;
 use crate::store::is_finite;
 use crate::system::System;
@@ -114,12 +114,18 @@ pub trait Method<Sys: System + ?Sized> {
     note = "take `Rkmk4`, or another method that implements `InChart`"
 )]
 pub trait InChart {
-    /// A step with its slopes, of a system with plain coordinates ([`Tangent::PLAIN`]); `None` where the step has to be
-    /// made in dual numbers.
+    /// A step with its slopes: by matrices, where the method can and the system allows it, else in dual numbers.
+    ///
+    /// # Errors
+    /// Those of [`step`](crate::step()).
     #[inline]
-    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
+    fn step_slopes<Sys: Tangent>(
+        &self,
+        step: &TangentStep<'_, Sys>,
+        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
+    ) -> Stepped<Sys> {
         let _ = step;
-        None
+        in_dual_numbers()
     }
 }
 
@@ -131,8 +137,12 @@ impl InChart for Splitting {}
 
 impl<M: InChart + ?Sized> InChart for &M {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
-        (**self).plain_slopes(step)
+    fn step_slopes<Sys: Tangent>(
+        &self,
+        step: &TangentStep<'_, Sys>,
+        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
+    ) -> Stepped<Sys> {
+        (**self).step_slopes(step, in_dual_numbers)
     }
 }
 

@@ -78,7 +78,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
     /// p ← p + h ṗ for a force that is known.
     #[inline(always)]
     pub(crate) fn push(&mut self, h: f64, force: &Sys::Chart) {
-        add_scaled(self.p.as_mut(), Sys::Scalar::from_f64(h), force.as_ref());
+        add_scaled(self.p.as_mut(), h, force.as_ref());
     }
 
     /// Free motion for the time `h`; `None` where an iteration does not converge.
@@ -95,7 +95,7 @@ impl<'s, Sys: Split + ?Sized> Phase<'s, Sys> {
                 break;
             };
             match block {
-                Block::Flat(_) => add_scaled(here, time, along),
+                Block::Flat(_) => add_scaled(here, h, along),
                 Block::Circle => {
                     if let (Some(point), [rate]) = (here.first_chunk_mut(), along) {
                         *point = s1::retract(*point, time * *rate);

@@ -8,7 +8,6 @@
 use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::methods::Method;
-use crate::scalar::Scalar;
 use crate::state::State;
 use crate::store::add_scaled;
 use crate::system::System;
@@ -58,7 +57,7 @@ where
     let rate = |x: &Sys::Coordinates, xi: &Sys::Velocities| {
         let mut rate = system.rate(x, xi);
         if lambda != 0.0 {
-            let towards = Sys::Scalar::from_f64(if h < 0.0 { -lambda } else { lambda });
+            let towards = if h < 0.0 { -lambda } else { lambda };
             add_scaled(rate.as_mut(), towards, system.correction(x).as_ref());
         }
         rate
@@ -70,7 +69,7 @@ where
     let mut f_sum = f.clone();
 
     for (node, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
-        let a = Sys::Scalar::from_f64(node * h);
+        let a = node * h;
         let mut x = state.x.clone();
         add_scaled(x.as_mut(), a, k.as_ref());
         let mut xi = state.xi.clone();
@@ -79,14 +78,13 @@ where
         k = rate(&x, &xi);
         f = acceleration(system, state.t, node * h, &x, &xi, inputs)?;
 
-        let weight = Sys::Scalar::from_f64(weight);
         add_scaled(k_sum.as_mut(), weight, k.as_ref());
         add_scaled(f_sum.as_mut(), weight, f.as_ref());
     }
 
     let mut next = state.clone();
     next.t += h;
-    let sixth = Sys::Scalar::from_f64(h / 6.0);
+    let sixth = h / 6.0;
     add_scaled(next.x.as_mut(), sixth, k_sum.as_ref());
     add_scaled(next.xi.as_mut(), sixth, f_sum.as_ref());
     if next.is_finite() {

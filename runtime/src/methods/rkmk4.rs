@@ -11,8 +11,7 @@ use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::tableau::{Row, Weights};
 use crate::methods::{InChart, Method};
-use crate::scalar::Scalar;
-use crate::slopes::{PlainStep, Stepped, Tangent};
+use crate::slopes::{Stepped, Tangent, TangentStep};
 use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
@@ -49,7 +48,7 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk4 {
         let mut f_sum = f.clone();
 
         for (node, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
-            let a = Sys::Scalar::from_f64(node * h);
+            let a = node * h;
             let mut u = k;
             scale(u.as_mut(), a);
             let mut x = state.x.clone();
@@ -61,14 +60,13 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk4 {
             manifold::dexpinv(blocks, u.as_ref(), k.as_mut());
             f = acceleration(system, state.t, node * h, &x, &xi, inputs)?;
 
-            let weight = Sys::Scalar::from_f64(weight);
             add_scaled(k_sum.as_mut(), weight, k.as_ref());
             add_scaled(f_sum.as_mut(), weight, f.as_ref());
         }
 
         let mut next = state.clone();
         next.t += h;
-        let sixth = Sys::Scalar::from_f64(h / 6.0);
+        let sixth = h / 6.0;
         scale(k_sum.as_mut(), sixth);
         manifold::retract(blocks, next.x.as_mut(), k_sum.as_ref());
         manifold::normalise(blocks, next.x.as_mut());
@@ -83,8 +81,15 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk4 {
 
 impl InChart for Rkmk4 {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
-        Some(step.explicit::<_, 4>(self, &ROWS, CLOSING))
+    fn step_slopes<Sys: Tangent>(
+        &self,
+        step: &TangentStep<'_, Sys>,
+        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
+    ) -> Stepped<Sys> {
+        match Sys::PLAIN {
+            true => step.explicit::<4>(&ROWS, CLOSING),
+            false => in_dual_numbers(),
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::adaptive::pair::Pair;
 use crate::error::StepError;
 use crate::methods::tableau::{Row, Stages};
 use crate::methods::{InChart, Method};
-use crate::slopes::{PlainStep, Stepped, Tangent};
+use crate::slopes::{Stepped, Tangent, TangentStep};
 use crate::state::State;
 use crate::system::System;
 
@@ -48,8 +48,15 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk54 {
 
 impl InChart for Rkmk54 {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
-        Some(step.explicit::<_, 6>(self, &PAIR.rows, CLOSING))
+    fn step_slopes<Sys: Tangent>(
+        &self,
+        step: &TangentStep<'_, Sys>,
+        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
+    ) -> Stepped<Sys> {
+        match Sys::PLAIN {
+            true => step.explicit::<6>(&PAIR.rows, CLOSING),
+            false => in_dual_numbers(),
+        }
     }
 }
 

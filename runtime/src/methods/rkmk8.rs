@@ -8,7 +8,7 @@ use crate::adaptive::pair::Pair;
 use crate::error::StepError;
 use crate::methods::tableau::{Row, Stages};
 use crate::methods::{InChart, Method};
-use crate::slopes::{PlainStep, Stepped, Tangent};
+use crate::slopes::{Stepped, Tangent, TangentStep};
 use crate::state::State;
 use crate::system::System;
 
@@ -47,8 +47,15 @@ impl<Sys: System + ?Sized> Method<Sys> for Rkmk8 {
 
 impl InChart for Rkmk8 {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
-        Some(step.explicit::<_, 12>(self, &PAIR.rows, CLOSING))
+    fn step_slopes<Sys: Tangent>(
+        &self,
+        step: &TangentStep<'_, Sys>,
+        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
+    ) -> Stepped<Sys> {
+        match Sys::PLAIN {
+            true => step.explicit::<12>(&PAIR.rows, CLOSING),
+            false => in_dual_numbers(),
+        }
     }
 }
 

@@ -9,8 +9,7 @@ use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::{InChart, Method, arrive};
-use crate::scalar::Scalar;
-use crate::slopes::{PlainStep, Stepped, Tangent};
+use crate::slopes::{Stepped, Tangent, TangentStep};
 use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
@@ -38,12 +37,11 @@ impl<Sys: System + ?Sized> Method<Sys> for SemiImplicitEuler {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         state.check_shape(system)?;
-        let length = Sys::Scalar::from_f64(h);
         let f = acceleration(system, state.t, 0.0, &state.x, &state.xi, inputs)?;
         let mut xi = state.xi.clone();
-        add_scaled(xi.as_mut(), length, f.as_ref());
+        add_scaled(xi.as_mut(), h, f.as_ref());
         let mut u = system.chart_rate(&state.x, &xi);
-        scale(u.as_mut(), length);
+        scale(u.as_mut(), h);
         let mut x = state.x.clone();
         manifold::retract(system.blocks(), x.as_mut(), u.as_ref());
         arrive(system, state, h, x, xi)
@@ -52,7 +50,14 @@ impl<Sys: System + ?Sized> Method<Sys> for SemiImplicitEuler {
 
 impl InChart for SemiImplicitEuler {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
-        Some(step.semi_implicit(self))
+    fn step_slopes<Sys: Tangent>(
+        &self,
+        step: &TangentStep<'_, Sys>,
+        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
+    ) -> Stepped<Sys> {
+        match Sys::CHARTED && !Sys::PROJECTED {
+            true => step.semi_implicit(),
+            false => in_dual_numbers(),
+        }
     }
 }

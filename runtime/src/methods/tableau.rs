@@ -11,10 +11,9 @@ use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::{InChart, Method, arrive};
-use crate::scalar::Scalar;
-use crate::slopes::{PlainStep, Stepped, Tangent};
+use crate::slopes::{Stepped, Tangent, TangentStep};
 use crate::state::State;
-use crate::store::add_scaled;
+use crate::store::{add, add_scaled};
 use crate::system::System;
 
 /// The coefficients that are not zero, each with its stage, from 0.
@@ -91,8 +90,15 @@ impl<Sys: System + ?Sized, const N: usize> Method<Sys> for Rkmk<N> {
 
 impl<const N: usize> InChart for Rkmk<N> {
     #[inline]
-    fn plain_slopes<Sys: Tangent>(&self, step: &PlainStep<'_, Sys>) -> Option<Stepped<Sys>> {
-        Some(step.explicit::<_, N>(self, &self.0.rows, self.0.closing))
+    fn step_slopes<Sys: Tangent>(
+        &self,
+        step: &TangentStep<'_, Sys>,
+        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
+    ) -> Stepped<Sys> {
+        match Sys::PLAIN {
+            true => step.explicit::<N>(&self.0.rows, self.0.closing),
+            false => in_dual_numbers(),
+        }
     }
 }
 
@@ -112,16 +118,22 @@ pub(crate) struct Sums<Sys: System + ?Sized> {
 }
 
 impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
+    /// No stage yet.
+    #[inline(always)]
+    pub(crate) fn empty(system: &Sys) -> Self {
+        Self {
+            k: from_fn(|_| system.zero_chart()),
+            f: from_fn(|_| system.zero_velocities()),
+        }
+    }
+
     /// The first stage, at u = 0, where dexpinv is the identity.
     #[inline(always)]
     pub(crate) fn start<U>(system: &Sys, state: &State<Sys>, inputs: &U) -> Result<Self, StepError>
     where
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
-        let mut stages = Self {
-            k: from_fn(|_| system.zero_chart()),
-            f: from_fn(|_| system.zero_velocities()),
-        };
+        let mut stages = Self::empty(system);
         let f = acceleration(system, state.t, 0.0, &state.x, &state.xi, inputs)?;
         stages.set(0, system.chart_rate(&state.x, &state.xi), f);
         Ok(stages)
@@ -164,7 +176,7 @@ impl<Sys: System + ?Sized, const N: usize> Stages<Sys, N> {
             dxi: system.zero_velocities(),
         };
         for (j, weight) in weights {
-            let a = Sys::Scalar::from_f64(h * weight);
+            let a = h * weight;
             if let (Some(k), Some(f)) = (self.k.get(*j), self.f.get(*j)) {
                 add_scaled(sums.u.as_mut(), a, k.as_ref());
                 add_scaled(sums.dxi.as_mut(), a, f.as_ref());
@@ -185,7 +197,7 @@ impl<Sys: System + ?Sized> Sums<Sys> {
         let mut x = state.x.clone();
         manifold::retract(system.blocks(), x.as_mut(), self.u.as_ref());
         let mut xi = state.xi.clone();
-        add_scaled(xi.as_mut(), Sys::Scalar::from_f64(1.0), self.dxi.as_ref());
+        add(xi.as_mut(), self.dxi.as_ref());
         (x, xi)
     }
 

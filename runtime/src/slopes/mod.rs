@@ -7,16 +7,16 @@
 //!
 //! has no redundant direction, whatever coordinates x are. A_d and B_d are those of the discrete map itself, not of
 //! a truncated variational equation: the step is made in dual numbers, with the emitted linearisation for the slopes
-//! of ξ̇, which is several times shorter than ξ̇ in such numbers. Where coordinates are plain and ẋ = ξ, explicit methods
-//! multiply matrices instead ([`plain`]).
+//! of ξ̇, which is several times shorter than ξ̇ in such numbers. Explicit methods multiply matrices instead where
+//! coordinates are plain and ẋ = ξ, and so does the semi-implicit Euler method wherever no multiplier is
+//! ([`TangentStep`]).
 
-mod plain;
+mod matrices;
 
-pub use plain::PlainStep;
+pub use matrices::TangentStep;
 
 use crate::dual::Dual;
 use crate::error::{Singular, StepError};
-use crate::integrate::project;
 use crate::methods::{InChart, Method};
 use crate::scalar::Scalar;
 use crate::split::Split;
@@ -29,8 +29,8 @@ pub trait Directions: Scalar {
     /// Values and slopes.
     type Value: Scalar;
 
-    /// A number that varies with these slopes along the first directions.
-    fn varying(value: Self::Value, slopes: &[Self::Value]) -> Self;
+    /// Makes it a number that varies with these slopes along the first directions, in place.
+    fn vary(&mut self, value: Self::Value, slopes: &[Self::Value]);
 
     /// A number that varies with slope 1 along one direction.
     fn along(value: Self::Value, direction: usize) -> Self;
@@ -40,6 +40,9 @@ pub trait Directions: Scalar {
 
     /// Its slopes.
     fn slopes(&self) -> &[Self::Value];
+
+    /// A multiple of its slopes, at the value 0.
+    fn multiple(&self, factor: Self::Value) -> Self;
 
     /// Adds a multiple of the slopes of another number.
     fn follow(&mut self, factor: Self::Value, other: &Self);
@@ -61,12 +64,13 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
     type Value = S;
 
     #[inline]
-    fn varying(value: S, slopes: &[S]) -> Self {
-        let mut dual = Dual::constant(value);
-        for (own, slope) in dual.slopes.iter_mut().zip(slopes) {
+    fn vary(&mut self, value: S, slopes: &[S]) {
+        self.value = value;
+        let (first, rest) = self.slopes.split_at_mut(slopes.len().min(N));
+        for (own, slope) in first.iter_mut().zip(slopes) {
             *own = *slope;
         }
-        dual
+        rest.fill(S::default());
     }
 
     #[inline]
@@ -82,6 +86,14 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
     #[inline]
     fn slopes(&self) -> &[S] {
         &self.slopes
+    }
+
+    #[inline]
+    fn multiple(&self, factor: S) -> Self {
+        Dual {
+            value: S::default(),
+            slopes: self.slopes.map(|slope| factor * slope),
+        }
     }
 
     #[inline]
@@ -111,8 +123,10 @@ pub trait Tangent: System + Clone {
     /// Whether the coordinate kinds alone keep φ(x) = 0: all that a method moves in the chart then lies on the
     /// manifold, where the linearisation holds.
     const CHARTED: bool;
-    /// Whether all coordinates are plain numbers with ẋ = ξ, none of them held by a multiplier: explicit methods then
-    /// take matrices in the place of dual numbers.
+    /// Whether a step ends with a projection, on constraints that multipliers keep.
+    const PROJECTED: bool;
+    /// Whether all coordinates are plain numbers with ẋ = ξ, and nothing is projected: explicit methods then take
+    /// matrices in the place of dual numbers.
     const PLAIN: bool;
 
     /// Numbers with a slope for each entry of η, ξ, z and u, in this order.
@@ -135,7 +149,7 @@ pub trait Tangent: System + Clone {
     /// Y(x), by rows: η = Y δx.
     fn coframe(&self, x: &Self::Coordinates) -> Self::Coframe;
 
-    /// [A B] of the motion: d/dt (η, δξ, δz) = A (η, δξ, δz) + B δu.
+    /// ξ̇, and [A B] of the motion, d/dt (η, δξ, δz) = A (η, δξ, δz) + B δu, which is written to `slopes`.
     ///
     /// # Errors
     /// Those of [`accel`](System::accel).
@@ -144,7 +158,8 @@ pub trait Tangent: System + Clone {
         x: &Self::Coordinates,
         xi: &Self::Velocities,
         u: &Self::Inputs,
-    ) -> Result<Self::Slopes, Singular>;
+        slopes: &mut Self::Slopes,
+    ) -> Result<Self::Velocities, Singular>;
 }
 
 /// The state at the end of a step, and the slopes [A_d B_d] of the step.
@@ -177,13 +192,15 @@ fn values<N: Directions>(values: &mut [N::Value], numbers: &[N]) {
 /// A row of Y times δx, without a value.
 #[inline]
 fn displacement<N: Directions>(row: &[N::Value], x: &[N]) -> N {
-    let mut sum = N::default();
+    let mut sum: Option<N> = None;
     for (factor, moved) in row.iter().zip(x) {
-        if !is_zero(*factor) {
-            sum.follow(*factor, moved);
+        match &mut sum {
+            _ if is_zero(*factor) => {}
+            Some(sum) => sum.follow(*factor, moved),
+            None => sum = Some(moved.multiple(*factor)),
         }
     }
-    sum
+    sum.unwrap_or_default()
 }
 
 impl<Sys: Tangent> System for Nearby<Sys> {
@@ -243,13 +260,13 @@ impl<Sys: Tangent> System for Nearby<Sys> {
         values(velocities.as_mut(), xi.as_ref());
         let mut inputs = system.zero_inputs();
         values(inputs.as_mut(), u.as_ref());
-        let rates = system.accel(&here, &velocities, &inputs)?;
-        let table = system.slopes(&here, &velocities, &inputs)?;
+        let mut table = Sys::Slopes::zero();
+        let rates = system.slopes(&here, &velocities, &inputs, &mut table)?;
         let coframe = system.coframe(&here);
         let displacements = table.rows() - rates.as_ref().len();
         let mut result = self.zero_velocities();
         for (number, rate) in result.as_mut().iter_mut().zip(rates.as_ref()) {
-            *number = Sys::Number::varying(*rate, &[]);
+            number.vary(*rate, &[]);
         }
         let mut follow = |column: usize, by: &Sys::Number| {
             // At the start of a step all vary by themselves, and inputs always do.
@@ -352,28 +369,62 @@ where
     Sys: Tangent,
     M: Method<Nearby<Sys>> + InChart,
 {
-    match plainly(method, system, state, u, h) {
-        Some(stepped) => stepped,
-        None => step_nearby(method, &Nearby::new(system), state, u, h),
+    let step = |nearby| {
+        let step = TangentStep {
+            system,
+            nearby,
+            state,
+            u,
+            h,
+        };
+        method.step_slopes(&step, || step.in_dual_numbers(method))
+    };
+    // What methods make by matrices needs no dual numbers there.
+    match Sys::PLAIN {
+        true => step(None),
+        false => step(Some(&Nearby::new(system))),
     }
 }
 
-/// The same by matrices, where coordinates are plain and the method is explicit.
+/// Coordinates that vary along the frame of displacements.
 #[inline]
-fn plainly<Sys: Tangent, M: InChart>(
-    method: &M,
-    system: &Sys,
-    state: &State<Sys>,
-    u: &Sys::Inputs,
-    h: f64,
-) -> Option<Stepped<Sys>> {
-    let step = PlainStep {
-        system,
-        state,
-        u,
-        h,
-    };
-    Sys::PLAIN.then(|| method.plain_slopes(&step)).flatten()
+fn varying<Sys: Tangent>(
+    nearby: &Nearby<Sys>,
+    frame: &Sys::Frame,
+    x: &Sys::Coordinates,
+) -> <Nearby<Sys> as System>::Coordinates {
+    let mut varied = nearby.zero_coordinates();
+    let entries = varied.as_mut().iter_mut().zip(x.as_ref());
+    for (i, (number, value)) in entries.enumerate() {
+        number.vary(*value, frame.row(i));
+    }
+    varied
+}
+
+/// The rows of the displacements η⁺ = Y δx⁺ at the end of a step.
+#[inline]
+fn read<S, C, N, T>(coframe: &C, x: &[N], slopes: &mut T)
+where
+    S: Scalar,
+    C: Table<S>,
+    N: Directions<Value = S>,
+    T: Table<S>,
+{
+    for i in 0..coframe.rows() {
+        let row = slopes.row_mut(i);
+        let mut first = true;
+        for (&factor, moved) in coframe.row(i).iter().zip(x) {
+            if is_zero(factor) {
+                continue;
+            }
+            let entries = row.iter_mut().zip(moved.slopes());
+            match first {
+                true => entries.for_each(|(entry, slope)| *entry = factor * *slope),
+                false => entries.for_each(|(entry, slope)| *entry = factor.mul_add(*slope, *entry)),
+            }
+            first = false;
+        }
+    }
 }
 
 /// The same of a system that is in dual numbers already.
@@ -391,50 +442,12 @@ where
     Sys: Tangent,
     M: Method<Nearby<Sys>> + InChart,
 {
-    let system = &nearby.system;
-    if let Some(stepped) = plainly(method, system, state, u, h) {
-        return stepped;
-    }
-    state.check_shape(system)?;
-    let mut slopes = Sys::Slopes::zero();
-    let frame = system.frame(&state.x);
-    let displacements = slopes.rows() - state.xi.as_ref().len();
-    let mut begin = State::<Nearby<Sys>> {
-        t: state.t,
-        x: nearby.zero_coordinates(),
-        xi: nearby.zero_velocities(),
+    let step = TangentStep {
+        system: &nearby.system,
+        nearby: Some(nearby),
+        state,
+        u,
+        h,
     };
-    let x = begin.x.as_mut().iter_mut().zip(state.x.as_ref());
-    for (i, (varied, value)) in x.enumerate() {
-        *varied = Sys::Number::varying(*value, frame.row(i));
-    }
-    let xi = begin.xi.as_mut().iter_mut().zip(state.xi.as_ref());
-    for (i, (varied, value)) in xi.enumerate() {
-        *varied = Sys::Number::along(*value, displacements + i);
-    }
-    let mut held = nearby.zero_inputs();
-    let first = slopes.rows();
-    for (i, (varied, value)) in held.as_mut().iter_mut().zip(u.as_ref()).enumerate() {
-        *varied = Sys::Number::along(*value, first + i);
-    }
-    let mut varied = method.step(nearby, &begin, h, &|_, _, _| held.clone())?;
-    project(nearby, &mut varied)?;
-    let mut end = State::<Sys> {
-        t: varied.t,
-        x: system.zero_coordinates(),
-        xi: system.zero_velocities(),
-    };
-    values(end.x.as_mut(), varied.x.as_ref());
-    values(end.xi.as_mut(), varied.xi.as_ref());
-    let coframe = system.coframe(&end.x);
-    for i in 0..displacements {
-        let displacement = displacement(coframe.row(i), varied.x.as_ref());
-        slopes.row_mut(i).copy_from_slice(displacement.slopes());
-    }
-    for (i, number) in varied.xi.as_ref().iter().enumerate() {
-        slopes
-            .row_mut(displacements + i)
-            .copy_from_slice(number.slopes());
-    }
-    Ok((end, slopes))
+    method.step_slopes(&step, || step.in_dual_numbers(method))
 }

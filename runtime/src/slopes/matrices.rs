@@ -1,0 +1,278 @@
+//! Steps with slopes by matrices, in the place of a step in dual numbers.
+//!
+//! W holds the slopes of (x, ξ, z) at a point of the step by those of its start and by u, G those of their rates there.
+//! With the linearisation T = [A B] at the point, where coordinates are plain and ẋ = ξ ([`Tangent::PLAIN`]),
+//!
+//! G = [W_ξ; T W + T_u],  Wᵢ = I + h Σⱼ aᵢⱼ Gⱼ
+//!
+//! and an explicit step is closed by the weights b in the place of a. The semi-implicit Euler method has the rows
+//! I + h T of ξ for coordinates of all kinds; those of x follow from the chart rate along them.
+
+use core::array::from_fn;
+use core::fmt;
+
+use crate::error::StepError;
+use crate::integrate::project;
+use crate::manifold;
+use crate::methods::tableau::{Row, Stages, Weights};
+use crate::methods::{Method, arrive};
+use crate::scalar::Scalar;
+use crate::slopes::{Directions, Nearby, Stepped, Tangent, read, values, varying};
+use crate::state::State;
+use crate::store::{Table, add_scaled, is_finite, scale};
+use crate::system::System;
+
+/// A step of length h from a state, at inputs that are held over it, whose slopes are asked for.
+#[derive(Clone, Copy)]
+pub struct TangentStep<'a, Sys: Tangent> {
+    pub(crate) system: &'a Sys,
+    /// The system in dual numbers; made where it is needed and not given.
+    pub(crate) nearby: Option<&'a Nearby<Sys>>,
+    pub(crate) state: &'a State<Sys>,
+    pub(crate) u: &'a Sys::Inputs,
+    pub(crate) h: f64,
+}
+
+impl<Sys: Tangent> fmt::Debug for TangentStep<'_, Sys> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("TangentStep")
+            .field("state", self.state)
+            .field("u", self.u)
+            .field("h", &self.h)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<Sys: Tangent> TangentStep<'_, Sys> {
+    /// The step of any method, in dual numbers.
+    #[inline]
+    pub(crate) fn in_dual_numbers<M: Method<Nearby<Sys>> + ?Sized>(
+        &self,
+        method: &M,
+    ) -> Stepped<Sys> {
+        match self.nearby {
+            Some(nearby) => self.varied(method, nearby),
+            None => self.varied(method, &Nearby::new(self.system)),
+        }
+    }
+
+    #[inline]
+    fn varied<M: Method<Nearby<Sys>> + ?Sized>(
+        &self,
+        method: &M,
+        nearby: &Nearby<Sys>,
+    ) -> Stepped<Sys> {
+        let (system, state) = (self.system, self.state);
+        state.check_shape(system)?;
+        let mut slopes = Sys::Slopes::zero();
+        let displacements = slopes.rows() - state.xi.as_ref().len();
+        let mut begin = State::<Nearby<Sys>> {
+            t: state.t,
+            x: varying(nearby, &system.frame(&state.x), &state.x),
+            xi: nearby.zero_velocities(),
+        };
+        let xi = begin.xi.as_mut().iter_mut().zip(state.xi.as_ref());
+        for (i, (varied, value)) in xi.enumerate() {
+            *varied = Sys::Number::along(*value, displacements + i);
+        }
+        let mut held = nearby.zero_inputs();
+        let first = slopes.rows();
+        for (i, (varied, value)) in held.as_mut().iter_mut().zip(self.u.as_ref()).enumerate() {
+            *varied = Sys::Number::along(*value, first + i);
+        }
+        let mut varied = method.step(nearby, &begin, self.h, &|_, _, _| held.clone())?;
+        project(nearby, &mut varied)?;
+        let mut end = State::<Sys> {
+            t: varied.t,
+            x: system.zero_coordinates(),
+            xi: system.zero_velocities(),
+        };
+        values(end.x.as_mut(), varied.x.as_ref());
+        values(end.xi.as_mut(), varied.xi.as_ref());
+        read(&system.coframe(&end.x), varied.x.as_ref(), &mut slopes);
+        for (i, number) in varied.xi.as_ref().iter().enumerate() {
+            slopes
+                .row_mut(displacements + i)
+                .copy_from_slice(number.slopes());
+        }
+        Ok((end, slopes))
+    }
+
+    /// The step of an explicit method of N stages, whose tableau is given, of plain coordinates ([`Tangent::PLAIN`]).
+    #[inline]
+    pub(crate) fn explicit<const N: usize>(&self, rows: &[Row], closing: Weights) -> Stepped<Sys> {
+        let (system, state, h) = (self.system, self.state, self.h);
+        state.check_shape(system)?;
+        let mut table = Sys::Slopes::zero();
+        let f = self.linear(&state.x, &state.xi, &mut table)?;
+        let first = table.clone();
+        let n = state.x.as_ref().len();
+        let mut stages: Stages<Sys, N> = Stages::empty(system);
+        stages.set(0, system.chart_rate(&state.x, &state.xi), f);
+        let mut g: [Sys::Slopes; N] = from_fn(|_| first.clone());
+        for (index, row) in rows.iter().enumerate().take(N).skip(1) {
+            let (x, xi) = stages.sums(system, h, row.weights).point(system, state);
+            let f = self.linear(&x, &xi, &mut table)?;
+            stages.set(index, system.chart_rate(&x, &xi), f);
+            let rates = match row.weights {
+                [(0, weight)] => second(&table, &first, n, h * weight),
+                weights => later(&table, &moved(&g, weights, h), n),
+            };
+            if let Some(slot) = g.get_mut(index) {
+                *slot = rates;
+            }
+        }
+        let end = stages.sums(system, h, closing).end(system, state, h)?;
+        checked(end, moved(&g, closing, h), state.t)
+    }
+
+    /// The step of the semi-implicit Euler method, where nothing is projected: the rows of ξ⁺ = ξ + h ξ̇ are I + h T; those
+    /// of x move by h times these where coordinates are plain, else along the chart rate in dual numbers.
+    #[inline]
+    pub(crate) fn semi_implicit(&self) -> Stepped<Sys> {
+        let (system, state, h) = (self.system, self.state, self.h);
+        state.check_shape(system)?;
+        let mut w = Sys::Slopes::zero();
+        let f = self.linear(&state.x, &state.xi, &mut w)?;
+        let mut xi = state.xi.clone();
+        add_scaled(xi.as_mut(), h, f.as_ref());
+        let displacements = w.rows() - xi.as_ref().len();
+        for i in displacements..w.rows() {
+            scale(w.row_mut(i), h);
+            lean(&mut w, i);
+        }
+        let end = if Sys::PLAIN {
+            for i in 0..displacements {
+                w.repeat(i, Sys::Scalar::from_f64(h), displacements + i);
+                lean(&mut w, i);
+            }
+            let mut x = state.x.clone();
+            let rate = system.chart_rate(&state.x, &xi);
+            add_scaled(x.as_mut(), h, rate.as_ref());
+            arrive(system, state, h, x, xi)?
+        } else {
+            match self.nearby {
+                Some(nearby) => self.along(nearby, xi, &mut w)?,
+                None => self.along(&Nearby::new(system), xi, &mut w)?,
+            }
+        };
+        checked(end, w, state.t)
+    }
+
+    /// x moved along the chart rate for the length of the step, with its rows of W: those of ξ are known.
+    #[inline]
+    fn along(
+        &self,
+        nearby: &Nearby<Sys>,
+        xi: Sys::Velocities,
+        w: &mut Sys::Slopes,
+    ) -> Result<State<Sys>, StepError> {
+        let (system, state) = (self.system, self.state);
+        let displacements = w.rows() - xi.as_ref().len();
+        let mut x = varying(nearby, &system.frame(&state.x), &state.x);
+        let mut velocities = nearby.zero_velocities();
+        let numbers = velocities.as_mut().iter_mut().zip(xi.as_ref());
+        for (i, (number, value)) in numbers.enumerate() {
+            number.vary(*value, w.row(displacements + i));
+        }
+        let mut u = nearby.chart_rate(&x, &velocities);
+        scale(u.as_mut(), self.h);
+        manifold::retract(nearby.blocks(), x.as_mut(), u.as_ref());
+        let mut place = system.zero_coordinates();
+        values(place.as_mut(), x.as_ref());
+        let end = arrive(system, state, self.h, place, xi)?;
+        read(&system.coframe(&end.x), x.as_ref(), w);
+        Ok(end)
+    }
+
+    /// ξ̇ at a point, and T = [A B], which is written.
+    #[inline]
+    fn linear(
+        &self,
+        x: &Sys::Coordinates,
+        xi: &Sys::Velocities,
+        table: &mut Sys::Slopes,
+    ) -> Result<Sys::Velocities, StepError> {
+        let time = self.state.t;
+        let found = self.system.slopes(x, xi, self.u, table);
+        found.map_err(
+            |cause| match is_finite(x.as_ref()) && is_finite(xi.as_ref()) {
+                true => StepError::Singular { cause, time },
+                false => StepError::NonFinite { time },
+            },
+        )
+    }
+}
+
+/// What the step gives, where its slopes have values.
+#[inline]
+fn checked<Sys: Tangent>(end: State<Sys>, slopes: Sys::Slopes, time: f64) -> Stepped<Sys> {
+    match slopes.is_finite() {
+        true => Ok((end, slopes)),
+        false => Err(StepError::NonFinite { time }),
+    }
+}
+
+/// Adds 1 to an entry on the diagonal.
+#[inline]
+fn lean<S: Scalar, T: Table<S>>(table: &mut T, i: usize) {
+    if let Some(entry) = table.row_mut(i).get_mut(i) {
+        *entry += S::from_f64(1.0);
+    }
+}
+
+/// W = I + h Σⱼ aⱼ Gⱼ
+#[inline]
+fn moved<S: Scalar, T: Table<S>>(g: &[T], weights: Weights, h: f64) -> T {
+    let mut w = T::zero();
+    for (place, (j, weight)) in weights.iter().enumerate() {
+        let Some(rates) = g.get(*j) else { continue };
+        for i in 0..w.rows() {
+            if place == 0 {
+                w.row_mut(i).copy_from_slice(rates.row(i));
+                scale(w.row_mut(i), h * weight);
+            } else {
+                w.follow(i, &[S::from_f64(h * weight)], rates, i);
+            }
+        }
+    }
+    for i in 0..w.rows() {
+        lean(&mut w, i);
+    }
+    w
+}
+
+/// G of a stage whose point has slopes W: the rows of x are those of ξ in W. Inputs are held.
+#[inline]
+fn later<S: Scalar, T: Table<S>>(table: &T, w: &T, n: usize) -> T {
+    let mut g = T::zero();
+    for i in 0..n {
+        g.row_mut(i).copy_from_slice(w.row(n + i));
+    }
+    let size = table.rows();
+    for i in n..size {
+        let entries = table.row(i);
+        let inputs = g.row_mut(i).iter_mut().zip(entries).skip(size);
+        inputs.for_each(|(g, entry)| *g = *entry);
+        g.follow(i, entries, w, 0);
+    }
+    g
+}
+
+/// G of a stage at W = I + a G₁: T + a T G₁, where the rows of x in G₁ are those of ξ in I.
+#[inline]
+fn second<S: Scalar, T: Table<S>>(table: &T, first: &T, n: usize, a: f64) -> T {
+    let mut g = table.clone();
+    for i in 0..n {
+        g.follow(i, &[S::from_f64(a)], first, n + i);
+    }
+    let mut scaled = table.clone();
+    for i in n..table.rows() {
+        scale(scaled.row_mut(i), a);
+        let own = g.row_mut(i).iter_mut().skip(n);
+        let of_xi = own.zip(scaled.row(i).iter().take(n));
+        of_xi.for_each(|(own, entry)| *own += *entry);
+        g.follow(i, scaled.row(i).get(n..).unwrap_or(&[]), first, n);
+    }
+    g
+}
