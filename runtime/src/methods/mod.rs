@@ -53,7 +53,7 @@ pub use splitting::Splitting;
 
 use crate::error::StepError;
 use crate::manifold;
-use crate::slopes::{Stepped, Tangent, TangentStep};
+use crate::slopes::{Tangent, TangentStep};
 use crate::state::State;
 use crate::store::is_finite;
 use crate::system::System;
@@ -114,7 +114,7 @@ pub trait Method<Sys: System + ?Sized> {
     note = "take `Rkmk4`, or another method that implements `InChart`"
 )]
 pub trait InChart {
-    /// A step with its slopes: by matrices, where the method can and the system allows it, else in dual numbers.
+    /// A step whose slopes are written: by matrices, where the method can and the system allows it, else in dual numbers.
     ///
     /// # Errors
     /// Those of [`step`](crate::step()).
@@ -122,10 +122,11 @@ pub trait InChart {
     fn step_slopes<Sys: Tangent>(
         &self,
         step: &TangentStep<'_, Sys>,
-        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
-    ) -> Stepped<Sys> {
+        slopes: &mut Sys::Slopes,
+        in_dual_numbers: impl FnOnce(&mut Sys::Slopes) -> Result<State<Sys>, StepError>,
+    ) -> Result<State<Sys>, StepError> {
         let _ = step;
-        in_dual_numbers()
+        in_dual_numbers(slopes)
     }
 }
 
@@ -140,9 +141,10 @@ impl<M: InChart + ?Sized> InChart for &M {
     fn step_slopes<Sys: Tangent>(
         &self,
         step: &TangentStep<'_, Sys>,
-        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
-    ) -> Stepped<Sys> {
-        (**self).step_slopes(step, in_dual_numbers)
+        slopes: &mut Sys::Slopes,
+        in_dual_numbers: impl FnOnce(&mut Sys::Slopes) -> Result<State<Sys>, StepError>,
+    ) -> Result<State<Sys>, StepError> {
+        (**self).step_slopes(step, slopes, in_dual_numbers)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::tableau::{Row, Weights};
 use crate::methods::{InChart, Method};
-use crate::slopes::{Stepped, Tangent, TangentStep};
+use crate::slopes::{Tangent, TangentStep};
 use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
@@ -84,11 +84,12 @@ impl InChart for Rkmk4 {
     fn step_slopes<Sys: Tangent>(
         &self,
         step: &TangentStep<'_, Sys>,
-        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
-    ) -> Stepped<Sys> {
+        slopes: &mut Sys::Slopes,
+        in_dual_numbers: impl FnOnce(&mut Sys::Slopes) -> Result<State<Sys>, StepError>,
+    ) -> Result<State<Sys>, StepError> {
         match Sys::PLAIN {
-            true => step.explicit::<4>(&ROWS, CLOSING),
-            false => in_dual_numbers(),
+            true => step.explicit::<4>(&ROWS, CLOSING, slopes),
+            false => in_dual_numbers(slopes),
         }
     }
 }

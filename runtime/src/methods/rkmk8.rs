@@ -8,7 +8,7 @@ use crate::adaptive::pair::Pair;
 use crate::error::StepError;
 use crate::methods::tableau::{Row, Stages};
 use crate::methods::{InChart, Method};
-use crate::slopes::{Stepped, Tangent, TangentStep};
+use crate::slopes::{Tangent, TangentStep};
 use crate::state::State;
 use crate::system::System;
 
@@ -50,11 +50,12 @@ impl InChart for Rkmk8 {
     fn step_slopes<Sys: Tangent>(
         &self,
         step: &TangentStep<'_, Sys>,
-        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
-    ) -> Stepped<Sys> {
+        slopes: &mut Sys::Slopes,
+        in_dual_numbers: impl FnOnce(&mut Sys::Slopes) -> Result<State<Sys>, StepError>,
+    ) -> Result<State<Sys>, StepError> {
         match Sys::PLAIN {
-            true => step.explicit::<12>(&PAIR.rows, CLOSING),
-            false => in_dual_numbers(),
+            true => step.explicit::<12>(&PAIR.rows, CLOSING, slopes),
+            false => in_dual_numbers(slopes),
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::{InChart, Method, arrive};
-use crate::slopes::{Stepped, Tangent, TangentStep};
+use crate::slopes::{Tangent, TangentStep};
 use crate::state::State;
 use crate::store::{add_scaled, scale};
 use crate::system::System;
@@ -53,11 +53,12 @@ impl InChart for SemiImplicitEuler {
     fn step_slopes<Sys: Tangent>(
         &self,
         step: &TangentStep<'_, Sys>,
-        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
-    ) -> Stepped<Sys> {
+        slopes: &mut Sys::Slopes,
+        in_dual_numbers: impl FnOnce(&mut Sys::Slopes) -> Result<State<Sys>, StepError>,
+    ) -> Result<State<Sys>, StepError> {
         match Sys::CHARTED && !Sys::PROJECTED {
-            true => step.semi_implicit(),
-            false => in_dual_numbers(),
+            true => step.semi_implicit(slopes),
+            false => in_dual_numbers(slopes),
         }
     }
 }

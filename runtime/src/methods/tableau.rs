@@ -11,7 +11,7 @@ use crate::error::StepError;
 use crate::integrate::acceleration;
 use crate::manifold;
 use crate::methods::{InChart, Method, arrive};
-use crate::slopes::{Stepped, Tangent, TangentStep};
+use crate::slopes::{Tangent, TangentStep};
 use crate::state::State;
 use crate::store::{add, add_scaled};
 use crate::system::System;
@@ -93,11 +93,12 @@ impl<const N: usize> InChart for Rkmk<N> {
     fn step_slopes<Sys: Tangent>(
         &self,
         step: &TangentStep<'_, Sys>,
-        in_dual_numbers: impl FnOnce() -> Stepped<Sys>,
-    ) -> Stepped<Sys> {
+        slopes: &mut Sys::Slopes,
+        in_dual_numbers: impl FnOnce(&mut Sys::Slopes) -> Result<State<Sys>, StepError>,
+    ) -> Result<State<Sys>, StepError> {
         match Sys::PLAIN {
-            true => step.explicit::<N>(&self.0.rows, self.0.closing),
-            false => in_dual_numbers(),
+            true => step.explicit::<N>(&self.0.rows, self.0.closing, slopes),
+            false => in_dual_numbers(slopes),
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::error::StepError;
 use crate::integrate::project;
 use crate::manifold;
 use crate::methods::tableau::{Row, Stages, Weights};
-use crate::methods::{Method, arrive};
+use crate::methods::{InChart, Method, arrive};
 use crate::scalar::Scalar;
 use crate::slopes::{Directions, Nearby, Stepped, Tangent, read, values, varying};
 use crate::state::State;
@@ -44,27 +44,36 @@ impl<Sys: Tangent> fmt::Debug for TangentStep<'_, Sys> {
 }
 
 impl<Sys: Tangent> TangentStep<'_, Sys> {
-    /// The step of any method, in dual numbers.
+    /// The step of a method, with its slopes.
     #[inline]
-    pub(crate) fn in_dual_numbers<M: Method<Nearby<Sys>> + ?Sized>(
+    pub(crate) fn of<M: Method<Nearby<Sys>> + InChart>(&self, method: &M) -> Stepped<Sys> {
+        let mut slopes = Sys::Slopes::zero();
+        let in_dual_numbers = |slopes: &mut Sys::Slopes| self.in_dual_numbers(method, slopes);
+        let end = method.step_slopes(self, &mut slopes, in_dual_numbers)?;
+        Ok((end, slopes))
+    }
+
+    #[inline]
+    fn in_dual_numbers<M: Method<Nearby<Sys>>>(
         &self,
         method: &M,
-    ) -> Stepped<Sys> {
+        slopes: &mut Sys::Slopes,
+    ) -> Result<State<Sys>, StepError> {
         match self.nearby {
-            Some(nearby) => self.varied(method, nearby),
-            None => self.varied(method, &Nearby::new(self.system)),
+            Some(nearby) => self.varied(method, nearby, slopes),
+            None => self.varied(method, &Nearby::new(self.system), slopes),
         }
     }
 
     #[inline]
-    fn varied<M: Method<Nearby<Sys>> + ?Sized>(
+    fn varied<M: Method<Nearby<Sys>>>(
         &self,
         method: &M,
         nearby: &Nearby<Sys>,
-    ) -> Stepped<Sys> {
+        slopes: &mut Sys::Slopes,
+    ) -> Result<State<Sys>, StepError> {
         let (system, state) = (self.system, self.state);
         state.check_shape(system)?;
-        let mut slopes = Sys::Slopes::zero();
         let displacements = slopes.rows() - state.xi.as_ref().len();
         let mut begin = State::<Nearby<Sys>> {
             t: state.t,
@@ -89,62 +98,66 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
         };
         values(end.x.as_mut(), varied.x.as_ref());
         values(end.xi.as_mut(), varied.xi.as_ref());
-        read(&system.coframe(&end.x), varied.x.as_ref(), &mut slopes);
+        read(&system.coframe(&end.x), varied.x.as_ref(), slopes);
         for (i, number) in varied.xi.as_ref().iter().enumerate() {
             slopes
                 .row_mut(displacements + i)
                 .copy_from_slice(number.slopes());
         }
-        Ok((end, slopes))
+        Ok(end)
     }
 
     /// The step of an explicit method of N stages, whose tableau is given, of plain coordinates ([`Tangent::PLAIN`]).
     #[inline]
-    pub(crate) fn explicit<const N: usize>(&self, rows: &[Row], closing: Weights) -> Stepped<Sys> {
+    pub(crate) fn explicit<const N: usize>(
+        &self,
+        rows: &[Row],
+        closing: Weights,
+        slopes: &mut Sys::Slopes,
+    ) -> Result<State<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);
         state.check_shape(system)?;
-        let mut table = Sys::Slopes::zero();
-        let f = self.linear(&state.x, &state.xi, &mut table)?;
-        let first = table.clone();
+        let f = self.linear(&state.x, &state.xi, slopes)?;
+        let first = slopes.clone();
         let n = state.x.as_ref().len();
         let mut stages: Stages<Sys, N> = Stages::empty(system);
         stages.set(0, system.chart_rate(&state.x, &state.xi), f);
         let mut g: [Sys::Slopes; N] = from_fn(|_| first.clone());
         for (index, row) in rows.iter().enumerate().take(N).skip(1) {
             let (x, xi) = stages.sums(system, h, row.weights).point(system, state);
-            let f = self.linear(&x, &xi, &mut table)?;
+            let f = self.linear(&x, &xi, slopes)?;
             stages.set(index, system.chart_rate(&x, &xi), f);
             let rates = match row.weights {
-                [(0, weight)] => second(&table, &first, n, h * weight),
-                weights => later(&table, &moved(&g, weights, h), n),
+                [(0, weight)] => second(slopes, &first, n, h * weight),
+                weights => later(slopes, &moved(&g, weights, h), n),
             };
             if let Some(slot) = g.get_mut(index) {
                 *slot = rates;
             }
         }
         let end = stages.sums(system, h, closing).end(system, state, h)?;
-        checked(end, moved(&g, closing, h), state.t)
+        *slopes = moved(&g, closing, h);
+        checked(end, slopes, state.t)
     }
 
     /// The step of the semi-implicit Euler method, where nothing is projected: the rows of ξ⁺ = ξ + h ξ̇ are I + h T; those
     /// of x move by h times these where coordinates are plain, else along the chart rate in dual numbers.
     #[inline]
-    pub(crate) fn semi_implicit(&self) -> Stepped<Sys> {
+    pub(crate) fn semi_implicit(&self, w: &mut Sys::Slopes) -> Result<State<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);
         state.check_shape(system)?;
-        let mut w = Sys::Slopes::zero();
-        let f = self.linear(&state.x, &state.xi, &mut w)?;
+        let f = self.linear(&state.x, &state.xi, w)?;
         let mut xi = state.xi.clone();
         add_scaled(xi.as_mut(), h, f.as_ref());
         let displacements = w.rows() - xi.as_ref().len();
         for i in displacements..w.rows() {
             scale(w.row_mut(i), h);
-            lean(&mut w, i);
+            lean(w, i);
         }
         let end = if Sys::PLAIN {
             for i in 0..displacements {
                 w.repeat(i, Sys::Scalar::from_f64(h), displacements + i);
-                lean(&mut w, i);
+                lean(w, i);
             }
             let mut x = state.x.clone();
             let rate = system.chart_rate(&state.x, &xi);
@@ -152,8 +165,8 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
             arrive(system, state, h, x, xi)?
         } else {
             match self.nearby {
-                Some(nearby) => self.along(nearby, xi, &mut w)?,
-                None => self.along(&Nearby::new(system), xi, &mut w)?,
+                Some(nearby) => self.along(nearby, xi, w)?,
+                None => self.along(&Nearby::new(system), xi, w)?,
             }
         };
         checked(end, w, state.t)
@@ -204,11 +217,15 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
     }
 }
 
-/// What the step gives, where its slopes have values.
+/// The end of a step, where its slopes have values.
 #[inline]
-fn checked<Sys: Tangent>(end: State<Sys>, slopes: Sys::Slopes, time: f64) -> Stepped<Sys> {
+fn checked<Sys: Tangent>(
+    end: State<Sys>,
+    slopes: &Sys::Slopes,
+    time: f64,
+) -> Result<State<Sys>, StepError> {
     match slopes.is_finite() {
-        true => Ok((end, slopes)),
+        true => Ok(end),
         false => Err(StepError::NonFinite { time }),
     }
 }

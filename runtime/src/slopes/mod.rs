@@ -41,9 +41,6 @@ pub trait Directions: Scalar {
     /// Its slopes.
     fn slopes(&self) -> &[Self::Value];
 
-    /// A multiple of its slopes, at the value 0.
-    fn multiple(&self, factor: Self::Value) -> Self;
-
     /// Adds a multiple of the slopes of another number.
     fn follow(&mut self, factor: Self::Value, other: &Self);
 
@@ -86,14 +83,6 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
     #[inline]
     fn slopes(&self) -> &[S] {
         &self.slopes
-    }
-
-    #[inline]
-    fn multiple(&self, factor: S) -> Self {
-        Dual {
-            value: S::default(),
-            slopes: self.slopes.map(|slope| factor * slope),
-        }
     }
 
     #[inline]
@@ -192,15 +181,13 @@ fn values<N: Directions>(values: &mut [N::Value], numbers: &[N]) {
 /// A row of Y times δx, without a value.
 #[inline]
 fn displacement<N: Directions>(row: &[N::Value], x: &[N]) -> N {
-    let mut sum: Option<N> = None;
+    let mut sum = N::default();
     for (factor, moved) in row.iter().zip(x) {
-        match &mut sum {
-            _ if is_zero(*factor) => {}
-            Some(sum) => sum.follow(*factor, moved),
-            None => sum = Some(moved.multiple(*factor)),
+        if !is_zero(*factor) {
+            sum.follow(*factor, moved);
         }
     }
-    sum.unwrap_or_default()
+    sum
 }
 
 impl<Sys: Tangent> System for Nearby<Sys> {
@@ -377,7 +364,7 @@ where
             u,
             h,
         };
-        method.step_slopes(&step, || step.in_dual_numbers(method))
+        step.of(method)
     };
     // What methods make by matrices needs no dual numbers there.
     match Sys::PLAIN {
@@ -412,17 +399,13 @@ where
 {
     for i in 0..coframe.rows() {
         let row = slopes.row_mut(i);
-        let mut first = true;
+        row.fill(S::default());
         for (&factor, moved) in coframe.row(i).iter().zip(x) {
-            if is_zero(factor) {
-                continue;
+            if !is_zero(factor) {
+                for (entry, slope) in row.iter_mut().zip(moved.slopes()) {
+                    *entry = factor.mul_add(*slope, *entry);
+                }
             }
-            let entries = row.iter_mut().zip(moved.slopes());
-            match first {
-                true => entries.for_each(|(entry, slope)| *entry = factor * *slope),
-                false => entries.for_each(|(entry, slope)| *entry = factor.mul_add(*slope, *entry)),
-            }
-            first = false;
         }
     }
 }
@@ -449,5 +432,5 @@ where
         u,
         h,
     };
-    method.step_slopes(&step, || step.in_dual_numbers(method))
+    step.of(method)
 }
