@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Compares generated Rust with Pinocchio's C++; needs python3 with venv, g++ and cargo, and the robots of
-# tests/robots/install.sh. Prints a table, which is also `bench-pinocchio/report.md` below the target folder; about ten
+# tests/robots/install.sh; takes clang++ as well, where there is one. Prints a table, which is also `bench-pinocchio/report.md` below the target folder; about ten
 # minutes, and 5 GB of memory for g++.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -26,30 +26,35 @@ defined=(
     -DBOOST_FUSION_INVOKE_MAX_ARITY=12 -DPINOCCHIO_URDFDOM_HEADERS_MAJOR_VERSION=3
     -DPINOCCHIO_URDFDOM_HEADERS_MINOR_VERSION=0 -DPINOCCHIO_URDFDOM_HEADERS_PATCH_VERSION=0
 )
-# A source with further options, as the library of this name; nothing where it is as new as the source. Warnings are those
-# of templates of the headers.
+# A source by a compiler with further options, as the library of this name; nothing where it is as new as the source.
+# Warnings are those of templates of the headers.
 library() {
-    local library="$out/$1" source="$here/$2"
-    shift 2
+    local library="$out/$1" source="$here/$2" compiler="$3"
+    shift 3
     if [ "$library" -nt "$source" ] && [ "$library" -nt "$here/robot.h" ] && [ "$library" -nt "$out/venv/requirements.txt" ]
     then
         return
     fi
-    g++ -std=c++17 -w -O3 -DNDEBUG -fPIC -shared -Wl,-z,defs "${defined[@]}" -isystem "$prefix/include" \
+    "$compiler" -std=c++17 -w -O3 -DNDEBUG -fPIC -shared -Wl,-z,defs "${defined[@]}" -isystem "$prefix/include" \
         -isystem "$prefix/include/eigen3" -isystem "$prefix/include/urdfdom_headers" "$source" \
         -L"$prefix/lib" -Wl,-rpath,"$prefix/lib" -o "$library.new" "$@"
     mv "$library.new" "$library"
 }
-# The algorithms twice: those that the wheel has compiled, and their templates compiled for this machine. The latter do
-# not meet the wheel's libraries, in which Eigen aligns matrices by 16 bytes, whatever the machine has.
-library libreader.so reader.cpp -DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION -lpinocchio_parsers -lpinocchio_default
-library libwheel.so driver.cpp -DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION -lpinocchio_default
-library libnative.so driver.cpp -march=native -fno-gnu-unique
+# The algorithms in several ways: those that the wheel has compiled, and their templates compiled for this machine. The
+# latter do not meet the wheel's libraries, in which Eigen aligns matrices by 16 bytes, whatever the machine has.
+library reader.so reader.cpp g++ -DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION -lpinocchio_parsers -lpinocchio_default
+library wheel.so driver.cpp g++ -DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION -lpinocchio_default
+library g++.so driver.cpp g++ -march=native -fno-gnu-unique
+ways=("$out/wheel.so" "$out/g++.so")
+if command -v clang++ >/dev/null; then
+    library clang++.so driver.cpp clang++ -march=native
+    ways+=("$out/clang++.so")
+fi
 
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
 cargo build --release --locked --manifest-path "$here/Cargo.toml" --target-dir "$out/rust"
 # One core, where the system can say so.
 pin=$(command -v taskset || true)
-${pin:+$pin -c 0} "$out/rust/release/hamel-bench-pinocchio" "$robots" "$out/libreader.so" "$out/libwheel.so" \
-    "$out/libnative.so" | tee "$out/report.md"
+${pin:+$pin -c 0} "$out/rust/release/hamel-bench-pinocchio" "$robots" "$out/reader.so" "${ways[@]}" |
+    tee "$out/report.md"

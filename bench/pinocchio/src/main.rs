@@ -2,8 +2,9 @@
 //! dynamics, the slopes of forward dynamics, the torque regressor, and the Jacobian of a link.
 //!
 //! Started by `bench/pinocchio/run.sh`; inputs, rounds and medians are those of `bench/c` and `bench/casadi`. All values
-//! have to agree before they are timed. Pinocchio is called in two ways, by the functions that its wheel has compiled and
-//! by the same templates compiled for this machine, and ABA in both of its conventions; the table has the fastest.
+//! have to agree before they are timed. Pinocchio is called in several ways, by the functions that its wheel has compiled
+//! and by the same templates compiled for this machine by g++ and clang++, and ABA in the faster of its conventions. Each
+//! way has a column; ratios are those of the fastest.
 //!
 //! The functions are not quite the same ones:
 //! - `slopes` are [A B]: besides ∂ξ̇/∂h, ∂ξ̇/∂ξ and ∂ξ̇/∂u, which `computeABADerivatives` gives as well, the rows of
@@ -57,7 +58,7 @@ const AGREEMENT: f64 = 1e-9;
 /// The reader of URDF files, and the driver in each of the ways that it is compiled.
 struct Libraries {
     reader: Library,
-    drivers: [(&'static str, Library); 2],
+    drivers: Vec<(String, Library)>,
 }
 
 /// What the functions are called with.
@@ -100,7 +101,7 @@ fn block<S: Tangent<Scalar = f64>>(slopes: &S::Slopes, first: usize, n: usize) -
 /// Whether the matrices of both sides agree; none is a failure of ours.
 fn agree(what: &str, ours: &[Vec<f64>], theirs: &[Vec<f64>]) -> Result<(), String> {
     if ours.len() != theirs.len() {
-        return Err(format!("{what}: no value"));
+        return Err(format!("{what}: no value of hamel"));
     }
     for (ours, theirs) in ours.iter().zip(theirs) {
         let scale = ours.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
@@ -126,7 +127,7 @@ struct Sides<'a> {
 
 impl Sides<'_> {
     /// Compares a function, times it and prints a row: functions of the driver that give the same, what is compared of
-    /// them and of ours, and ours over all states so many times. Times of each of Pinocchio's ways go to standard error.
+    /// them and of ours, and ours over all states so many times.
     fn row(
         &self,
         function: &str,
@@ -135,25 +136,23 @@ impl Sides<'_> {
         ours: &dyn Fn(usize) -> Vec<Vec<f64>>,
         run: &dyn Fn(u32),
     ) -> Result<(), Box<dyn Error>> {
-        let mut best = (f64::INFINITY, f64::INFINITY);
+        print!("| {} | {function} |", self.name);
+        let (mut fastest, mut own) = (f64::INFINITY, f64::INFINITY);
         for (way, peer) in &self.peers {
+            let mut least = f64::INFINITY;
             for &name in names {
-                let what = format!("{}, {name}, {way}", self.name);
                 for k in 0..INPUTS {
+                    let what = format!("{}, {name}, {way}", self.name);
                     agree(&what, &ours(k), &theirs(peer, name, k)?)?;
                 }
                 let function = peer.function(name)?;
                 let (a, b) = measure::by_turns(&|count| function.run(count), run);
-                eprintln!("{what}: {a:.1} ns, hamel {b:.1} ns");
-                best = (best.0.min(a), best.1.min(b));
+                (least, own) = (least.min(a), own.min(b));
             }
+            print!(" {least:.1} |");
+            fastest = fastest.min(least);
         }
-        let (theirs, ours) = best;
-        println!(
-            "| {} | {function} | {theirs:.1} | {ours:.1} | {:.2} |",
-            self.name,
-            theirs / ours
-        );
+        println!(" {own:.1} | {:.2} |", fastest / own);
         Ok(())
     }
 }
@@ -183,13 +182,13 @@ fn peers<'a, S: System<Scalar = f64>>(
     points: &[Point<S>],
 ) -> Result<Vec<(&'a str, Peer<'a>)>, Box<dyn Error>> {
     let description = Description::read(&libraries.reader, folder, robot)?;
-    let open = |(way, library): &'a (&str, Library)| {
+    let open = |(way, library): &'a (String, Library)| {
         let mut peer = Peer::open(library, &description)?;
         for at in points {
             let q = configuration(at.x.as_ref(), robot.floating);
             peer.add([&q, at.xi.as_ref(), at.xi_dot.as_ref(), at.u.as_ref()])?;
         }
-        Ok((*way, peer))
+        Ok((way.as_str(), peer))
     };
     libraries.drivers.iter().map(open).collect()
 }
@@ -286,20 +285,25 @@ macro_rules! robot {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
-    let folder = &arguments
-        .next()
-        .ok_or("the folder of the robots is missing")?;
-    let mut open = || -> Result<Library, Box<dyn Error>> {
-        let path = arguments.next().ok_or("a library is missing")?;
-        // SAFETY: constructors are those of Pinocchio and of what it needs, which touch nothing else.
-        Ok(unsafe { Library::new(path)? })
+    let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
+    let [folder, reader, drivers @ ..] = arguments.as_slice() else {
+        return Err("the folder of the robots and the reader are missing".into());
     };
-    let libraries = &Libraries {
-        reader: open()?,
-        drivers: [("the wheel", open()?), ("compiled here", open()?)],
+    // SAFETY: constructors are those of Pinocchio and of what it needs, which touch nothing else.
+    let open = |path: &PathBuf| unsafe { Library::new(path) };
+    let mut libraries = Libraries {
+        reader: open(reader)?,
+        drivers: Vec::new(),
     };
-    println!("| robot | function | Pinocchio, ns | hamel, ns | ratio |\n|---|---|---:|---:|---:|");
+    let (mut ways, mut lines) = (String::new(), String::new());
+    for path in drivers {
+        let way = path.file_stem().unwrap_or_default().to_string_lossy();
+        ways += &format!(" Pinocchio, {way}, ns |");
+        lines += "---:|";
+        libraries.drivers.push((way.into_owned(), open(path)?));
+    }
+    let libraries = &libraries;
+    println!("| robot | function |{ways} hamel, ns | ratio |\n|---|---|{lines}---:|---:|");
     robot!(
         libraries,
         folder,
