@@ -10,7 +10,7 @@
 //! in world axes or each in its own. The columns of J are those of the joints, (R₀ q̇ₖ + wₖ × (p_f − p), wₖ). What
 //! moves with none of the frames does not take part.
 
-mod sums;
+mod known;
 
 use super::calculus::Calculus;
 use super::candidates::Candidates;
@@ -25,7 +25,7 @@ use crate::functions::FrameFunction;
 use crate::model::{Frame, Model};
 use crate::program::{Argument, Function, Shape};
 use Argument::{Coordinates, Velocities};
-use sums::with_sums;
+use known::with_known;
 
 /// A linear and an angular part: velocities, their rates, or a column of J.
 pub(in crate::derive) type Twist = (Vec3, Vec3);
@@ -38,8 +38,8 @@ impl Builder<'_> {
             let Some(index) = model.frames.iter().position(|f| f.name == jacobian.frame) else {
                 continue;
             };
-            let summed = with_sums(model, index);
-            let sources: Vec<&Model> = [model].into_iter().chain(&summed).collect();
+            let known = with_known(model, index);
+            let sources: Vec<&Model> = [model].into_iter().chain(&known).collect();
             for &of in FrameFunction::ALL {
                 let name = jacobian.name_of(of);
                 if self.functions.iter().any(|known| known.name == name) {
@@ -92,7 +92,9 @@ enum Route {
     Defined,
     /// Along the frames before it, world axes; levers of J in the axes of the joints from a place of the chain on.
     World(usize),
-    /// The same, each in its own axes.
+    /// The same with all levers in axes of joints, up to a place of the chain in those before the joint has turned.
+    Before(usize),
+    /// The same as in the world, each in its own axes.
     Own(usize),
 }
 
@@ -107,10 +109,12 @@ impl Route {
         };
         let routes = |route: fn(usize) -> Route| borders.iter().map(move |&at| route(at));
         let (world, own) = (routes(Route::World), routes(Route::Own));
+        let before = routes(Route::Before).filter(|_| of == FrameFunction::Jacobian);
         [Route::Defined]
             .into_iter()
             .chain(world)
             .chain(own)
+            .chain(before)
             .collect()
     }
 
@@ -135,8 +139,8 @@ impl Route {
                 let twist = defined(graph, &mut calculus, frame, own);
                 (by_velocities(model, graph, twist), Some(own))
             }
-            (FrameFunction::Jacobian, Route::World(border)) => {
-                let columns = columns_in_world(model, graph, &mut calculus, (index, border));
+            (FrameFunction::Jacobian, Route::World(_) | Route::Before(_)) => {
+                let columns = columns_in_world(model, graph, &mut calculus, (index, self));
                 (columns, Some(false))
             }
             (FrameFunction::Jacobian, Route::Own(border)) => {
@@ -159,7 +163,7 @@ impl Route {
                 let rates = change(graph, &mut calculus, twist);
                 (twist, rates, own)
             }
-            Route::World(_) => {
+            Route::World(_) | Route::Before(_) => {
                 let (twist, rates) = outwards_in_world(model, graph, &mut calculus, index);
                 (twist, rates, false)
             }
@@ -358,14 +362,15 @@ fn outwards_in_frames(
     (twist, rates)
 }
 
-/// Where the last frame of a chain is, in the axes of each of them, from a place of the chain on.
-fn levers(model: &Model, graph: &mut Graph, chain: &[usize], border: usize) -> Vec<Vec3> {
+/// The way from each frame of a chain to the last, in its own axes and in those of the frame before, from a place of the
+/// chain on.
+fn levers(model: &Model, graph: &mut Graph, chain: &[usize], border: usize) -> Vec<[Vec3; 2]> {
     let mut lever = zero3(graph);
-    let mut levers = vec![lever; chain.len()];
+    let mut levers = vec![[lever; 2]; chain.len()];
     for place in (border..chain.len()).rev() {
-        levers[place] = lever;
         let (rotation, position) = &model.frames[chain[place]].relative;
         let turned = apply3(graph, rotation, lever);
+        levers[place] = [lever, turned];
         lever = add3(graph, *position, turned);
     }
     levers
@@ -389,6 +394,11 @@ fn add_joint(
                 let lever = cross(graph, turn, *arm);
                 apply3(graph, own, lever)
             }
+            Arm::Before(rotation, arm) => {
+                let turn = apply3(graph, rotation, turn);
+                let lever = cross(graph, turn, *arm);
+                apply3(graph, outer, lever)
+            }
         };
         let speed = add3(graph, slide, lever);
         *column = (add3(graph, column.0, speed), add3(graph, column.1, turned));
@@ -396,11 +406,13 @@ fn add_joint(
 }
 
 /// The way from a joint's frame to the frame of a Jacobian.
-enum Arm {
+enum Arm<'a> {
     /// In the axes that columns are written in.
     Placed(Vec3),
     /// In the axes of the joint's frame.
     Own(Vec3),
+    /// In the axes of the frame before, against which it is turned like this.
+    Before(&'a Mat3, Vec3),
 }
 
 /// The columns of J, world axes.
@@ -408,20 +420,27 @@ fn columns_in_world(
     model: &Model,
     graph: &mut Graph,
     calculus: &mut Calculus,
-    (index, border): (usize, usize),
+    (index, route): (usize, Route),
 ) -> Vec<Twist> {
     let mut columns = vec![(zero3(graph), zero3(graph)); model.n()];
     let tip = model.frames[index].position;
     let chain = chain(model, index);
-    let levers = levers(model, graph, &chain, border);
+    let (placed, before) = match route {
+        Route::Before(border) => (0, border),
+        Route::World(border) | Route::Own(border) => (border, 0),
+        Route::Defined => (chain.len(), 0),
+    };
+    let levers = levers(model, graph, &chain, placed);
     let mut outer = identity3(graph);
     for (place, &at) in chain.iter().enumerate() {
         let frame = &model.frames[at];
         let moved = relative(graph, calculus, frame);
         let freedoms = by_velocities(model, graph, moved);
-        let arm = match place < border {
-            true => Arm::Placed(sub3(graph, tip, frame.position)),
-            false => Arm::Own(levers[place]),
+        let [own, turned] = levers[place];
+        let arm = match place {
+            _ if place < placed => Arm::Placed(sub3(graph, tip, frame.position)),
+            _ if place < before => Arm::Before(&frame.relative.0, turned),
+            _ => Arm::Own(own),
         };
         let axes = [&outer, &frame.rotation];
         add_joint(graph, &mut columns, freedoms, axes, &arm);
@@ -450,7 +469,7 @@ fn columns_in_frame(
         let before = multiply3(graph, &axes, &transpose3(rotation));
         let arm = match place < border {
             true => Arm::Placed(way),
-            false => Arm::Own(levers[place]),
+            false => Arm::Own(levers[place][0]),
         };
         add_joint(graph, &mut columns, freedoms, [&before, &axes], &arm);
         let further = apply3(graph, &before, *position);

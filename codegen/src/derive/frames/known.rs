@@ -1,4 +1,7 @@
-//! Sums of angles about parallel axes: with R(a) R(b) = R(a + b) a pose behind such joints takes one rotation.
+//! Poses with what is known from the start: of two expressions with one value a graph keeps the first.
+//!
+//! Sums of angles about parallel axes: with R(a) R(b) = R(a + b) a pose behind such joints takes one rotation. And the ways
+//! from frames to the last one, which the columns of its Jacobian need, are parts of its position.
 
 use super::{by_velocities, chain, relative};
 use crate::algebra::graph::{Edge, Function, Graph};
@@ -16,6 +19,8 @@ enum Order {
     Outwards,
     /// The same from the frame towards the world.
     Inwards,
+    /// The ways to the frame, from the frame towards the world.
+    Ways,
 }
 
 /// What turns about parallel axes one after the other, before a frame.
@@ -26,17 +31,18 @@ struct Runs {
     begins: Vec<usize>,
 }
 
-/// The model in graphs in which the sines and cosines of sums of angles about parallel axes are known from the start,
-/// so that all that is equal to them is they; none where no two joints before the frame have parallel axes.
-pub fn with_sums(model: &Model, index: usize) -> Vec<Model> {
+/// The model in graphs in which the sines and cosines of sums of angles about parallel axes, where there are such before
+/// the frame, or the ways to the frame are known from the start, so that all that is equal to them is they.
+pub fn with_known(model: &Model, index: usize) -> Vec<Model> {
     let runs = runs(model, index);
-    if runs.joints.is_empty() {
-        return Vec::new();
-    }
-    let orders = [Order::Given, Order::Outwards, Order::Inwards];
+    let orders: &[Order] = match runs.joints.is_empty() {
+        true => &[Order::Ways],
+        false => &[Order::Given, Order::Outwards, Order::Inwards, Order::Ways],
+    };
+    let orders = orders.iter();
     orders
-        .map(|order| summed(model, index, &runs, order))
-        .into()
+        .map(|&order| known(model, index, &runs, order))
+        .collect()
 }
 
 /// The runs of joints with parallel axes.
@@ -90,7 +96,7 @@ fn runs(model: &Model, index: usize) -> Runs {
 }
 
 /// The model in such a graph.
-fn summed(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
+fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
     let mut known = model.graph.fresh();
     let symbols = model.graph.symbols().iter().enumerate();
     let mut reals = Vec::new();
@@ -147,6 +153,13 @@ fn summed(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
                 if *begins {
                     (base, inner) = (whole, identity);
                 }
+            }
+        }
+        Order::Ways => {
+            let mut way = zero3(graph);
+            for (_, (rotation, position)) in poses.iter().rev() {
+                let turned = apply3(graph, rotation, way);
+                way = add3(graph, *position, turned);
             }
         }
     }
