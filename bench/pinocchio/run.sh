@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Compares generated Rust with Pinocchio's C++; needs python3 with venv, g++ and cargo, and the robots of
-# tests/robots/install.sh; takes clang++ as well, where there is one. Prints a table, which is also `bench-pinocchio/report.md` below the target folder; about ten
-# minutes, and 5 GB of memory for g++.
+# tests/robots/install.sh; takes clang++ as well, where there is one. Prints a table, which is also
+# `bench-pinocchio/report.md` below the target folder; takes about ten minutes, and 5 GB of memory for g++.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

@@ -7,8 +7,8 @@
 //! way has a column; ratios are those of the fastest.
 //!
 //! The functions are not quite the same ones:
-//! - `slopes` are [A B]: besides ∂ξ̇/∂h, ∂ξ̇/∂ξ and ∂ξ̇/∂u, which `computeABADerivatives` gives as well, the rows of
-//!   ∂ḣ/∂h and ∂ḣ/∂ξ.
+//! - `slopes` are [A B], written in place with ξ̇ beside them: besides ∂ξ̇/∂h, ∂ξ̇/∂ξ and ∂ξ̇/∂u, which
+//!   `computeABADerivatives` gives as well, the rows of ∂ḣ/∂h and ∂ḣ/∂ξ.
 //! - `regressor` has a column for each base parameter, `computeJointTorqueRegressor` ten for each body. What has to agree
 //!   is therefore the force, Y β and Y π.
 //! - `computeFrameJacobian` in `LOCAL_WORLD_ALIGNED` includes its forward kinematics, as the emitted Jacobian does.
@@ -226,7 +226,13 @@ macro_rules! robot {
             },
             &runs(system, points, forward),
         )?;
-        let slopes = |system: &Model, at: &Point<Model>| system.slopes(&at.x, &at.xi, &at.u);
+        let slopes = |system: &Model, at: &Point<Model>| system.linearize(&at.x, &at.xi, &at.u);
+        let slopes_in_place = |system: &Model, at: &Point<Model>| {
+            let mut slopes = <Model as Tangent>::Slopes::zero();
+            let rates = system.slopes(&at.x, &at.xi, &at.u, &mut slopes);
+            black_box(&slopes);
+            rates
+        };
         sides.row(
             "slopes of forward dynamics",
             &["pin_derivatives"],
@@ -243,7 +249,7 @@ macro_rules! robot {
                     found.map(|found| [0, N, 2 * N].map(|first| block::<Model>(&found, first, N)));
                 parts.map(|parts| parts.to_vec()).unwrap_or_default()
             },
-            &runs(system, points, slopes),
+            &runs(system, points, slopes_in_place),
         )?;
         let regressor =
             |system: &Model, at: &Point<Model>| system.regressor(&at.x, &at.xi, &at.xi_dot);
