@@ -88,6 +88,37 @@ impl BaseParameters {
         }
     }
 
+    /// The standard parameters: ten of each link, and behind them those of joints.
+    pub fn standard(&self) -> &[Standard] {
+        &self.standard
+    }
+
+    /// Their values in the description.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The frames that stand for links.
+    pub fn links(&self) -> &[String] {
+        &self.links
+    }
+
+    /// The standard parameter that stands for each base parameter.
+    pub fn kept(&self) -> impl Iterator<Item = &Standard> {
+        self.rows.iter().map(|row| &self.standard[row.kept])
+    }
+
+    /// β = K π: for each base parameter the places and factors of its terms.
+    pub fn map(&self) -> Vec<Vec<(usize, f64)>> {
+        let row = |row: &Row| {
+            row.terms
+                .iter()
+                .map(|&(k, _, factor)| (k, factor))
+                .collect()
+        };
+        self.rows.iter().map(row).collect()
+    }
+
     /// Base parameters of inertia, and of joints.
     fn counts(&self) -> (usize, usize) {
         let inertial = |row: &&Row| matches!(self.standard[row.kept].kind, Kind::Inertia(_));

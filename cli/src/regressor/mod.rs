@@ -1,4 +1,8 @@
-//! `hamel regressor`: base parameters, the combinations of inertial parameters that forces depend on.
+//! `hamel regressor`: base parameters, the combinations of inertial parameters that forces depend on, and back from
+//! identified ones to bodies.
+
+mod bodies;
+mod identified;
 
 use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
@@ -15,16 +19,24 @@ use std::path::PathBuf;
 /// Inverse dynamics is linear in m, h = m s and Theta (about the frame's origin) of every link, and in armatures,
 /// damping and stiffness of joints: F = Y(x, xi, xi_dot) beta. A link is all that moves rigidly together, in the frame
 /// that its joint carries. The factors are exact: fractions, or expressions in run-time parameters.
+///
+/// With --identified, the way back: of all masses, centres of mass and inertias with the base parameters of a file the
+/// ones nearest to those of the description that bodies can have (pseudo-inertias are positive definite).
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel regressor arm.eom
   hamel regressor robot.urdf --floating
   hamel regressor arm.eom --format json | jq '.base[].kept'
-  hamel regressor arm.eom --format latex > base.tex")]
+  hamel regressor arm.eom --format latex > base.tex
+  hamel regressor arm.eom --identified beta.json          masses and inertias that have them")]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    /// Identified base parameters, as JSON: a list, or an object by the names of the parameters kept; those that are
+    /// not in the object are as in the description.
+    #[arg(long, value_name = "FILE")]
+    identified: Option<PathBuf>,
     /// How to write them.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -47,6 +59,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ))
     })?;
     let all = BaseParameters::new(&regressor);
+    if let Some(file) = &arguments.identified {
+        return identified::print_bodies(&all, file, arguments.format);
+    }
     print(&match arguments.format {
         Format::Text => text(&all),
         Format::Markdown => markdown(&all),

@@ -1,0 +1,317 @@
+//! From base parameters back to standard ones: bodies that have given base parameters.
+//!
+//! Many standard parameters π have the same base parameters β = K π. Of those whose pseudo-inertias
+//! J = [[tr(Θ)/2 I − Θ, h], [hᵀ, m]] are positive definite, as those of all bodies are, the ones nearest to given bodies π₀
+//! are found, in the sense of D = Σ tr(J J₀⁻¹) − log det(J J₀⁻¹) − 4 over the links: it depends on no choice of units or
+//! axes. Noise may have led to a β that no bodies have: then D + ½ Σ (K π − β)²/r is minimised, with small r.
+//! Newton's method, damped where a step is long: D is self-concordant, so that J stays positive definite. Sources:
+//! P. Wensing, S. Kim, J.-J. Slotine, *Linear matrix inequalities for physically consistent inertial parameter
+//! identification*, IEEE RA-L 3 (2018) 60; T. Lee, P. Wensing, F. Park, *Geometric robot dynamic identification*, IEEE T-RO
+//! 36 (2020) 348; S. Boyd, L. Vandenberghe, *Convex Optimization* (2004), 9.6, 10.3.
+
+use nalgebra::{DMatrix, DVector, Matrix4, SMatrix, SVector};
+
+/// Parameters of a link: Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h, m.
+const TEN: usize = 10;
+/// Newton steps before it is given up.
+const MOST: usize = 300;
+/// The square of the last step, in the norm of the function's second derivative: its error is far below rounding.
+const CONVERGED: f64 = 1e-20;
+/// r over the square of a base parameter's scale, β and its terms in π₀; each from the result of the one before.
+const SLACK: [f64; 3] = [1e-2, 1e-4, 1e-6];
+/// The smallest scale of a base parameter, over that of the largest.
+const LEAST: f64 = 1e-6;
+/// How far K π may be from β, over the largest sum of absolute terms.
+const KEPT: f64 = 1e-10;
+
+/// Base parameters of standard ones: for each β the places and factors of its terms.
+pub type Map = [Vec<(usize, f64)>];
+
+/// Standard parameters of bodies.
+#[derive(Debug)]
+pub struct Bodies {
+    /// Ten of each link, and behind them those of joints.
+    pub standard: Vec<f64>,
+    /// Whether they have the base parameters, or only nearly.
+    pub exact: bool,
+}
+
+/// The pseudo-inertia of a link's ten parameters, or of a change of them.
+fn pseudo_inertia(ten: &[f64]) -> Matrix4<f64> {
+    let at = |k: usize| ten.get(k).copied().unwrap_or(0.0);
+    let [xx, xy, xz, yy, yz, zz, x, y, z, m] = std::array::from_fn(at);
+    let half = (xx + yy + zz) / 2.0;
+    #[rustfmt::skip]
+    let rows = Matrix4::new(
+        half - xx, -xy, -xz, x,
+        -xy, half - yy, -yz, y,
+        -xz, -yz, half - zz, z,
+        x, y, z, m,
+    );
+    rows
+}
+
+/// The inverse of a pseudo-inertia; none where it is not positive definite.
+fn inverse(ten: &[f64]) -> Option<Matrix4<f64>> {
+    pseudo_inertia(ten)
+        .cholesky()
+        .map(|factor| factor.inverse())
+}
+
+/// The slopes of the function by the parameters of a link, and its second derivatives.
+fn of_link(
+    inverse: &Matrix4<f64>,
+    nominal: &Matrix4<f64>,
+) -> (SVector<f64, TEN>, SMatrix<f64, TEN, TEN>) {
+    let units: [Matrix4<f64>; TEN] = std::array::from_fn(|k| {
+        let mut unit = [0.0; TEN];
+        unit[k] = 1.0;
+        pseudo_inertia(&unit)
+    });
+    let along = units.map(|unit| inverse * unit);
+    let slopes = SVector::from_fn(|k, _| (nominal * units[k]).trace() - along[k].trace());
+    let second = SMatrix::from_fn(|i, j| (along[i] * along[j]).trace());
+    (slopes, second)
+}
+
+/// The same of a joint's parameter: r − log r − 1 with r = π/π₀ keeps it positive where it was; ½ (π − π₀)² elsewhere.
+fn of_joint(value: f64, nominal: f64) -> (f64, f64) {
+    match nominal > 0.0 {
+        true => (1.0 / nominal - 1.0 / value, 1.0 / (value * value)),
+        false => (value - nominal, 1.0),
+    }
+}
+
+/// What is asked for.
+struct Problem<'a> {
+    nominal: &'a [f64],
+    /// J₀⁻¹ of the links.
+    links: Vec<Matrix4<f64>>,
+    k: DMatrix<f64>,
+    beta: DVector<f64>,
+}
+
+/// The standard parameters nearest to `nominal` that have the base parameters `beta`, or nearly have them where none do, and
+/// are those of bodies; both have ten of each link, and behind them those of joints.
+///
+/// # Errors
+/// The link whose pseudo-inertia is not positive definite in `nominal`.
+pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result<Bodies, usize> {
+    let (tens, _) = nominal.split_at(TEN * links);
+    let tens = tens.chunks(TEN).enumerate();
+    let links = tens.map(|(link, ten)| inverse(ten).ok_or(link));
+    let mut k = DMatrix::zeros(map.len(), nominal.len());
+    for (row, terms) in map.iter().enumerate() {
+        for &(place, factor) in terms {
+            k[(row, place)] += factor;
+        }
+    }
+    let problem = Problem {
+        nominal,
+        links: links.collect::<Result<_, _>>()?,
+        beta: DVector::from_column_slice(beta),
+        k,
+    };
+    let start = DVector::from_column_slice(nominal);
+    let scales = problem.k.abs() * start.abs() + problem.beta.abs();
+    let least = scales.amax() * LEAST;
+    let mut near = start;
+    for slack in SLACK {
+        let r = scales.map(|scale| slack * scale.max(least).powi(2));
+        near = problem.solved(near.clone(), &r).unwrap_or(near);
+    }
+    let none = DVector::zeros(map.len());
+    let kept = |pi: &DVector<f64>| {
+        let missing = (&problem.beta - &problem.k * pi).amax();
+        missing <= KEPT * (problem.k.abs() * pi.abs()).amax()
+    };
+    let exact = problem.solved(near.clone(), &none).filter(kept);
+    Ok(Bodies {
+        exact: exact.is_some(),
+        standard: exact.unwrap_or(near).as_slice().to_vec(),
+    })
+}
+
+impl Problem<'_> {
+    /// The minimum of D + ½ Σ (K π − β)²/r, with K π = β where r is 0; none where the method does not converge.
+    fn solved(&self, mut pi: DVector<f64>, r: &DVector<f64>) -> Option<DVector<f64>> {
+        let (size, k) = (pi.len(), &self.k);
+        let joints = TEN * self.links.len()..size;
+        for _ in 0..MOST {
+            // H⁻¹ Kᵀ and H⁻¹ g, by blocks: H does not couple links.
+            let mut carried = DMatrix::zeros(size, k.nrows());
+            let mut downhill = DVector::zeros(size);
+            let mut second = DMatrix::zeros(size, size);
+            for (link, nominal) in self.links.iter().enumerate() {
+                let first = TEN * link;
+                let own = inverse(&pi.as_slice()[first..first + TEN])?;
+                let (g, h) = of_link(&own, nominal);
+                let factor = h.cholesky()?;
+                let columns: DMatrix<f64> = k.columns(first, TEN).transpose();
+                second.view_mut((first, first), (TEN, TEN)).copy_from(&h);
+                carried
+                    .rows_mut(first, TEN)
+                    .copy_from(&factor.solve(&columns));
+                downhill.rows_mut(first, TEN).copy_from(&factor.solve(&g));
+            }
+            for place in joints.clone() {
+                let (g, h) = of_joint(pi[place], self.nominal[place]);
+                second[(place, place)] = h;
+                downhill[place] = g / h;
+                for row in 0..k.nrows() {
+                    carried[(place, row)] = k[(row, place)] / h;
+                }
+            }
+            // H Δ + g + Kᵀ ν = 0 and K Δ − r ν = β − K π.
+            let missing = &self.beta - k * &pi;
+            let schur = k * &carried + DMatrix::from_diagonal(r);
+            let multipliers = schur.cholesky()?.solve(&(missing + k * &downhill));
+            let step = &carried * multipliers - downhill;
+            let moved = k * &step;
+            let stiff = moved.iter().zip(r).filter(|(_, r)| **r > 0.0);
+            let length = step.dot(&(&second * &step))
+                + stiff.map(|(moved, r)| moved * moved / r).sum::<f64>();
+            if !length.is_finite() {
+                return None;
+            }
+            let fraction = match length < 1.0 / 16.0 {
+                true => 1.0,
+                false => 1.0 / (1.0 + length.sqrt()),
+            };
+            pi += fraction * step;
+            if length <= CONVERGED {
+                return Some(pi);
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{TEN, inverse, nearest, pseudo_inertia};
+
+    /// Θ about the frame's origin, h and m of points with masses: a body, where they are four or more in general position.
+    fn body(points: &[([f64; 3], f64)]) -> Vec<f64> {
+        let mut ten = vec![0.0; TEN];
+        for &([x, y, z], m) in points {
+            let terms = [
+                y * y + z * z,
+                -x * y,
+                -x * z,
+                x * x + z * z,
+                -y * z,
+                x * x + y * y,
+                x,
+                y,
+                z,
+                1.0,
+            ];
+            ten.iter_mut()
+                .zip(terms)
+                .for_each(|(sum, term)| *sum += m * term);
+        }
+        ten
+    }
+
+    fn two() -> (Vec<f64>, Vec<f64>) {
+        let corners = [
+            [0.1, 0.0, 0.3],
+            [-0.2, 0.1, 0.0],
+            [0.0, -0.3, 0.1],
+            [0.2, 0.2, -0.2],
+        ];
+        let first = corners.map(|corner| (corner, 0.4));
+        let second = corners.map(|[x, y, z]| ([y + 0.1, z, x], 1.0 + x));
+        let nominal = [body(&first), body(&second), vec![0.02, 0.0]].concat();
+        let other = [body(&second), body(&first), vec![0.05, -0.1]].concat();
+        (nominal, other)
+    }
+
+    fn beta(map: &[Vec<(usize, f64)>], pi: &[f64]) -> Vec<f64> {
+        let sum = |terms: &Vec<(usize, f64)>| terms.iter().map(|&(k, factor)| factor * pi[k]).sum();
+        map.iter().map(sum).collect()
+    }
+
+    fn map() -> Vec<Vec<(usize, f64)>> {
+        vec![
+            vec![(5, 1.0), (19, 0.09), (20, 1.0)],
+            vec![(15, 1.0)],
+            vec![(16, 1.0), (0, -0.5), (3, 0.5)],
+            vec![(17, 1.0)],
+            vec![(21, 1.0)],
+        ]
+    }
+
+    #[test]
+    fn those_of_the_nominal_bodies_are_they() {
+        let (nominal, _) = two();
+        let found = nearest(&nominal, 2, &map(), &beta(&map(), &nominal)).expect("bodies");
+        assert!(found.exact);
+        for (found, expected) in found.standard.iter().zip(&nominal) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    /// D of all links and joints, by its definition.
+    fn distance(pi: &[f64], nominal: &[f64]) -> f64 {
+        let link = |place: usize| {
+            let range = TEN * place..TEN * (place + 1);
+            let ratio =
+                pseudo_inertia(&pi[range.clone()]) * inverse(&nominal[range]).expect("a body");
+            ratio.trace() - ratio.determinant().ln() - 4.0
+        };
+        let drive = pi[20] / nominal[20];
+        let rest = pi[21] - nominal[21];
+        link(0) + link(1) + drive - drive.ln() - 1.0 + rest * rest / 2.0
+    }
+
+    /// Others with the same β are further away: the parameters in which β is free go along with those that keep it.
+    #[test]
+    fn what_is_found_is_the_nearest() {
+        let (nominal, other) = two();
+        let wanted = beta(&map(), &other);
+        let found = nearest(&nominal, 2, &map(), &wanted).expect("bodies");
+        assert!(found.exact);
+        let found = found.standard;
+        for (found, wanted) in beta(&map(), &found).iter().zip(&wanted) {
+            assert!((found - wanted).abs() < 1e-12, "{found} {wanted}");
+        }
+        let least = distance(&found, &nominal);
+        assert!(least > 0.01 && least < distance(&other, &nominal));
+        // Along each parameter that is none of the last of a row, those correct β.
+        let last = [20, 15, 16, 17, 21];
+        for place in (0..22).filter(|place| !last.contains(place)) {
+            for by in [1e-4, -1e-4] {
+                let mut moved = found.clone();
+                moved[place] += by;
+                for (row, &corrected) in map().iter().zip(&last) {
+                    let rises = row.iter().filter(|(k, _)| *k == place);
+                    moved[corrected] -= rises.map(|(_, factor)| factor * by).sum::<f64>();
+                }
+                assert!(distance(&moved, &nominal) > least, "{place} {by}");
+            }
+        }
+    }
+
+    /// A negative moment of inertia: bodies come as near as they can.
+    #[test]
+    fn what_no_bodies_have_is_told() {
+        let (nominal, other) = two();
+        let mut wanted = beta(&map(), &other);
+        wanted[1] = -0.1;
+        let found = nearest(&nominal, 2, &map(), &wanted).expect("bodies");
+        assert!(!found.exact);
+        let reached = beta(&map(), &found.standard);
+        assert!(
+            reached[1] > 0.0 && reached[1] < 0.1 * nominal[15],
+            "{reached:?}"
+        );
+        for link in found.standard[..2 * TEN].chunks(TEN) {
+            assert!(inverse(link).is_some());
+        }
+        let mut flat = nominal.clone();
+        flat[19] = 0.0;
+        assert_eq!(nearest(&flat, 2, &map(), &wanted).err(), Some(1));
+    }
+}

@@ -1,0 +1,132 @@
+//! Identified base parameters from a file, and the standard parameters that have them.
+
+use super::bodies::{Map, nearest};
+use crate::failure::{Failure, print};
+use crate::tables::Format;
+use hamel_codegen::syntax::suggest::closest;
+use hamel_codegen::tables::regressor::BaseParameters;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Prints the standard parameters.
+pub fn print_bodies(all: &BaseParameters, file: &Path, format: Format) -> Result<(), Failure> {
+    if matches!(format, Format::Latex) {
+        let message = "--identified is written as text, as Markdown or as JSON, not as LaTeX";
+        return Err(Failure::usage(message));
+    }
+    let beta = read(all, file)?;
+    let found = nearest(all.values(), all.links().len(), &all.map(), &beta);
+    let found = found.map_err(|link| {
+        Failure::failed(format!(
+            "`{}` is no body in the description: its pseudo-inertia is not positive definite; give it a mass, a centre of mass and an inertia near the real ones",
+            all.links().get(link).map_or("a link", String::as_str)
+        ))
+    })?;
+    let reached = base(&all.map(), &found.standard);
+    if !found.exact {
+        let gap = |(a, b): (&f64, &f64)| (a - b).abs();
+        let gaps: Vec<f64> = beta.iter().zip(&reached).map(gap).collect();
+        let place = (0..gaps.len()).max_by(|&a, &b| gaps[a].total_cmp(&gaps[b]));
+        let most =
+            place.map(|k| format!("; beta[{}] is {:e}, not {:e}", k + 1, reached[k], beta[k]));
+        anstream::eprintln!(
+            "\x1b[1;33mwarning\x1b[0m: {}: no bodies have exactly these base parameters: those printed come near{}",
+            file.display(),
+            most.unwrap_or_default()
+        );
+    }
+    let rows = all.standard().iter().zip(all.values()).zip(&found.standard);
+    print(&match format {
+        Format::Json => {
+            let rows = rows.map(|((standard, described), identified)| {
+                json!({ "name": standard.name(), "described": described, "identified": identified })
+            });
+            let rows: Vec<Value> = rows.collect();
+            format!(
+                "{:#}\n",
+                json!({ "beta": beta, "reached": reached, "exact": found.exact, "standard": rows })
+            )
+        }
+        Format::Markdown => {
+            let mut text =
+                String::from("| standard parameter | described | identified |\n|---|---:|---:|\n");
+            for ((standard, described), identified) in rows {
+                text += &format!("| `{}` | {described} | {identified} |\n", standard.name());
+            }
+            text
+        }
+        _ => {
+            let names = all.standard().iter().map(|standard| standard.name());
+            let width = names.map(|name| name.len()).max().unwrap_or(0);
+            let mut text = format!("{:width$} {:>24} {:>24}\n", "", "described", "identified");
+            for ((standard, described), identified) in rows {
+                text += &format!(
+                    "{:width$} {described:>24.9e} {identified:>24.9e}\n",
+                    standard.name()
+                );
+            }
+            text
+        }
+    })
+}
+
+/// β = K π.
+fn base(map: &Map, standard: &[f64]) -> Vec<f64> {
+    let sum = |terms: &Vec<(usize, f64)>| {
+        let terms = terms.iter();
+        terms.map(|&(k, factor)| factor * standard[k]).sum()
+    };
+    map.iter().map(sum).collect()
+}
+
+/// β of a file.
+fn read(all: &BaseParameters, file: &Path) -> Result<Vec<f64>, Failure> {
+    let path = file.display().to_string();
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Failure::usage(format!("{path}: {error}")))?;
+    let json: Value = serde_json::from_str(&text)
+        .map_err(|error| Failure::usage(format!("{path}: it is no JSON: {error}")))?;
+    let kept: Vec<String> = all.kept().map(|standard| standard.name()).collect();
+    let mut beta = base(&all.map(), all.values());
+    let mut errors = Vec::new();
+    match &json {
+        Value::Array(list) if list.len() == beta.len() => {
+            for (place, (beta, value)) in beta.iter_mut().zip(list).enumerate() {
+                match value.as_f64() {
+                    Some(value) => *beta = value,
+                    None => errors.push(format!("[{place}]: expected a number, found `{value}`")),
+                }
+            }
+        }
+        Value::Array(list) => errors.push(format!(
+            "expected {} base parameters, found {}; `hamel regressor` prints which",
+            beta.len(),
+            list.len()
+        )),
+        Value::Object(members) => {
+            for (name, value) in members {
+                match (kept.iter().position(|kept| kept == name), value.as_f64()) {
+                    (Some(place), Some(value)) => beta[place] = value,
+                    (Some(_), None) => {
+                        errors.push(format!("{name}: expected a number, found `{value}`"));
+                    }
+                    (None, _) => {
+                        let near = closest(name, kept.iter().map(String::as_str));
+                        let near = near.map(|near| format!("; did you mean `{near}`?"));
+                        errors.push(format!(
+                            "{name}: no base parameter is kept by this name{}",
+                            near.unwrap_or_default()
+                        ));
+                    }
+                }
+            }
+        }
+        other => errors.push(format!(
+            "expected a list of numbers, or an object of names and numbers, found `{other}`"
+        )),
+    }
+    match errors.is_empty() {
+        true => Ok(beta),
+        false => Err(Failure::usages(&path, &errors)),
+    }
+}
