@@ -37,6 +37,8 @@ const CI: Task = &[
     // Thousands of statements, and wrong signs in the generator itself.
     "cargo test --manifest-path tests/big/Cargo.toml --locked",
     "cargo test --manifest-path tests/mutants/Cargo.toml --locked",
+    // Steps of real robots with their slopes, against Pinocchio's.
+    "bash tests/robots/steps.sh",
     // A controller on microcontrollers, in QEMU.
     "bash tests/cortex/run.sh",
 ];

@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Steps with slopes of the robots in tests/reference/control, or in the folder that HAMEL_CONTROL_REFERENCE names, against
+# those of Pinocchio; needs cargo and the robots of tests/robots/install.sh.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+bash tests/robots/install.sh
+robots=$(find "$PWD/${CARGO_TARGET_DIR:-target}/robots" -type d -path '*example-robot-data/robots' | head -n 1)
+export HAMEL_ROBOTS="$robots" HAMEL_CONTROL_REFERENCE="${HAMEL_CONTROL_REFERENCE:-$PWD/tests/reference/control}"
+cargo test --manifest-path tests/robots/steps/Cargo.toml --locked
