@@ -230,18 +230,22 @@ fn slopes(emitter: &Emitter, together: bool) -> Option<String> {
     ];
     let given = function.arguments.iter().map(|&a| names::argument(a));
     let given = given.collect::<Vec<_>>().join(", ");
-    let call = |index: usize| {
-        let name = &emitter.names.functions[index];
-        let question = if functions[index].fallible { "?" } else { "" };
-        format!("self.{name}({given}){question}")
-    };
-    let body = match (together, function.fallible) {
-        (true, true) => format!("self.{}({given}, slopes)", together::NAME),
-        (true, false) => format!("Ok(self.{}({given}, slopes))", together::NAME),
-        (false, _) => {
-            let accel = call(place(FunctionId::Accel)?);
-            format!("*slopes = {};\nOk({accel})", call(index))
+    let call = |index: usize| format!("self.{}({given})", emitter.names.functions[index]);
+    let (table, rates, fallible) = match together {
+        true => {
+            let both = format!("self.{}({given}, slopes)", together::NAME);
+            (String::new(), both, function.fallible)
         }
+        false => {
+            let accel = place(FunctionId::Accel)?;
+            let question = if function.fallible { "?" } else { "" };
+            let table = format!("*slopes = {}{question};\n", call(index));
+            (table, call(accel), functions[accel].fallible)
+        }
+    };
+    let body = match fallible {
+        true => table + &rates,
+        false => format!("{table}Ok({rates})"),
     };
     let arguments = arguments.join(", ");
     Some(format!(
