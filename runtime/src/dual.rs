@@ -321,6 +321,28 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     }
 
     #[inline]
+    fn chart_velocity(u: so3::Vector<Self>, w: so3::Vector<Self>) -> so3::Vector<Self> {
+        if N <= 6 {
+            return so3::chart_velocity(u, w);
+        }
+        let along = |number: Self, direction| Dual::<S, 6>::along(number.value, direction);
+        let of_u = from_fn(|k| along(u[k], k));
+        let of_w = from_fn(|k| along(w[k], 3 + k));
+        so3::chart_velocity(of_u, of_w).map(|entry| Dual {
+            value: entry.value,
+            slopes: from_fn(|d| {
+                let [a, b, c, x, y, z] = entry.slopes;
+                let by_w = x.mul_add(
+                    w[0].slopes[d],
+                    y.mul_add(w[1].slopes[d], z * w[2].slopes[d]),
+                );
+                let by_u = b.mul_add(u[1].slopes[d], c.mul_add(u[2].slopes[d], by_w));
+                a.mul_add(u[0].slopes[d], by_u)
+            }),
+        })
+    }
+
+    #[inline]
     fn is_positive(self) -> bool {
         self.value.is_positive()
     }

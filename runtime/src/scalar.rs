@@ -140,6 +140,12 @@ pub trait Scalar:
         s3::product(q, s3::exp(u))
     }
 
+    /// [`so3::dexpinv`]; numbers with many slopes go by its six derivatives.
+    #[inline(always)]
+    fn chart_velocity(u: so3::Vector<Self>, w: so3::Vector<Self>) -> so3::Vector<Self> {
+        so3::chart_velocity(u, w)
+    }
+
     /// Whether all lanes are positive and finite: a pivot that can be divided by.
     fn is_positive(self) -> bool;
 

@@ -232,6 +232,12 @@ pub fn log<S: Scalar>(r: Matrix<S>) -> Vector<S> {
 /// u̇ = ω + ½ u × ω + c u × (u × ω), c = (1 − (t/2) cot(t/2)) / t². Singular at t = 2π.
 #[inline(always)]
 pub fn dexpinv<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S> {
+    S::chart_velocity(u, w)
+}
+
+/// The same for numbers of any kind.
+#[inline(always)]
+pub(crate) fn chart_velocity<S: Scalar>(u: Vector<S>, w: Vector<S>) -> Vector<S> {
     let t2 = dot(u, u);
     let half = S::from_f64(0.5);
     let [c] = by_series(t2, [COTANGENT_RATIO], || {

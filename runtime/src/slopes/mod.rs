@@ -261,12 +261,22 @@ impl<Sys: Tangent> System for Nearby<Sys> {
             for (i, number) in result.as_mut().iter_mut().enumerate() {
                 match table.row(displacements + i).get(column) {
                     Some(slope) if alone => number.lean(*slope, column),
-                    Some(slope) => number.follow(*slope, by),
-                    None => {}
+                    Some(slope) if !is_zero(*slope) => number.follow(*slope, by),
+                    _ => {}
                 }
             }
         };
-        for j in 0..displacements {
+        // Many forces depend on no place.
+        let is_felt = |column: usize| {
+            let mut rows = displacements..table.rows();
+            rows.any(|i| {
+                table
+                    .row(i)
+                    .get(column)
+                    .is_some_and(|slope| !is_zero(*slope))
+            })
+        };
+        for j in (0..displacements).filter(|&j| is_felt(j)) {
             follow(j, &displacement(coframe.row(j), x.as_ref()));
         }
         for (j, by) in xi.as_ref().iter().chain(u.as_ref()).enumerate() {
