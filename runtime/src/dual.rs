@@ -359,3 +359,65 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
         largest.largest_lane()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Dual;
+    use crate::scalar::Scalar;
+    use crate::{s3, so3};
+
+    type Number = Dual<f64, 7>;
+
+    /// Numbers with slopes that are about 1, from a linear congruential generator.
+    fn numbers<const N: usize>(seed: &mut u64, size: f64) -> [Number; N] {
+        let mut next = || {
+            *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        core::array::from_fn(|_| Dual {
+            value: size * next(),
+            slopes: core::array::from_fn(|_| next()),
+        })
+    }
+
+    fn agree(found: &[Number], wanted: &[Number], close: f64) {
+        for (found, wanted) in found.iter().zip(wanted) {
+            let pairs = found.slopes.iter().zip(&wanted.slopes);
+            for (a, b) in pairs.chain([(&found.value, &wanted.value)]) {
+                assert!((a - b).abs() < close, "{a} {b}");
+            }
+        }
+    }
+
+    /// Turns by the derivative of exp are those of exp in numbers with slopes, of small angles and of large ones, and
+    /// whatever the slopes of what is turned.
+    #[test]
+    fn derivatives_of_turns_are_those_of_their_formulas() {
+        let seed = &mut 7;
+        for size in [1e-12, 1e-7, 1e-3, 0.2, 0.29, 0.4, 1.0, 2.0, 3.4] {
+            for _ in 0..50 {
+                let u: [Number; 3] = numbers(seed, size);
+                let (r, q, w) = (numbers(seed, 1.0), numbers(seed, 1.0), numbers(seed, 1.0));
+                agree(&so3::retract(r, u), &so3::product(r, so3::exp(u)), 2e-14);
+                agree(&s3::retract(q, u), &s3::product(q, s3::exp(u)), 2e-14);
+                // A singularity at a whole turn.
+                if size < 3.0 {
+                    agree(&so3::dexpinv(u, w), &so3::chart_velocity(u, w), 2e-13);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn factors_that_do_not_vary_multiply_value_and_slopes() {
+        let [a, b]: [Number; 2] = numbers(&mut 3, 1.0);
+        let mut scaled = a;
+        scaled.scale(-1.7);
+        agree(&[scaled], &[Number::from_f64(-1.7) * a], 1e-15);
+        agree(
+            &[a.times_plus(0.3, b)],
+            &[Number::from_f64(0.3) * a + b],
+            1e-15,
+        );
+    }
+}
