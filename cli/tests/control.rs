@@ -7,6 +7,8 @@
 mod installed;
 #[path = "common/pinocchio.rs"]
 mod pinocchio;
+#[path = "common/undamped.rs"]
+mod undamped;
 
 use hamel_codegen::functions::FunctionId;
 use hamel_codegen::generate::{Generated, from_text};
@@ -17,6 +19,7 @@ use installed::installed;
 use pinocchio::{control, coordinates, list, velocities};
 use serde_json::Value;
 use std::path::Path;
+use undamped::undamped;
 
 /// Of the largest entry of an array.
 const TOLERANCE: f64 = 1e-10;
@@ -34,35 +37,20 @@ fn quantities_for_control_agree_with_pinocchio() {
 
 /// A robot without damping, and all that is compared.
 fn described(folder: &Path, reference: &Value) -> (Generated, Vec<(String, String)>, String) {
-    let urdf = folder.join(reference["urdf"].as_str().expect("a path"));
-    let urdf = std::fs::read_to_string(urdf).expect("a URDF");
-    let floating = reference["floating_base"] == true;
-    let options = Options {
-        floating,
-        tolerance: 0.0,
-        ..Options::default()
-    };
-    let imported = import(&urdf, &options, "robot.urdf", false).expect("a robot");
-    let text: String = imported
-        .text
-        .split(';')
-        .filter(|part| !part.trim().starts_with("damping"))
-        .collect::<Vec<_>>()
-        .join(";");
-    let (text, _) = text.rsplit_once('}').expect("a description");
+    let (text, joints) = undamped(folder, reference);
     let frames = reference["samples"][0]["frames"]
         .as_object()
         .expect("frames");
     let frames: Vec<String> = frames
         .keys()
-        .map(|link| word(link, text))
+        .map(|link| word(link, &text))
         .map(|frame| format!("jacobian {frame} in world, jacobian {frame} in {frame}"))
         .collect();
     let text = format!(
         "{text} generate linearize, inverse_dynamics_slopes, centre_of_mass, centroidal_map, {}; }}",
         frames.join(", ")
     );
-    (from_text(&text).expect("a program"), imported.joints, text)
+    (from_text(&text).expect("a program"), joints, text)
 }
 
 fn agrees(folder: &Path, reference: &Value) {

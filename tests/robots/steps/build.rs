@@ -3,14 +3,16 @@
 
 #[path = "../../../cli/tests/common/pinocchio.rs"]
 mod pinocchio;
+#[path = "../../../cli/tests/common/undamped.rs"]
+mod undamped;
 
 use hamel_codegen::Builder;
 use hamel_codegen::generate::from_text;
-use hamel_codegen::urdf::{Options, import};
 use pinocchio::{control, coordinates, list, velocities};
 use serde_json::Value;
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use undamped::undamped;
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-env-changed=HAMEL_CONTROL_REFERENCE");
@@ -39,20 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The description of a robot without damping, and its samples.
 fn robot(folder: &Path, reference: &Value) -> Result<(String, String), Box<dyn Error>> {
-    let urdf = folder.join(reference["urdf"].as_str().ok_or("no path")?);
-    let options = Options {
-        floating: reference["floating_base"] == true,
-        tolerance: 0.0,
-        ..Options::default()
-    };
-    let urdf = std::fs::read_to_string(urdf)?;
-    let imported = import(&urdf, &options, "robot.urdf", false)?;
-    let statements = imported.text.split(';');
-    let kept: Vec<&str> = statements
-        .filter(|part| !part.trim().starts_with("damping"))
-        .collect();
-    let text = kept.join(";");
-    let (text, _) = text.rsplit_once('}').ok_or("no end")?;
+    let (text, joints) = undamped(folder, reference);
     let text = format!("{text}    generate all, linearize;\n}}\n");
     let generated = from_text(&text).map_err(|errors| format!("{errors:?}"))?;
     let system = format!("system {}", generated.program.name);
@@ -65,11 +54,11 @@ fn robot(folder: &Path, reference: &Value) -> Result<(String, String), Box<dyn E
         let end = &sample["step"];
         format!(
             "Sample {{ h: {step:?}, x: {}, xi: {}, u: {}, end_x: {}, end_xi: {}, a: {}, b: {} }}",
-            numbers(coordinates(model, sample, &imported.joints)),
-            numbers(velocities(model, sample, &imported.joints)),
+            numbers(coordinates(model, sample, &joints)),
+            numbers(velocities(model, sample, &joints)),
             numbers(list(&sample["force"])),
-            numbers(coordinates(model, end, &imported.joints)),
-            numbers(velocities(model, end, &imported.joints)),
+            numbers(coordinates(model, end, &joints)),
+            numbers(velocities(model, end, &joints)),
             numbers(list(&end["A"])),
             numbers(list(&end["B"])),
         )
