@@ -72,6 +72,16 @@ impl Source {
         }
     }
 
+    /// Reads a file beside this description; `what` it holds is said where both are standard input.
+    pub fn beside(&self, path: &Path, what: &str) -> Result<Source, Failure> {
+        if path.as_os_str() == "-" && self.is_stdin() {
+            return Err(Failure::usage(format!(
+                "description and {what} cannot both be read from standard input"
+            )));
+        }
+        Source::read(path)
+    }
+
     /// Whether it was standard input.
     pub fn is_stdin(&self) -> bool {
         self.path == STDIN

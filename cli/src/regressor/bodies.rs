@@ -9,16 +9,17 @@
 //! identification*, IEEE RA-L 3 (2018) 60; T. Lee, P. Wensing, F. Park, *Geometric robot dynamic identification*, IEEE T-RO
 //! 36 (2020) 348; S. Boyd, L. Vandenberghe, *Convex Optimization* (2004), 9.6, 10.3.
 
+use hamel_codegen::tables;
 use nalgebra::{DMatrix, DVector, Matrix4, SMatrix, SVector};
 
 /// Parameters of a link: Θxx, Θxy, Θxz, Θyy, Θyz, Θzz, h, m.
 const TEN: usize = 10;
 /// Newton steps before it is given up.
-const MOST: usize = 300;
+const MOST: usize = 1000;
 /// The square of the last step, in the norm of the function's second derivative: its error is far below rounding.
 const CONVERGED: f64 = 1e-20;
 /// r over the square of a base parameter's scale, β and its terms in π₀; each from the result of the one before.
-const SLACK: [f64; 3] = [1e-2, 1e-4, 1e-6];
+const SLACK: [f64; 7] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 /// The smallest scale of a base parameter, over that of the largest.
 const LEAST: f64 = 1e-6;
 /// How far K π may be from β, over the largest sum of absolute terms.
@@ -26,6 +27,15 @@ const KEPT: f64 = 1e-10;
 
 /// Base parameters of standard ones: for each β the places and factors of its terms.
 pub type Map = [Vec<(usize, f64)>];
+
+/// Why there are none.
+#[derive(Debug, PartialEq, Eq)]
+pub enum NoBodies {
+    /// The pseudo-inertia of this link is not positive definite in π₀.
+    Nominal(usize),
+    /// The iteration has not converged, as where a number is none.
+    NotConverged,
+}
 
 /// Standard parameters of bodies.
 #[derive(Debug)]
@@ -38,17 +48,9 @@ pub struct Bodies {
 
 /// The pseudo-inertia of a link's ten parameters, or of a change of them.
 fn pseudo_inertia(ten: &[f64]) -> Matrix4<f64> {
-    let at = |k: usize| ten.get(k).copied().unwrap_or(0.0);
-    let [xx, xy, xz, yy, yz, zz, x, y, z, m] = std::array::from_fn(at);
-    let half = (xx + yy + zz) / 2.0;
-    #[rustfmt::skip]
-    let rows = Matrix4::new(
-        half - xx, -xy, -xz, x,
-        -xy, half - yy, -yz, y,
-        -xz, -yz, half - zz, z,
-        x, y, z, m,
-    );
-    rows
+    let rows = tables::regressor::pseudo_inertia(std::array::from_fn(|k| ten[k]));
+    // It is symmetric: columns are rows.
+    Matrix4::from(rows)
 }
 
 /// The inverse of a pseudo-inertia; none where it is not positive definite.
@@ -95,11 +97,11 @@ struct Problem<'a> {
 /// are those of bodies; both have ten of each link, and behind them those of joints.
 ///
 /// # Errors
-/// The link whose pseudo-inertia is not positive definite in `nominal`.
-pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result<Bodies, usize> {
+/// See [`NoBodies`].
+pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result<Bodies, NoBodies> {
     let (tens, _) = nominal.split_at(TEN * links);
     let tens = tens.chunks(TEN).enumerate();
-    let links = tens.map(|(link, ten)| inverse(ten).ok_or(link));
+    let links = tens.map(|(link, ten)| inverse(ten).ok_or(NoBodies::Nominal(link)));
     let mut k = DMatrix::zeros(map.len(), nominal.len());
     for (row, terms) in map.iter().enumerate() {
         for &(place, factor) in terms {
@@ -115,11 +117,17 @@ pub fn nearest(nominal: &[f64], links: usize, map: &Map, beta: &[f64]) -> Result
     let start = DVector::from_column_slice(nominal);
     let scales = problem.k.abs() * start.abs() + problem.beta.abs();
     let least = scales.amax() * LEAST;
-    let mut near = start;
+    let mut near = None;
     for slack in SLACK {
         let r = scales.map(|scale| slack * scale.max(least).powi(2));
-        near = problem.solved(near.clone(), &r).unwrap_or(near);
+        let from = near.as_ref().unwrap_or(&start).clone();
+        match problem.solved(from, &r) {
+            Some(pi) => near = Some(pi),
+            // The result before is that of a larger r.
+            None => break,
+        }
     }
+    let near = near.ok_or(NoBodies::NotConverged)?;
     let none = DVector::zeros(map.len());
     let kept = |pi: &DVector<f64>| {
         let missing = (&problem.beta - &problem.k * pi).amax();
@@ -189,7 +197,7 @@ impl Problem<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{TEN, inverse, nearest, pseudo_inertia};
+    use super::{NoBodies, TEN, inverse, nearest, pseudo_inertia};
 
     /// Θ about the frame's origin, h and m of points with masses: a body, where they are four or more in general position.
     fn body(points: &[([f64; 3], f64)]) -> Vec<f64> {
@@ -312,6 +320,12 @@ mod tests {
         }
         let mut flat = nominal.clone();
         flat[19] = 0.0;
-        assert_eq!(nearest(&flat, 2, &map(), &wanted).err(), Some(1));
+        let none = |nominal: &[f64], beta: &[f64]| nearest(nominal, 2, &map(), beta).err();
+        assert_eq!(none(&flat, &wanted), Some(NoBodies::Nominal(1)));
+        wanted[1] = 1e300;
+        let found = nearest(&nominal, 2, &map(), &wanted).expect("bodies");
+        assert!(!found.exact && found.standard.iter().all(|value| value.is_finite()));
+        wanted[1] = f64::NAN;
+        assert_eq!(none(&nominal, &wanted), Some(NoBodies::NotConverged));
     }
 }

@@ -1,7 +1,9 @@
 //! Identified base parameters from a file, and the standard parameters that have them.
 
-use super::bodies::{Map, nearest};
+use super::bodies::{Map, NoBodies, nearest};
 use crate::failure::{Failure, print};
+use crate::source::Source;
+use crate::state::strict;
 use crate::tables::Format;
 use hamel_codegen::syntax::suggest::closest;
 use hamel_codegen::tables::regressor::BaseParameters;
@@ -9,18 +11,29 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// Prints the standard parameters.
-pub fn print_bodies(all: &BaseParameters, file: &Path, format: Format) -> Result<(), Failure> {
+pub fn print_bodies(
+    all: &BaseParameters,
+    description: &Source,
+    file: &Path,
+    format: Format,
+) -> Result<(), Failure> {
     if matches!(format, Format::Latex) {
         let message = "--identified is written as text, as Markdown or as JSON, not as LaTeX";
         return Err(Failure::usage(message));
     }
-    let beta = read(all, file)?;
+    let Source { path, text, .. } = description.beside(file, "base parameters")?;
+    let beta = read(all, &path, &text)?;
     let found = nearest(all.values(), all.links().len(), &all.map(), &beta);
-    let found = found.map_err(|link| {
-        Failure::failed(format!(
-            "`{}` is no body in the description: its pseudo-inertia is not positive definite; give it a mass, a centre of mass and an inertia near the real ones",
-            all.links().get(link).map_or("a link", String::as_str)
-        ))
+    let found = found.map_err(|why| {
+        Failure::failed(match why {
+            NoBodies::Nominal(link) => format!(
+                "`{}` is no body in the description: its pseudo-inertia is not positive definite; give it a mass, a centre of mass and an inertia near the real ones",
+                all.links().get(link).map_or("a link", String::as_str)
+            ),
+            NoBodies::NotConverged => format!(
+                "{path}: no bodies were found near these base parameters: compare them with those that `hamel regressor` prints for the description"
+            ),
+        })
     })?;
     let reached = base(&all.map(), &found.standard);
     if !found.exact {
@@ -31,7 +44,7 @@ pub fn print_bodies(all: &BaseParameters, file: &Path, format: Format) -> Result
             place.map(|k| format!("; beta[{}] is {:e}, not {:e}", k + 1, reached[k], beta[k]));
         anstream::eprintln!(
             "\x1b[1;33mwarning\x1b[0m: {}: no bodies have exactly these base parameters: those printed come near{}",
-            file.display(),
+            path,
             most.unwrap_or_default()
         );
     }
@@ -79,13 +92,9 @@ fn base(map: &Map, standard: &[f64]) -> Vec<f64> {
     map.iter().map(sum).collect()
 }
 
-/// β of a file.
-fn read(all: &BaseParameters, file: &Path) -> Result<Vec<f64>, Failure> {
-    let path = file.display().to_string();
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Failure::usage(format!("{path}: {error}")))?;
-    let json: Value = serde_json::from_str(&text)
-        .map_err(|error| Failure::usage(format!("{path}: it is no JSON: {error}")))?;
+/// β of a file's text.
+fn read(all: &BaseParameters, path: &str, text: &str) -> Result<Vec<f64>, Failure> {
+    let json = strict::parse(text).map_err(|error| Failure::usages(path, &[error]))?;
     let kept: Vec<String> = all.kept().map(|standard| standard.name()).collect();
     let mut beta = base(&all.map(), all.values());
     let mut errors = Vec::new();
@@ -127,6 +136,6 @@ fn read(all: &BaseParameters, file: &Path) -> Result<Vec<f64>, Failure> {
     }
     match errors.is_empty() {
         true => Ok(beta),
-        false => Err(Failure::usages(&path, &errors)),
+        false => Err(Failure::usages(path, &errors)),
     }
 }

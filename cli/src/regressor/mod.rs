@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Identified base parameters, as JSON: a list, or an object by the names of the parameters kept; those that are
+    /// Identified base parameters, as JSON (`-` for standard input): a list, or an object by the names of the parameters kept; those that are
     /// not in the object are as in the description.
     #[arg(long, value_name = "FILE")]
     identified: Option<PathBuf>,
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let all = BaseParameters::new(&regressor);
     if let Some(file) = &arguments.identified {
-        return identified::print_bodies(&all, file, arguments.format);
+        return identified::print_bodies(&all, &source, file, arguments.format);
     }
     print(&match arguments.format {
         Format::Text => text(&all),

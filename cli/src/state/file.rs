@@ -33,12 +33,7 @@ pub struct File {
 impl File {
     /// Reads a file beside a description, or standard input where the path is `-`.
     pub fn read(path: &Path, description: &Source) -> Result<Self, Failure> {
-        if path.as_os_str() == "-" && description.is_stdin() {
-            return Err(Failure::usage(
-                "description and state cannot both be read from standard input",
-            ));
-        }
-        let Source { path, text, .. } = Source::read(path)?;
+        let Source { path, text, .. } = description.beside(path, "state")?;
         // Joints of a robot have any names.
         let json = strict::parse(&text).and_then(|json| match description.robot {
             None => plainly(json),

@@ -13,7 +13,8 @@
 //! | private functions | `constants`, `update`, function + `_part1` … |
 //! | functions in Rust: their trait, their field | type + `Functions`, `functions` |
 //! | their methods | `snake_case` of the name as written, the same + `_jacobian` |
-//! | arguments | `x`, `xi`, `u`, `xi_dot`; `slots`, `out` in parts |
+//! | ξ̇ and [A B] by one function, where it is generated | `accel_and_linearize` |
+//! | arguments | `x`, `xi`, `u`, `xi_dot`, `slopes`; `slots`, `out` in parts |
 //! | temporaries | the user's name, `t1` …, `sin1`, `sin_q` …, `minus_` + name of a negated one |
 //! | numbers | `zero`, `one`, `two`, `half` …, `c1` … |
 //!

@@ -20,6 +20,19 @@ use serde_json::{Value, json as object};
 /// Most decimal places of a factor that is not written as a fraction.
 const MOST_PLACES: u32 = 12;
 
+/// The pseudo-inertia [[tr(Θ)/2 I − Θ, h], [hᵀ, m]] of a link by its ten standard parameters, positive definite for every
+/// body (Wensing, Kim and Slotine 2018).
+pub fn pseudo_inertia(ten: [f64; 10]) -> [[f64; 4]; 4] {
+    let [xx, xy, xz, yy, yz, zz, x, y, z, m] = ten;
+    let half = (xx + yy + zz) / 2.0;
+    [
+        [half - xx, -xy, -xz, x],
+        [-xy, half - yy, -yz, y],
+        [-xz, -yz, half - zz, z],
+        [x, y, z, m],
+    ]
+}
+
 /// A base parameter with its factors written out.
 struct Row {
     kept: usize,
@@ -143,15 +156,7 @@ impl BaseParameters {
 
     /// Whether the pseudo-inertia of a link is positive definite in the description, by Cholesky's elimination.
     fn is_consistent(&self, link: usize) -> bool {
-        let first = 10 * link;
-        let [xx, xy, xz, yy, yz, zz, x, y, z, m] = std::array::from_fn(|k| self.values[first + k]);
-        let half = (xx + yy + zz) / 2.0;
-        let mut rows = [
-            [half - xx, -xy, -xz, x],
-            [-xy, half - yy, -yz, y],
-            [-xz, -yz, half - zz, z],
-            [x, y, z, m],
-        ];
+        let mut rows = pseudo_inertia(std::array::from_fn(|k| self.values[10 * link + k]));
         for k in (0..4).rev() {
             let pivot = rows[k][k];
             if pivot.is_nan() || pivot <= 0.0 {
