@@ -4,9 +4,9 @@
 //! that keeps all values in memory compiles slowly. So a long body is cut in parts of plain
 //! `let`s, and only values that are read in a later part go through an array of slots.
 
-use super::lower::Body;
-use super::places::{Place, Places, Time};
 use crate::algebra::graph::{Edge, NodeId};
+use crate::program::places::{Place, Places, Time};
+use crate::program::statements::Body;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
 use std::ops::Range;

@@ -4,12 +4,12 @@ use super::chunk::{Part, Plan, plan};
 use super::docs;
 use super::language::{Language, Rust};
 use super::locals::Locals;
-use super::lower::{Body, Operation};
-use super::places::Time;
 use super::print::{Printer, Used};
 use super::{Emitter, names};
 use crate::algebra::graph::{Edge, NodeId};
-use crate::program::{Argument, Cause, Program, Shape};
+use crate::program::places::Time;
+use crate::program::statements::{Body, Operation};
+use crate::program::{Argument, Cause, Program, Shape, tape};
 use rustc_hash::FxHashSet;
 
 /// The argument to which slopes are written besides a result.
@@ -44,13 +44,13 @@ pub struct Spec<'a> {
 /// The statements of a function, and the names that the user gave to values of it.
 pub fn lower(emitter: &Emitter, spec: &Spec) -> (Locals, Body) {
     let locals = Locals::new(&emitter.words, &emitter.program.names, &spec.nodes);
-    let named = locals.named();
+    let named = tape::named(emitter.program, &spec.nodes);
     let places = &emitter.places;
     let guards = spec.guards.iter();
     let guards: Vec<(Edge, Cause)> = guards
         .map(|&guard| (guard, emitter.program.cause(guard)))
         .collect();
-    let body = super::lower::lower(
+    let body = crate::program::statements::statements(
         places,
         spec.time,
         &spec.nodes,

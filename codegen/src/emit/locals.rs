@@ -1,10 +1,10 @@
 //! Names of the values of one function.
 
-use super::lower::{Operation, Statement};
 use super::names::{Unique, Words, snake};
 use super::number;
-use super::places::{Place, Places};
 use crate::algebra::graph::{Edge, NodeId};
+use crate::program::places::{Place, Places};
+use crate::program::statements::{Operation, Statement};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Names of temporaries and numbers.
@@ -32,11 +32,6 @@ impl Locals {
             }
         }
         locals
-    }
-
-    /// The nodes that the user named.
-    pub fn named(&self) -> FxHashSet<NodeId> {
-        self.names.keys().copied().collect()
     }
 
     /// The name of a value.
@@ -119,6 +114,6 @@ impl Locals {
 
 impl Places<'_> {
     fn is_number(&self, node: NodeId) -> bool {
-        self.of(node, super::places::Time::Call) == Place::Number
+        self.of(node, crate::program::places::Time::Call) == Place::Number
     }
 }

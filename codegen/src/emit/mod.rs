@@ -4,9 +4,6 @@
 //! |---|---|
 //! | `names` | every generated identifier |
 //! | `number` | decimal literals |
-//! | `places` | where a value is found: argument, parameter, kept constant, temporary |
-//! | `lower` | nodes to statements: pairs of sine and cosine, guards |
-//! | `sums` | sums as chains of fused products |
 //! | `chunk` | statements to functions of bounded size, values that cross them to slots |
 //! | `locals` | names of the values of one function |
 //! | `print` | a statement as text, in any language |
@@ -44,17 +41,14 @@ mod limits;
 )]
 mod lines;
 mod locals;
-mod lower;
 mod methods;
 pub mod names;
 mod number;
 mod parameters;
 mod parts;
-mod places;
 mod plain;
 mod print;
 mod structure;
-mod sums;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -62,12 +56,12 @@ mod together;
 mod views;
 
 use crate::algebra::graph::{Edge, NodeId};
+use crate::program::places::{Places, Time};
 use crate::program::schedule::Schedule;
 use crate::program::{Function, Program};
 use function::Spec;
 pub use lines::NotRust;
 use names::{Names, Words};
-use places::{Places, Time};
 use proc_macro2::TokenStream;
 
 /// What the generated text says about itself, and how its functions are cut.

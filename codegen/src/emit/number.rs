@@ -1,7 +1,7 @@
 //! Numbers as decimal literals.
 
 use crate::algebra::graph::{Graph, Node, NodeId};
-use num_traits::ToPrimitive;
+use crate::program::tape;
 
 /// The numbers that have names.
 const NAMES: &[(i32, i32, &str)] = &[
@@ -35,7 +35,7 @@ pub fn scalar(value: f64) -> String {
 /// The number that a node is, in the generated scalar type: the nearest to an exact rational, or π.
 pub fn of(graph: &Graph, node: NodeId) -> String {
     match graph.node(node) {
-        Node::Constant(index) => scalar(graph.constant(index).to_f64().unwrap_or(f64::NAN)),
+        Node::Constant(_) => scalar(tape::number(graph, node)),
         _ => "S::from_f64(::core::f64::consts::PI)".into(),
     }
 }

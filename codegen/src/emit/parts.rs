@@ -2,10 +2,10 @@
 
 use super::function::{Drawing, SLOPES, Spec, shape_type, statements, zeros};
 use super::names;
-use super::places::Place;
 use super::print::Used;
 use crate::algebra::graph::NodeId;
 use crate::program::Shape;
+use crate::program::places::Place;
 use rustc_hash::FxHashMap;
 
 /// Above this number of statements the parts of a function are never inlined: the compiler is then

@@ -2,10 +2,10 @@
 
 use super::language::{Language, Operand};
 use super::locals::Locals;
-use super::lower::{Call, Operation, Statement};
 use super::names::{self, ExternalNames};
-use super::places::{Place, Places, Time};
 use crate::algebra::graph::{Edge, NodeId};
+use crate::program::places::{Place, Places, Time};
+use crate::program::statements::{Call, Operation, Statement};
 use crate::program::{Argument, Program};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;

@@ -1,10 +1,10 @@
 //! ξ̇ and [A B] by one function, for steps with slopes: [A B] contains nearly all that ξ̇ is made from.
 
 use super::function::{self, SLOPES, Spec, zeros};
-use super::places::Time;
 use super::{Emitter, docs, names};
 use crate::algebra::graph::Edge;
 use crate::program::count::count_nodes;
+use crate::program::places::Time;
 use crate::program::schedule::body;
 use crate::program::{Function, FunctionId};
 

@@ -2,9 +2,13 @@
 
 pub mod count;
 pub mod interpret;
+pub(crate) mod places;
 pub mod rounding;
 pub mod schedule;
+pub(crate) mod statements;
 pub mod structure;
+mod sums;
+pub mod tape;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::model::joints::Joint;

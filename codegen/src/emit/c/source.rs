@@ -3,9 +3,9 @@
 use super::header::{prototype, prototypes};
 use super::{C, Texts, draw, helpers, returns_number};
 use crate::emit::function::{Drawing, Spec, statements};
-use crate::emit::lower::Body;
 use crate::emit::names::argument;
 use crate::emit::parameters;
+use crate::program::statements::Body;
 use crate::syntax::ast::ShapeKind;
 
 /// The source without its header.

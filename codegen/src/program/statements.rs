@@ -3,10 +3,10 @@
 //! Sums become chains of fused products; sine and cosine of one angle become one statement; a guard
 //! follows the pivot that it checks.
 
+use super::Cause;
 use super::places::{Place, Places, Time};
 use super::sums::sums;
 use crate::algebra::graph::{Component, Edge, Function, Graph, Node, NodeId};
-use crate::program::Cause;
 use num_traits::Signed;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -123,8 +123,8 @@ pub struct Body {
     pub outputs: Vec<Edge>,
 }
 
-/// Lowers nodes, given children first. Nodes in `named` keep a statement of their own.
-pub fn lower(
+/// The statements of nodes, given children first. Nodes in `named` keep a statement of their own.
+pub fn statements(
     places: &Places,
     time: Time,
     nodes: &[NodeId],

@@ -1,8 +1,8 @@
 //! Where a value is found when a statement reads it.
 
+use super::schedule::is_hoisted;
+use super::{Argument, Program};
 use crate::algebra::graph::{Edge, Graph, Node, NodeId};
-use crate::program::schedule::is_hoisted;
-use crate::program::{Argument, Program};
 use rustc_hash::FxHashMap;
 
 /// When a function runs.
@@ -79,6 +79,11 @@ impl<'a> Places<'a> {
     /// The kept constants.
     pub fn kept(&self) -> Vec<Edge> {
         self.kept.iter().map(|&node| Edge::of(node)).collect()
+    }
+
+    /// How many parameters there are.
+    pub fn parameters(&self) -> usize {
+        self.starts[1] - self.starts[0]
     }
 
     /// The graph.

@@ -4,8 +4,8 @@
 //! (a b + c d) + (e f + g) is three operations, not five. A chain starts with a term that is no product
 //! and goes on where its terms are computed, so that they need not be kept.
 
-use super::lower::{Operation, Statement};
 use super::places::{Place, Places, Time};
+use super::statements::{Operation, Statement};
 use crate::algebra::graph::{Edge, Node, NodeId};
 use rustc_hash::{FxHashMap, FxHashSet};
 

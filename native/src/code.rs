@@ -1,0 +1,359 @@
+//! Memory that can be executed, and calls of it: all that is `unsafe` in this project.
+//!
+//! What makes a call sound:
+//! - The code of a function is made by [`lower`] alone. It reads, at whole places, from the constants and the five
+//!   arguments, and writes to the result and to its own stack. The greatest place that it can touch in each of the
+//!   seven is known from the tape (`Reach`), before the code is made, and every call compares lengths with it.
+//! - What is read is a number of 64 bits in a slice of such; any bits are one.
+//! - The result is borrowed exclusively, so that nothing else that is read changes while it is written.
+//! - Code is finished, and its memory made executable and not writable, before the address of a function is asked
+//!   for; the signature of the address is that of [`signature`].
+//! - Memory is given back when the last owner of [`Code`] goes, and addresses never leave it.
+//! - Code has no state but its arguments, so that it can be called from many threads at once.
+
+#![allow(unsafe_code)]
+
+use crate::evaluate::apply;
+use crate::lower::{Callee, Pool, UNDONE, WELL, callee, lower, signature};
+use cranelift_codegen::ir::{AbiParam, types};
+use cranelift_codegen::settings::{Configurable, Flags, builder};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
+use cranelift_jit::{JITBuilder, JITModule};
+use cranelift_module::{FuncId, Linkage, Module, default_libcall_names};
+use hamel_codegen::algebra::graph::Function;
+use hamel_codegen::program::Cause;
+use hamel_codegen::program::tape::{ARGUMENTS, Source, Tape, Tapes};
+use std::collections::HashMap;
+use std::fmt;
+use std::mem::ManuallyDrop;
+
+type Entry = unsafe extern "C" fn(
+    *const f64,
+    *mut f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+) -> i32;
+
+/// How a call ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// The result is written.
+    Well,
+    /// A pivot is not positive.
+    At(Cause),
+    /// Nothing is written that has a meaning: the tape has to be evaluated step by step.
+    Undone,
+}
+
+/// One function.
+struct Callable {
+    entry: Entry,
+    reach: Reach,
+    causes: Vec<Cause>,
+}
+
+/// One more than the greatest place that a function touches.
+#[derive(Clone, Copy, Debug, Default)]
+struct Reach {
+    constants: usize,
+    out: usize,
+    arguments: [usize; 5],
+}
+
+impl Reach {
+    fn of(tape: &Tape) -> Self {
+        let mut reach = Reach {
+            out: tape.outputs.len(),
+            ..Reach::default()
+        };
+        let read = tape.steps.iter().flat_map(|step| step.operands());
+        for operand in read.chain(tape.outputs.iter().copied()) {
+            match operand.source {
+                Source::Constant(place) => reach.constants = reach.constants.max(place + 1),
+                Source::Argument(argument, place) => {
+                    for (of, reach) in ARGUMENTS.iter().zip(&mut reach.arguments) {
+                        if *of == argument {
+                            *reach = (*reach).max(place + 1);
+                        }
+                    }
+                }
+                Source::Number(_) | Source::Value(_) => {}
+            }
+        }
+        reach
+    }
+}
+
+/// Functions in memory.
+pub struct Code {
+    constants: Callable,
+    functions: Vec<Callable>,
+    size: usize,
+    module: ManuallyDrop<JITModule>,
+}
+
+// SAFETY: After `new` the module is not touched before `drop`, which has it alone, and the memory that addresses
+// point to is not written any more.
+unsafe impl Send for Code {}
+// SAFETY: As above; calls share nothing but code.
+unsafe impl Sync for Code {}
+
+impl fmt::Debug for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let functions = self.functions.len();
+        write!(f, "{functions} functions, {} bytes", self.size)
+    }
+}
+
+impl Drop for Code {
+    fn drop(&mut self) {
+        // SAFETY: The module is taken once, here; with `self` all addresses of its functions go, and whoever calls
+        // one of them borrows `self`.
+        unsafe { ManuallyDrop::take(&mut self.module).free_memory() }
+    }
+}
+
+/// Whether a b + c is one instruction of this machine.
+pub fn is_fused() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return std::is_x86_feature_detected!("fma");
+    #[cfg(not(target_arch = "x86_64"))]
+    true
+}
+
+extern "C" fn exp(a: f64) -> f64 {
+    apply(Function::Exp, a)
+}
+extern "C" fn log(a: f64) -> f64 {
+    apply(Function::Log, a)
+}
+extern "C" fn sinh(a: f64) -> f64 {
+    apply(Function::Sinh, a)
+}
+extern "C" fn cosh(a: f64) -> f64 {
+    apply(Function::Cosh, a)
+}
+extern "C" fn tanh(a: f64) -> f64 {
+    apply(Function::Tanh, a)
+}
+extern "C" fn atan2(y: f64, x: f64) -> f64 {
+    hamel::Scalar::atan2(y, x)
+}
+
+/// What is called, with its name and its address.
+fn known(callee: Callee) -> Option<(&'static str, *const u8)> {
+    let one = |of: extern "C" fn(f64) -> f64| of as *const u8;
+    Some(match callee {
+        Callee::Apply(Function::Exp) => ("hamel_exp", one(exp)),
+        Callee::Apply(Function::Log) => ("hamel_log", one(log)),
+        Callee::Apply(Function::Sinh) => ("hamel_sinh", one(sinh)),
+        Callee::Apply(Function::Cosh) => ("hamel_cosh", one(cosh)),
+        Callee::Apply(Function::Tanh) => ("hamel_tanh", one(tanh)),
+        Callee::Atan2 => ("hamel_atan2", atan2 as *const u8),
+        Callee::Apply(_) => return None,
+    })
+}
+
+impl Code {
+    /// Compiles tapes; with them come the numbers that have to stand behind the constants in every call.
+    ///
+    /// # Errors
+    /// Why this machine has no code.
+    pub fn new(tapes: &Tapes, fused: bool) -> Result<(Self, Vec<f64>), String> {
+        let mut flags = builder();
+        for (name, value) in [
+            ("opt_level", "none"),
+            ("enable_verifier", if cfg!(test) { "true" } else { "false" }),
+            ("use_colocated_libcalls", "false"),
+            ("is_pic", "false"),
+            ("unwind_info", "false"),
+        ] {
+            flags.set(name, value).map_err(|error| error.to_string())?;
+        }
+        let machine = cranelift_native::builder()?;
+        let machine = machine.finish(Flags::new(flags));
+        let machine = machine.map_err(|error| error.to_string())?;
+        if machine.pointer_bits() != 64 {
+            return Err("addresses of this machine do not have 64 bits".into());
+        }
+        let all = || tapes.functions.iter().chain([&tapes.constants]);
+        let calls: Vec<Callee> = all()
+            .flat_map(|tape| &tape.steps)
+            .filter_map(callee)
+            .collect();
+        let mut jit = JITBuilder::with_isa(machine, default_libcall_names());
+        for (name, address) in calls.iter().filter_map(|&callee| known(callee)) {
+            jit.symbol(name, address);
+        }
+        let mut making = Making {
+            module: ManuallyDrop::new(JITModule::new(jit)),
+            pool: Pool::behind(tapes.kept()),
+            context: FunctionBuilderContext::new(),
+            size: 0,
+            fused,
+        };
+        let made: Result<Vec<(FuncId, Vec<Cause>)>, String> = all()
+            .enumerate()
+            .map(|(index, tape)| making.function(index, tape))
+            .collect();
+        let made = made.and_then(|made| {
+            let finished = making.module.finalize_definitions();
+            finished.map_err(|error| error.to_string())?;
+            Ok(made)
+        });
+        let Making {
+            module, pool, size, ..
+        } = making;
+        let made = match made {
+            Ok(made) => made,
+            Err(why) => {
+                // SAFETY: No address was taken.
+                unsafe { ManuallyDrop::into_inner(module).free_memory() }
+                return Err(why);
+            }
+        };
+        let mut functions: Vec<Callable> = made
+            .into_iter()
+            .zip(all())
+            .map(|((id, causes), tape)| {
+                let address = module.get_finalized_function(id);
+                // SAFETY: The function was declared with `signature`, which has these arguments and this result.
+                let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
+                let mut reach = Reach::of(tape);
+                reach.constants = reach.constants.max(pool.start + pool.numbers.len());
+                Callable {
+                    entry,
+                    reach,
+                    causes,
+                }
+            })
+            .collect();
+        let Some(constants) = functions.pop() else {
+            return Err("there is no function".into());
+        };
+        let code = Code {
+            constants,
+            functions,
+            size,
+            module,
+        };
+        Ok((code, pool.numbers))
+    }
+
+    /// Bytes of code.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Calls a function, or that of the constants. A call that does not have all that the function touches is left
+    /// undone.
+    #[inline]
+    pub fn call(
+        &self,
+        function: Option<usize>,
+        constants: &[f64],
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> Ended {
+        let callable = match function {
+            None => Some(&self.constants),
+            Some(function) => self.functions.get(function),
+        };
+        let Some(Callable {
+            entry,
+            reach,
+            causes,
+        }) = callable
+        else {
+            return Ended::Undone;
+        };
+        let [x, xi, u, xi_dot, p] = arguments;
+        let short = constants.len() < reach.constants
+            || out.len() < reach.out
+            || x.len() < reach.arguments[0]
+            || xi.len() < reach.arguments[1]
+            || u.len() < reach.arguments[2]
+            || xi_dot.len() < reach.arguments[3]
+            || p.len() < reach.arguments[4];
+        if short {
+            return Ended::Undone;
+        }
+        // SAFETY: `entry` is code of `self.module`, which lives; all seven slices have the places that it touches, as
+        // was just compared, and `out` is borrowed exclusively.
+        let code = unsafe {
+            entry(
+                constants.as_ptr(),
+                out.as_mut_ptr(),
+                x.as_ptr(),
+                xi.as_ptr(),
+                u.as_ptr(),
+                xi_dot.as_ptr(),
+                p.as_ptr(),
+            )
+        };
+        match code {
+            WELL => Ended::Well,
+            UNDONE => Ended::Undone,
+            code => {
+                let place = usize::try_from(code - 1).ok();
+                let cause = place.and_then(|place| causes.get(place));
+                cause.map_or(Ended::Undone, |&cause| Ended::At(cause))
+            }
+        }
+    }
+}
+
+/// What functions are made with.
+struct Making {
+    module: ManuallyDrop<JITModule>,
+    pool: Pool,
+    context: FunctionBuilderContext,
+    size: usize,
+    fused: bool,
+}
+
+impl Making {
+    fn function(&mut self, index: usize, tape: &Tape) -> Result<(FuncId, Vec<Cause>), String> {
+        let pointer = self.module.target_config().pointer_type();
+        let mut context = self.module.make_context();
+        context.func.signature = signature(self.module.make_signature(), pointer);
+        let name = format!("hamel_{index}");
+        let id = self
+            .module
+            .declare_function(&name, Linkage::Local, &context.func.signature)
+            .map_err(|error| error.to_string())?;
+        let mut callees = HashMap::new();
+        for callee in tape.steps.iter().filter_map(callee) {
+            let Some((name, _)) = known(callee) else {
+                continue;
+            };
+            if callees.contains_key(&callee) {
+                continue;
+            }
+            let mut signature = self.module.make_signature();
+            let count = if callee == Callee::Atan2 { 2 } else { 1 };
+            signature.params = vec![AbiParam::new(types::F64); count];
+            signature.returns.push(AbiParam::new(types::F64));
+            let declared = self
+                .module
+                .declare_function(name, Linkage::Import, &signature)
+                .map_err(|error| error.to_string())?;
+            let here = self
+                .module
+                .declare_func_in_func(declared, &mut context.func);
+            callees.insert(callee, here);
+        }
+        let mut builder = FunctionBuilder::new(&mut context.func, &mut self.context);
+        let causes = lower(&mut builder, &mut self.pool, tape, &callees, self.fused);
+        builder.finalize();
+        self.module
+            .define_function(id, &mut context)
+            .map_err(|error| format!("{error:?}"))?;
+        let compiled = context.compiled_code();
+        self.size += compiled.map_or(0, |code| code.code_info().total_size as usize);
+        Ok((id, causes))
+    }
+}

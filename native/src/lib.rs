@@ -1,0 +1,181 @@
+//! Machine code from tapes, at once: what a generated function costs when Rust compiles it, without a compiler.
+//!
+//! [`Compiled`] takes the [tapes](Tapes) of a program and lowers each function by itself with Cranelift. Values are
+//! kept in registers and brought back from memory by a plan that is made before (`spill`): so the time that it
+//! takes is linear in the steps, and the code nearly as fast as that of an optimising compiler. On machines with a
+//! fused multiply-add, numbers are those of generated Rust that was compiled for this machine, to the bit.
+//!
+//! Where no code can be made (other processors, systems that refuse memory which can be executed), tapes are run
+//! step by step: the same numbers but for rounding, more slowly.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `spill` | which values are in registers, and where the others are |
+//! | `lower` | a tape as Cranelift's intermediate code |
+//! | `trig` | sine and cosine in line |
+//! | `code` | memory that can be executed, and calls: all that is `unsafe` |
+//! | `evaluate` | tapes step by step |
+
+mod code;
+mod evaluate;
+mod lower;
+mod spill;
+mod trig;
+
+pub use evaluate::evaluate;
+pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
+
+use code::{Code, Ended};
+use hamel_codegen::program::{Cause, Function, Program};
+use std::sync::Arc;
+
+/// Functions of a program that can be called: by machine code where there can be any.
+#[derive(Clone, Debug)]
+pub struct Compiled(Arc<Parts>);
+
+#[derive(Debug)]
+struct Parts {
+    tapes: Tapes,
+    /// Numbers that code reads, behind the constants.
+    numbers: Vec<f64>,
+    code: Result<Code, String>,
+    fused: bool,
+}
+
+/// Parameters, and what depends on them alone: what a function is called with besides its arguments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constants(Vec<f64>, usize);
+
+impl Constants {
+    /// The parameters, and behind them what depends on them alone.
+    pub fn known(&self) -> &[f64] {
+        self.0.get(..self.1).unwrap_or(&self.0)
+    }
+}
+
+impl Compiled {
+    /// Functions of a program.
+    ///
+    /// # Errors
+    /// Where one of them calls a function in Rust.
+    pub fn new(program: &Program, functions: &[&Function]) -> Result<Self, Foreign> {
+        Ok(Compiled::of(Tapes::new(program, functions)?))
+    }
+
+    /// The functions of tapes.
+    pub fn of(tapes: Tapes) -> Self {
+        let fused = code::is_fused();
+        let (code, numbers) = match Code::new(&tapes, fused) {
+            Ok((code, numbers)) => (Ok(code), numbers),
+            Err(why) => (Err(why), Vec::new()),
+        };
+        Compiled(Arc::new(Parts {
+            tapes,
+            numbers,
+            code,
+            fused,
+        }))
+    }
+
+    /// The functions of tapes, step by step.
+    pub fn interpreted(tapes: Tapes) -> Self {
+        Compiled(Arc::new(Parts {
+            tapes,
+            numbers: Vec::new(),
+            code: Err("not asked for".into()),
+            fused: code::is_fused(),
+        }))
+    }
+
+    /// Why there is no machine code, where there is none.
+    pub fn interpreted_because(&self) -> Option<&str> {
+        self.0.code.as_ref().err().map(String::as_str)
+    }
+
+    /// The tapes.
+    pub fn tapes(&self) -> &Tapes {
+        &self.0.tapes
+    }
+
+    /// The place of a function, by its name.
+    pub fn place(&self, name: &str) -> Option<usize> {
+        let functions = self.0.tapes.functions.iter();
+        functions.into_iter().position(|tape| tape.name == name)
+    }
+
+    /// Bytes of machine code.
+    pub fn size(&self) -> usize {
+        self.0.code.as_ref().map_or(0, Code::size)
+    }
+
+    /// What depends on parameters alone; parameters that are missing are NaN.
+    pub fn constants(&self, parameters: &[f64]) -> Constants {
+        let parts = &*self.0;
+        let mut all = parameters.to_vec();
+        all.resize(parts.tapes.parameters, f64::NAN);
+        all.resize(parts.tapes.kept(), 0.0);
+        all.extend_from_slice(&parts.numbers);
+        let mut kept = vec![0.0; parts.tapes.constants.outputs.len()];
+        // It checks no pivots.
+        let _ = self.run(None, &all, [&[]; 5], &mut kept);
+        all[parts.tapes.parameters..parts.tapes.kept()].copy_from_slice(&kept);
+        Constants(all, parts.tapes.kept())
+    }
+
+    /// Calls a function with x, ξ and behind it z, u, ξ̇ and p. Entries that are missing are NaN, and so is what does
+    /// not fit into `out`, which has to have the length of the result.
+    ///
+    /// # Errors
+    /// What it means that a pivot is not positive; then `out` has no meaning.
+    #[inline]
+    pub fn call(
+        &self,
+        function: usize,
+        constants: &Constants,
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> Result<(), Cause> {
+        self.run(Some(function), &constants.0, arguments, out)
+    }
+
+    #[inline]
+    fn run(
+        &self,
+        function: Option<usize>,
+        constants: &[f64],
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> Result<(), Cause> {
+        if let Ok(code) = &self.0.code {
+            match code.call(function, constants, arguments, out) {
+                Ended::Well => return Ok(()),
+                Ended::At(cause) => return Err(cause),
+                Ended::Undone => {}
+            }
+        }
+        self.step(function, constants, arguments, out)
+    }
+
+    /// Step by step.
+    #[cold]
+    fn step(
+        &self,
+        function: Option<usize>,
+        constants: &[f64],
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> Result<(), Cause> {
+        let tapes = &self.0.tapes;
+        let tape = match function {
+            None => Some(&tapes.constants),
+            Some(function) => tapes.functions.get(function),
+        };
+        match tape {
+            Some(tape) => evaluate(tape, self.0.fused, constants, arguments, out),
+            None => {
+                out.fill(f64::NAN);
+                Ok(())
+            }
+        }
+    }
+}

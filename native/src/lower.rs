@@ -1,0 +1,451 @@
+//! A tape as Cranelift's intermediate code, by the plan of [`crate::spill`].
+
+use crate::spill::{Action, Home, Id, Plan, is_call, plan};
+use crate::trig::{self, Arithmetic};
+use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::{
+    AbiParam, Block, FuncRef, InstBuilder, MemFlags, Signature, StackSlot, StackSlotData,
+    StackSlotKind, Type, Value, types,
+};
+use cranelift_frontend::{FuncInstBuilder, FunctionBuilder};
+use hamel_codegen::algebra::graph::Function;
+use hamel_codegen::program::Cause;
+use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape};
+use std::collections::HashMap;
+
+/// What a function returns where all is well.
+pub const WELL: i32 = 0;
+/// What it returns where the tape has to be evaluated step by step. Positive numbers are those of causes, from 1.
+pub const UNDONE: i32 = -1;
+/// Lengths below this are divided by as if they were this long.
+const SHORTEST: f64 = 1e-100;
+
+/// Numbers that code reads from memory, behind the constants.
+#[derive(Debug, Default)]
+pub struct Pool {
+    /// Where they begin.
+    pub start: usize,
+    /// The numbers.
+    pub numbers: Vec<f64>,
+    places: HashMap<u64, usize>,
+    turned: Option<usize>,
+}
+
+impl Pool {
+    /// Numbers that begin behind so many constants.
+    pub fn behind(start: usize) -> Self {
+        Pool {
+            start,
+            ..Pool::default()
+        }
+    }
+
+    fn place(&mut self, number: f64) -> usize {
+        let (start, numbers) = (self.start, &mut self.numbers);
+        *self.places.entry(number.to_bits()).or_insert_with(|| {
+            numbers.push(number);
+            start + numbers.len() - 1
+        })
+    }
+
+    /// Where the rows of quarter turns begin.
+    fn turned(&mut self) -> usize {
+        let (start, numbers) = (self.start, &mut self.numbers);
+        *self.turned.get_or_insert_with(|| {
+            numbers.extend_from_slice(&trig::TURNED);
+            start + numbers.len() - trig::TURNED.len()
+        })
+    }
+}
+
+/// Functions that code calls.
+pub type Callees = HashMap<Callee, FuncRef>;
+
+/// What code calls for a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Callee {
+    /// A function of one number.
+    Apply(Function),
+    /// The angle of (x, y), arguments (y, x).
+    Atan2,
+}
+
+/// The call of a step, where it is one.
+pub fn callee(step: &Step) -> Option<Callee> {
+    match *step {
+        _ if !is_call(step) => None,
+        Step::Atan2(..) => Some(Callee::Atan2),
+        Step::Apply(function, _) => Some(Callee::Apply(function)),
+        _ => None,
+    }
+}
+
+/// Addresses of constants, of the result, and of the arguments; a number that says how it ended.
+pub fn signature(mut empty: Signature, pointer: Type) -> Signature {
+    let addresses = 2 + ARGUMENTS.len();
+    empty
+        .params
+        .extend([AbiParam::new(pointer)].repeat(addresses));
+    empty.returns.push(AbiParam::new(types::I32));
+    empty
+}
+
+/// Writes a function.
+struct Writer<'a, 'b> {
+    builder: &'a mut FunctionBuilder<'b>,
+    pool: &'a mut Pool,
+    fused: bool,
+    constants: Value,
+    out: Value,
+    arguments: [Value; 5],
+    /// Ends with a number.
+    ends: Block,
+    stack: StackSlot,
+}
+
+impl<'a, 'b> Writer<'a, 'b> {
+    /// The next instruction.
+    fn ins(&mut self) -> FuncInstBuilder<'_, 'b> {
+        self.builder.ins()
+    }
+
+    /// (sin x, cos x); leaves the function where x is far, or no number.
+    fn sin_cos(&mut self, x: Value) -> [Value; 2] {
+        let size = self.ins().fabs(x);
+        let farthest = self.constant(trig::FARTHEST);
+        let near = self.ins().fcmp(FloatCC::LessThanOrEqual, size, farthest);
+        self.end_unless(near, UNDONE);
+        trig::sin_cos(self, x)
+    }
+
+    /// A number.
+    fn constant(&mut self, number: f64) -> Value {
+        let place = self.pool.place(number);
+        self.load(self.constants, place)
+    }
+
+    fn end_unless(&mut self, condition: Value, code: i32) {
+        let well = self.builder.create_block();
+        let code = self.ins().iconst(types::I32, i64::from(code));
+        let ends = self.ends;
+        self.ins().brif(condition, well, &[], ends, &[code.into()]);
+        self.builder.switch_to_block(well);
+    }
+
+    fn load(&mut self, base: Value, place: usize) -> Value {
+        let flags = MemFlags::trusted();
+        self.ins().load(types::F64, flags, base, bytes(place))
+    }
+
+    fn store(&mut self, value: Value, base: Value, place: usize) {
+        let flags = MemFlags::trusted();
+        self.ins().store(flags, value, base, bytes(place));
+    }
+
+    /// A value that is in memory.
+    fn fetch(&mut self, home: Home) -> Value {
+        match home {
+            Home::Given(Source::Number(number)) => self.constant(number),
+            Home::Given(Source::Constant(place)) => self.load(self.constants, place),
+            Home::Given(Source::Argument(argument, place)) => {
+                let index = ARGUMENTS.iter().position(|&of| of == argument);
+                let base = self.arguments[index.unwrap_or(0)];
+                self.load(base, place)
+            }
+            Home::Out(place) => self.load(self.out, place),
+            Home::Slot(slot) => {
+                let (stack, offset) = (self.stack, bytes(slot));
+                self.ins().stack_load(types::F64, stack, offset)
+            }
+            // A plan loads what is in memory.
+            Home::Given(Source::Value(_)) | Home::None => self.constant(f64::NAN),
+        }
+    }
+
+    fn signed(&mut self, (value, negative): (Value, bool)) -> Value {
+        match negative {
+            true => self.ins().fneg(value),
+            false => value,
+        }
+    }
+
+    /// One step; `dies` says of its operands which are read no more.
+    fn step(
+        &mut self,
+        step: &Step,
+        values: [(Value, bool); 3],
+        dies: [bool; 3],
+        callees: &Callees,
+        causes: &mut Vec<Cause>,
+    ) -> Option<[Value; 2]> {
+        let [a, b, c] = values;
+        let one = match *step {
+            Step::Add(..) => match (a.1, b.1) {
+                (false, false) => self.ins().fadd(a.0, b.0),
+                (false, true) => self.ins().fsub(a.0, b.0),
+                (true, false) => self.ins().fsub(b.0, a.0),
+                (true, true) => {
+                    // Not −(a + b), whose 0 has another sign.
+                    let first = self.ins().fneg(a.0);
+                    self.ins().fsub(first, b.0)
+                }
+            },
+            Step::Multiply(..) => {
+                let product = self.ins().fmul(a.0, b.0);
+                self.signed((product, a.1 != b.1))
+            }
+            Step::Divide(..) => {
+                let quotient = self.ins().fdiv(a.0, b.0);
+                self.signed((quotient, a.1 != b.1))
+            }
+            Step::Fused(..) => {
+                // The instruction writes over its first factor.
+                let (first, second) = match dies[1] && !dies[0] {
+                    true => (b.0, a.0),
+                    false => (a.0, b.0),
+                };
+                if self.fused {
+                    let first = self.signed((first, a.1 != b.1));
+                    let sum = self.signed(c);
+                    self.ins().fma(first, second, sum)
+                } else {
+                    let product = self.ins().fmul(a.0, b.0);
+                    let product = (product, a.1 != b.1);
+                    return self.step(
+                        &Step::Add(NONE, NONE),
+                        [product, c, c],
+                        dies,
+                        callees,
+                        causes,
+                    );
+                }
+            }
+            Step::SinCos(_) => {
+                let angle = self.signed(a);
+                return Some(self.sin_cos(angle));
+            }
+            Step::Apply(Function::Sqrt | Function::Norm, _) => {
+                let a = self.signed(a);
+                self.ins().sqrt(a)
+            }
+            Step::Apply(Function::Abs, _) => self.ins().fabs(a.0),
+            Step::Apply(Function::Sign, _) => {
+                let a = self.signed(a);
+                let (zero, one, minus) =
+                    (self.constant(0.0), self.constant(1.0), self.constant(-1.0));
+                let below = self.ins().fcmp(FloatCC::LessThan, a, zero);
+                let below = self.ins().select(below, minus, a);
+                let above = self.ins().fcmp(FloatCC::GreaterThan, a, zero);
+                self.ins().select(above, one, below)
+            }
+            Step::Apply(Function::Inverse, _) => {
+                let a = self.signed(a);
+                let (shortest, one) = (self.constant(SHORTEST), self.constant(1.0));
+                let size = self.ins().fabs(a);
+                let short = self.ins().fcmp(FloatCC::LessThan, size, shortest);
+                let by = self.ins().select(short, shortest, a);
+                self.ins().fdiv(one, by)
+            }
+            Step::Apply(..) | Step::Atan2(..) => {
+                let (a, b) = (self.signed(a), self.signed(b));
+                let callee = callee(step).and_then(|callee| callees.get(&callee));
+                let Some(&callee) = callee else {
+                    let nan = self.constant(f64::NAN);
+                    return Some([nan, nan]);
+                };
+                let call = match step {
+                    Step::Atan2(..) => self.ins().call(callee, &[a, b]),
+                    _ => self.ins().call(callee, &[a]),
+                };
+                self.builder.inst_results(call)[0]
+            }
+            Step::Select(..) => {
+                let [c, a, b] = values.map(|value| self.signed(value));
+                let (zero, one) = (self.constant(0.0), self.constant(1.0));
+                let number = self.ins().fcmp(FloatCC::LessThan, c, one);
+                let other = self.ins().select(number, b, c);
+                let positive = self.ins().fcmp(FloatCC::GreaterThan, c, zero);
+                self.ins().select(positive, a, other)
+            }
+            Step::Check(cause, _) => {
+                let pivot = self.signed(a);
+                let zero = self.constant(0.0);
+                let positive = self.ins().fcmp(FloatCC::GreaterThan, pivot, zero);
+                let known = causes.iter().position(|&known| known == cause);
+                let place = known.unwrap_or_else(|| {
+                    causes.push(cause);
+                    causes.len() - 1
+                });
+                self.end_unless(positive, i32::try_from(place + 1).unwrap_or(UNDONE));
+                return None;
+            }
+        };
+        Some([one, one])
+    }
+}
+
+impl Arithmetic for Writer<'_, '_> {
+    type Number = Value;
+
+    fn is_fused(&self) -> bool {
+        self.fused
+    }
+
+    fn number(&mut self, number: f64) -> Value {
+        self.constant(number)
+    }
+
+    fn minus(&mut self, a: Value, b: Value) -> Value {
+        self.ins().fsub(a, b)
+    }
+
+    fn times(&mut self, a: Value, b: Value) -> Value {
+        self.ins().fmul(a, b)
+    }
+
+    fn times_plus(&mut self, a: Value, b: Value, c: Value) -> Value {
+        if self.fused {
+            return self.ins().fma(a, b, c);
+        }
+        let product = self.ins().fmul(a, b);
+        self.ins().fadd(product, c)
+    }
+
+    fn less_times(&mut self, c: Value, a: Value, b: Value) -> Value {
+        if self.fused {
+            let a = self.ins().fneg(a);
+            return self.ins().fma(a, b, c);
+        }
+        let product = self.ins().fmul(a, b);
+        self.ins().fsub(c, product)
+    }
+
+    fn plus(&mut self, a: Value, b: Value) -> Value {
+        self.ins().fadd(a, b)
+    }
+
+    fn turned(&mut self, shifted: Value) -> [Value; 4] {
+        let start = self.pool.turned();
+        let constants = self.constants;
+        let bits = self.ins().bitcast(types::I64, MemFlags::new(), shifted);
+        let quadrant = self.ins().band_imm(bits, 3);
+        let bytes = self.ins().ishl_imm(quadrant, 5);
+        let row = self.ins().iadd(constants, bytes);
+        [0, 1, 2, 3].map(|i| self.load(row, start + i))
+    }
+}
+
+/// Where a step is read for its kind alone.
+const NONE: Operand = Operand {
+    source: Source::Number(0.0),
+    negative: false,
+};
+
+/// Writes a tape as a function; the causes that its pivots have, in the order of their numbers.
+pub fn lower(
+    builder: &mut FunctionBuilder,
+    pool: &mut Pool,
+    tape: &Tape,
+    callees: &Callees,
+    fused: bool,
+) -> Vec<Cause> {
+    let plan = plan(tape);
+    let entry = builder.create_block();
+    builder.append_block_params_for_function_params(entry);
+    builder.switch_to_block(entry);
+    let given: Vec<Value> = builder.block_params(entry).to_vec();
+    let ends = builder.create_block();
+    builder.set_cold_block(ends);
+    let code = builder.append_block_param(ends, types::I32);
+    let size = u32::try_from(8 * plan.slots.max(1)).unwrap_or(u32::MAX);
+    let slots = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
+    let stack = builder.create_sized_stack_slot(slots);
+    let mut writer = Writer {
+        pool,
+        fused,
+        constants: given[0],
+        out: given[1],
+        arguments: [2, 3, 4, 5, 6].map(|place| given[place]),
+        ends,
+        stack,
+        builder,
+    };
+    let causes = body(&mut writer, tape, &plan, callees);
+    let well = writer.ins().iconst(types::I32, i64::from(WELL));
+    writer.ins().return_(&[well]);
+    builder.switch_to_block(ends);
+    builder.ins().return_(&[code]);
+    builder.seal_all_blocks();
+    causes
+}
+
+fn body(w: &mut Writer, tape: &Tape, plan: &Plan, callees: &Callees) -> Vec<Cause> {
+    let mut causes = Vec::new();
+    let mut values: Vec<Option<Value>> = vec![None; plan.homes.len()];
+    // The entries of the result that each value is.
+    let mut results: HashMap<Id, Vec<(usize, bool)>> = HashMap::new();
+    for (place, output) in tape.outputs.iter().enumerate() {
+        if let Source::Value(value) = output.source {
+            let entries = results.entry(value).or_default();
+            entries.push((place, output.negative));
+        }
+    }
+    let firsts: Vec<usize> = tape
+        .steps
+        .iter()
+        .scan(0, |next, step| {
+            let first = *next;
+            *next += step.results();
+            Some(first)
+        })
+        .collect();
+    for action in &plan.actions {
+        match *action {
+            Action::Load(id) => values[id] = Some(w.fetch(plan.homes[id])),
+            Action::Store(id) => {
+                if let (Some(value), Home::Slot(slot)) = (values[id], plan.homes[id]) {
+                    let (stack, offset) = (w.stack, bytes(slot));
+                    w.ins().stack_store(value, stack, offset);
+                }
+            }
+            Action::Step(index) => {
+                let step = &tape.steps[index];
+                let ids = plan.operands[index];
+                let first = values[ids[0]];
+                let mut read = [(first, false); 3];
+                let mut dies = [false; 3];
+                for (place, operand) in step.operands().enumerate() {
+                    read[place] = (values[ids[place]], operand.negative);
+                    dies[place] = plan.last[ids[place]] == Some(index);
+                }
+                let read = read.map(|(value, sign)| match value {
+                    Some(value) => (value, sign),
+                    None => (w.constant(f64::NAN), sign),
+                });
+                let Some(made) = w.step(step, read, dies, callees, &mut causes) else {
+                    continue;
+                };
+                for (id, made) in (firsts[index]..).take(step.results()).zip(made) {
+                    values[id] = Some(made);
+                    for &(place, negative) in results.get(&id).into_iter().flatten() {
+                        let value = w.signed((made, negative));
+                        w.store(value, w.out, place);
+                    }
+                }
+            }
+        }
+    }
+    for (place, output) in tape.outputs.iter().enumerate() {
+        if !matches!(output.source, Source::Value(_)) {
+            let value = w.fetch(Home::Given(output.source));
+            let value = w.signed((value, output.negative));
+            w.store(value, w.out, place);
+        }
+    }
+    causes
+}
+
+/// How far an entry is from the first.
+fn bytes(place: usize) -> i32 {
+    i32::try_from(8 * place).unwrap_or(i32::MAX)
+}

@@ -1,0 +1,218 @@
+//! Which values are in registers: a plan for a tape, made before it is lowered.
+//!
+//! All arguments and constants are in memory, and results are written where the caller wants them as soon as they are
+//! there. A value that is in no register is therefore often in memory already; else it gets a place on the stack.
+//! What has to leave is what is read again last (Belady 1966), which is known, since tapes have no branches.
+//!
+//! A register allocator that sees the whole of a tape is slower than linear in live values, and no better: with
+//! this plan it never sees more of them than there are registers.
+
+use hamel_codegen::program::tape::{Operand, Source, Step, Tape};
+use std::collections::HashMap;
+
+/// Registers that values may take. Two of sixteen are left for numbers on the way.
+pub const REGISTERS: usize = 14;
+/// Registers that sine and cosine take while they are computed.
+const TURNING: usize = 8;
+
+/// A value by its number: first the values of the tape, then what is read from memory.
+pub type Id = usize;
+
+/// What is done, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// A value is read from memory.
+    Load(Id),
+    /// A value is written to its place on the stack.
+    Store(Id),
+    /// A step of the tape is computed; what it reads is in registers.
+    Step(usize),
+}
+
+/// Where a value can be read from memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Home {
+    /// It cannot.
+    None,
+    /// An argument, a constant or a number.
+    Given(Source),
+    /// An entry of the result.
+    Out(usize),
+    /// A place on the stack.
+    Slot(usize),
+}
+
+/// The plan of a tape.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What is done.
+    pub actions: Vec<Action>,
+    /// Where values are, once they are in memory.
+    pub homes: Vec<Home>,
+    /// How many places of the stack are used.
+    pub slots: usize,
+    /// The values that steps read, by step.
+    pub operands: Vec<[Id; 3]>,
+    /// The step that reads a value last.
+    pub last: Vec<Option<usize>>,
+}
+
+/// Whether a step is computed by a call, which keeps no register.
+pub fn is_call(step: &Step) -> bool {
+    use hamel_codegen::algebra::graph::Function;
+    match step {
+        Step::Atan2(..) => true,
+        Step::Apply(function, _) => !matches!(
+            function,
+            Function::Sqrt | Function::Norm | Function::Sign | Function::Abs | Function::Inverse
+        ),
+        _ => false,
+    }
+}
+
+/// Plans a tape.
+pub fn plan(tape: &Tape) -> Plan {
+    let mut plan = Plan {
+        actions: Vec::with_capacity(2 * tape.steps.len()),
+        homes: homes(tape),
+        slots: 0,
+        operands: Vec::with_capacity(tape.steps.len()),
+        last: Vec::new(),
+    };
+    let mut given: HashMap<(u8, u64), Id> = HashMap::new();
+    for step in &tape.steps {
+        let mut ids = [usize::MAX; 3];
+        for (id, operand) in ids.iter_mut().zip(step.operands()) {
+            *id = match operand.source {
+                Source::Value(value) => value,
+                source => *given.entry(key(source)).or_insert_with(|| {
+                    plan.homes.push(Home::Given(source));
+                    plan.homes.len() - 1
+                }),
+            };
+        }
+        plan.operands.push(ids);
+    }
+    Planner::new(plan).run(tape)
+}
+
+/// Results are in memory once they are there.
+fn homes(tape: &Tape) -> Vec<Home> {
+    let mut homes = vec![Home::None; tape.values()];
+    for (place, output) in tape.outputs.iter().enumerate() {
+        if let Operand {
+            source: Source::Value(value),
+            negative: false,
+        } = *output
+            && let Some(home) = homes.get_mut(value)
+        {
+            *home = Home::Out(place);
+        }
+    }
+    homes
+}
+
+/// What is equal where two sources are.
+fn key(source: Source) -> (u8, u64) {
+    match source {
+        Source::Argument(argument, index) => (argument as u8, index as u64),
+        Source::Constant(index) => (100, index as u64),
+        Source::Number(number) => (101, number.to_bits()),
+        Source::Value(index) => (102, index as u64),
+    }
+}
+
+struct Planner {
+    plan: Plan,
+    /// For every value the steps that read it, the last first: those that are over are taken away.
+    uses: Vec<Vec<usize>>,
+    held: Vec<Id>,
+    free: Vec<usize>,
+}
+
+impl Planner {
+    fn new(mut plan: Plan) -> Self {
+        let mut uses = vec![Vec::new(); plan.homes.len()];
+        for (step, ids) in plan.operands.iter().enumerate().rev() {
+            for &id in ids.iter().filter(|&&id| id != usize::MAX) {
+                let list: &mut Vec<usize> = &mut uses[id];
+                if list.last() != Some(&step) {
+                    list.push(step);
+                }
+            }
+        }
+        plan.last = uses.iter().map(|list| list.first().copied()).collect();
+        Planner {
+            plan,
+            uses,
+            held: Vec::with_capacity(REGISTERS),
+            free: Vec::new(),
+        }
+    }
+
+    fn run(mut self, tape: &Tape) -> Plan {
+        let mut next = 0;
+        for (index, step) in tape.steps.iter().enumerate() {
+            let ids = self.plan.operands[index];
+            let reads = || ids.into_iter().filter(|&id| id != usize::MAX);
+            for id in reads() {
+                if !self.held.contains(&id) {
+                    self.leave(REGISTERS - 1, &ids);
+                    self.plan.actions.push(Action::Load(id));
+                    self.held.push(id);
+                }
+            }
+            for id in reads() {
+                // A step may read a value twice.
+                if self.uses[id].last() == Some(&index) {
+                    self.uses[id].pop();
+                    if self.uses[id].is_empty() {
+                        self.die(id);
+                    }
+                }
+            }
+            match step {
+                Step::SinCos(_) => self.leave(REGISTERS - TURNING, &[]),
+                step if is_call(step) => self.leave(0, &[]),
+                _ => {}
+            }
+            self.plan.actions.push(Action::Step(index));
+            for id in next..next + step.results() {
+                if !self.uses[id].is_empty() {
+                    self.leave(REGISTERS - 1, &[]);
+                    self.held.push(id);
+                }
+            }
+            next += step.results();
+        }
+        self.plan
+    }
+
+    /// Lets values go until so many are left; these stay.
+    fn leave(&mut self, most: usize, stay: &[Id]) {
+        while self.held.len() > most {
+            let places = 0..self.held.len();
+            let furthest = places
+                .filter(|&place| !stay.contains(&self.held[place]))
+                .max_by_key(|&place| self.uses[self.held[place]].last());
+            let Some(place) = furthest else { return };
+            let id = self.held.swap_remove(place);
+            if self.plan.homes[id] == Home::None {
+                let slot = self.free.pop().unwrap_or_else(|| {
+                    self.plan.slots += 1;
+                    self.plan.slots - 1
+                });
+                self.plan.homes[id] = Home::Slot(slot);
+                self.plan.actions.push(Action::Store(id));
+            }
+        }
+    }
+
+    /// A value that is read no more.
+    fn die(&mut self, id: Id) {
+        self.held.retain(|&held| held != id);
+        if let Home::Slot(slot) = self.plan.homes[id] {
+            self.free.push(slot);
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Random tapes by machine code and step by step: the same bits, the same pivots.
+
+use hamel_codegen::algebra::graph::Function;
+use hamel_codegen::program::Cause;
+use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape, Tapes};
+use hamel_native::Compiled;
+
+/// Tapes in every run.
+const TAPES: u64 = 10_000;
+const PARAMETERS: usize = 3;
+const LENGTHS: [usize; 5] = [7, 5, 2, 5, 4];
+
+/// Numbers by the generator of Knuth's MMIX, of which the upper bits are taken.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
+        self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
+        self.0 >> 33
+    }
+
+    fn below(&mut self, most: usize) -> usize {
+        (self.next() % most as u64) as usize
+    }
+
+    fn number(&mut self) -> f64 {
+        let number = self.next() as f64 / f64::from(1u32 << 30) - 1.0;
+        match self.below(40) {
+            0 => 0.0,
+            1 => -0.0,
+            2 => 1.0,
+            3 => f64::INFINITY,
+            4 => f64::NAN,
+            5 => 1e7 * number,
+            6 => 1e-110 * number,
+            _ => number,
+        }
+    }
+}
+
+const FUNCTIONS: [Function; 10] = [
+    Function::Sqrt,
+    Function::Exp,
+    Function::Log,
+    Function::Sinh,
+    Function::Cosh,
+    Function::Tanh,
+    Function::Sign,
+    Function::Abs,
+    Function::Norm,
+    Function::Inverse,
+];
+
+fn operand(random: &mut Random, values: usize, kept: usize) -> Operand {
+    let source = match random.below(12) {
+        0 => Source::Number(random.number()),
+        1 => Source::Constant(random.below(PARAMETERS + kept)),
+        2 | 3 => {
+            let place = random.below(5);
+            Source::Argument(ARGUMENTS[place], random.below(LENGTHS[place]))
+        }
+        // What was computed lately, or anything.
+        4..8 if values > 0 => Source::Value(values - 1 - random.below(values.min(6))),
+        _ if values > 0 => Source::Value(random.below(values)),
+        _ => Source::Number(random.number()),
+    };
+    Operand {
+        source,
+        negative: random.below(3) == 0,
+    }
+}
+
+fn tape(random: &mut Random, name: &str, kept: usize, outputs: usize, checked: bool) -> Tape {
+    let mut steps = Vec::new();
+    let mut values = 0;
+    let length = match random.below(20) {
+        0 => 300,
+        1 => 0,
+        _ => 5 + random.below(60),
+    };
+    for _ in 0..length {
+        let mut of = || operand(random, values, kept);
+        let (a, b, c) = (of(), of(), of());
+        let step = match random.below(60) {
+            0..12 => Step::Add(a, b),
+            12..24 => Step::Multiply(a, b),
+            24..48 => Step::Fused(a, b, c),
+            48 | 49 => Step::Divide(a, b),
+            50..53 => Step::SinCos(a),
+            53..56 => Step::Apply(FUNCTIONS[random.below(FUNCTIONS.len())], a),
+            56 => Step::Atan2(a, b),
+            57 => Step::Select(a, b, c),
+            58 if checked => Step::Check(Cause::Velocity(random.below(3)), a),
+            _ => Step::Fused(a, a, a),
+        };
+        values += step.results();
+        steps.push(step);
+    }
+    Tape {
+        name: name.into(),
+        steps,
+        outputs: (0..outputs)
+            .map(|_| operand(random, values, kept))
+            .collect(),
+    }
+}
+
+/// Bits, but those of what is no number: its sign and load are nobody's.
+fn bits(numbers: &[f64]) -> Vec<u64> {
+    let bits = |number: &f64| match number.is_nan() {
+        true => f64::NAN.to_bits(),
+        false => number.to_bits(),
+    };
+    numbers.iter().map(bits).collect()
+}
+
+#[test]
+fn code_gives_the_bits_of_tapes() {
+    let mut random = Random(42);
+    let (mut well, mut ended, mut far) = (0, 0, 0);
+    let mut made = 0;
+    while made < TAPES {
+        let kept = random.below(4);
+        let constants = tape(&mut random, "constants", 0, kept, false);
+        let count = 1 + random.below(3);
+        let functions: Vec<Tape> = (0..count)
+            .map(|_| {
+                let outputs = random.below(9);
+                tape(&mut random, "f", kept, outputs, true)
+            })
+            .collect();
+        made += count as u64;
+        let tapes = Tapes {
+            parameters: PARAMETERS,
+            lengths: LENGTHS,
+            constants,
+            functions,
+        };
+        let code = Compiled::of(tapes.clone());
+        assert_eq!(code.interpreted_because(), None);
+        let steps = Compiled::interpreted(tapes.clone());
+        for _ in 0..4 {
+            let parameters: Vec<f64> = (0..PARAMETERS).map(|_| random.number()).collect();
+            let arguments = LENGTHS
+                .map(|length| -> Vec<f64> { (0..length).map(|_| random.number()).collect() });
+            let arguments = [0, 1, 2, 3, 4].map(|i| arguments[i].as_slice());
+            let (own, others) = (code.constants(&parameters), steps.constants(&parameters));
+            assert_eq!(bits(own.known()), bits(others.known()));
+            for (place, tape) in tapes.functions.iter().enumerate() {
+                let mut out = vec![1.0; tape.outputs.len()];
+                let mut expected = out.clone();
+                let result = code.call(place, &own, arguments, &mut out);
+                assert_eq!(
+                    result,
+                    steps.call(place, &others, arguments, &mut expected),
+                    "{tape:?}"
+                );
+                match result {
+                    Ok(()) => {
+                        assert_eq!(bits(&out), bits(&expected), "{tape:#?}");
+                        well += 1;
+                        far += usize::from(expected.iter().any(|value| value.is_nan()));
+                    }
+                    Err(_) => ended += 1,
+                }
+            }
+        }
+    }
+    // Each of them was met often enough to say something.
+    assert!(
+        well > 20_000 && ended > 500 && far < well / 2,
+        "{well} {ended} {far}"
+    );
+}
