@@ -271,13 +271,14 @@ impl Code {
             return Ended::Undone;
         };
         let [x, xi, u, xi_dot, p] = arguments;
-        let short = constants.len() < reach.constants
-            || out.len() < reach.out
-            || x.len() < reach.arguments[0]
-            || xi.len() < reach.arguments[1]
-            || u.len() < reach.arguments[2]
-            || xi_dot.len() < reach.arguments[3]
-            || p.len() < reach.arguments[4];
+        // All at once, not one after the other: a branch each would take longer than a small function.
+        let short = (constants.len() < reach.constants)
+            | (out.len() < reach.out)
+            | (x.len() < reach.arguments[0])
+            | (xi.len() < reach.arguments[1])
+            | (u.len() < reach.arguments[2])
+            | (xi_dot.len() < reach.arguments[3])
+            | (p.len() < reach.arguments[4]);
         if short {
             return Ended::Undone;
         }

@@ -100,7 +100,7 @@ struct Writer<'a, 'b> {
     arguments: [Value; 5],
     /// Ends with a number.
     ends: Block,
-    stack: StackSlot,
+    stack: Option<StackSlot>,
 }
 
 impl<'a, 'b> Writer<'a, 'b> {
@@ -153,10 +153,10 @@ impl<'a, 'b> Writer<'a, 'b> {
                 self.load(base, place)
             }
             Home::Out(place) => self.load(self.out, place),
-            Home::Slot(slot) => {
-                let (stack, offset) = (self.stack, bytes(slot));
-                self.ins().stack_load(types::F64, stack, offset)
-            }
+            Home::Slot(slot) => match self.stack {
+                Some(stack) => self.ins().stack_load(types::F64, stack, bytes(slot)),
+                None => self.constant(f64::NAN),
+            },
             // A plan loads what is in memory.
             Home::Given(Source::Value(_)) | Home::None => self.constant(f64::NAN),
         }
@@ -357,9 +357,12 @@ pub fn lower(
     let ends = builder.create_block();
     builder.set_cold_block(ends);
     let code = builder.append_block_param(ends, types::I32);
-    let size = u32::try_from(8 * plan.slots.max(1)).unwrap_or(u32::MAX);
-    let slots = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
-    let stack = builder.create_sized_stack_slot(slots);
+    // A function without a frame is called sooner.
+    let stack = (plan.slots > 0).then(|| {
+        let size = u32::try_from(8 * plan.slots).unwrap_or(u32::MAX);
+        let slots = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
+        builder.create_sized_stack_slot(slots)
+    });
     let mut writer = Writer {
         pool,
         fused,
@@ -403,9 +406,10 @@ fn body(w: &mut Writer, tape: &Tape, plan: &Plan, callees: &Callees) -> Vec<Caus
         match *action {
             Action::Load(id) => values[id] = Some(w.fetch(plan.homes[id])),
             Action::Store(id) => {
-                if let (Some(value), Home::Slot(slot)) = (values[id], plan.homes[id]) {
-                    let (stack, offset) = (w.stack, bytes(slot));
-                    w.ins().stack_store(value, stack, offset);
+                if let (Some(value), Home::Slot(slot), Some(stack)) =
+                    (values[id], plan.homes[id], w.stack)
+                {
+                    w.ins().stack_store(value, stack, bytes(slot));
                 }
             }
             Action::Step(index) => {

@@ -160,6 +160,37 @@ fn runtime_and_generator_never_meet() {
     forbid("runtime/src", &["hamel_codegen"]);
 }
 
+/// What is compiled into other people's builds needs no other compiler.
+#[test]
+fn machine_code_is_for_the_command_line() {
+    for folder in ["algebra", "codegen", "macros", "runtime", "urdf"] {
+        let manifest =
+            fs::read_to_string(root().join(folder).join("Cargo.toml")).expect("a manifest");
+        let word = ["cranelift", "hamel-native"]
+            .into_iter()
+            .find(|word| manifest.contains(word));
+        assert_eq!(word, None, "{folder}");
+    }
+}
+
+/// One module calls addresses.
+#[test]
+fn nothing_else_is_unsafe() {
+    for folder in ["native/src", "cli/src", "report/src", "files/src"] {
+        for (path, text) in sources(folder) {
+            let code = text
+                .lines()
+                .filter(|line| !line.trim_start().starts_with("//"));
+            let found = code.filter(|line| line.contains("unsafe")).count();
+            assert!(
+                found == 0 || path.ends_with("native/src/code.rs"),
+                "{}",
+                path.display()
+            );
+        }
+    }
+}
+
 #[test]
 fn the_import_knows_no_generator() {
     let manifest = fs::read_to_string(root().join("urdf/Cargo.toml")).expect("a manifest");
@@ -177,6 +208,7 @@ fn no_file_hides_two_ideas() {
         "files/src",
         "urdf/src",
         "macros/src",
+        "native/src",
         "runtime/src",
         "report/src",
         "cli/src",

@@ -27,4 +27,6 @@ macro_rules! locked {
     )*};
 }
 
-locked!(algebra, codegen, files, macros, report, runtime, urdf);
+locked!(
+    algebra, codegen, files, macros, native, report, runtime, urdf
+);

@@ -1,22 +1,25 @@
-//! A described system that the integrators can run without its being compiled.
+//! A described system that the integrators can run: its functions become machine code at once.
 
+mod functions;
 mod momenta;
 
 use crate::failure::Failure;
 use crate::simulate::inputs::Inputs;
 use crate::singular::{self, Failed};
 use crate::state::State;
+pub use functions::{Functions, Place};
 use hamel::{Block, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::layout;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Argument, Cause, Program, Shape};
-use momenta::Functions;
+use momenta::Momenta;
 use std::cell::{Cell, RefCell};
 
 /// A program with its parameters set; x, ξ and u are `Vec`s.
 pub struct Interpreted {
+    functions: Functions,
     blocks: Vec<Block>,
     start: (Vec<f64>, Vec<f64>),
     inputs: Vec<f64>,
@@ -25,23 +28,21 @@ pub struct Interpreted {
     /// Where they jump next.
     before: Cell<f64>,
     chart: usize,
-    rate: Interpreter,
-    chart_rate: Interpreter,
+    rate: Place,
+    chart_rate: Place,
     /// None where M is not positive definite.
-    accel: Option<Interpreter>,
-    correction: Interpreter,
-    project_position: Option<Interpreter>,
-    project_velocity: Option<Interpreter>,
-    constraint: Interpreter,
-    momentum: Interpreter,
-    force: Interpreter,
-    kinetic: Interpreter,
-    potential: Interpreter,
+    accel: Option<Place>,
+    correction: Place,
+    project_position: Option<Place>,
+    project_velocity: Option<Place>,
+    constraint: Place,
+    momentum: Place,
+    force: Place,
+    kinetic: Place,
+    potential: Place,
     outputs: Vec<Output>,
-    /// What the guards of `accel` belong to, in their order.
-    causes: Vec<Cause>,
     invariants: Vec<Output>,
-    functions: Functions,
+    momenta: Momenta,
     evaluations: Cell<u64>,
     velocity_labels: Vec<String>,
     /// What is said where constraints depend on one another.
@@ -60,7 +61,7 @@ pub struct Output {
     pub name: String,
     /// Its shape.
     pub shape: Shape,
-    function: Interpreter,
+    function: Place,
     accelerated: bool,
 }
 
@@ -69,22 +70,30 @@ impl Interpreted {
     /// is for messages.
     pub fn new(generated: &Generated, state: &State, text: &str) -> Result<Self, Failure> {
         let program = &generated.program;
-        let function = |name: &str| function(program, name, &state.params);
-        let output = |name: &String| {
-            let known = program.function(name);
+        let model = &generated.model;
+        // The energy is watched anyway.
+        let invariants = model.invariants.iter().map(|claim| &claim.name);
+        let invariants: Vec<&String> = invariants.filter(|name| *name != "energy").collect();
+        let outputs: Vec<&String> = model.outputs.iter().map(|(name, _)| name).collect();
+        let described = outputs.iter().chain(&invariants).map(|name| name.as_str());
+        let names: Vec<&str> = SYSTEM
+            .iter()
+            .chain(momenta::NAMES)
+            .copied()
+            .chain(described)
+            .collect();
+        let functions = Functions::new(program, &names, &state.params)?;
+        let function = |name: &str| functions.place(program, name);
+        let output = |name: &&String| {
+            let known = program.function(name.as_str());
             Ok(Output {
-                name: name.clone(),
+                name: name.to_string(),
                 shape: known.map_or(Shape::Scalar, |function| function.shape),
                 function: function(name)?,
                 accelerated: known
                     .is_some_and(|function| function.arguments.contains(&Argument::Accelerations)),
             })
         };
-        let model = &generated.model;
-        let outputs = model.outputs.iter().map(|(name, _)| output(name));
-        // The energy is watched anyway.
-        let invariants = model.invariants.iter().map(|claim| &claim.name);
-        let invariants = invariants.filter(|name| *name != "energy").map(output);
         Ok(Interpreted {
             blocks: program.blocks.iter().copied().map(block).collect(),
             start: (state.x.clone(), state.xi.clone()),
@@ -103,17 +112,20 @@ impl Interpreted {
             force: function("generalized_force")?,
             kinetic: function("kinetic_energy")?,
             potential: function("potential_energy")?,
-            outputs: outputs.collect::<Result<_, Failure>>()?,
-            causes: causes(program),
-            invariants: invariants.collect::<Result<_, Failure>>()?,
-            functions: Functions::new(program, &state.params)?,
+            outputs: outputs.iter().map(output).collect::<Result<_, Failure>>()?,
+            invariants: invariants
+                .iter()
+                .map(output)
+                .collect::<Result<_, Failure>>()?,
+            momenta: Momenta::new(program, &functions)?,
             evaluations: Cell::new(0),
             velocity_labels: singular::labels(&generated.active, text),
             dependent: singular::dependent(&generated.active, text),
             constant_singular: constant_singular(program, &state.params),
-            constrained: generated.model.is_constrained(),
-            driven: generated.model.clock.is_some() || !generated.model.accelerated.is_empty(),
+            constrained: model.is_constrained(),
+            driven: model.clock.is_some() || !model.accelerated.is_empty(),
             failed: RefCell::new(None),
+            functions,
         })
     }
 
@@ -152,19 +164,19 @@ impl Interpreted {
         self.failed.borrow().clone()
     }
 
-    fn projection(&self, pivot: usize) -> Singular {
+    fn projection(&self, cause: Cause) -> Singular {
         self.fails(Failed::Projection);
-        self.cause(pivot)
+        singular(cause)
     }
 
-    /// What it means that a guard of ξ̇ is not positive; the projections have the same ones.
-    fn cause(&self, guard: usize) -> Singular {
-        match self.causes.get(guard) {
-            Some(&Cause::Kinematics(pivot)) => Singular::Kinematics { pivot },
-            Some(&Cause::Constraint(row)) => Singular::Constraints { row },
-            // The velocity is named where the failure is told, with its line.
-            _ => Singular::Mass,
-        }
+    /// The value of a function that has one everywhere.
+    fn value(&self, function: Place, x: &[f64], xi: &[f64], u: &[f64]) -> Vec<f64> {
+        let value = self.functions.call(function, [x, xi, u, &[], &[]]);
+        value.unwrap_or_default()
+    }
+
+    fn scalar(&self, function: Place, x: &[f64], xi: &[f64]) -> f64 {
+        self.functions.number(function, [x, xi, &[], &[], &[]])
     }
 
     fn fails(&self, what: Failed) {
@@ -206,18 +218,18 @@ impl Interpreted {
 
     /// p = M ξ.
     pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Vec<f64> {
-        value(&self.momentum, x, xi, &[])
+        self.value(self.momentum, x, xi, &[])
     }
 
     /// The power of the loads, f ξ.
     pub fn power(&self, t: f64, x: &[f64], xi: &[f64]) -> f64 {
-        let force = value(&self.force, x, xi, &self.inputs(t, x, xi));
+        let force = self.value(self.force, x, xi, &self.inputs(t, x, xi));
         force.iter().zip(xi).map(|(f, v)| f * v).sum()
     }
 
     /// φ(x).
     pub fn constraint(&self, x: &[f64]) -> Vec<f64> {
-        value(&self.constraint, x, &[], &[])
+        self.value(self.constraint, x, &[], &[])
     }
 
     /// The outputs of the description.
@@ -236,31 +248,54 @@ impl Interpreted {
         let u = self.inputs(t, x, xi);
         let mut xi_dot = Vec::new();
         if output.accelerated {
-            let accel = self.accel.as_ref();
-            let accel = accel.and_then(|accel| accel.call(x, xi, &u, &[]).ok());
+            let arguments = [x, xi, &u, &[], &[]];
+            let accel = self
+                .accel
+                .map(|accel| self.functions.call(accel, arguments));
+            let accel = accel.and_then(Result::ok);
             xi_dot = accel.unwrap_or_else(|| vec![f64::NAN; xi.len()]);
         }
-        let value = output.function.call(x, xi, &u, &xi_dot);
+        let arguments = [x, xi, &u, &xi_dot, &[]];
+        let value = self.functions.call(output.function, arguments);
         value.unwrap_or_default()
     }
 }
 
-/// What the guards of `accel` belong to.
-fn causes(program: &Program) -> Vec<Cause> {
-    let accel = program.function("accel");
-    let guards = accel.into_iter().flat_map(|accel| &accel.guards);
-    guards.map(|&guard| program.cause(guard)).collect()
+/// The functions that every run takes.
+const SYSTEM: &[&str] = &[
+    "rate",
+    "chart_rate",
+    "accel",
+    "correction",
+    "project_position",
+    "project_velocity",
+    "constraint",
+    "momentum",
+    "generalized_force",
+    "kinetic_energy",
+    "potential_energy",
+];
+
+/// What it means for a run that a pivot is not positive.
+fn singular(cause: Cause) -> Singular {
+    match cause {
+        Cause::Kinematics(pivot) => Singular::Kinematics { pivot },
+        Cause::Constraint(row) => Singular::Constraints { row },
+        // The velocity is named where the failure is told, with its line.
+        Cause::Velocity(_) | Cause::Mass => Singular::Mass,
+    }
 }
 
 /// Compiles one function.
 pub fn function(program: &Program, name: &str, params: &[f64]) -> Result<Interpreter, Failure> {
     match program.function(name) {
         Some(function) => Ok(Interpreter::new(program, function, params)),
-        None => Err(Failure::failed(format!(
-            "{} has no function `{name}`",
-            program.name
-        ))),
+        None => Err(missing(program, name)),
     }
+}
+
+fn missing(program: &Program, name: &str) -> Failure {
+    Failure::failed(format!("{} has no function `{name}`", program.name))
 }
 
 /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
@@ -270,18 +305,6 @@ pub fn constant_singular(program: &Program, params: &[f64]) -> bool {
     symbols.resize(program.graph.symbols().len(), f64::NAN);
     let pivots = evaluate(&program.graph, &program.constant_guards, &symbols);
     pivots.iter().any(|&pivot| pivot.is_nan() || pivot <= 0.0)
-}
-
-/// The value of a function that has one everywhere.
-fn value(function: &Interpreter, x: &[f64], xi: &[f64], u: &[f64]) -> Vec<f64> {
-    function.call(x, xi, u, &[]).unwrap_or_default()
-}
-
-fn scalar(function: &Interpreter, x: &[f64], xi: &[f64]) -> f64 {
-    value(function, x, xi, &[])
-        .first()
-        .copied()
-        .unwrap_or(f64::NAN)
 }
 
 fn block(block: layout::Block) -> Block {
@@ -325,44 +348,43 @@ impl System for Interpreted {
     }
 
     fn rate(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
-        value(&self.rate, x, xi, &[])
+        self.value(self.rate, x, xi, &[])
     }
 
     fn chart_rate(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
-        value(&self.chart_rate, x, xi, &[])
+        self.value(self.chart_rate, x, xi, &[])
     }
 
     fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
         self.count();
-        let Some(accel) = &self.accel else {
+        let Some(accel) = self.accel else {
             return Err(Singular::Mass);
         };
-        accel.call(x, xi, u, &[]).map_err(|pivot| {
+        let value = self.functions.call(accel, [x, xi, u, &[], &[]]);
+        value.map_err(|cause| {
             self.fails(Failed::Motion(x.clone()));
-            self.cause(pivot)
+            singular(cause)
         })
     }
 
     fn correction(&self, x: &Vec<f64>) -> Vec<f64> {
-        value(&self.correction, x, &[], &[])
+        self.value(self.correction, x, &[], &[])
     }
 
     fn project_position(&self, x: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
-        let step = self
-            .project_position
-            .as_ref()
-            .map(|function| function.call(x, &[], &[], &[]));
-        step.transpose().map_err(|pivot| self.projection(pivot))
+        let arguments = [x.as_slice(), &[], &[], &[], &[]];
+        let function = self.project_position;
+        let step = function.map(|function| self.functions.call(function, arguments));
+        step.transpose().map_err(|cause| self.projection(cause))
     }
 
     fn project_velocity(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
-        let projected = self
-            .project_velocity
-            .as_ref()
-            .map(|function| function.call(x, xi, &[], &[]));
+        let arguments = [x.as_slice(), xi, &[], &[], &[]];
+        let function = self.project_velocity;
+        let projected = function.map(|function| self.functions.call(function, arguments));
         projected
             .transpose()
-            .map_err(|pivot| self.projection(pivot))
+            .map_err(|cause| self.projection(cause))
     }
 
     fn constraint_norm(&self, x: &Vec<f64>) -> f64 {
@@ -374,10 +396,10 @@ impl System for Interpreted {
     }
 
     fn kinetic_energy(&self, x: &Vec<f64>, xi: &Vec<f64>) -> f64 {
-        scalar(&self.kinetic, x, xi)
+        self.scalar(self.kinetic, x, xi)
     }
 
     fn potential_energy(&self, x: &Vec<f64>) -> f64 {
-        scalar(&self.potential, x, &[])
+        self.scalar(self.potential, x, &[])
     }
 }

@@ -9,6 +9,7 @@ pub(crate) mod statements;
 pub mod structure;
 mod sums;
 pub mod tape;
+pub(crate) mod together;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::model::joints::Joint;

@@ -1,6 +1,6 @@
 //! Binding times: what is computed once when parameters are set, and what on every call.
 
-use super::{Function, Program};
+use super::Program;
 use crate::algebra::graph::{Edge, Graph, Node, NodeId};
 
 /// The order of computation of a program.
@@ -18,13 +18,9 @@ pub struct Schedule {
 impl Schedule {
     /// Schedules all functions of a program.
     pub fn of(program: &Program) -> Self {
-        Schedule::of_some(program, &program.functions.iter().collect::<Vec<_>>())
-    }
-
-    /// Schedules some functions of a program.
-    pub fn of_some(program: &Program, functions: &[&Function]) -> Self {
         let graph = &program.graph;
-        let bodies: Vec<Vec<NodeId>> = functions
+        let bodies: Vec<Vec<NodeId>> = program
+            .functions
             .iter()
             .map(|function| {
                 let roots: Vec<Edge> = function
@@ -37,7 +33,7 @@ impl Schedule {
             })
             .collect();
         let mut kept: Vec<NodeId> = Vec::new();
-        for (function, nodes) in functions.iter().zip(&bodies) {
+        for (function, nodes) in program.functions.iter().zip(&bodies) {
             let children = nodes.iter().flat_map(|&id| graph.node(id).children());
             let roots = function.outputs.iter().chain(&function.guards).copied();
             kept.extend(

@@ -6,7 +6,8 @@
 use super::places::{Place, Places, Time};
 use super::schedule::{Schedule, body};
 use super::statements::{Body, Operation, statements};
-use super::{Argument, Cause, Function, Program};
+use super::together::together;
+use super::{Argument, Cause, Function, FunctionId, Program};
 use crate::algebra::graph::{self, Edge, Graph, Node, NodeId};
 use num_traits::ToPrimitive;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -132,7 +133,8 @@ impl Tapes {
     /// # Errors
     /// Where one of them calls a function in Rust, of which nothing is known here.
     pub fn new(program: &Program, functions: &[&Function]) -> Result<Self, Foreign> {
-        let schedule = Schedule::of_some(program, functions);
+        // All that the program keeps, not only what these functions read: so sums are rounded as in generated code.
+        let schedule = Schedule::of(program);
         let places = Places::new(program, &schedule.kept);
         let parameters = places.parameters();
         let tape =
@@ -160,21 +162,33 @@ impl Tapes {
             &[],
             &[],
         )?;
+        // As it is emitted: products that both read are not fused.
+        let both = together(program);
         let functions = functions.iter().map(|function| {
             let guards: &[Edge] = match function.fallible {
                 true => &function.guards,
                 false => &[],
             };
+            let call = |nodes: &[NodeId], outputs: &[Edge], guards: &[Edge]| {
+                let (name, reads) = (&function.name, &function.arguments);
+                tape(name, Time::Call, nodes, outputs, guards, reads)
+            };
+            let both = both
+                .as_ref()
+                .filter(|_| function.id == Some(FunctionId::Linearize));
+            if let Some(both) = both {
+                let guards = if function.fallible {
+                    &both.guards
+                } else {
+                    guards
+                };
+                let mut tape = call(&both.nodes, &both.outputs, guards)?;
+                let rates = both.outputs.len() - function.outputs.len();
+                tape.outputs.drain(..rates);
+                return Ok(tape);
+            }
             let roots = [&function.outputs, guards].concat();
-            let nodes = body(&program.graph, &roots);
-            tape(
-                &function.name,
-                Time::Call,
-                &nodes,
-                &function.outputs,
-                guards,
-                &function.arguments,
-            )
+            call(&body(&program.graph, &roots), &function.outputs, guards)
         });
         Ok(Tapes {
             parameters,

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Machine code made at once beside rustc's; needs cargo and the robots of tests/robots/install.sh.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+bash tests/robots/install.sh
+robots=$(find "$PWD/${CARGO_TARGET_DIR:-target}/robots" -type d -path '*example-robot-data/robots' | head -n 1)
+export HAMEL_ROBOTS="$robots"
+export RUSTFLAGS="-C target-cpu=native"
+cargo build --release --manifest-path bench/native/Cargo.toml --target-dir target/bench-native
+# One core, where the system can say so.
+pin=$(command -v taskset || true)
+${pin:+$pin -c 0} target/bench-native/release/hamel-bench-native

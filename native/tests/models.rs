@@ -1,0 +1,170 @@
+//! All functions of the models of the tests: by machine code as step by step to the bit, and as the graph itself gives
+//! them, within 10⁻¹³ of scale and what rounding makes of the statements.
+
+use hamel_codegen::algebra::rounding::rounded;
+use hamel_codegen::generate::{Generated, from_file};
+use hamel_codegen::model::states::states;
+use hamel_codegen::program::interpret::Interpreter;
+use hamel_codegen::program::{Cause, Function, Program};
+use hamel_codegen::render::render;
+use hamel_native::Compiled;
+use std::path::{Path, PathBuf};
+
+/// Of the largest entry of a result.
+const CLOSE: f64 = 1e-13;
+/// Of the errors of the interpreter's results, by those in twice the length: products are added in another order.
+const ERRORS: f64 = 8.0;
+
+/// π, the parameters and a state, as a graph has them, and the arguments x, ξ with z, u, ξ̇ and p.
+struct State {
+    symbols: Vec<f64>,
+    arguments: [Vec<f64>; 5],
+}
+
+impl State {
+    fn new(program: &Program, numbers: &[f64]) -> Self {
+        let [first, x, xi, u, z, xi_dot, p, end] = program.symbols();
+        let mut symbols = vec![std::f64::consts::PI];
+        symbols.extend_from_slice(&program.defaults);
+        assert_eq!(symbols.len(), first + program.defaults.len());
+        symbols.extend_from_slice(&numbers[x..end]);
+        let part = |range: std::ops::Range<usize>| numbers[range].to_vec();
+        let xi = [part(xi..u), part(z..xi_dot)].concat();
+        let (u, p) = (part(u..z), part(p..end));
+        let more = vec![0.0; program.n_z];
+        let xi_dot = [part(xi_dot..program.symbols()[6]), more].concat();
+        State {
+            arguments: [part(x..program.symbols()[2]), xi, u, xi_dot, p],
+            symbols,
+        }
+    }
+}
+
+/// States on X; of systems with states of first order the start, with what is 0 there.
+fn known(of: &Generated) -> Vec<State> {
+    let program = &of.program;
+    let [_, x, xi, u, z, _, _, end] = program.symbols();
+    let mut all: Vec<State> = states(&of.active)
+        .iter()
+        .filter(|numbers| numbers.len() == end)
+        .map(|numbers| State::new(program, numbers))
+        .collect();
+    let mut start = vec![0.0; end];
+    start[x..xi].copy_from_slice(&program.start_x);
+    start[xi..u].copy_from_slice(&program.start_xi[..program.n]);
+    start[z..z + program.n_z].copy_from_slice(&program.start_xi[program.n..]);
+    all.push(State::new(program, &start));
+    all
+}
+
+/// The result step by step in the graph.
+fn interpreted(program: &Program, function: &Function, state: &State) -> Result<Vec<f64>, Cause> {
+    let interpreter = Interpreter::new(program, function, &program.defaults);
+    let value = interpreter.call_with(state.arguments.each_ref().map(Vec::as_slice));
+    value.map_err(|guard| program.cause(function.guards[guard]))
+}
+
+/// The largest error of the graph's results, and whether a pivot is lost in rounding.
+fn rounding(program: &Program, function: &Function, state: &State) -> (f64, bool) {
+    let roots = [function.outputs.as_slice(), &function.guards].concat();
+    let values = rounded(&program.graph, &roots, &state.symbols);
+    let (outputs, guards) = values.split_at(function.outputs.len());
+    let error = outputs
+        .iter()
+        .map(|value| value.apart())
+        .fold(0.0, f64::max);
+    let lost = |pivot: &hamel_codegen::algebra::rounding::Rounded| {
+        pivot.exact.to_f64().abs() <= 16.0 * pivot.apart()
+    };
+    (error, guards.iter().any(lost))
+}
+
+fn same(a: f64, b: f64) -> bool {
+    a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
+}
+
+fn models() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
+    let mut all = Vec::new();
+    for folder in [folder.join("multibody"), folder.join("reuse"), folder] {
+        for entry in std::fs::read_dir(folder).expect("models are in the repository") {
+            let path = entry.expect("a file").path();
+            if path.extension().is_some_and(|extension| extension == "eom") {
+                all.push(path);
+            }
+        }
+    }
+    all.sort();
+    assert!(all.len() >= 70, "the models have gone");
+    all
+}
+
+fn generated(path: &Path) -> Generated {
+    let text = std::fs::read_to_string(path).expect("a text");
+    let folder = path.parent().expect("a folder");
+    let open = &mut |name: &str| std::fs::read_to_string(folder.join(name));
+    from_file(&text, open)
+        .unwrap_or_else(|errors| panic!("{}", render(&errors, "a model", &text, false)))
+}
+
+#[test]
+fn code_of_models_gives_what_their_graphs_give() {
+    let (mut compared, mut ended) = (0, 0);
+    for path in models() {
+        let of = generated(&path);
+        let program = &of.program;
+        let functions: Vec<&Function> = program.functions.iter().collect();
+        let code = match Compiled::new(program, &functions) {
+            Ok(code) => code,
+            // It has a function in Rust.
+            Err(foreign) => {
+                assert!(!foreign.name.is_empty(), "{path:?}");
+                continue;
+            }
+        };
+        assert_eq!(code.interpreted_because(), None);
+        let steps = Compiled::interpreted(code.tapes().clone());
+        let constants = code.constants(&program.defaults);
+        let others = steps.constants(&program.defaults);
+        for state in known(&of) {
+            let arguments = state.arguments.each_ref().map(Vec::as_slice);
+            for (place, function) in functions.iter().enumerate() {
+                let what = format!("{} of {path:?}", function.name);
+                let mut out = vec![0.0; function.outputs.len()];
+                let mut slow = out.clone();
+                let result = code.call(place, &constants, arguments, &mut out);
+                let slowly = steps.call(place, &others, arguments, &mut slow);
+                assert_eq!(result, slowly, "{what}");
+                let (error, lost) = rounding(program, function, &state);
+                let expected = match interpreted(program, function, &state) {
+                    Ok(expected) if result.is_ok() => expected,
+                    Ok(_) => {
+                        assert!(lost, "{what}: {result:?}");
+                        continue;
+                    }
+                    Err(cause) => {
+                        assert!(
+                            lost || result == Err(cause),
+                            "{what}: {result:?}, {cause:?}"
+                        );
+                        ended += 1;
+                        continue;
+                    }
+                };
+                assert!(out.iter().zip(&slow).all(|(a, b)| same(*a, *b)), "{what}");
+                let finite = expected.iter().filter(|entry| entry.is_finite());
+                let scale = finite.fold(0.0, |most: f64, entry| most.max(entry.abs()));
+                let bound = CLOSE * scale + ERRORS * error;
+                for (a, b) in out.iter().zip(&expected) {
+                    let near = same(*a, *b) || a == b || (a - b).abs() <= bound;
+                    assert!(
+                        near,
+                        "{what}: {a} by code, {b} by the graph, {bound} apart at most"
+                    );
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 10_000, "{compared} numbers, {ended} ends");
+}
