@@ -91,7 +91,7 @@ pub fn described() -> String {
 }
 
 /// A method for one system, and why it was taken where `auto` took it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Chosen {
     /// Its name.
     pub name: &'static str,
@@ -132,6 +132,20 @@ impl Chosen {
             stepper: (entry.make)(system),
             reason,
         })
+    }
+
+    /// The same method for another system of the same structure: with other parameters, or another start.
+    pub fn of_another(&self, system: &Interpreted) -> Self {
+        let entry = METHODS.iter().find(|entry| entry.name == self.name);
+        let stepper = match (&self.stepper, entry) {
+            // What is set beside the name stays.
+            (Stepper::General(_) | Stepper::Baseline(_), _) | (_, None) => self.stepper.clone(),
+            (_, Some(entry)) => (entry.make)(system),
+        };
+        Chosen {
+            stepper,
+            ..self.clone()
+        }
     }
 }
 

@@ -27,7 +27,7 @@ pub struct Asked<'a> {
 }
 
 /// u as a function of t, x and ξ.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Inputs {
     table: Option<Table>,
     expressions: Option<Expressions>,
@@ -64,6 +64,21 @@ impl Inputs {
         self.table.as_ref().map_or(&[], Table::jumps)
     }
 
+    /// The same with other values of the parameters.
+    pub fn with_params(mut self, params: &[f64]) -> Self {
+        if let Some(expressions) = &mut self.expressions {
+            expressions.set_params(params);
+        }
+        self
+    }
+
+    /// Whether an entry of u has a column or an expression.
+    pub fn has(&self, place: usize) -> bool {
+        let expressions = self.expressions.iter();
+        self.table.as_ref().is_some_and(|table| table.has(place))
+            || expressions.flat_map(Expressions::places).any(|known| known == place)
+    }
+
     /// u, from the values that inputs keep elsewhere.
     pub fn at(&self, t: f64, x: &[f64], xi: &[f64], mut u: Vec<f64>) -> Vec<f64> {
         if let Some(table) = &self.table {
@@ -74,6 +89,11 @@ impl Inputs {
         }
         u
     }
+}
+
+/// The numbers of an expression that mentions parameters alone.
+pub fn constant(expression: &str, generated: &Generated, params: &[f64]) -> Result<Vec<f64>, String> {
+    expressions::constant(expression, &generated.active, params)
 }
 
 /// The times of samples, from the column `t` of a file.

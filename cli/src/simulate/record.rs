@@ -36,7 +36,7 @@ pub enum Every {
 }
 
 /// What is to be run.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Plan {
     pub method: Chosen,
     pub until: f64,
@@ -51,6 +51,8 @@ pub struct Plan {
     pub tolerance: Option<f64>,
     /// Where samples are that are not at the ends of steps.
     pub spacing: Spacing,
+    /// Steps chosen by their error are shown at no fewer points than that.
+    pub points: u64,
 }
 
 /// Where samples are.
@@ -120,6 +122,7 @@ impl Plan {
             chosen: every.is_none(),
             tolerance,
             spacing,
+            points: POINTS,
         }
     }
 }
@@ -247,42 +250,7 @@ impl<'a> Run<'a> {
         };
         let outcome = advance(system, &plan, &mut state, &balance, observe);
         bar.finish_and_clear();
-        let failure = match outcome {
-            Ok(()) => plan.tolerance.and_then(|tolerance| {
-                let change = balance.get().after(system, &state).lost(tolerance)?;
-                Some(format!(
-                    "the run has lost the motion at t = {}: its energy has changed by {}, for which no load accounts; there may be a singularity on the way: try a smaller --tol than {}",
-                    short(state.t),
-                    short(change),
-                    short(tolerance)
-                ))
-            }),
-            Err(
-                error @ (StepError::InvalidStep { .. }
-                | StepError::Shape { .. }
-                | StepError::InvalidTolerance { .. }),
-            ) => {
-                return Err(Failure::usage(error.to_string()));
-            }
-            Err(StepError::Stiff { time, step, rate }) => Some(format!(
-                "the run ends at t = {}: the motion is stiff, a rate of {} per unit of time keeps explicit steps at {}, {} of them ahead; try `--method backward-euler` with a --step of your choice, or a stiff solver through `hamel::adapter`",
-                short(time),
-                short(rate),
-                short(step),
-                short(((plan.until - time) / step).ceil())
-            )),
-            Err(StepError::Singular { time, cause }) => Some(format!(
-                "the run ends at t = {}: {}",
-                short(time),
-                system.singular(cause)
-            )),
-            Err(StepError::NonFinite { time }) => Some(format!(
-                "the run ends at t = {}: the next state is not finite; try a shorter step than {}",
-                short(time),
-                short(plan.step)
-            )),
-            Err(error) => Some(error.to_string()),
-        };
+        let failure = ended(system, &plan, outcome, &state, balance.get())?.map(|early| early.why);
         let listed = matches!(plan.spacing, Spacing::Times(_));
         let lists = [(&mut samples, listed), (&mut track, false)];
         for (list, complete) in lists {
@@ -315,6 +283,75 @@ impl<'a> Run<'a> {
     }
 }
 
+/// Why a run ended before its time.
+#[derive(Clone, Debug)]
+pub struct Early {
+    /// What happened, in a word or two.
+    pub kind: &'static str,
+    /// The same in a sentence.
+    pub why: String,
+}
+
+/// What became of a run that has come to a state; an impossible plan is an error.
+pub fn ended(
+    system: &Interpreted,
+    plan: &Plan,
+    outcome: Result<(), StepError>,
+    state: &State<Interpreted>,
+    balance: Balance,
+) -> Result<Option<Early>, Failure> {
+    let (kind, why) = match outcome {
+        Ok(()) => {
+            let lost = plan.tolerance.and_then(|tolerance| {
+                let change = balance.after(system, state).lost(tolerance)?;
+                Some((change, tolerance))
+            });
+            let Some((change, tolerance)) = lost else {
+                return Ok(None);
+            };
+            let why = format!(
+                "the run has lost the motion at t = {}: its energy has changed by {}, for which no load accounts; there may be a singularity on the way: try a smaller --tol than {}",
+                short(state.t),
+                short(change),
+                short(tolerance)
+            );
+            ("lost", why)
+        }
+        Err(
+            error @ (StepError::InvalidStep { .. }
+            | StepError::Shape { .. }
+            | StepError::InvalidTolerance { .. }),
+        ) => {
+            return Err(Failure::usage(error.to_string()));
+        }
+        Err(StepError::Stiff { time, step, rate }) => {
+            let why = format!(
+                "the run ends at t = {}: the motion is stiff, a rate of {} per unit of time keeps explicit steps at {}, {} of them ahead; try `--method backward-euler` with a --step of your choice, or a stiff solver through `hamel::adapter`",
+                short(time),
+                short(rate),
+                short(step),
+                short(((plan.until - time) / step).ceil())
+            );
+            ("stiff", why)
+        }
+        Err(StepError::Singular { time, cause }) => {
+            let cause = system.singular(cause);
+            let why = format!("the run ends at t = {}: {cause}", short(time));
+            ("singular", why)
+        }
+        Err(StepError::NonFinite { time }) => {
+            let why = format!(
+                "the run ends at t = {}: the next state is not finite; try a shorter step than {}",
+                short(time),
+                short(plan.step)
+            );
+            ("not finite", why)
+        }
+        Err(error) => ("other", error.to_string()),
+    };
+    Ok(Some(Early { kind, why }))
+}
+
 /// Drops every second sample where there are more than a run shows; whether it did.
 fn thin(samples: &mut Vec<Sample>) -> bool {
     if samples.len() < MOST {
@@ -329,8 +366,8 @@ fn thin(samples: &mut Vec<Sample>) -> bool {
 }
 
 /// Where an observed state is.
-#[derive(Clone, Copy, PartialEq)]
-enum Place {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
     /// At the start, or at the end of a step.
     End,
     /// Between, for plots: steps chosen by their error may be few.
@@ -362,7 +399,7 @@ fn show<const D: usize>(
 }
 
 /// The run from the start to its end, in equal steps or in those that a tolerance asks for.
-fn advance(
+pub fn advance(
     system: &Interpreted,
     plan: &Plan,
     state: &mut State<Interpreted>,
@@ -407,7 +444,7 @@ fn advance(
         observe(state, Place::Sample);
     }
     let until = plan.until;
-    let spacing = until / POINTS as f64;
+    let spacing = until / plan.points as f64;
     // A run that has lost the motion ends there.
     let followed = |state: &State<Interpreted>| {
         let here = balance.get().after(system, state);

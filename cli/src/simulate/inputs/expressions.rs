@@ -20,7 +20,7 @@ const TIME: &str = "t";
 const OWN: &str = "`hamel_v`, `hamel_x`, ";
 
 /// Expressions of inputs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Expressions {
     /// Each with the entries of u that it is.
     all: Vec<(Vec<usize>, Interpreter)>,
@@ -85,6 +85,11 @@ impl Expressions {
             .flat_map(|(places, _)| places.iter().copied())
     }
 
+    /// The parameters have other values from now on.
+    pub fn set_params(&mut self, params: &[f64]) {
+        self.params = params.to_vec();
+    }
+
     /// Sets the entries of u that expressions give.
     pub fn set(&self, t: f64, x: &[f64], xi: &[f64], u: &mut [f64]) {
         let time = self.timed.then_some(t).into_iter();
@@ -100,16 +105,35 @@ impl Expressions {
     }
 }
 
-/// Declarations of what expressions may mention, in the order of t, the parameters, x, ξ and z; whether t is among
-/// them.
-fn known(model: &Model) -> (Vec<String>, bool) {
-    let group = |group: &Group| match group.shape {
+/// The numbers of an expression that mentions parameters alone.
+pub fn constant(expression: &str, model: &Model, params: &[f64]) -> Result<Vec<f64>, String> {
+    let mut known: Vec<String> = model.params.iter().map(declared).collect();
+    if known.is_empty() {
+        known.push("hamel_t".into());
+    }
+    let (interpreter, count) = compiled(&known, "", expression)?;
+    let given = match params {
+        [] => &[0.0],
+        params => params,
+    };
+    let values = interpreter.call(&[0.0], &[0.0], given, &[]);
+    Ok(values.unwrap_or_else(|_| vec![f64::NAN; count]))
+}
+
+/// A group with its shape, as inputs are declared.
+fn declared(group: &Group) -> String {
+    match group.shape {
         ShapeKind::Scalar => group.name.clone(),
         ShapeKind::Vector(n) => format!("{}: vec{n}", group.name),
         ShapeKind::Matrix(n) => format!("{}: mat{n}", group.name),
         ShapeKind::Symmetric(n) => format!("{}: sym{n}", group.name),
-    };
-    let mut all: Vec<String> = model.params.iter().map(group).collect();
+    }
+}
+
+/// Declarations of what expressions may mention, in the order of t, the parameters, x, ξ and z; whether t is among
+/// them.
+fn known(model: &Model) -> (Vec<String>, bool) {
+    let mut all: Vec<String> = model.params.iter().map(declared).collect();
     for coordinate in &model.coordinates {
         let name = &coordinate.name;
         match coordinate.kind {
@@ -119,7 +143,7 @@ fn known(model: &Model) -> (Vec<String>, bool) {
             kind => all.push(format!("{name}: vec{}", entry_names(name, kind).len())),
         }
     }
-    all.extend(model.velocities.iter().chain(&model.states).map(group));
+    all.extend(model.velocities.iter().chain(&model.states).map(declared));
     let is_time = |one: &String| one.split(':').next() == Some(TIME);
     let timed = !all.iter().any(is_time);
     if timed {
@@ -172,7 +196,7 @@ fn said(errors: &[Diagnostic]) -> String {
     };
     match &error.help {
         // What the description has of its own is nothing to choose from.
-        Some(help) => format!("{}; {}", error.message, help.replace(OWN, "")),
+        Some(help) => format!("{}; {}", error.message, help.replace(OWN, "").replace("`hamel_t`, ", "")),
         None => error.message.clone(),
     }
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 const TIME: &str = "t";
 
 /// Inputs over time.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Table {
     times: Vec<f64>,
     /// Entries of u with their values at the times.

@@ -1,0 +1,126 @@
+//! How a run is stepped: its length, the method, the step or the tolerance.
+
+use super::record::{Every, Plan};
+use crate::failure::Failure;
+use crate::interpreted::Interpreted;
+use crate::method::{self, AUTO, Chosen, Stepper};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use hamel::methods::General;
+use hamel_codegen::generate::Generated;
+
+/// Steps where --step is left out: a thousandth, but no fewer than 1000 and no more than a million.
+const STEP: f64 = 1e-3;
+const FEWEST: f64 = 1e3;
+const MOST: f64 = 1e6;
+/// λ where --lambda is left out.
+const LAMBDA: f64 = 10.0;
+/// The tolerance where `auto` takes a method that chooses its steps.
+const TOLERANCE: f64 = 1e-9;
+/// What `auto` takes where a tolerance is given and the method that fits has equal steps.
+const BY_TOLERANCE: &str = "rkmk8";
+
+/// Length, method and steps of a run.
+#[derive(Args, Clone, Debug)]
+pub struct Stepping {
+    /// Length of the run, in the unit of time of the description (s).
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
+    pub until: f64,
+    /// Length of a step; default 0.001, adjusted so that a run takes 10³ to 10⁶ steps.
+    #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    /// How to step; `auto` takes what fits the system and says why, a method that chooses its steps where
+    /// --tol is given. --help tells them apart.
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(method::names()), default_value = AUTO)]
+    pub method: String,
+    /// Error that a step may make, for rkmk54 and rkmk8, which then choose their steps themselves.
+    #[arg(long, value_name = "E", value_parser = positive, allow_negative_numbers = true, conflicts_with = "step")]
+    pub tol: Option<f64>,
+    /// Rate at which rk4 leads back to the constraint (1/s); default 10.
+    #[arg(long, value_name = "L", value_parser = rate, allow_negative_numbers = true)]
+    pub lambda: Option<f64>,
+}
+
+impl Stepping {
+    /// What can be said before anything is derived.
+    pub fn check(&self) -> Result<(), Failure> {
+        match self.lambda.is_some() && self.method != "rk4" {
+            true => Err(Failure::usage(
+                "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
+            )),
+            false => Ok(()),
+        }
+    }
+
+    /// The plan of a run of a system, with the method that is asked for, or that fits.
+    pub fn plan(
+        &self,
+        generated: &Generated,
+        system: &Interpreted,
+        every: Option<Every>,
+    ) -> Result<Plan, Failure> {
+        let step = self
+            .step
+            .unwrap_or_else(|| STEP.clamp(self.until / MOST, self.until / FEWEST));
+        let steps = (self.until / step).ceil() as u64;
+        let method = self.chosen(generated, system, steps)?;
+        let tolerance = self.tolerance(&method)?;
+        Ok(Plan::new(method, self.until, step, every, tolerance))
+    }
+
+    /// The method that is asked for, or that fits; checked against the structure of the system.
+    fn chosen(
+        &self,
+        generated: &Generated,
+        system: &Interpreted,
+        steps: u64,
+    ) -> Result<Chosen, Failure> {
+        let structure = system.structure(&generated.program);
+        let mut chosen = Chosen::new(&self.method, system, &structure, steps)?;
+        if self.method == AUTO && self.tol.is_some() && !adapts(&chosen) {
+            chosen = Chosen::new(BY_TOLERANCE, system, &structure, steps)?;
+            chosen.reason = Some("a tolerance was given");
+        }
+        if let Stepper::General(General::Rk4 { lambda }) = &mut chosen.stepper {
+            *lambda = self.lambda.unwrap_or(LAMBDA);
+        }
+        Ok(chosen)
+    }
+
+    /// The tolerance of a run that chooses its steps; `None` for equal steps.
+    fn tolerance(&self, chosen: &Chosen) -> Result<Option<f64>, Failure> {
+        match self.tol {
+            Some(_) if !adapts(chosen) => Err(Failure::usage(format!(
+                "--tol goes with --method rkmk54 and rkmk8, which choose their steps; {} takes --step",
+                chosen.name
+            ))),
+            None if adapts(chosen) && chosen.reason.is_some() && self.step.is_none() => {
+                Ok(Some(TOLERANCE))
+            }
+            tol => Ok(tol),
+        }
+    }
+}
+
+/// Whether a method can choose its steps.
+fn adapts(chosen: &Chosen) -> bool {
+    matches!(
+        chosen.stepper,
+        Stepper::General(General::Rkmk54 | General::Rkmk8)
+    )
+}
+
+/// A number greater than zero.
+pub fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("a number greater than zero is needed".into()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("a number, zero or greater, is needed".into()),
+    }
+}
