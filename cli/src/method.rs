@@ -1,7 +1,7 @@
 //! The methods by their names on the command line, and which systems they are for.
 
 use crate::failure::Failure;
-use crate::interpreted::Interpreted;
+use crate::interpreted::{Interpreted, Numbers};
 use crate::number::short;
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, General, Lgvi, Method, Scheme, Splitting};
@@ -238,7 +238,7 @@ pub enum Stepper {
     /// The free motion from the start, with nothing gathered on the way.
     Closed {
         /// Time, x and ξ of the start.
-        start: (Vec<f64>, Vec<f64>),
+        start: (Numbers, Numbers),
         /// One free motion; its kicks are zero.
         motion: Splitting,
     },
@@ -282,7 +282,7 @@ impl Stepper {
 
 impl<Sys> Method<Sys> for Stepper
 where
-    Sys: Split<Scalar = f64, Coordinates = Vec<f64>, Velocities = Vec<f64>> + Canonical,
+    Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
 {
     fn order(&self) -> u32 {
         match self {
@@ -306,7 +306,7 @@ where
         inputs: &U,
     ) -> Result<State<Sys>, StepError>
     where
-        U: Fn(f64, &Vec<f64>, &Vec<f64>) -> Sys::Inputs,
+        U: Fn(f64, &Numbers, &Numbers) -> Sys::Inputs,
     {
         match self {
             Stepper::General(method) => method.step(system, state, h, inputs),
@@ -334,7 +334,7 @@ where
         force: &mut Option<Sys::Chart>,
     ) -> Result<State<Sys>, StepError>
     where
-        U: Fn(f64, &Vec<f64>, &Vec<f64>) -> Sys::Inputs,
+        U: Fn(f64, &Numbers, &Numbers) -> Sys::Inputs,
     {
         match self {
             Stepper::Splitting(method) => method.follow(system, state, h, inputs, force),

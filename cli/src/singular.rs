@@ -106,10 +106,10 @@ impl Interpreted {
     }
 
     /// ξ̇, or why it has no value.
-    pub fn motion(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, String> {
-        match self.accel(x, xi, u) {
+    pub fn motion(&self, x: &[f64], xi: &[f64], u: &[f64]) -> Result<Vec<f64>, String> {
+        match self.accel(&x.into(), &xi.into(), &u.into()) {
             Ok(_) if self.constant_singular() => Err(self.at(x)),
-            Ok(xi_dot) => Ok(xi_dot),
+            Ok(xi_dot) => Ok(xi_dot.to_vec()),
             Err(cause) => Err(self.singular(cause)),
         }
     }
@@ -161,7 +161,7 @@ impl Interpreted {
             let mut xi = vec![0.0; n];
             xi[column] = 1.0;
             let momenta = self.momentum(x, &xi);
-            for (row, (p, start)) in momenta.iter().zip(&still).take(n).enumerate() {
+            for (row, (p, start)) in momenta.iter().zip(still.iter()).take(n).enumerate() {
                 mass[(row, column)] = p - start;
             }
         }

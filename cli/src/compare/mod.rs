@@ -4,7 +4,7 @@ mod reference;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::interpreted::Interpreted;
+use crate::interpreted::{Interpreted, Numbers};
 use crate::method::{self, Named, Stepper};
 use crate::robot::RobotOptions;
 use crate::source::Source;
@@ -150,17 +150,16 @@ fn compare(
     system.check_parameters(&state.x)?;
     let structure = &generated.program.structure;
     let (methods, missing) = method::fitting(&arguments.methods, &system, structure);
-    let inputs = |t: f64, x: &Vec<f64>, xi: &Vec<f64>| system.inputs(t, x, xi);
+    let inputs = |t: f64, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let momenta = |x: &[f64], xi: &[f64]| -> Vec<f64> {
-        let values = system.invariants().iter();
-        values
-            .flat_map(|claim| system.output(claim, 0.0, x, xi))
-            .collect()
+        let claims = system.invariants().iter();
+        let values = claims.map(|claim| system.output(claim, 0.0, x, xi));
+        values.flat_map(|value| value.to_vec()).collect()
     };
     let mut problem = Problem {
         system: Counted::new(&system),
-        x: state.x.clone(),
-        xi: state.xi.clone(),
+        x: state.x.as_slice().into(),
+        xi: state.xi.as_slice().into(),
         until,
         inputs,
         error: Box::new(|_, _| f64::NAN),

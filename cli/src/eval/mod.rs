@@ -138,6 +138,7 @@ fn motion(
 ) -> Result<Vec<(&'static str, Json)>, Failure> {
     let system = Interpreted::new(generated, state, text)?;
     let State { params, x, xi, u } = state;
+    let start = system.start();
     let vector = |name: &str| -> Result<Json, Failure> {
         let value = function(&generated.program, name, params)?.call(x, xi, u, &[]);
         Ok(Json::vector(&value.unwrap_or_default()))
@@ -177,8 +178,14 @@ fn motion(
         ("generalized_force", vector("generalized_force")?),
         ("rate", vector("rate")?),
         ("accel", accel),
-        ("kinetic_energy", Json::Number(system.kinetic_energy(x, xi))),
-        ("potential_energy", Json::Number(system.potential_energy(x))),
+        (
+            "kinetic_energy",
+            Json::Number(system.kinetic_energy(&start.0, &start.1)),
+        ),
+        (
+            "potential_energy",
+            Json::Number(system.potential_energy(&start.0)),
+        ),
         ("constraint", Json::vector(&system.constraint(x))),
         ("outputs", Json::object(outputs)),
     ];

@@ -1,5 +1,6 @@
 //! Functions of a program with its parameters set, as machine code where this machine has any.
 
+use super::Numbers;
 use crate::failure::Failure;
 use hamel_codegen::program::{Cause, Function, Program};
 use hamel_native::{Compiled, Constants};
@@ -17,6 +18,13 @@ pub struct Place {
     index: usize,
     /// How many numbers its result has.
     length: usize,
+}
+
+impl Place {
+    /// How many numbers its result has.
+    pub fn length(self) -> usize {
+        self.length
+    }
 }
 
 impl Functions {
@@ -53,11 +61,11 @@ impl Functions {
     }
 
     /// The result for x, ξ and z, u, ξ̇ and p; what it means that a pivot is not positive.
-    pub fn call(&self, place: Place, arguments: [&[f64]; 5]) -> Result<Vec<f64>, Cause> {
-        let mut out = vec![f64::NAN; place.length];
+    pub fn call(&self, place: Place, arguments: [&[f64]; 5]) -> Result<Numbers, Cause> {
+        let mut out = Numbers::filled(f64::NAN, place.length);
         let constants = &self.constants;
         self.compiled
-            .call(place.index, constants, arguments, &mut out)?;
+            .call(place.index, constants, arguments, out.as_mut())?;
         Ok(out)
     }
 

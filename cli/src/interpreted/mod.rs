@@ -2,6 +2,7 @@
 
 mod functions;
 mod momenta;
+mod numbers;
 
 use crate::failure::Failure;
 use crate::simulate::inputs::Inputs;
@@ -15,14 +16,15 @@ use hamel_codegen::model::layout;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Argument, Cause, Program, Shape};
 use momenta::Momenta;
+pub use numbers::Numbers;
 use std::cell::{Cell, RefCell};
 
-/// A program with its parameters set; x, ξ and u are `Vec`s.
+/// A program with its parameters set; x, ξ and u are [`Numbers`].
 pub struct Interpreted {
     functions: Functions,
     blocks: Vec<Block>,
-    start: (Vec<f64>, Vec<f64>),
-    inputs: Vec<f64>,
+    start: (Numbers, Numbers),
+    inputs: Numbers,
     /// What inputs are, where they do not keep these values.
     given: Option<Inputs>,
     /// Where they jump next.
@@ -96,8 +98,8 @@ impl Interpreted {
         };
         Ok(Interpreted {
             blocks: program.blocks.iter().copied().map(block).collect(),
-            start: (state.x.clone(), state.xi.clone()),
-            inputs: state.u.clone(),
+            start: (state.x.as_slice().into(), state.xi.as_slice().into()),
+            inputs: state.u.as_slice().into(),
             given: None,
             before: Cell::new(f64::INFINITY),
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
@@ -170,9 +172,9 @@ impl Interpreted {
     }
 
     /// The value of a function that has one everywhere.
-    fn value(&self, function: Place, x: &[f64], xi: &[f64], u: &[f64]) -> Vec<f64> {
+    fn value(&self, function: Place, x: &[f64], xi: &[f64], u: &[f64]) -> Numbers {
         let value = self.functions.call(function, [x, xi, u, &[], &[]]);
-        value.unwrap_or_default()
+        value.unwrap_or_else(|_| Numbers::filled(f64::NAN, function.length()))
     }
 
     fn scalar(&self, function: Place, x: &[f64], xi: &[f64]) -> f64 {
@@ -204,20 +206,24 @@ impl Interpreted {
     }
 
     /// u.
-    pub fn inputs(&self, t: f64, x: &[f64], xi: &[f64]) -> Vec<f64> {
+    pub fn inputs(&self, t: f64, x: &[f64], xi: &[f64]) -> Numbers {
         let kept = self.inputs.clone();
         let t = match t >= self.before.get() {
             true => self.before.get().next_down(),
             false => t,
         };
         match &self.given {
-            Some(given) => given.at(t, x, xi, kept),
+            Some(given) => {
+                let mut u = kept;
+                given.set(t, x, xi, u.as_mut());
+                u
+            }
             None => kept,
         }
     }
 
     /// p = M ξ.
-    pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Vec<f64> {
+    pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Numbers {
         self.value(self.momentum, x, xi, &[])
     }
 
@@ -228,7 +234,7 @@ impl Interpreted {
     }
 
     /// φ(x).
-    pub fn constraint(&self, x: &[f64]) -> Vec<f64> {
+    pub fn constraint(&self, x: &[f64]) -> Numbers {
         self.value(self.constraint, x, &[], &[])
     }
 
@@ -244,20 +250,20 @@ impl Interpreted {
 
     /// The value of an output, matrices by rows; of accelerations, those of the forward dynamics,
     /// NaN where they have no value.
-    pub fn output(&self, output: &Output, t: f64, x: &[f64], xi: &[f64]) -> Vec<f64> {
+    pub fn output(&self, output: &Output, t: f64, x: &[f64], xi: &[f64]) -> Numbers {
         let u = self.inputs(t, x, xi);
-        let mut xi_dot = Vec::new();
+        let mut xi_dot = Numbers::filled(0.0, 0);
         if output.accelerated {
             let arguments = [x, xi, &u, &[], &[]];
             let accel = self
                 .accel
                 .map(|accel| self.functions.call(accel, arguments));
             let accel = accel.and_then(Result::ok);
-            xi_dot = accel.unwrap_or_else(|| vec![f64::NAN; xi.len()]);
+            xi_dot = accel.unwrap_or_else(|| Numbers::filled(f64::NAN, xi.len()));
         }
         let arguments = [x, xi, &u, &xi_dot, &[]];
         let value = self.functions.call(output.function, arguments);
-        value.unwrap_or_default()
+        value.unwrap_or_else(|_| Numbers::filled(f64::NAN, output.function.length()))
     }
 }
 
@@ -318,68 +324,68 @@ fn block(block: layout::Block) -> Block {
 
 impl System for Interpreted {
     type Scalar = f64;
-    type Coordinates = Vec<f64>;
-    type Velocities = Vec<f64>;
-    type Chart = Vec<f64>;
-    type Inputs = Vec<f64>;
+    type Coordinates = Numbers;
+    type Velocities = Numbers;
+    type Chart = Numbers;
+    type Inputs = Numbers;
 
     fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
-    fn zero_coordinates(&self) -> Vec<f64> {
-        vec![0.0; self.start.0.len()]
+    fn zero_coordinates(&self) -> Numbers {
+        Numbers::filled(0.0, self.start.0.len())
     }
 
-    fn zero_velocities(&self) -> Vec<f64> {
-        vec![0.0; self.start.1.len()]
+    fn zero_velocities(&self) -> Numbers {
+        Numbers::filled(0.0, self.start.1.len())
     }
 
-    fn zero_chart(&self) -> Vec<f64> {
-        vec![0.0; self.chart]
+    fn zero_chart(&self) -> Numbers {
+        Numbers::filled(0.0, self.chart)
     }
 
-    fn zero_inputs(&self) -> Vec<f64> {
-        vec![0.0; self.inputs.len()]
+    fn zero_inputs(&self) -> Numbers {
+        Numbers::filled(0.0, self.inputs.len())
     }
 
-    fn start(&self) -> (Vec<f64>, Vec<f64>) {
+    fn start(&self) -> (Numbers, Numbers) {
         self.start.clone()
     }
 
-    fn rate(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+    fn rate(&self, x: &Numbers, xi: &Numbers) -> Numbers {
         self.value(self.rate, x, xi, &[])
     }
 
-    fn chart_rate(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+    fn chart_rate(&self, x: &Numbers, xi: &Numbers) -> Numbers {
         self.value(self.chart_rate, x, xi, &[])
     }
 
-    fn accel(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Result<Vec<f64>, Singular> {
+    fn accel(&self, x: &Numbers, xi: &Numbers, u: &Numbers) -> Result<Numbers, Singular> {
         self.count();
         let Some(accel) = self.accel else {
             return Err(Singular::Mass);
         };
         let value = self.functions.call(accel, [x, xi, u, &[], &[]]);
         value.map_err(|cause| {
-            self.fails(Failed::Motion(x.clone()));
+            self.fails(Failed::Motion(x.to_vec()));
             singular(cause)
         })
     }
 
-    fn correction(&self, x: &Vec<f64>) -> Vec<f64> {
+    fn correction(&self, x: &Numbers) -> Numbers {
         self.value(self.correction, x, &[], &[])
     }
 
-    fn project_position(&self, x: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
-        let arguments = [x.as_slice(), &[], &[], &[], &[]];
+    fn project_position(&self, x: &Numbers) -> Result<Option<Numbers>, Singular> {
+        let arguments = [&**x, &[], &[], &[], &[]];
         let function = self.project_position;
         let step = function.map(|function| self.functions.call(function, arguments));
         step.transpose().map_err(|cause| self.projection(cause))
     }
 
-    fn project_velocity(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Result<Option<Vec<f64>>, Singular> {
-        let arguments = [x.as_slice(), xi, &[], &[], &[]];
+    fn project_velocity(&self, x: &Numbers, xi: &Numbers) -> Result<Option<Numbers>, Singular> {
+        let arguments = [&**x, xi, &[], &[], &[]];
         let function = self.project_velocity;
         let projected = function.map(|function| self.functions.call(function, arguments));
         projected
@@ -387,19 +393,19 @@ impl System for Interpreted {
             .map_err(|cause| self.projection(cause))
     }
 
-    fn constraint_norm(&self, x: &Vec<f64>) -> f64 {
+    fn constraint_norm(&self, x: &Numbers) -> f64 {
         // A NaN stays.
         self.constraint(x)
-            .into_iter()
-            .map(f64::abs)
+            .iter()
+            .map(|entry| entry.abs())
             .fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
     }
 
-    fn kinetic_energy(&self, x: &Vec<f64>, xi: &Vec<f64>) -> f64 {
+    fn kinetic_energy(&self, x: &Numbers, xi: &Numbers) -> f64 {
         self.scalar(self.kinetic, x, xi)
     }
 
-    fn potential_energy(&self, x: &Vec<f64>) -> f64 {
+    fn potential_energy(&self, x: &Numbers) -> f64 {
         self.scalar(self.potential, x, &[])
     }
 }

@@ -1,7 +1,7 @@
 //! The traits by which methods step momenta; a system that lacks their functions is refused before a
 //! run begins.
 
-use super::{Functions, Interpreted, Place};
+use super::{Functions, Interpreted, Numbers, Place};
 use crate::failure::Failure;
 use crate::singular::Failed;
 use hamel::rotor::{Rotor, Symmetry};
@@ -41,8 +41,8 @@ impl Momenta {
         if let (Ok(splitting), Some(inertia)) =
             (&program.structure.split, functions.known("rotor_inertia"))
         {
-            let value = functions.call(inertia, [&[]; 5]).unwrap_or_default();
-            let mut numbers = value.into_iter();
+            let value = functions.call(inertia, [&[]; 5]);
+            let mut numbers = value.iter().flat_map(|numbers| numbers.iter().copied());
             for form in &splitting.rotors {
                 let entries = numbers.by_ref().take(form.inertia.entries());
                 rotors.push(rotor(form.inertia, &entries.collect::<Vec<f64>>())?);
@@ -80,10 +80,10 @@ fn rotor(inertia: Inertia, numbers: &[f64]) -> Result<Rotor<f64>, Failure> {
 
 impl Interpreted {
     /// The value of a function; NaN where there is none, which ends a run with an error.
-    fn found(&self, function: Option<Place>, arguments: [&[f64]; 5], length: usize) -> Vec<f64> {
+    fn found(&self, function: Option<Place>, arguments: [&[f64]; 5], length: usize) -> Numbers {
         let value = function.map(|function| self.functions.call(function, arguments));
         let value = value.and_then(Result::ok);
-        value.unwrap_or_else(|| vec![f64::NAN; length])
+        value.unwrap_or_else(|| Numbers::filled(f64::NAN, length))
     }
 
     /// The structure with the symmetry that the inertias have for these parameters.
@@ -112,52 +112,52 @@ impl Split for Interpreted {
         self.momenta.rotors.clone()
     }
 
-    fn centre(&self, x: &Vec<f64>) -> Vec<f64> {
+    fn centre(&self, x: &Numbers) -> Numbers {
         match self.momenta.centre {
             Some(centre) => self.found(Some(centre), [x, &[], &[], &[], &[]], x.len()),
             None => x.clone(),
         }
     }
 
-    fn uncentre(&self, y: &Vec<f64>) -> Vec<f64> {
+    fn uncentre(&self, y: &Numbers) -> Numbers {
         match self.momenta.uncentre {
             Some(uncentre) => self.found(Some(uncentre), [y, &[], &[], &[], &[]], y.len()),
             None => y.clone(),
         }
     }
 
-    fn split_momenta(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+    fn split_momenta(&self, x: &Numbers, xi: &Numbers) -> Numbers {
         self.found(self.momenta.momenta, [x, xi, &[], &[], &[]], self.chart)
     }
 
-    fn split_velocities(&self, x: &Vec<f64>, p: &Vec<f64>) -> Vec<f64> {
+    fn split_velocities(&self, x: &Numbers, p: &Numbers) -> Numbers {
         self.found(self.momenta.velocities, [x, &[], &[], &[], p], p.len())
     }
 
-    fn kick(&self, x: &Vec<f64>, u: &Vec<f64>) -> Vec<f64> {
+    fn kick(&self, x: &Numbers, u: &Numbers) -> Numbers {
         self.count();
         self.found(self.momenta.kick, [x, &[], u, &[], &[]], self.chart)
     }
 }
 
 impl Canonical for Interpreted {
-    fn momentum(&self, x: &Vec<f64>, xi: &Vec<f64>) -> Vec<f64> {
+    fn momentum(&self, x: &Numbers, xi: &Numbers) -> Numbers {
         Interpreted::momentum(self, x, xi)
     }
 
-    fn momentum_rate(&self, x: &Vec<f64>, xi: &Vec<f64>, u: &Vec<f64>) -> Vec<f64> {
+    fn momentum_rate(&self, x: &Numbers, xi: &Numbers, u: &Numbers) -> Numbers {
         self.count();
         self.found(self.momenta.rate, [x, xi, u, &[], &[]], xi.len())
     }
 
-    fn velocity_from_momentum(&self, x: &Vec<f64>, p: &Vec<f64>) -> Result<Vec<f64>, Singular> {
-        let arguments = [x.as_slice(), &[], &[], &[], p];
+    fn velocity_from_momentum(&self, x: &Numbers, p: &Numbers) -> Result<Numbers, Singular> {
+        let arguments = [&**x, &[], &[], &[], p];
         match self.momenta.velocity {
             Some(velocity) => self.functions.call(velocity, arguments).map_err(|_| {
-                self.fails(Failed::Motion(x.clone()));
+                self.fails(Failed::Motion(x.to_vec()));
                 Singular::Mass
             }),
-            None => Ok(vec![f64::NAN; p.len()]),
+            None => Ok(Numbers::filled(f64::NAN, p.len())),
         }
     }
 }

@@ -76,23 +76,28 @@ impl Inputs {
     pub fn has(&self, place: usize) -> bool {
         let expressions = self.expressions.iter();
         self.table.as_ref().is_some_and(|table| table.has(place))
-            || expressions.flat_map(Expressions::places).any(|known| known == place)
+            || expressions
+                .flat_map(Expressions::places)
+                .any(|known| known == place)
     }
 
-    /// u, from the values that inputs keep elsewhere.
-    pub fn at(&self, t: f64, x: &[f64], xi: &[f64], mut u: Vec<f64>) -> Vec<f64> {
+    /// Sets the entries of u that change; the others keep their values.
+    pub fn set(&self, t: f64, x: &[f64], xi: &[f64], u: &mut [f64]) {
         if let Some(table) = &self.table {
-            table.set(t, &mut u);
+            table.set(t, u);
         }
         if let Some(expressions) = &self.expressions {
-            expressions.set(t, x, xi, &mut u);
+            expressions.set(t, x, xi, u);
         }
-        u
     }
 }
 
 /// The numbers of an expression that mentions parameters alone.
-pub fn constant(expression: &str, generated: &Generated, params: &[f64]) -> Result<Vec<f64>, String> {
+pub fn constant(
+    expression: &str,
+    generated: &Generated,
+    params: &[f64],
+) -> Result<Vec<f64>, String> {
     expressions::constant(expression, &generated.active, params)
 }
 

@@ -22,8 +22,8 @@ use hamel_codegen::tables::{self, Table};
 use hamel_report::plot;
 use record::{Every, Run, Spacing};
 use std::path::PathBuf;
-pub use stepping::positive;
 use stepping::Stepping;
+pub use stepping::positive;
 use write::Format;
 
 /// Integrates the equations of motion from a start.
@@ -98,7 +98,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let system = Interpreted::new(&generated, &state, source.shown())?.with(given);
     system.check_parameters(&state.x)?;
     let until = arguments.stepping.until;
-    let mut plan = arguments.stepping.plan(&generated, &system, arguments.every)?;
+    let mut plan = arguments
+        .stepping
+        .plan(&generated, &system, arguments.every)?;
     if let Some(path) = &arguments.times {
         plan.spacing = Spacing::Times(inputs::times(path, until)?);
     }

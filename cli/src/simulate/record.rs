@@ -2,7 +2,7 @@
 
 use super::balance::Balance;
 use crate::failure::Failure;
-use crate::interpreted::{Interpreted, Output};
+use crate::interpreted::{Interpreted, Numbers, Output};
 use crate::method::{Chosen, Stepper};
 use crate::names;
 use crate::number::short;
@@ -143,20 +143,21 @@ pub struct Sample {
 
 impl Sample {
     fn of(system: &Interpreted, state: &State<Interpreted>) -> Self {
-        let (x, xi) = (state.x.clone(), state.xi.clone());
+        let (x, xi) = (&state.x, &state.xi);
         let values = |list: &[Output]| -> Vec<f64> {
-            list.iter()
-                .flat_map(|output| system.output(output, state.t, &x, &xi))
-                .collect()
+            let values = list
+                .iter()
+                .map(|output| system.output(output, state.t, x, xi));
+            values.flat_map(|value| value.to_vec()).collect()
         };
         Sample {
             t: state.t,
             outputs: values(system.outputs()),
             invariants: values(system.invariants()),
-            momentum: system.momentum(&x, &xi),
-            energy: system.kinetic_energy(&x, &xi) + system.potential_energy(&x),
-            x,
-            xi,
+            momentum: system.momentum(x, xi).to_vec(),
+            energy: system.kinetic_energy(x, xi) + system.potential_energy(x),
+            x: x.to_vec(),
+            xi: xi.to_vec(),
         }
     }
 }
@@ -406,7 +407,7 @@ pub fn advance(
     balance: &Cell<Balance>,
     mut observe: impl FnMut(&State<Interpreted>, Place),
 ) -> Result<(), StepError> {
-    let inputs = |t, x: &Vec<f64>, xi: &Vec<f64>| system.inputs(t, x, xi);
+    let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
         let method = &plan.method.stepper;

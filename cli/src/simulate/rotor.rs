@@ -2,7 +2,7 @@
 //! needs.
 
 use super::record::Sample;
-use crate::interpreted::Interpreted;
+use crate::interpreted::{Interpreted, Numbers};
 use hamel::{Block, System};
 use hamel_report::plot::Poinsot;
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -25,10 +25,11 @@ pub fn poinsot(system: &Interpreted, track: &[Sample]) -> Option<Poinsot> {
             return None;
         }
     }
+    let of = |x: &[f64], xi: &[f64]| system.chart_rate(&x.into(), &xi.into());
     let momenta: Vec<[f64; 3]> = track
         .iter()
         .map(|sample| {
-            let rate = DVector::from_vec(system.chart_rate(&sample.x, &sample.xi));
+            let rate = DVector::from_column_slice(&of(&sample.x, &sample.xi));
             (inertia * rate.fixed_rows::<3>(row)).into()
         })
         .collect();
@@ -61,11 +62,17 @@ fn attitude(blocks: &[Block]) -> Option<usize> {
 /// J of T in the rates of the chart, C⁻ᵀ M C⁻¹, where nothing couples the attitude to the rest.
 fn inertia(system: &Interpreted, at: &Sample, row: usize) -> Option<Matrix3<f64>> {
     let n = at.xi.len();
-    let columns = |of: &dyn Fn(&Vec<f64>) -> Vec<f64>| -> Vec<DVector<f64>> {
-        let basis = |j: usize| (0..n).map(|i| f64::from(u8::from(i == j))).collect();
-        (0..n).map(|j| DVector::from_vec(of(&basis(j)))).collect()
+    let columns = |of: &dyn Fn(&Numbers) -> Numbers| -> Vec<DVector<f64>> {
+        let basis = |j: usize| {
+            let mut basis = Numbers::filled(0.0, n);
+            basis.as_mut()[j] = 1.0;
+            basis
+        };
+        let column = |j: usize| DVector::from_column_slice(&of(&basis(j)));
+        (0..n).map(column).collect()
     };
-    let rates = DMatrix::from_columns(&columns(&|xi| system.chart_rate(&at.x, xi)));
+    let x = Numbers::from(at.x.as_slice());
+    let rates = DMatrix::from_columns(&columns(&|xi| system.chart_rate(&x, xi)));
     let mass = DMatrix::from_columns(&columns(&|xi| system.momentum(&at.x, xi)));
     if rates.nrows() != n || mass.nrows() != n {
         return None;

@@ -196,7 +196,11 @@ fn said(errors: &[Diagnostic]) -> String {
     };
     match &error.help {
         // What the description has of its own is nothing to choose from.
-        Some(help) => format!("{}; {}", error.message, help.replace(OWN, "").replace("`hamel_t`, ", "")),
+        Some(help) => format!(
+            "{}; {}",
+            error.message,
+            help.replace(OWN, "").replace("`hamel_t`, ", "")
+        ),
         None => error.message.clone(),
     }
 }

@@ -1,0 +1,86 @@
+//! Lists of numbers whose length is known at run time: short ones do without an allocation.
+
+use hamel::Store;
+use std::ops::Deref;
+
+/// So many numbers stand in the list itself: the coordinates of a free body, a robot's arm.
+const SHORT: usize = 12;
+
+/// A list of numbers.
+#[derive(Clone, Debug)]
+pub enum Numbers {
+    /// The first so many of these.
+    Short(usize, [f64; SHORT]),
+    /// Any number of them.
+    Long(Vec<f64>),
+}
+
+impl Numbers {
+    /// So many times a number.
+    #[inline]
+    pub fn filled(number: f64, length: usize) -> Self {
+        match length <= SHORT {
+            true => Numbers::Short(length, [number; SHORT]),
+            false => Numbers::Long(vec![number; length]),
+        }
+    }
+}
+
+impl AsRef<[f64]> for Numbers {
+    #[inline]
+    fn as_ref(&self) -> &[f64] {
+        match self {
+            Numbers::Short(length, list) => list.get(..*length).unwrap_or(list),
+            Numbers::Long(list) => list,
+        }
+    }
+}
+
+impl AsMut<[f64]> for Numbers {
+    #[inline]
+    fn as_mut(&mut self) -> &mut [f64] {
+        match self {
+            Numbers::Short(length, list) => &mut list[..SHORT.min(*length)],
+            Numbers::Long(list) => list,
+        }
+    }
+}
+
+impl Store<f64> for Numbers {}
+
+impl Deref for Numbers {
+    type Target = [f64];
+
+    #[inline]
+    fn deref(&self) -> &[f64] {
+        self.as_ref()
+    }
+}
+
+impl From<&[f64]> for Numbers {
+    #[inline]
+    fn from(list: &[f64]) -> Self {
+        let mut numbers = Numbers::filled(0.0, list.len());
+        numbers.as_mut().copy_from_slice(list);
+        numbers
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Numbers, SHORT};
+
+    #[test]
+    fn lists_of_any_length_are_kept() {
+        for length in [0, 1, SHORT - 1, SHORT, SHORT + 1, 100] {
+            let list: Vec<f64> = (0..length).map(|i| i as f64 - 0.5).collect();
+            let mut numbers = Numbers::from(list.as_slice());
+            assert_eq!(&*numbers, list);
+            if let Some(last) = numbers.as_mut().last_mut() {
+                *last = 7.0;
+                assert_eq!(numbers[length - 1], 7.0);
+            }
+            assert_eq!(numbers.clone().len(), length);
+        }
+    }
+}
