@@ -14,11 +14,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     for model in ["free_body", "heavy_top", "double_pendulum_angles"] {
         let model = format!("../../tests/models/{model}.eom");
         println!("cargo:rerun-if-changed={model}");
-        builder = builder.file(keep(&folder, Path::new(&model), &std::fs::read_to_string(&model)?)?);
+        builder = builder.file(keep(
+            &folder,
+            Path::new(&model),
+            &std::fs::read_to_string(&model)?,
+        )?);
     }
     for (robot, floating, wanted) in [
-        ("ur_description/urdf/ur5_robot.urdf", false, "accel, linearize"),
-        ("solo_description/robots/solo12.urdf", true, "accel, linearize"),
+        (
+            "ur_description/urdf/ur5_robot.urdf",
+            false,
+            "accel, linearize",
+        ),
+        (
+            "solo_description/robots/solo12.urdf",
+            true,
+            "accel, linearize",
+        ),
         ("talos_data/robots/talos_reduced.urdf", true, "accel"),
     ] {
         let path = robots.join(robot);

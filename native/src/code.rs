@@ -295,14 +295,65 @@ impl Code {
                 p.as_ptr(),
             )
         };
-        match code {
-            WELL => Ended::Well,
-            UNDONE => Ended::Undone,
-            code => {
-                let place = usize::try_from(code - 1).ok();
-                let cause = place.and_then(|place| causes.get(place));
-                cause.map_or(Ended::Undone, |&cause| Ended::At(cause))
-            }
+        ended(code, causes)
+    }
+}
+
+/// A function whose arguments have lengths that are known when Rust compiles the call: they were compared once.
+#[derive(Clone, Copy)]
+pub struct Fixed<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> {
+    callable: &'a Callable,
+    constants: &'a [f64],
+}
+
+impl<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> Fixed<'a, X, V, U, OUT> {
+    /// A function of x, ξ and u alone; `None` where it touches more than these lengths have.
+    pub fn new(code: &'a Code, function: usize, constants: &'a [f64]) -> Option<Self> {
+        let callable = code.functions.get(function)?;
+        let Reach {
+            constants: kept,
+            out,
+            arguments: [x, xi, u, xi_dot, p],
+        } = callable.reach;
+        let fits = kept <= constants.len() && out <= OUT && x <= X && xi <= V && u <= U;
+        (fits && xi_dot == 0 && p == 0).then_some(Fixed {
+            callable,
+            constants,
+        })
+    }
+
+    /// Calls it.
+    #[inline]
+    pub fn call(&self, x: &[f64; X], xi: &[f64; V], u: &[f64; U], out: &mut [f64; OUT]) -> Ended {
+        let Callable { entry, causes, .. } = self.callable;
+        let none = std::ptr::null();
+        // SAFETY: The code lives as long as `'a`; what it touches of constants, `out`, x, ξ and u they have, as `new`
+        // compared; of the last two arguments it touches nothing, and `out` is borrowed exclusively.
+        let code = unsafe {
+            entry(
+                self.constants.as_ptr(),
+                out.as_mut_ptr(),
+                x.as_ptr(),
+                xi.as_ptr(),
+                u.as_ptr(),
+                none,
+                none,
+            )
+        };
+        ended(code, causes)
+    }
+}
+
+/// What a function has returned.
+#[inline]
+fn ended(code: i32, causes: &[Cause]) -> Ended {
+    match code {
+        WELL => Ended::Well,
+        UNDONE => Ended::Undone,
+        code => {
+            let place = usize::try_from(code - 1).ok();
+            let cause = place.and_then(|place| causes.get(place));
+            cause.map_or(Ended::Undone, |&cause| Ended::At(cause))
         }
     }
 }

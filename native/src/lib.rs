@@ -25,7 +25,7 @@ mod trig;
 pub use evaluate::evaluate;
 pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
 
-use code::{Code, Ended};
+use code::{Code, Ended, Fixed};
 use hamel_codegen::program::{Cause, Function, Program};
 use std::sync::Arc;
 
@@ -138,6 +138,21 @@ impl Compiled {
         self.run(Some(function), &constants.0, arguments, out)
     }
 
+    /// A function of x, ξ and u for arguments of these lengths.
+    pub fn sized<'a, const X: usize, const V: usize, const U: usize, const OUT: usize>(
+        &'a self,
+        function: usize,
+        constants: &'a Constants,
+    ) -> Sized<'a, X, V, U, OUT> {
+        let code = self.0.code.as_ref().ok();
+        Sized {
+            compiled: self,
+            function,
+            constants,
+            fixed: code.and_then(|code| Fixed::new(code, function, &constants.0)),
+        }
+    }
+
     #[inline]
     fn run(
         &self,
@@ -175,6 +190,40 @@ impl Compiled {
             None => {
                 out.fill(f64::NAN);
                 Ok(())
+            }
+        }
+    }
+}
+
+/// A function of x, ξ and u whose arguments have lengths that are known when Rust compiles the call: it costs little
+/// more than the function itself.
+pub struct Sized<'a, const X: usize, const V: usize, const U: usize, const OUT: usize> {
+    compiled: &'a Compiled,
+    function: usize,
+    constants: &'a Constants,
+    fixed: Option<Fixed<'a, X, V, U, OUT>>,
+}
+
+impl<const X: usize, const V: usize, const U: usize, const OUT: usize> Sized<'_, X, V, U, OUT> {
+    /// Calls it, see [`Compiled::call`].
+    ///
+    /// # Errors
+    /// What it means that a pivot is not positive.
+    #[inline]
+    pub fn call(
+        &self,
+        x: &[f64; X],
+        xi: &[f64; V],
+        u: &[f64; U],
+        out: &mut [f64; OUT],
+    ) -> Result<(), Cause> {
+        match self.fixed.as_ref().map(|fixed| fixed.call(x, xi, u, out)) {
+            Some(Ended::Well) => Ok(()),
+            Some(Ended::At(cause)) => Err(cause),
+            Some(Ended::Undone) | None => {
+                let arguments: [&[f64]; 5] = [x, xi, u, &[], &[]];
+                self.compiled
+                    .step(Some(self.function), &self.constants.0, arguments, out)
             }
         }
     }

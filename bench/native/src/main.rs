@@ -42,7 +42,10 @@ type State = [Vec<f64>; 3];
 fn program(text: &str) -> Program {
     match from_text(text) {
         Ok(generated) => generated.program,
-        Err(errors) => panic!("{}", hamel_codegen::render::render(&errors, "bench", text, false)),
+        Err(errors) => panic!(
+            "{}",
+            hamel_codegen::render::render(&errors, "bench", text, false)
+        ),
     }
 }
 
@@ -83,7 +86,9 @@ struct Case {
 
 impl Case {
     fn new(program: &Program, name: &str) -> Self {
-        let function = program.function(name).expect("the build script asked for it");
+        let function = program
+            .function(name)
+            .expect("the build script asked for it");
         let tapes = Tapes::new(program, &[function]).expect("it calls nothing");
         let steps = tapes.functions[0].steps.len() + tapes.constants.steps.len();
         let compile = || {
@@ -121,9 +126,15 @@ impl Case {
 fn assert_equal(name: &str, rust: &[f64], native: &[f64]) {
     assert_eq!(rust.len(), native.len(), "{name}");
     let exact = cfg!(target_feature = "fma");
-    let scale = rust.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+    let scale = rust
+        .iter()
+        .fold(0.0, |most: f64, entry| most.max(entry.abs()));
     for (a, b) in rust.iter().zip(native) {
-        let same = if exact { a.to_bits() == b.to_bits() } else { (a - b).abs() <= CLOSE * scale };
+        let same = if exact {
+            a.to_bits() == b.to_bits()
+        } else {
+            (a - b).abs() <= CLOSE * scale
+        };
         assert!(same, "{name}: {a:?} by rustc, {b:?} by machine code");
     }
 }
@@ -167,7 +178,9 @@ macro_rules! row {
             let expected = expected.flat();
             let mut out = vec![0.0; expected.len()];
             let [x, xi, u] = state;
-            let ended = case.compiled.call(0, &case.constants, [x, xi, u, &[], &[]], &mut out);
+            let ended = case
+                .compiled
+                .call(0, &case.constants, [x, xi, u, &[], &[]], &mut out);
             assert_eq!(ended, Ok(()));
             assert_equal($label, expected, &out);
         }
@@ -178,17 +191,12 @@ macro_rules! row {
                 }
             }
         };
+        let sized = case.compiled.sized(0, &case.constants);
         let native = |count: u32| {
             let mut out = [0.0; $length];
             for _ in 0..count {
-                for [x, xi, u] in &case.states {
-                    let arguments = [x.as_slice(), xi, u, &[], &[]];
-                    let _ = black_box(case.compiled.call(
-                        black_box(0),
-                        &case.constants,
-                        arguments,
-                        &mut out,
-                    ));
+                for (x, xi, u) in &states {
+                    let _ = black_box(black_box(&sized).call(x, xi, u, &mut out));
                     black_box(&out);
                 }
             }
@@ -207,18 +215,47 @@ macro_rules! row {
 }
 
 fn main() {
-    println!("| function | steps | rustc, ns | at once, ns | ratio | step by step, ns | made in ms | µs a step beyond 0.3 ms |");
+    println!(
+        "| function | steps | rustc, ns | at once, ns | ratio | step by step, ns | made in ms | µs a step beyond 0.3 ms |"
+    );
     println!("|---|---|---|---|---|---|---|---|");
     let ratios = [
         row!("free body", "free_body", code::FreeBody<f64>, accel, 6),
         row!("heavy top", "heavy_top", code::HeavyTop<f64>, accel, 3),
-        row!("double pendulum", "double_pendulum_angles", code::DoublePendulum<f64>, accel, 2),
+        row!(
+            "double pendulum",
+            "double_pendulum_angles",
+            code::DoublePendulum<f64>,
+            accel,
+            2
+        ),
         row!("UR5", "ur5_robot", code::Ur5<f64>, accel, 6),
-        row!("UR5, [A B]", "ur5_robot", code::Ur5<f64>, linearize, 12 * 18),
+        row!(
+            "UR5, [A B]",
+            "ur5_robot",
+            code::Ur5<f64>,
+            linearize,
+            12 * 18
+        ),
         row!("Solo12", "solo12", code::Solo<f64>, accel, 18),
-        row!("Solo12, [A B]", "solo12", code::Solo<f64>, linearize, 36 * 48),
-        row!("Talos, 38 freedoms", "talos_reduced", code::Talos<f64>, accel, 38),
+        row!(
+            "Solo12, [A B]",
+            "solo12",
+            code::Solo<f64>,
+            linearize,
+            36 * 48
+        ),
+        row!(
+            "Talos, 38 freedoms",
+            "talos_reduced",
+            code::Talos<f64>,
+            accel,
+            38
+        ),
     ];
     let product: f64 = ratios.iter().map(|ratio| ratio.ln()).sum();
-    println!("\nGeometric mean of the ratios: {:.2}", (product / ratios.len() as f64).exp());
+    println!(
+        "\nGeometric mean of the ratios: {:.2}",
+        (product / ratios.len() as f64).exp()
+    );
 }
