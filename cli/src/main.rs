@@ -2,7 +2,7 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `compare`, `import` | one subcommand each |
+//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `sweep`, `compare`, `import` | one subcommand each |
 //! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
 //! | `robot` | robots in URDF as descriptions, and the options for them |
@@ -36,6 +36,7 @@ mod simulate;
 mod singular;
 mod source;
 mod state;
+mod sweep;
 mod tables;
 
 use clap::{Parser, Subcommand};
@@ -50,6 +51,7 @@ Examples:
   hamel regressor arm.urdf                      which inertias forces depend on
   hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
   hamel simulate heavy_top.eom --until 10       a first run
+  hamel sweep heavy_top.eom --vary … --out runs  many runs, with parameters and starts that differ
   hamel compare heavy_top.eom --until 10        error of methods against what they cost
   hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
   hamel import arm.urdf -o arm.eom              a robot in URDF as a description
@@ -75,6 +77,7 @@ enum Command {
     Eval(eval::Arguments),
     Linearize(linearize::Arguments),
     Simulate(simulate::Arguments),
+    Sweep(sweep::Arguments),
     Compare(compare::Arguments),
     Import(import::Arguments),
 }
@@ -93,6 +96,7 @@ fn main() -> ExitCode {
         Command::Eval(arguments) => eval::run(&arguments),
         Command::Linearize(arguments) => linearize::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Import(arguments) => import::run(&arguments),
     };

@@ -8,14 +8,21 @@ const TICK: Duration = Duration::from_millis(200);
 
 /// A bar of so many steps, with the time that is left.
 pub fn bar(steps: u64) -> ProgressBar {
+    styled(steps, "{percent}%  {eta} left")
+}
+
+/// A bar of so many of many things, with how many of them a second are done.
+pub fn rated(count: u64) -> ProgressBar {
+    let bar = styled(count, "{percent}%  {pos} of {len}, {per_sec}, {eta} left");
+    bar.enable_steady_tick(TICK);
+    bar
+}
+
+fn styled(steps: u64, told: &str) -> ProgressBar {
     let colour = anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never;
     let bar = ProgressBar::new(steps);
-    let template = if colour {
-        "{bar:40.cyan} {percent}%  {eta} left"
-    } else {
-        "{bar:40} {percent}%  {eta} left"
-    };
-    match ProgressStyle::with_template(template) {
+    let drawn = if colour { "{bar:40.cyan}" } else { "{bar:40}" };
+    match ProgressStyle::with_template(&format!("{drawn} {told}")) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }

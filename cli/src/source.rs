@@ -152,16 +152,36 @@ impl Source {
         std::fs::read_to_string(folder.unwrap_or(Path::new("")).join(name))
     }
 
-    /// The description with what it has in other files.
+    /// The description with what it has in other files, and the texts of these.
+    fn parsed(&self) -> Result<(System, Vec<String>), Vec<Diagnostic>> {
+        let mut system = syntax::parse_text(&self.text)?;
+        let texts = syntax::read_files(&mut system, &mut |name| self.file(name))?;
+        if self.evaluated {
+            system.evaluate();
+        }
+        Ok((system, texts))
+    }
+
     fn system(&self) -> Result<System, Failure> {
-        let system = syntax::parse_text(&self.text).and_then(|mut system| {
-            syntax::read_files(&mut system, &mut |name| self.file(name))?;
-            if self.evaluated {
-                system.evaluate();
-            }
-            Ok(system)
-        });
-        system.map_err(|errors| self.refused(&errors))
+        let parsed = self.parsed().map_err(|errors| self.refused(&errors))?;
+        Ok(parsed.0)
+    }
+
+    /// The texts of other files that the description has statements or numbers of.
+    pub fn texts(&self) -> Result<Vec<String>, Failure> {
+        let parsed = self.parsed().map_err(|errors| self.refused(&errors))?;
+        Ok(parsed.1)
+    }
+
+    /// The same description with another text, which says more.
+    pub fn saying(&self, text: String) -> Self {
+        Source {
+            path: self.path.clone(),
+            text,
+            robot: None,
+            warned: Cell::new(true),
+            evaluated: self.evaluated,
+        }
     }
 
     /// What the description says, not derived yet.
@@ -238,6 +258,17 @@ impl Source {
         let derived = derived.map_err(|errors| self.refused(&errors))?;
         self.warn(&derived.model);
         Ok(derived)
+    }
+
+    /// As [`derive_all`](Self::derive_all), with what is wrong as it was found.
+    pub fn try_derive_all(&self) -> Result<Generated, Vec<Diagnostic>> {
+        let (system, _) = self.parsed()?;
+        progress::during(DERIVING, || {
+            at_some_point(&system, |mut model| {
+                model.asked = Asked::everything();
+                Generated::of(model, 0)
+            })
+        })
     }
 
     /// Derives all functions, whatever the description's `generate` says.

@@ -38,13 +38,21 @@ impl std::error::Error for Unwritten {}
 /// # Errors
 /// Where it cannot be written; an old file is then as it was.
 pub fn write(path: &Path, text: &str) -> Result<(), Unwritten> {
+    write_bytes(path, text.as_bytes())
+}
+
+/// Writes what is no text.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Unwritten> {
     let unwritten = |why: String| Unwritten {
         path: path.to_path_buf(),
         why,
     };
     match Target::of(path).map_err(unwritten)? {
-        Target::File { place, known } => replace::replace(&place, known.as_ref(), text),
-        Target::Stream(stream) => stream.write(text),
+        Target::File { place, known } => replace::replace(&place, known.as_ref(), bytes),
+        Target::Stream(stream) => stream.write(bytes),
     }
     .map_err(unwritten)
 }

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use std::path::Path;
 use tempfile::Builder;
 
-/// Gives a path a new text; `known` is the file that it stands for now.
-pub fn replace(place: &Path, known: Option<&Metadata>, text: &str) -> Result<(), String> {
+/// Gives a path new bytes; `known` is the file that it stands for now.
+pub fn replace(place: &Path, known: Option<&Metadata>, bytes: &[u8]) -> Result<(), String> {
     let said = |error: io::Error| error.to_string();
     let Some(folder) = place.parent() else {
         return Err("it is a folder".into());
@@ -21,7 +21,7 @@ pub fn replace(place: &Path, known: Option<&Metadata>, text: &str) -> Result<(),
     let mut file = builder
         .tempfile_in(folder)
         .map_err(|error| format!("no file can be made beside it: {error}"))?;
-    file.write_all(text.as_bytes()).map_err(said)?;
+    file.write_all(bytes).map_err(said)?;
     if let Some(known) = known {
         keep(file.as_file(), known).map_err(said)?;
     }

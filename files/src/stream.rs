@@ -65,10 +65,10 @@ impl Stream {
         }
     }
 
-    /// Writes a text behind what is there.
-    pub fn write(self, text: &str) -> Result<(), String> {
+    /// Writes bytes behind what is there.
+    pub fn write(self, bytes: &[u8]) -> Result<(), String> {
         let whole = |mut to: Box<dyn Write>| {
-            to.write_all(text.as_bytes())?;
+            to.write_all(bytes)?;
             to.flush()
         };
         let written = match self {

@@ -1,0 +1,197 @@
+//! `--keep`: what is kept of each member.
+
+use super::text::{Piece, refused};
+use crate::failure::Failure;
+use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::syntax::suggest::closest;
+
+pub const OPTION: &str = "--keep";
+
+/// What can be kept, as messages list it.
+const KNOWN: &str =
+    "there are end, max(EXPR), min(EXPR), mean(EXPR), at(TIME, EXPR), event(EXPR < EXPR)";
+const NAMES: [&str; 6] = ["end", "max", "min", "mean", "at", "event"];
+
+/// What is made of an expression.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Of {
+    /// Its greatest value.
+    Max,
+    /// Its least value.
+    Min,
+    /// Its mean over the time.
+    Mean,
+    /// Its value at a time.
+    At(f64),
+    /// The first time at which a comparison begins to hold: that it is less than 0, or at most 0.
+    Event {
+        /// Whether 0 counts.
+        equal: bool,
+    },
+}
+
+/// One thing that is kept.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item<'a> {
+    /// The time at which a member ended, x and ξ.
+    End,
+    /// Something of an expression; of an event, the difference of two.
+    Of(Of, Vec<Piece<'a>>),
+}
+
+/// An item with its text.
+pub type Kept<'a> = (Piece<'a>, Item<'a>);
+
+/// Reads the option for runs of this length.
+pub fn read(text: &str, until: f64) -> Result<Vec<Kept<'_>>, Failure> {
+    let wrong = |errors: Vec<Diagnostic>| refused(OPTION, text, &errors);
+    let whole = Piece::of(text).map_err(|error| wrong(vec![error]))?;
+    let (mut kept, mut errors): (Vec<Kept>, Vec<Diagnostic>) = Default::default();
+    for piece in whole
+        .split(';')
+        .into_iter()
+        .filter(|piece| !piece.text.is_empty())
+    {
+        if kept.iter().any(|(known, _)| known.text == piece.text) {
+            errors.push(piece.wrong(format!("`{}` is kept twice", piece.text)));
+            continue;
+        }
+        match item(piece, until) {
+            Ok(item) => kept.push((piece, item)),
+            Err(error) => errors.push(error),
+        }
+    }
+    if kept.is_empty() && errors.is_empty() {
+        errors.push(whole.wrong("nothing is kept").help(KNOWN));
+    }
+    match errors.is_empty() {
+        true => Ok(kept),
+        false => Err(wrong(errors)),
+    }
+}
+
+fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
+    if piece.text == "end" {
+        return Ok(Item::End);
+    }
+    let Some((name, inner)) = piece.call() else {
+        let message = format!("`{}` cannot be kept", piece.text);
+        return Err(piece.wrong(message).help(KNOWN));
+    };
+    let alone = |piece: Piece<'_>| match piece.split(',').as_slice() {
+        [one] if !one.text.is_empty() => Ok(()),
+        _ => Err(piece.wrong("one expression is needed")),
+    };
+    let of = match name.text {
+        "max" => Of::Max,
+        "min" => Of::Min,
+        "mean" => Of::Mean,
+        "event" => return event(inner),
+        "at" => {
+            let [time, expression] = inner.split(',')[..] else {
+                return Err(inner.wrong("a time and an expression are needed: at(TIME, EXPR)"));
+            };
+            alone(expression)?;
+            let at = time.text.parse::<f64>().ok();
+            let Some(at) = at.filter(|at| (0.0..=until).contains(at)) else {
+                return Err(time.wrong(format!("a time from 0 to {until} is needed")));
+            };
+            return Ok(Item::Of(Of::At(at), vec![expression]));
+        }
+        other => {
+            let help = match closest(other, NAMES) {
+                Some(close) => format!("did you mean `{close}`?"),
+                None => KNOWN.into(),
+            };
+            let message = format!("nothing that can be kept is called `{other}`");
+            return Err(name.wrong(message).help(help));
+        }
+    };
+    alone(inner)?;
+    Ok(Item::Of(of, vec![inner]))
+}
+
+/// `A < B`: what is kept is about A − B, and about B − A for the other direction.
+fn event(inner: Piece) -> Result<Item, Diagnostic> {
+    let outside = inner.outside();
+    let bytes = inner.text.as_bytes();
+    let signs: Vec<usize> = outside
+        .into_iter()
+        .filter(|place| matches!(bytes[*place], b'<' | b'>' | b'='))
+        .collect();
+    let (place, equal) = match signs.as_slice() {
+        [one] if bytes[*one] != b'=' => (*one, false),
+        [one, next] if *next == one + 1 && bytes[*one] != b'=' && bytes[*next] == b'=' => {
+            (*one, true)
+        }
+        _ => {
+            let message = "one comparison is needed, as in event(r[3] < 0)";
+            return Err(inner.wrong(message));
+        }
+    };
+    let behind = place + 1 + usize::from(equal);
+    let (left, right) = (inner.part(0..place), inner.part(behind..inner.text.len()));
+    for side in [left, right] {
+        if side.text.is_empty() || side.split(',').len() > 1 {
+            return Err(inner.wrong("an expression is needed on each side of the comparison"));
+        }
+    }
+    let sides = match bytes[place] {
+        b'<' => vec![left, right],
+        _ => vec![right, left],
+    };
+    Ok(Item::Of(Of::Event { equal }, sides))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Item, Of, read};
+
+    fn refused(text: &str) -> String {
+        format!("{:?}", read(text, 10.0).expect_err(text))
+    }
+
+    #[test]
+    fn items_are_read() {
+        let kept = read(
+            "end; max(norm(w)); event(r[3] >= [1, 2][1]);at(2.5,w) ;",
+            10.0,
+        );
+        let kept = kept.expect("four items");
+        let texts: Vec<&str> = kept.iter().map(|(piece, _)| piece.text).collect();
+        assert_eq!(
+            texts,
+            [
+                "end",
+                "max(norm(w))",
+                "event(r[3] >= [1, 2][1])",
+                "at(2.5,w)"
+            ]
+        );
+        let Item::Of(Of::Event { equal: true }, sides) = &kept[2].1 else {
+            panic!("{kept:?}");
+        };
+        assert_eq!((sides[0].text, sides[1].text), ("[1, 2][1]", "r[3]"));
+        assert!(matches!(kept[3].1, Item::Of(Of::At(2.5), _)));
+    }
+
+    #[test]
+    fn wrong_items_are_refused_all_at_once() {
+        let said =
+            refused("ends; max(a, b); event(a); event(a < b < c); at(11, a); mix(a); end; end");
+        for message in [
+            "`ends` cannot be kept",
+            "one expression is needed",
+            "one comparison is needed",
+            "a time from 0 to 10 is needed",
+            "did you mean `max`",
+            "`end` is kept twice",
+            "7 errors",
+        ] {
+            assert!(said.contains(message), "{message}: {said}");
+        }
+        assert!(refused("").contains("nothing is kept"));
+        assert!(refused("event(a == b)").contains("one comparison"));
+        assert!(refused("event(< b)").contains("on each side"));
+    }
+}

@@ -1,0 +1,173 @@
+//! The file in a sweep's folder that says what the sweep is: all on which a row depends.
+
+use crate::json::Json;
+use crate::state::strict;
+use serde_json::{Map, Value};
+
+/// The form of this file; another form is another number.
+const FORMAT: u128 = 1;
+/// Longer texts are told apart by the first line that differs.
+const SHORT: usize = 60;
+
+/// What a sweep is.
+#[derive(Clone, Debug)]
+pub struct Manifest {
+    /// Its text.
+    pub text: String,
+    members: Map<String, Value>,
+    /// How many members there are.
+    pub count: u64,
+    /// How many of them a shard has; the last one may have fewer.
+    pub size: u64,
+}
+
+impl Manifest {
+    /// What is to be fixed, in order: names with values.
+    pub fn new(count: u64, size: u64, fixed: Vec<(&str, Json)>) -> Result<Self, String> {
+        let own = [
+            ("format", Json::Count(FORMAT)),
+            ("hamel", Json::Text(env!("CARGO_PKG_VERSION").into())),
+            ("members", Json::Count(count.into())),
+            ("members of a shard", Json::Count(size.into())),
+        ];
+        Manifest::read(&Json::object(own.into_iter().chain(fixed)).pretty())
+    }
+
+    /// Reads the file.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let Value::Object(members) = strict::parse(text)? else {
+            return Err("an object is expected".into());
+        };
+        if members
+            .get("format")
+            .and_then(Value::as_u64)
+            .map(u128::from)
+            != Some(FORMAT)
+        {
+            return Err(format!(
+                "`format` is not {FORMAT}: another version of hamel wrote it"
+            ));
+        }
+        let number = |name: &str| {
+            let number = members.get(name).and_then(Value::as_u64);
+            let number = number.filter(|number| *number > 0);
+            number.ok_or_else(|| format!("`{name}` is no whole number above 0"))
+        };
+        Ok(Manifest {
+            count: number("members")?,
+            size: number("members of a shard")?,
+            text: text.to_string(),
+            members,
+        })
+    }
+
+    /// How many shards there are.
+    pub fn shards(&self) -> u64 {
+        self.count.div_ceil(self.size)
+    }
+
+    /// The members of a shard.
+    pub fn range(&self, shard: u64) -> std::ops::Range<u64> {
+        let first = shard * self.size;
+        first..(first + self.size).min(self.count)
+    }
+
+    /// A text of it.
+    pub fn word(&self, name: &str) -> Option<&str> {
+        self.members.get(name)?.as_str()
+    }
+
+    /// In which it differs from the one that is there.
+    pub fn differences(&self, there: &Manifest) -> Vec<String> {
+        let names = self.members.keys().chain(there.members.keys());
+        let mut names: Vec<&String> = names.collect();
+        names.sort();
+        names.dedup();
+        let mut all = Vec::new();
+        for name in names {
+            let (old, new) = (there.members.get(name), self.members.get(name));
+            if old != new {
+                all.push(told(name, old, new));
+            }
+        }
+        all
+    }
+}
+
+fn told(name: &str, old: Option<&Value>, new: Option<&Value>) -> String {
+    if let (Some(Value::String(old)), Some(Value::String(new))) = (old, new)
+        && old.len().max(new.len()) > SHORT
+        && old.lines().count().max(new.lines().count()) > 1
+    {
+        let (mut old, mut new) = (old.lines(), new.lines());
+        let mut line = 0;
+        loop {
+            line += 1;
+            match (old.next(), new.next()) {
+                (Some(a), Some(b)) if a == b => {}
+                (None, None) => return format!("{name}: ends of lines differ"),
+                (a, b) => {
+                    let said =
+                        |line: Option<&str>| line.map_or("nothing".into(), |l| format!("`{l}`"));
+                    return format!("{name}, line {line}: {} there, {} here", said(a), said(b));
+                }
+            }
+        }
+    }
+    let said = |value: Option<&Value>| match value {
+        None | Some(Value::Null) => "nothing".into(),
+        Some(value) => value.to_string(),
+    };
+    format!("{name}: {} there, {} here", said(old), said(new))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Manifest;
+    use crate::json::Json;
+
+    fn manifest(seed: u128, text: &str) -> Manifest {
+        let fixed = vec![
+            ("seed", Json::Count(seed)),
+            ("description", Json::Text(text.into())),
+            ("step", Json::Number(1e-3)),
+        ];
+        Manifest::new(10, 3, fixed).expect("a manifest")
+    }
+
+    #[test]
+    fn differences_are_told() {
+        let long = format!("system S {{\n{}", "coord q;\n".repeat(10));
+        let other = long.replacen("q", "p", 1);
+        let (here, there) = (manifest(8, &other), manifest(7, &long));
+        let again = Manifest::read(&there.text).expect("its own text");
+        assert_eq!(there.differences(&again), Vec::<String>::new());
+        let told = here.differences(&there);
+        assert_eq!(
+            told,
+            [
+                "description, line 2: `coord q;` there, `coord p;` here",
+                "seed: 7 there, 8 here"
+            ]
+        );
+    }
+
+    #[test]
+    fn shards_have_all_members() {
+        let one = manifest(0, "");
+        let ranges: Vec<_> = (0..one.shards()).map(|shard| one.range(shard)).collect();
+        assert_eq!(ranges, [0..3, 3..6, 6..9, 9..10]);
+        for (text, why) in [
+            ("[]", "an object"),
+            ("{\"format\": 2}", "another version"),
+            (
+                "{\"format\": 1, \"members\": 0, \"members of a shard\": 1}",
+                "no whole number",
+            ),
+            ("{\"format\": 1, \"format\": 1}", "twice"),
+        ] {
+            let error = Manifest::read(text).expect_err(text);
+            assert!(error.contains(why), "{error}");
+        }
+    }
+}

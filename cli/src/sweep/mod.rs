@@ -1,0 +1,380 @@
+//! `hamel sweep`: many runs of one system, which differ in parameters, starts and inputs.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `text` | options that are lists, and where they are wrong |
+//! | `vary`, `target`, `distribution` | what is varied, and how |
+//! | `draws`, `permutation` | random numbers that depend on the seed and the member alone |
+//! | `keep`, `added`, `watch` | what is kept of a member, compiled as outputs of the description |
+//! | `member`, `work` | one run, and all of them on threads |
+//! | `shard`, `manifest`, `folder` | what is written, and what is there |
+//! | `status`, `submit` | `--status` and `--submit` |
+
+mod added;
+mod distribution;
+mod draws;
+mod folder;
+mod keep;
+mod manifest;
+mod member;
+mod permutation;
+mod shard;
+mod status;
+mod submit;
+mod target;
+mod text;
+mod vary;
+mod watch;
+mod work;
+
+use crate::failure::{Failure, print};
+use crate::json::Json;
+use crate::method;
+use crate::number::grouped;
+use crate::robot::RobotOptions;
+use crate::simulate::inputs::{self, Inputs};
+use crate::simulate::record::Spacing;
+use crate::simulate::stepping::Stepping;
+use crate::source::Source;
+use crate::state::State;
+use crate::state::file::File;
+use clap::Args;
+use folder::{Folder, Part};
+use hamel_codegen::generate::Generated;
+use hamel_codegen::program::count::count;
+use manifest::Manifest;
+use member::{Family, Sweep};
+use serde_json::{Map, Value};
+use shard::Columns;
+use std::path::{Path, PathBuf};
+use submit::{Engine, Job};
+use vary::Vary;
+use watch::Keeping;
+use work::{Done, Work};
+
+/// Members of a shard where --shard-size is left out: a part of all, but no fewer and no more than these.
+const SHARDS: u64 = 64;
+const FEWEST: u64 = 64;
+const MOST: u64 = 10_000;
+/// Most shards of a folder.
+const MOST_SHARDS: u64 = 1_000_000;
+/// Tasks where --tasks is left out.
+const TASKS: u64 = 16;
+
+/// Runs a system many times, with parameters, starts and inputs that differ from run to run.
+///
+/// What is kept of each run, called a member, is a row of a table in Parquet files, in a folder. A member depends on the
+/// seed and on its number alone. The command may be stopped at any time: given again, it computes what is missing.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel sweep drone.eom --vary \"m = normal(1.3, 0.1); start w = uniform([-1, -1, -1], [1, 1, 1])\" \\
+      --members 100000 --until 10 --keep \"end; max(norm(w)); event(r[3] < 0)\" --out runs --seed 7
+  hamel sweep cart_pole.eom --vary \"start theta = grid(-1, 1, 21); start w = grid(-2, 2, 41)\" --until 5 --out map
+  hamel sweep --status runs
+  hamel sweep drone.eom … --out runs --shard 3/16               one of 16 parts, on this machine
+  hamel sweep drone.eom … --out runs --submit slurm --tasks 16  all of them, on a cluster", after_long_help = format!("{LONG}\n\n{}", method::described()))]
+pub struct Arguments {
+    /// Description, or robot in URDF; `-` for standard input.
+    #[arg(value_name = "FILE", required_unless_present = "status")]
+    file: Option<PathBuf>,
+    /// What differs from member to member; --help tells how it is written.
+    #[arg(
+        long,
+        value_name = "ITEMS",
+        required_unless_present = "status",
+        allow_hyphen_values = true
+    )]
+    vary: Option<String>,
+    /// How many members there are; by default, the points of all grids.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=i64::MAX as u64))]
+    members: Option<u64>,
+    #[command(flatten)]
+    stepping: Option<Stepping>,
+    /// What is kept of each member; --help tells how it is written.
+    #[arg(
+        long,
+        value_name = "ITEMS",
+        default_value = "end",
+        allow_hyphen_values = true
+    )]
+    keep: String,
+    /// Folder of the results.
+    #[arg(long, value_name = "FOLDER", required_unless_present = "status")]
+    out: Option<PathBuf>,
+    /// Another seed makes other random numbers.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// Start and parameters where they are not varied, by coordinates; see `hamel eval --help`.
+    #[arg(long, value_name = "STATE.json")]
+    at: Option<PathBuf>,
+    /// Inputs over time, as in `hamel simulate`.
+    #[arg(long, value_name = "F.csv")]
+    inputs: Option<PathBuf>,
+    /// Values of --inputs hold until the next row, and behind the last.
+    #[arg(long, requires = "inputs")]
+    hold: bool,
+    /// An input as an expression of `t`, parameters, coordinates, velocities and states.
+    #[arg(long, value_name = "NAME = EXPR")]
+    input: Vec<String>,
+    /// Threads that members run on; by default, one for each core.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Members of a file; by default, 64 to 10,000.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    shard_size: Option<u64>,
+    /// Compute the i-th of N parts of the files, and no other; several machines may do so at once.
+    #[arg(long, value_name = "i/N", value_parser = Part::read)]
+    shard: Option<Part>,
+    /// Let an engine compute the parts, as an array of tasks; the folder has to be one that all machines share.
+    #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
+    submit: Option<Engine>,
+    /// How many tasks --submit makes; by default 16.
+    #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MOST_SHARDS))]
+    tasks: Option<u64>,
+    /// With --submit, end when all tasks have.
+    #[arg(long, requires = "submit")]
+    wait: bool,
+    /// Tell what a folder has, and what is missing.
+    #[arg(long, value_name = "FOLDER", exclusive = true)]
+    status: Option<PathBuf>,
+    #[command(flatten)]
+    robot: RobotOptions,
+}
+
+const LONG: &str = "\
+--vary takes items, `;` between them:
+  m = normal(1.3, 0.1)                           a parameter, by mean and standard deviation
+  start w = uniform([-1, -1, -1], [1, 1, 1])     coordinates or velocities, each entry between two numbers
+  start w[2] = latin(-1, 1)                      a Latin hypercube: [-1, 1] in as many equal parts as there are
+                                                 members, with one member in each
+  input F = grid(0, 10, 11)                      11 numbers from 0 to 10; several grids make all combinations
+A single number stands for all entries. Arguments may be expressions of parameters that are not varied. A rotation
+is varied by three numbers, the vector of a turn from its start, about axes of the body (rad). Coordinates and velocities
+that are not varied follow where loops and other constraints ask for it.
+
+--keep takes items, `;` between them:
+  end                      the time at which the run ended, coordinates and velocities
+  max(EXPR), min(EXPR)     the extreme values of an expression, over the ends of steps
+  mean(EXPR)               its mean over the time, by trapezia between these
+  at(TIME, EXPR)           its value at a time
+  event(A < B)             the first time at which a comparison begins to hold, empty where it never does; one that
+                           holds at the start begins to hold where it has not held in between
+Expressions are those of the description, over its parameters, coordinates, velocities, inputs and outputs.
+
+Columns are `index`, what is varied, what is kept, by their texts above, and `error`: where a member fails, what is kept of
+it is empty, and `error` says why. Readers take all files of a folder at once:
+  polars.read_parquet(\"runs/*.parquet\")
+  duckdb.sql(\"SELECT * FROM 'runs/*.parquet'\")
+  pandas.read_parquet(\"runs\")";
+
+/// Computes, submits, or tells what is there.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(folder) = &arguments.status {
+        return status::run(folder);
+    }
+    let (Some(file), Some(vary), Some(out), Some(stepping)) = (
+        &arguments.file,
+        &arguments.vary,
+        &arguments.out,
+        &arguments.stepping,
+    ) else {
+        return Err(Failure::usage("FILE, --vary, --until and --out are needed"));
+    };
+    stepping.check()?;
+    let source = Source::open(file, &arguments.robot)?.in_numbers();
+    if arguments.submit.is_some() && source.is_stdin() {
+        return Err(Failure::usage(
+            "--submit takes a description in a file: tasks read it, too",
+        ));
+    }
+    let (sweep, columns) = prepared(arguments, &source, vary, stepping)?;
+    let manifest = fixed(arguments, &source, &sweep, vary, stepping)?;
+    let part = arguments.shard.unwrap_or(Part::WHOLE);
+    let threads = arguments.threads.map(usize::from);
+    if let Some(engine) = arguments.submit {
+        // The folder is made here, and is nobody's until tasks begin.
+        drop(Folder::take(out, &manifest, Part::WHOLE)?);
+        let tasks = arguments.tasks.unwrap_or(TASKS).min(manifest.shards());
+        let job = Job {
+            engine,
+            folder: out,
+            tasks,
+            threads: threads.unwrap_or(1),
+            wait: arguments.wait,
+        };
+        job.submit()?;
+        return match arguments.wait {
+            true => status::run(out),
+            false => Ok(()),
+        };
+    }
+    let folder = Folder::take(out, &manifest, part)?;
+    let there = folder::there(out, &manifest)?;
+    let own = (0..manifest.shards()).filter(|shard| part.has(*shard));
+    let missing = own.filter(|shard| there.shards.binary_search(shard).is_err());
+    let work = Work {
+        sweep: &sweep,
+        manifest: &manifest,
+        columns: &columns,
+        about: &operations(&sweep.family.generated),
+        folder: &folder,
+    };
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let done = work.on(missing.collect(), threads.unwrap_or_else(cores))?;
+    print(&summary(out, done, there.members))
+}
+
+/// What members share, and the columns of their rows.
+fn prepared(
+    arguments: &Arguments,
+    source: &Source,
+    vary: &str,
+    stepping: &Stepping,
+) -> Result<(Sweep, Columns), Failure> {
+    let kept = keep::read(&arguments.keep, stepping.until)?;
+    let generated = added::derive(source, &arguments.keep, &kept)?;
+    let keeping = Keeping::new(&kept, &generated).map_err(|(item, why)| {
+        let error = kept[item].0.wrong(why);
+        text::refused(keep::OPTION, &arguments.keep, &[error])
+    })?;
+    let file = arguments.at.as_deref().map(|at| File::read(at, source));
+    let (base, state) = match file.transpose()? {
+        None => (Map::new(), State::start(&generated.active)),
+        Some(file) => {
+            let state = file.state(source, &generated)?;
+            match &file.json {
+                Value::Object(members) if !file.is_by_joints() => (members.clone(), state),
+                _ => {
+                    let message = format!("{}: a sweep takes a state by coordinates", file.path);
+                    return Err(Failure::usage(message));
+                }
+            }
+        }
+    };
+    let vary = Vary::read(vary, &generated, &state, arguments.seed, arguments.members)?;
+    let asked = inputs::Asked {
+        file: arguments.inputs.as_ref(),
+        hold: arguments.hold,
+        expressions: &arguments.input,
+        until: stepping.until,
+    };
+    let given = Inputs::new(asked, &generated, &state)?;
+    let both = vary.inputs(&generated);
+    if let Some((_, name)) = both
+        .iter()
+        .find(|(place, _)| given.as_ref().is_some_and(|given| given.has(*place)))
+    {
+        return Err(Failure::usage(format!(
+            "`{name}` is varied, and given by --input or --inputs: one of the two is needed"
+        )));
+    }
+    let columns = Columns {
+        varied: vary.columns().map(String::from).collect(),
+        kept: keeping.columns().to_vec(),
+    };
+    let unvaried = vary.unvaried(&base);
+    let family = Family {
+        texts: [source.text.clone(), source.shown().to_string()],
+        given,
+        generated,
+    };
+    let system = family.member(&unvaried).map_err(|early| {
+        let message = "where nothing is varied, no member can start";
+        Failure::failed(format!("{message}: {}", early.why))
+    })?;
+    let mut plan = stepping.plan(&family.generated, &system, None)?;
+    if !keeping.looks_within() {
+        plan.points = 1;
+    }
+    let times = keeping.times();
+    if !times.is_empty() {
+        plan.spacing = Spacing::Times(times);
+    }
+    let sweep = Sweep {
+        family,
+        vary,
+        keeping,
+        plan,
+        base,
+    };
+    Ok((sweep, columns))
+}
+
+/// All on which rows depend.
+fn fixed(
+    arguments: &Arguments,
+    source: &Source,
+    sweep: &Sweep,
+    vary: &str,
+    stepping: &Stepping,
+) -> Result<Manifest, Failure> {
+    let read = |path: &Path| {
+        std::fs::read_to_string(path)
+            .map_err(|error| Failure::usage(format!("cannot read {}: {error}", path.display())))
+    };
+    let text = |text: Option<String>| text.map_or(Json::Null, Json::Text);
+    let number = |number: Option<f64>| number.map_or(Json::Null, Json::Number);
+    let members = sweep.vary.members();
+    let size = arguments
+        .shard_size
+        .unwrap_or_else(|| members.div_ceil(SHARDS).clamp(FEWEST, MOST));
+    if members.div_ceil(size) > MOST_SHARDS {
+        return Err(Failure::usage(format!(
+            "{} members make more than {} files: a larger --shard-size is needed",
+            grouped(members),
+            grouped(MOST_SHARDS)
+        )));
+    }
+    let step = match sweep.plan.tolerance {
+        Some(_) => None,
+        None => Some(sweep.plan.step),
+    };
+    let inputs = arguments.inputs.as_deref().map(read).transpose()?;
+    let fixed = vec![
+        ("vary", Json::Text(vary.trim().into())),
+        ("keep", Json::Text(arguments.keep.trim().into())),
+        ("seed", Json::Count(arguments.seed.into())),
+        ("until", Json::Number(stepping.until)),
+        ("method", Json::Text(sweep.plan.method.name.into())),
+        ("step", number(step)),
+        ("tolerance", number(sweep.plan.tolerance)),
+        ("lambda", number(stepping.lambda)),
+        ("input", Json::texts(&arguments.input)),
+        ("inputs", text(inputs)),
+        ("hold", Json::Text(arguments.hold.to_string())),
+        (
+            "start",
+            Json::Text(Value::from(sweep.base.clone()).to_string()),
+        ),
+        ("description", Json::Text(source.text.clone())),
+        ("files of the description", Json::texts(&source.texts()?)),
+    ];
+    let manifest = Manifest::new(members, size, fixed);
+    manifest.map_err(|why| Failure::usage(format!("this sweep cannot be written down: {why}")))
+}
+
+/// Operations of each function that members are made of.
+fn operations(generated: &Generated) -> Vec<(String, String)> {
+    let program = &generated.program;
+    let counted = program.functions.iter().map(|function| {
+        let counted = count(&program.graph, &function.outputs);
+        (function.name.as_str(), Json::Count(counted.flops() as u128))
+    });
+    let counts = Json::object(counted).line();
+    vec![("hamel.operations".into(), counts)]
+}
+
+/// What was done now, and what had been done before.
+fn summary(out: &Path, done: Done, before: u64) -> String {
+    let mut text = format!(
+        "{}: {} members computed, {} of them failed",
+        out.display(),
+        grouped(done.members),
+        grouped(done.failed)
+    );
+    if before > 0 {
+        text.push_str(&format!("; {} were there before", grouped(before)));
+    }
+    text.push('\n');
+    text
+}

@@ -1,0 +1,97 @@
+//! A permutation of the numbers below any count, computed at one of them without the others.
+//!
+//! It is a network of Feistel's: what it shuffles are the numbers of an even count of bits, and where one is not below
+//! the count it goes on from there until it is (J. Black, P. Rogaway, *Ciphers with arbitrary finite domains*, 2002).
+
+/// Rounds of the network.
+const ROUNDS: usize = 8;
+
+/// A permutation.
+#[derive(Clone, Debug)]
+pub struct Permutation {
+    count: u64,
+    /// Half of the bits of the numbers that are shuffled.
+    half: u32,
+    keys: [u64; ROUNDS],
+}
+
+impl Permutation {
+    /// The permutation of the numbers below a count that belongs to a source of keys.
+    pub fn new(count: u64, mut key: impl FnMut() -> u64) -> Self {
+        let bits = u64::BITS - count.saturating_sub(1).leading_zeros();
+        Permutation {
+            count,
+            half: bits.div_ceil(2).max(1),
+            keys: std::array::from_fn(|_| key()),
+        }
+    }
+
+    /// Where a number goes; it has to be below the count.
+    pub fn at(&self, index: u64) -> u64 {
+        let mut place = index;
+        loop {
+            place = self.shuffled(place);
+            if place < self.count {
+                return place;
+            }
+        }
+    }
+
+    fn shuffled(&self, place: u64) -> u64 {
+        let mask = (1 << self.half) - 1;
+        let (mut left, mut right) = (place >> self.half, place & mask);
+        for key in self.keys {
+            (left, right) = (right, left ^ (mixed(right ^ key) & mask));
+        }
+        left << self.half | right
+    }
+}
+
+/// The finaliser of SplitMix64: every bit depends on all others.
+fn mixed(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Permutation;
+
+    fn keyed(count: u64, seed: u64) -> Permutation {
+        let mut key = seed;
+        Permutation::new(count, move || {
+            key = key.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            key
+        })
+    }
+
+    #[test]
+    fn every_number_has_one_place() {
+        for count in (1..70).chain([1000, 4096, 4097]) {
+            let permutation = keyed(count, count);
+            let mut places: Vec<u64> = (0..count).map(|index| permutation.at(index)).collect();
+            places.sort_unstable();
+            assert_eq!(places, (0..count).collect::<Vec<u64>>());
+        }
+        let large = keyed(u64::MAX, 1);
+        assert_ne!(large.at(0), large.at(1));
+    }
+
+    #[test]
+    fn places_are_spread() {
+        // Of 0 over all keys, and of neighbours for one key: the mean of a uniform variable within five deviations.
+        let count = 1000;
+        let of_zero: Vec<u64> = (0..2000).map(|seed| keyed(count, seed).at(0)).collect();
+        let mean = of_zero.iter().sum::<u64>() as f64 / 2000.0;
+        let deviation = count as f64 / 12_f64.sqrt();
+        assert!(
+            (mean - 499.5).abs() < 5.0 * deviation / 2000_f64.sqrt(),
+            "{mean}"
+        );
+        let one = keyed(count, 3);
+        let product = |i: u64| (one.at(i) as f64 - 499.5) * (one.at(i + 1) as f64 - 499.5);
+        let correlation = (0..count - 1).map(product).sum::<f64>() / deviation.powi(2) / 999.0;
+        assert!(correlation.abs() < 5.0 / 999_f64.sqrt(), "{correlation}");
+    }
+}

@@ -1,0 +1,159 @@
+//! Shards: rows of members as columns of a Parquet file, written from its first byte to its last in memory.
+
+use super::member::Row;
+use parquet::basic::{LogicalType, Repetition, Type};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::{KeyValue, ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::{Type as Field, TypePtr};
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The column of members' numbers.
+pub const INDEX: &str = "index";
+/// The column of reasons why members failed.
+pub const ERROR: &str = "error";
+/// What the manifest is called in a file.
+const SWEEP: &str = "hamel.sweep";
+/// How many members of a file failed.
+const FAILED: &str = "hamel.failed";
+
+/// The names of the columns of a sweep.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    /// What was varied.
+    pub varied: Vec<String>,
+    /// What is kept.
+    pub kept: Vec<String>,
+}
+
+impl Columns {
+    fn schema(&self) -> Result<TypePtr, ParquetError> {
+        let field = |name: &str, kind: Type, repetition: Repetition, text: bool| {
+            let logical = text.then_some(LogicalType::String);
+            let field = Field::primitive_type_builder(name, kind)
+                .with_repetition(repetition)
+                .with_logical_type(logical);
+            field.build().map(Arc::new)
+        };
+        let number = |name: &String, repetition| field(name, Type::DOUBLE, repetition, false);
+        let mut fields = vec![field(INDEX, Type::INT64, Repetition::REQUIRED, false)?];
+        for name in &self.varied {
+            fields.push(number(name, Repetition::REQUIRED)?);
+        }
+        for name in &self.kept {
+            fields.push(number(name, Repetition::OPTIONAL)?);
+        }
+        fields.push(field(ERROR, Type::BYTE_ARRAY, Repetition::OPTIONAL, true)?);
+        let root = Field::group_type_builder("members").with_fields(fields);
+        root.build().map(Arc::new)
+    }
+
+    /// The bytes of a file; they depend on nothing but what is given here.
+    pub fn bytes(
+        &self,
+        rows: &[Row],
+        sweep: &str,
+        about: &[(String, String)],
+    ) -> Result<Vec<u8>, ParquetError> {
+        let failed = rows.iter().filter(|row| row.error.is_some()).count();
+        let mut metadata: Vec<KeyValue> = vec![
+            KeyValue::new(SWEEP.into(), sweep.to_string()),
+            KeyValue::new(FAILED.into(), failed.to_string()),
+        ];
+        let about = about.iter();
+        metadata.extend(about.map(|(key, value)| KeyValue::new(key.clone(), value.clone())));
+        let properties = WriterProperties::builder()
+            // Numbers that were drawn do not repeat.
+            .set_dictionary_enabled(false)
+            .set_created_by(format!("hamel {}", env!("CARGO_PKG_VERSION")))
+            .set_key_value_metadata(Some(metadata))
+            .build();
+        let mut writer =
+            SerializedFileWriter::new(Vec::new(), self.schema()?, Arc::new(properties))?;
+        let mut group = writer.next_row_group()?;
+        let mut place: usize = 0;
+        while let Some(mut column) = group.next_column()? {
+            let kept = place.checked_sub(1 + self.varied.len());
+            match kept {
+                None if place == 0 => {
+                    let values: Vec<i64> = rows.iter().map(|row| row.index as i64).collect();
+                    column
+                        .typed::<Int64Type>()
+                        .write_batch(&values, None, None)?;
+                }
+                None => {
+                    let value = |row: &Row| row.varied.get(place - 1).copied();
+                    let values = rows.iter().map(|row| value(row).unwrap_or(f64::NAN));
+                    let values: Vec<f64> = values.collect();
+                    column
+                        .typed::<DoubleType>()
+                        .write_batch(&values, None, None)?;
+                }
+                Some(kept) if kept < self.kept.len() => {
+                    let values = rows.iter().map(|row| row.kept.get(kept).copied().flatten());
+                    let (levels, values): (Vec<i16>, Vec<f64>) = optional(values);
+                    let column = column.typed::<DoubleType>();
+                    column.write_batch(&values, Some(&levels), None)?;
+                }
+                Some(_) => {
+                    let values = rows
+                        .iter()
+                        .map(|row| row.error.as_deref().map(ByteArray::from));
+                    let (levels, values): (Vec<i16>, Vec<ByteArray>) = optional(values);
+                    let column = column.typed::<ByteArrayType>();
+                    column.write_batch(&values, Some(&levels), None)?;
+                }
+            }
+            column.close()?;
+            place += 1;
+        }
+        group.close()?;
+        writer.into_inner()
+    }
+}
+
+/// For each value whether there is one, and those that there are.
+fn optional<T>(values: impl Iterator<Item = Option<T>>) -> (Vec<i16>, Vec<T>) {
+    let (mut levels, mut present) = (Vec::new(), Vec::new());
+    for value in values {
+        levels.push(i16::from(value.is_some()));
+        present.extend(value);
+    }
+    (levels, present)
+}
+
+/// What the end of a file says of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Footer {
+    /// The manifest of the sweep that it is of.
+    pub sweep: Option<String>,
+    /// Its rows.
+    pub members: u64,
+    /// Those that failed.
+    pub failed: u64,
+}
+
+impl Footer {
+    /// Reads the end of a file.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let file = File::open(path).map_err(|error| error.to_string())?;
+        let read = ParquetMetaDataReader::new().parse_and_finish(&file);
+        let metadata: ParquetMetaData = read.map_err(|error| error.to_string())?;
+        let metadata = metadata.file_metadata();
+        let value = |key: &str| {
+            let known = metadata.key_value_metadata()?.iter();
+            known.clone().find(|known| known.key == key)?.value.clone()
+        };
+        Ok(Footer {
+            sweep: value(SWEEP),
+            members: metadata.num_rows().unsigned_abs(),
+            failed: value(FAILED)
+                .and_then(|text| text.parse().ok())
+                .unwrap_or(0),
+        })
+    }
+}

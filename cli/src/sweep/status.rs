@@ -1,0 +1,71 @@
+//! `hamel sweep --status`: what there is of a sweep.
+
+use super::folder::{known, there};
+use crate::columns::aligned;
+use crate::failure::{Failure, print};
+use crate::number::grouped;
+use std::path::Path;
+
+/// Ranges of missing shards that are listed.
+const LISTED: usize = 8;
+
+/// Prints what a folder has, and what is missing.
+pub fn run(path: &Path) -> Result<(), Failure> {
+    let Some(manifest) = known(path)? else {
+        return Err(Failure::usage(format!(
+            "{} is no folder of a sweep: it has no _sweep.json",
+            path.display()
+        )));
+    };
+    let there = there(path, &manifest)?;
+    let row = |name: &str, value: String| vec![name.to_string(), value];
+    let of = |done: u64, all: u64| format!("{} of {}", grouped(done), grouped(all));
+    let mut rows = vec![
+        row("shards", of(there.shards.len() as u64, manifest.shards())),
+        row("members", of(there.members, manifest.count)),
+        row("failed", grouped(there.failed)),
+    ];
+    let missing = missing(&there.shards, manifest.shards());
+    if !missing.is_empty() {
+        let listed: Vec<&str> = missing.iter().take(LISTED).map(String::as_str).collect();
+        let more = if missing.len() > LISTED { ", …" } else { "" };
+        rows.push(row(
+            "missing",
+            format!("shards {}{more}", listed.join(", ")),
+        ));
+    }
+    let heading = |name: &str| manifest.word(name).unwrap_or("").to_string();
+    print(&format!(
+        "\x1b[1m{}\x1b[0m  {}\n{}",
+        path.display(),
+        heading("vary"),
+        aligned(&rows, "  ")
+    ))
+}
+
+/// The shards that are not there, as ranges.
+fn missing(there: &[u64], all: u64) -> Vec<String> {
+    let mut ranges = Vec::new();
+    let mut next = 0;
+    for shard in there.iter().copied().chain([all]) {
+        match shard - next {
+            0 => {}
+            1 => ranges.push(format!("{next}")),
+            _ => ranges.push(format!("{next} to {}", shard - 1)),
+        }
+        next = shard + 1;
+    }
+    ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::missing;
+
+    #[test]
+    fn what_is_missing_is_said_as_ranges() {
+        assert_eq!(missing(&[0, 1, 4, 6], 10), ["2 to 3", "5", "7 to 9"]);
+        assert_eq!(missing(&[], 2), ["0 to 1"]);
+        assert!(missing(&[0, 1], 2).is_empty());
+    }
+}

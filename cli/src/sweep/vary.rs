@@ -1,0 +1,223 @@
+//! `--vary`: what differs from member to member, and the state of each of them.
+
+use super::distribution::{Distribution, count};
+use super::draws::Draws;
+use super::permutation::Permutation;
+use super::target::{Part, Target};
+use super::text::{Piece, refused};
+use crate::failure::Failure;
+use crate::simulate::inputs;
+use crate::state::State;
+use hamel_codegen::diagnostics::Diagnostic;
+use hamel_codegen::generate::Generated;
+use serde_json::{Map, Value};
+
+const OPTION: &str = "--vary";
+
+/// One number that is varied.
+#[derive(Clone, Debug)]
+struct Entry {
+    target: usize,
+    place: usize,
+    column: String,
+    distribution: Distribution,
+    strata: Option<Permutation>,
+    /// Members of one value of a grid that follow one another.
+    stride: u64,
+}
+
+/// What is varied, and how.
+#[derive(Clone, Debug)]
+pub struct Vary {
+    targets: Vec<Target>,
+    entries: Vec<Entry>,
+    draws: Draws,
+    /// Members of the sweep.
+    members: u64,
+}
+
+impl Vary {
+    /// Reads the option; `members` is how many are asked for, where that is said.
+    pub fn read(
+        text: &str,
+        generated: &Generated,
+        state: &State,
+        seed: u64,
+        members: Option<u64>,
+    ) -> Result<Self, Failure> {
+        let wrong = |errors: Vec<Diagnostic>| refused(OPTION, text, &errors);
+        let whole = Piece::of(text).map_err(|error| wrong(vec![error]))?;
+        let mut vary = Vary {
+            targets: Vec::new(),
+            entries: Vec::new(),
+            draws: Draws::new(seed),
+            members: 0,
+        };
+        let mut errors = Vec::new();
+        for item in whole.split(';') {
+            if !item.text.is_empty()
+                && let Err(more) = vary.item(item, generated, state)
+            {
+                errors.extend(more);
+            }
+        }
+        if !errors.is_empty() {
+            return Err(wrong(errors));
+        }
+        if vary.entries.is_empty() {
+            return Err(wrong(vec![whole.wrong(
+                "nothing is varied; an item is written `NAME = DISTRIBUTION`",
+            )]));
+        }
+        vary.count(members)
+            .map_err(|why| wrong(vec![whole.wrong(why)]))?;
+        let members = vary.members;
+        for (index, entry) in vary.entries.iter_mut().enumerate() {
+            if let Distribution::Latin(..) = entry.distribution {
+                entry.strata = Some(vary.draws.permutation(index, members));
+            }
+        }
+        Ok(vary)
+    }
+
+    fn item(
+        &mut self,
+        item: Piece,
+        generated: &Generated,
+        state: &State,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let sides = item.split('=');
+        let [left, right] = sides.as_slice() else {
+            return Err(vec![item.wrong("an item is written `NAME = DISTRIBUTION`").help(
+                "as in `m = normal(1.3, 0.1)`, `start w = uniform([-1, -1, -1], [1, 1, 1])`, `input F = grid(0, 1, 5)`",
+            )]);
+        };
+        let (part, name) = match left.text.split_once(char::is_whitespace) {
+            Some(("start", name)) => (Part::Start, name.trim()),
+            Some(("input", name)) => (Part::Input, name.trim()),
+            _ => (Part::Parameter, left.text),
+        };
+        let (target, places) = Target::find(part, name, &generated.active, state)
+            .map_err(|why| vec![left.wrong(why)])?;
+        let known = self
+            .targets
+            .iter()
+            .position(|known| (known.part, &known.name) == (target.part, &target.name));
+        let number = known.unwrap_or(self.targets.len());
+        let taken = |entry: &Entry| entry.target == number && places.contains(&entry.place);
+        if self.entries.iter().any(taken) {
+            return Err(vec![left.wrong(format!("`{}` is varied twice", left.text))]);
+        }
+        let numbers = |text: &str| inputs::constant(text, generated, &state.params);
+        let distributions = Distribution::read(*right, places.len(), &numbers)?;
+        for (place, distribution) in places.into_iter().zip(distributions) {
+            self.entries.push(Entry {
+                target: number,
+                place,
+                column: format!("{}{}", part.word(), target.entries[place]),
+                distribution,
+                strata: None,
+                stride: 1,
+            });
+        }
+        if known.is_none() {
+            self.targets.push(target);
+        }
+        Ok(())
+    }
+
+    /// Counts the members: those that are asked for, or the points of all grids.
+    fn count(&mut self, asked: Option<u64>) -> Result<(), String> {
+        let mut points: u64 = 1;
+        let mut grids = false;
+        // The last one goes through its values first.
+        for entry in self.entries.iter_mut().rev() {
+            if let Distribution::Grid(_, _, n) = entry.distribution {
+                entry.stride = points;
+                grids = true;
+                points = points
+                    .checked_mul(n)
+                    .filter(|points| *points <= i64::MAX as u64)
+                    .ok_or("the grids have more points than can be counted")?;
+            }
+        }
+        self.members = match (asked, grids) {
+            (Some(asked), true) if asked % points != 0 => {
+                return Err(format!(
+                    "the grids have {}: --members has to be a multiple of that, or be left out",
+                    count(points as usize, "point")
+                ));
+            }
+            (Some(asked), _) => asked,
+            (None, true) => points,
+            (None, false) => return Err("without a grid, --members says how many there are".into()),
+        };
+        Ok(())
+    }
+
+    /// How many members there are.
+    pub fn members(&self) -> u64 {
+        self.members
+    }
+
+    /// Names of the numbers that are varied, as the option calls them.
+    pub fn columns(&self) -> impl Iterator<Item = &str> {
+        self.entries.iter().map(|entry| entry.column.as_str())
+    }
+
+    /// Places in u of the inputs that are varied, with their names.
+    pub fn inputs(&self, generated: &Generated) -> Vec<(usize, &str)> {
+        let place = |entry: &Entry| {
+            let target = &self.targets[entry.target];
+            let mut groups = generated.active.inputs.iter();
+            let group = groups.find(|group| target.part == "input" && group.name == target.name)?;
+            Some(group.offset + entry.place)
+        };
+        let all = self.entries.iter();
+        all.filter_map(|entry| Some((place(entry)?, entry.column.as_str())))
+            .collect()
+    }
+
+    /// The numbers of a member, in the order of the columns.
+    pub fn values(&self, member: u64) -> Vec<f64> {
+        let value = |(index, entry): (usize, &Entry)| {
+            let point = match entry.distribution {
+                Distribution::Grid(_, _, n) => member / entry.stride % n,
+                _ => 0,
+            };
+            let strata = entry.strata.as_ref().map(|strata| (strata, self.members));
+            entry
+                .distribution
+                .value(&self.draws, member, index, point, strata)
+        };
+        self.entries.iter().enumerate().map(value).collect()
+    }
+
+    /// The state in JSON that has these numbers, and else what another one says.
+    pub fn state(&self, values: &[f64], base: &Map<String, Value>) -> Value {
+        let mut numbers: Vec<Vec<f64>> = self.targets.iter().map(|t| t.base.clone()).collect();
+        for (entry, value) in self.entries.iter().zip(values) {
+            numbers[entry.target][entry.place] = *value;
+        }
+        let mut state = base.clone();
+        for (target, numbers) in self.targets.iter().zip(&numbers) {
+            let part = state
+                .entry(target.part)
+                .or_insert_with(|| Map::new().into());
+            if let Value::Object(part) = part {
+                part.insert(target.name.clone(), target.json(numbers));
+            }
+        }
+        state.into()
+    }
+
+    /// The same with nothing varied.
+    pub fn unvaried(&self, base: &Map<String, Value>) -> Value {
+        let values: Vec<f64> = self
+            .entries
+            .iter()
+            .map(|entry| self.targets[entry.target].base[entry.place])
+            .collect();
+        self.state(&values, base)
+    }
+}

@@ -1,0 +1,266 @@
+//! What is kept of one member while it runs.
+
+use super::added;
+use super::keep::{Item, Kept, Of};
+use crate::interpreted::{Interpreted, Output};
+use crate::method::Stepper;
+use crate::names;
+use crate::simulate::record::Place;
+use hamel::{State, step};
+use hamel_codegen::generate::Generated;
+use hamel_codegen::program::Shape;
+
+/// Halvings of a step in which an event is: more are below rounding.
+const HALVINGS: usize = 60;
+
+/// What is made of one item, without the texts that it was read from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    End,
+    Of(Of),
+}
+
+/// The columns of what is kept, and how they are filled.
+#[derive(Clone, Debug)]
+pub struct Keeping {
+    items: Vec<(Kind, String)>,
+    columns: Vec<String>,
+}
+
+impl Keeping {
+    /// Names the columns; refused where an event compares anything but numbers.
+    pub fn new(kept: &[Kept], generated: &Generated) -> Result<Self, (usize, String)> {
+        let (mut items, mut columns) = (Vec::new(), Vec::new());
+        for (index, (piece, item)) in kept.iter().enumerate() {
+            let name = added::name(index);
+            let of = match item {
+                Item::End => {
+                    let coordinates = names::coordinates(&generated.model);
+                    let moving = names::moving(&generated.active);
+                    let all = ["t".to_string()]
+                        .into_iter()
+                        .chain(coordinates)
+                        .chain(moving);
+                    columns.extend(all.map(|name| format!("end {name}")));
+                    items.push((Kind::End, name));
+                    continue;
+                }
+                Item::Of(of, _) => *of,
+            };
+            let function = generated.program.function(&name);
+            let shape = function.map_or(Shape::Scalar, |function| function.shape);
+            if matches!(of, Of::Event { .. }) && shape != Shape::Scalar {
+                return Err((index, "an event compares numbers".into()));
+            }
+            columns.extend(names::shaped(piece.text, shape));
+            items.push((Kind::Of(of), name));
+        }
+        Ok(Keeping { items, columns })
+    }
+
+    /// The names of the columns.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Times at which values are asked for, in order.
+    pub fn times(&self) -> Vec<f64> {
+        let mut times: Vec<f64> = self
+            .items
+            .iter()
+            .filter_map(|(kind, _)| match kind {
+                Kind::Of(Of::At(time)) => Some(*time),
+                _ => None,
+            })
+            .collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+
+    /// Whether anything happens between the ends of steps.
+    pub fn looks_within(&self) -> bool {
+        self.items
+            .iter()
+            .any(|(kind, _)| !matches!(kind, Kind::End | Kind::Of(Of::At(_))))
+    }
+}
+
+/// What is known of one item.
+#[derive(Clone, Debug)]
+struct Known {
+    of: Of,
+    /// Its place among the outputs of the system.
+    output: usize,
+    values: Vec<f64>,
+    /// The values of the expression at the last state.
+    last: Vec<f64>,
+}
+
+/// A member that is watched.
+pub struct Watch<'a> {
+    keeping: &'a Keeping,
+    system: &'a Interpreted,
+    stepper: &'a Stepper,
+    known: Vec<Known>,
+    /// The first and the last state that were seen.
+    begin: f64,
+    last: Option<State<Interpreted>>,
+}
+
+impl<'a> Watch<'a> {
+    /// Before the run.
+    pub fn new(keeping: &'a Keeping, system: &'a Interpreted, stepper: &'a Stepper) -> Self {
+        let known = keeping.items.iter().filter_map(|(kind, name)| {
+            let Kind::Of(of) = kind else {
+                return None;
+            };
+            let mut outputs = system.outputs().iter();
+            let output = outputs.position(|output| output.name == *name)?;
+            Some(Known {
+                of: *of,
+                output,
+                values: Vec::new(),
+                last: Vec::new(),
+            })
+        });
+        Watch {
+            keeping,
+            system,
+            stepper,
+            known: known.collect(),
+            begin: 0.0,
+            last: None,
+        }
+    }
+
+    /// Sees a state.
+    pub fn see(&mut self, state: &State<Interpreted>, place: Place) {
+        let value =
+            |output: usize, state: &State<Interpreted>| match self.system.outputs().get(output) {
+                Some(output) => value(self.system, output, state),
+                None => Vec::new(),
+            };
+        if place == Place::Sample {
+            let asked = self
+                .known
+                .iter_mut()
+                .filter(|known| known.of == Of::At(state.t));
+            for known in asked {
+                known.values = value(known.output, state);
+            }
+            return;
+        }
+        let before = self.last.as_ref();
+        for known in &mut self.known {
+            if matches!(known.of, Of::At(_)) {
+                continue;
+            }
+            if matches!(known.of, Of::Event { .. }) && !known.values.is_empty() {
+                continue;
+            }
+            let now = value(known.output, state);
+            let h = before.map_or(0.0, |before| state.t - before.t);
+            match known.of {
+                Of::At(_) => {}
+                Of::Max => extreme(&mut known.values, &now, |new, old| new > old),
+                Of::Min => extreme(&mut known.values, &now, |new, old| new < old),
+                Of::Mean => {
+                    known.values.resize(now.len(), 0.0);
+                    // By trapezia.
+                    let ends = now.iter().zip(&known.last);
+                    for (sum, (b, a)) in known.values.iter_mut().zip(ends) {
+                        *sum += 0.5 * h * (a + b);
+                    }
+                }
+                Of::Event { equal } => {
+                    let holds = |values: &[f64]| match values.first() {
+                        Some(value) if equal => *value <= 0.0,
+                        Some(value) => *value < 0.0,
+                        None => false,
+                    };
+                    if let Some(before) = before
+                        && holds(&now)
+                        && !holds(&known.last)
+                    {
+                        let at = |state: &State<Interpreted>| holds(&value(known.output, state));
+                        let time = first(self.system, self.stepper, before, state.t, &at);
+                        known.values = vec![time];
+                    }
+                }
+            }
+            known.last = now;
+        }
+        if before.is_none() {
+            self.begin = state.t;
+        }
+        self.last = Some(state.clone());
+    }
+
+    /// What is kept of a member that has ended in a state.
+    pub fn finish(self, end: &State<Interpreted>) -> Vec<Option<f64>> {
+        let mut row = Vec::with_capacity(self.keeping.columns.len());
+        let mut known = self.known.into_iter();
+        let elapsed = end.t - self.begin;
+        for (kind, _) in &self.keeping.items {
+            if *kind == Kind::End {
+                let all = [end.t].into_iter().chain(end.x.iter().copied());
+                row.extend(all.chain(end.xi.iter().copied()).map(Some));
+                continue;
+            }
+            let Some(known) = known.next() else {
+                continue;
+            };
+            match known.of {
+                Of::Event { .. } => row.push(known.values.first().copied()),
+                Of::Mean => row.extend(known.values.iter().map(|sum| Some(sum / elapsed))),
+                _ => row.extend(known.values.into_iter().map(Some)),
+            }
+        }
+        row
+    }
+}
+
+fn value(system: &Interpreted, output: &Output, state: &State<Interpreted>) -> Vec<f64> {
+    system.output(output, state.t, &state.x, &state.xi)
+}
+
+/// The greater or the lesser of each entry; what is not a number stays.
+fn extreme(values: &mut Vec<f64>, now: &[f64], beyond: impl Fn(f64, f64) -> bool) {
+    if values.is_empty() {
+        values.extend_from_slice(now);
+        return;
+    }
+    for (value, now) in values.iter_mut().zip(now) {
+        if beyond(*now, *value) || now.is_nan() {
+            *value = *now;
+        }
+    }
+}
+
+/// The first time known between a state and a later time at which something holds that does not hold in the state, and
+/// does at that time: by shorter and shorter steps of the method itself.
+fn first(
+    system: &Interpreted,
+    stepper: &Stepper,
+    from: &State<Interpreted>,
+    until: f64,
+    holds: &dyn Fn(&State<Interpreted>) -> bool,
+) -> f64 {
+    let inputs = |t, x: &Vec<f64>, xi: &Vec<f64>| system.inputs(t, x, xi);
+    let (mut before, mut after) = (from.t, until);
+    for _ in 0..HALVINGS {
+        let middle = before + 0.5 * (after - before);
+        if middle <= before || middle >= after {
+            break;
+        }
+        let mut state = from.clone();
+        match step(system, stepper, &mut state, middle - from.t, &inputs) {
+            Ok(()) if holds(&state) => after = middle,
+            Ok(()) => before = middle,
+            // A step that cannot be taken cannot be divided.
+            Err(_) => break,
+        }
+    }
+    after
+}
