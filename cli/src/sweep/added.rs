@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::source::Source;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::Generated;
-use hamel_codegen::syntax::ast::Span;
+use hamel_codegen::syntax::ast::{ItemKind, Span};
 use hamel_codegen::syntax::parse_text;
 use std::ops::Range;
 
@@ -24,6 +24,7 @@ pub fn derive(source: &Source, option: &str, kept: &[Kept]) -> Result<Generated,
     // Where expressions stand, and statements around them, with the places in the option that they are of.
     let mut places: Vec<(Range<usize>, Range<usize>)> = Vec::new();
     let mut statements = Vec::new();
+    let outputs = Outputs::of(&source.text);
     for (index, (piece, item)) in kept.iter().enumerate() {
         let Item::Of(_, sides) = item else {
             continue;
@@ -33,12 +34,13 @@ pub fn derive(source: &Source, option: &str, kept: &[Kept]) -> Result<Generated,
         for (number, side) in sides.iter().enumerate() {
             more.push_str(if number == 0 { "" } else { " - " });
             more.push_str(if sides.len() > 1 { "(" } else { "" });
-            let length = side.text.len();
-            places.push((
-                more.len()..more.len() + length,
-                side.start..side.start + length,
-            ));
-            more.push_str(side.text);
+            let written_out = outputs.written_out(side.text);
+            let text = written_out.as_deref().unwrap_or(side.text);
+            if written_out.is_none() {
+                let place = more.len()..more.len() + text.len();
+                places.push((place, side.start..side.start + text.len()));
+            }
+            more.push_str(text);
             more.push_str(if sides.len() > 1 { ")" } else { "" });
         }
         more.push_str(";\n");
@@ -75,6 +77,48 @@ pub fn derive(source: &Source, option: &str, kept: &[Kept]) -> Result<Generated,
     Err(source.refused(&errors))
 }
 
+/// The outputs of a description with their expressions: other expressions have these in their places.
+struct Outputs(Vec<(String, String)>);
+
+impl Outputs {
+    fn of(text: &str) -> Self {
+        let system = parse_text(text).ok();
+        let items = system.into_iter().flat_map(|system| system.items);
+        let outputs = items.filter_map(|item| {
+            let ItemKind::Output { name, value } = item.kind else {
+                return None;
+            };
+            let expression = format!("({})", text.get(value.span.range()?)?);
+            let alone = parse_text(&format!("system S {{ output a = {expression}; }}"));
+            alone.is_ok().then_some((name.name, expression))
+        });
+        Outputs(outputs.collect())
+    }
+
+    /// The expression without names of outputs; none where it has none.
+    fn written_out(&self, expression: &str) -> Option<String> {
+        let is_of_word = |letter: char| letter.is_alphanumeric() || letter == '_';
+        let (mut text, mut rest, mut changed) = (String::new(), expression, false);
+        while !rest.is_empty() {
+            let begin = rest.find(is_of_word).unwrap_or(rest.len());
+            let (before, word) = rest.split_at(begin);
+            let (word, behind) = word.split_at(word.find(|c| !is_of_word(c)).unwrap_or(word.len()));
+            text.push_str(before);
+            rest = behind;
+            // Parts of a path, and functions, are no outputs.
+            let inside = before.ends_with('.') || rest.starts_with(['.', '(']);
+            match self.0.iter().find(|(name, _)| name == word && !inside) {
+                Some((_, output)) => {
+                    text.push_str(output);
+                    changed = true;
+                }
+                None => text.push_str(word),
+            }
+        }
+        changed.then_some(text)
+    }
+}
+
 /// An error that is about the option.
 fn own(error: &Diagnostic, moved: &dyn Fn(Span) -> Option<Span>) -> Option<Diagnostic> {
     let span = moved(error.span)?;
@@ -105,7 +149,22 @@ fn with(text: &str, more: &str) -> Option<(usize, String)> {
 
 #[cfg(test)]
 mod tests {
-    use super::with;
+    use super::{Outputs, with};
+
+    #[test]
+    fn outputs_are_written_out() {
+        let outputs =
+            Outputs::of("system S { output a = (q + 1) * 2; output b_1 = [q, 1]; output c = q; }");
+        assert_eq!(outputs.written_out("c").as_deref(), Some("(q)"));
+        let of = |text| outputs.written_out(text);
+        assert_eq!(
+            of("2 * a - b_1[2]").as_deref(),
+            Some("2 * ((q + 1) * 2) - ([q, 1])[2]")
+        );
+        for kept in ["ab + a_1", "a(1)", "s.a + a.b", "1 + 2", ""] {
+            assert_eq!(of(kept), None, "{kept}");
+        }
+    }
 
     #[test]
     fn statements_are_added_before_the_bracket_that_ends_the_description() {

@@ -149,7 +149,7 @@ mod tests {
         let piece = Piece::of(text).expect("brackets belong together");
         let parts: Vec<(&str, usize)> =
             piece.split(';').iter().map(|p| (p.text, p.start)).collect();
-        assert_eq!(parts, [("a = f(1; 2)", 1), ("b= [3;4]", 14), ("", 23)]);
+        assert_eq!(parts, [("a = f(1; 2)", 1), ("b= [3;4]", 14), ("", 24)]);
         let call = Piece::of("max( norm(w) )").expect("brackets").call();
         let call = call.map(|(name, inner)| (name.text, inner.text, inner.start));
         assert_eq!(call, Some(("max", "norm(w)", 5)));
