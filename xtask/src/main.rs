@@ -39,6 +39,9 @@ const CI: Task = &[
     "cargo test --manifest-path tests/mutants/Cargo.toml --locked",
     // Steps of real robots with their slopes, against Pinocchio's.
     "bash tests/robots/steps.sh",
+    // Tables of sweeps in the programs that read them, and tasks of a scheduler of which one is killed.
+    "bash tests/sweep/run.sh",
+    "bash tests/sweep/hyperqueue.sh",
     // A controller on microcontrollers, in QEMU.
     "bash tests/cortex/run.sh",
 ];

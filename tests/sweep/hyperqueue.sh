@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# A sweep on HyperQueue, on one node: 16 tasks, server and worker killed in the middle, the same command again, and the
+# union compared with a run on this machine, byte for byte. Needs cargo and Python; the wheel `hyperqueue` of PyPI goes to a
+# virtual environment below the target.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+version=0.27.0
+target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
+environment="$target/hyperqueue"
+if [ ! -f "$environment/$version" ]; then
+    python3 -m venv --clear "$environment"
+    "$environment/bin/pip" --quiet --disable-pip-version-check install "hyperqueue==$version"
+    touch "$environment/$version"
+fi
+cargo build --quiet --locked -p hamel-cli
+folder="$(mktemp -d)"
+trap 'rm -rf "$folder"' EXIT
+"$environment/bin/python" tests/sweep/on_hyperqueue.py test "$target/debug/hamel" "$folder"

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# A sweep's shards, read by Polars, DuckDB and pandas as the README says, and compared with one another and with what
+# `hamel simulate` gives; needs cargo and Python with wheels of PyPI, which go to a virtual environment below the target.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
+environment="$target/sweep-readers"
+wheels="polars==2.1.0 duckdb==2.0.0 pandas==3.1.1 pyarrow==26.0.1"
+if [ ! -f "$environment/installed" ] || [ "$(cat "$environment/installed")" != "$wheels" ]; then
+    python3 -m venv --clear "$environment"
+    # shellcheck disable=SC2086
+    "$environment/bin/pip" --quiet --disable-pip-version-check install $wheels
+    echo "$wheels" > "$environment/installed"
+fi
+cargo build --quiet --locked -p hamel-cli
+folder="$(mktemp -d)"
+trap 'rm -rf "$folder"' EXIT
+"$environment/bin/python" tests/sweep/readers.py "$target/debug/hamel" "$folder"
