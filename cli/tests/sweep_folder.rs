@@ -2,15 +2,18 @@
 #![cfg(target_os = "linux")]
 
 mod common;
+#[path = "common/shards.rs"]
+mod shards;
 #[path = "common/table.rs"]
 mod table;
 
 use common::{hamel, text};
+use shards::bytes;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant, SystemTime};
-use table::{Table, bytes, fresh, shards};
+use table::{Table, fresh, shards};
 
 /// Time for one command, generous: the machine may be busy.
 const PATIENCE: Duration = Duration::from_secs(300);

@@ -3,14 +3,17 @@
 #![cfg(unix)]
 
 mod common;
+#[path = "common/shards.rs"]
+mod shards;
 #[path = "common/table.rs"]
 mod table;
 
 use common::{hamel, text};
+use shards::bytes;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
-use table::{bytes, fresh};
+use table::{Table, fresh};
 
 /// Runs the script of a task, the last argument, for the tasks of `--array=1-N` from the last to the first; the tasks in
 /// the variable `LOST` are lost. What it was called with goes to a file.
@@ -98,6 +101,7 @@ fn engines_compute_all_parts() {
         "",
     );
     assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(Table::read(&whole).column("index").len(), 40);
     for (engine, command, variable, wanted) in [
         (
             "slurm",
@@ -159,7 +163,7 @@ fn what_cannot_be_submitted_is_refused() {
         said.contains("cannot run `sbatch`") && said.contains("_task.sh"),
         "{said}"
     );
-    let out = folder.display().to_string();
+    let (out, model) = (folder.display().to_string(), model());
     for (options, why) in [
         (
             &["--submit", "slurm", "--shard", "1/2"][..],
@@ -168,7 +172,7 @@ fn what_cannot_be_submitted_is_refused() {
         (&["--tasks", "4"], "--submit"),
         (&["--submit", "pbs"], "invalid value"),
     ] {
-        let all = [&["sweep", &model(), "--out", &out], &SWEEP[..], options].concat();
+        let all = [&["sweep", &model, "--out", &out], &SWEEP[..], options].concat();
         let output = hamel(&all, "");
         assert_eq!(output.status.code(), Some(2));
         assert!(

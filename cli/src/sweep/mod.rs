@@ -272,6 +272,11 @@ fn prepared(
         varied: vary.columns().map(String::from).collect(),
         kept: keeping.columns().to_vec(),
     };
+    if let Some(name) = columns.twice() {
+        return Err(Failure::usage(format!(
+            "two columns would be called `{name}`: give what is varied another name in the description"
+        )));
+    }
     let unvaried = vary.unvaried(&base);
     let family = Family {
         texts: [source.text.clone(), source.shown().to_string()],

@@ -8,6 +8,7 @@ use parquet::file::metadata::{KeyValue, ParquetMetaData, ParquetMetaDataReader};
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type as Field, TypePtr};
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
@@ -31,6 +32,14 @@ pub struct Columns {
 }
 
 impl Columns {
+    /// A name that two columns would have.
+    pub fn twice(&self) -> Option<&str> {
+        let own = [INDEX, ERROR].into_iter();
+        let asked = self.varied.iter().chain(&self.kept).map(String::as_str);
+        let mut seen = BTreeSet::new();
+        own.chain(asked).find(|name| !seen.insert(*name))
+    }
+
     fn schema(&self) -> Result<TypePtr, ParquetError> {
         let field = |name: &str, kind: Type, repetition: Repetition, text: bool| {
             let logical = text.then_some(LogicalType::String);

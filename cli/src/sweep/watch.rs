@@ -10,6 +10,8 @@ use hamel::{State, step};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 
+/// The name of the time at which a member ended.
+const TIME: &str = "t";
 /// Halvings of a step in which an event is: more are below rounding.
 const HALVINGS: usize = 60;
 
@@ -25,22 +27,24 @@ enum Kind {
 pub struct Keeping {
     items: Vec<(Kind, String)>,
     columns: Vec<String>,
+    /// Whether the time at the end has a column of its own: where the time is a coordinate it is one anyway.
+    timed: bool,
 }
 
 impl Keeping {
     /// Names the columns; refused where an event compares anything but numbers.
     pub fn new(kept: &[Kept], generated: &Generated) -> Result<Self, (usize, String)> {
-        let (mut items, mut columns) = (Vec::new(), Vec::new());
+        let (mut items, mut columns, mut timed) = (Vec::new(), Vec::new(), true);
         for (index, (piece, item)) in kept.iter().enumerate() {
             let name = added::name(index);
             let of = match item {
                 Item::End => {
                     let coordinates = names::coordinates(&generated.model);
                     let moving = names::moving(&generated.active);
-                    let all = ["t".to_string()]
-                        .into_iter()
-                        .chain(coordinates)
-                        .chain(moving);
+                    let all: Vec<String> = coordinates.into_iter().chain(moving).collect();
+                    timed = !all.iter().any(|name| name == TIME);
+                    let time = timed.then(|| TIME.to_string());
+                    let all = time.into_iter().chain(all);
                     columns.extend(all.map(|name| format!("end {name}")));
                     items.push((Kind::End, name));
                     continue;
@@ -55,7 +59,11 @@ impl Keeping {
             columns.extend(names::shaped(piece.text, shape));
             items.push((Kind::Of(of), name));
         }
-        Ok(Keeping { items, columns })
+        Ok(Keeping {
+            items,
+            columns,
+            timed,
+        })
     }
 
     /// The names of the columns.
@@ -204,8 +212,8 @@ impl<'a> Watch<'a> {
         let elapsed = end.t - self.begin;
         for (kind, _) in &self.keeping.items {
             if *kind == Kind::End {
-                let all = [end.t].into_iter().chain(end.x.iter().copied());
-                row.extend(all.chain(end.xi.iter().copied()).map(Some));
+                row.extend(self.keeping.timed.then_some(Some(end.t)));
+                row.extend(end.x.iter().chain(&end.xi).copied().map(Some));
                 continue;
             }
             let Some(known) = known.next() else {

@@ -78,19 +78,6 @@ pub fn shards(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// Names and bytes of the shards in a folder.
-pub fn bytes(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let named = |path: PathBuf| {
-        let name = path
-            .file_name()
-            .expect("a name")
-            .to_string_lossy()
-            .into_owned();
-        (name, fs::read(path).expect("a shard"))
-    };
-    shards(folder).into_iter().map(named).collect()
-}
-
 /// A folder of a test's own that is not there yet.
 pub fn fresh(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))

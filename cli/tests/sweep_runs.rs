@@ -1,0 +1,259 @@
+//! Members of sweeps: their states, their ends beside those of `hamel simulate`, what is kept of them, and what of those
+//! that fail.
+
+mod common;
+#[path = "common/swept.rs"]
+mod swept;
+#[path = "common/table.rs"]
+mod table;
+
+use common::{hamel, text};
+use hamel::so3;
+use std::fs;
+use swept::{BALL, swept};
+use table::fresh;
+
+fn model(name: &str) -> String {
+    format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The last row of a run of `hamel simulate`: t, x, ξ.
+fn simulated(name: &str, model: &str, state: &str, options: &[&str]) -> Vec<f64> {
+    let folder = fresh(&format!("simulated-{name}"));
+    fs::create_dir_all(&folder).expect("a folder");
+    let (at, out) = (folder.join(format!("{name}.json")), folder.join("run.csv"));
+    fs::write(&at, state).expect("a state");
+    let (at, out) = (at.display().to_string(), out.display().to_string());
+    let fixed = ["simulate", model, "--at", &at, "--out", &out];
+    let output = hamel(&[&fixed[..], options].concat(), "");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let written = fs::read_to_string(&out).expect("samples");
+    let last = written.lines().last().expect("a row");
+    last.split(',')
+        .map(|number| number.parse().expect("a number"))
+        .collect()
+}
+
+/// The values of `end` are those of the same run, to the bit, whatever the method.
+#[test]
+fn ends_are_those_of_simulate() {
+    let top = model("heavy_top");
+    for (name, options) in [
+        (
+            "steps",
+            &["--until", "0.2", "--method", "rkmk4", "--step", "0.01"][..],
+        ),
+        ("auto", &["--until", "0.2", "--step", "0.01"]),
+        (
+            "tol",
+            &["--until", "0.2", "--method", "rkmk8", "--tol", "1e-9"],
+        ),
+    ] {
+        let vary = "m = uniform(1, 2); start w[2] = uniform(-1, 1); start R = uniform(-1, 1); s[3] = uniform(0.2, 0.4)";
+        let members = ["--vary", vary, "--members", "3"];
+        let table = swept(
+            &format!("ends-{name}"),
+            &top,
+            &[&members[..], options].concat(),
+        );
+        let end = table
+            .names
+            .iter()
+            .position(|name| name == "end t")
+            .expect("end");
+        for row in &table.rows {
+            let value: Vec<f64> = row.iter().map(|value| value.expect("a number")).collect();
+            let [m, w2, s3] = [value[1], value[2], value[6]];
+            let turn = so3::retract(so3::identity(), [value[3], value[4], value[5]]);
+            let rows: Vec<&[f64]> = turn.chunks(3).collect();
+            let state = format!(
+                "{{\"param\": {{\"m\": {m:?}, \"s\": [0.1, -0.2, {s3:?}]}}, \"coord\": {{\"R\": {rows:?}}}, \"velocity\": {{\"w\": [0.3, {w2:?}, 5]}}}}"
+            );
+            assert_eq!(
+                value[end..],
+                simulated(name, &top, &state, options),
+                "{name}"
+            );
+        }
+    }
+}
+
+/// What is not given closes loops, and inputs by expressions have the parameters of their member.
+#[test]
+fn members_are_completed_as_states_are() {
+    let bar = model("four_bar_loop");
+    let options = ["--until", "0.05", "--step", "0.01"];
+    let vary = ["--vary", "start q1 = grid(1, 1.5, 2)"];
+    let table = swept("loops", &bar, &[&vary[..], &options].concat());
+    for row in &table.rows {
+        let value: Vec<f64> = row.iter().map(|value| value.expect("a number")).collect();
+        let state = format!("{{\"coord\": {{\"q1\": {:?}}}}}", value[1]);
+        assert_eq!(value[2..], simulated("loop", &bar, &state, &options));
+    }
+    let pushed = [
+        "--vary",
+        "m = grid(1, 2, 2)",
+        "--input",
+        "F = m * g + m",
+        "--until",
+        "1",
+    ];
+    let table = swept("pushed", BALL, &pushed);
+    for w in table.column("end w") {
+        assert!((w - 5.0).abs() < 1e-9, "{w}");
+    }
+    let inputs = ["--vary", "input F = grid(0, 40, 2)", "--until", "1"];
+    let found = swept("inputs", BALL, &inputs).column("end w");
+    assert!(
+        (found[0] + 6.0).abs() < 1e-9 && (found[1] - 14.0).abs() < 1e-9,
+        "{found:?}"
+    );
+}
+
+/// z = w t − g t²/2: lands at 2 w/g, is highest w²/2 g at w/g, and means w t/2 − g t²/6.
+#[test]
+fn what_is_kept_is_that_of_the_parabola() {
+    let keep = "max(height); min(z); mean(z); at(0.3, [y, w]); event(z < 0); event(w <= 0); event(z > 100); event(v > 0); event(2 < z + y)";
+    let fixed = [
+        "--vary",
+        "start w = grid(4, 5, 2)",
+        "--until",
+        "1",
+        "--keep",
+        keep,
+    ];
+    for (name, options, off) in [
+        ("steps", &["--method", "rkmk4", "--step", "0.01"][..], 2e-4),
+        ("tol", &["--method", "rkmk8", "--tol", "1e-10"], 2e-6),
+    ] {
+        let table = swept(
+            &format!("kept-{name}"),
+            BALL,
+            &[&fixed[..], options].concat(),
+        );
+        for (row, w) in [4.0, 5.0].into_iter().enumerate() {
+            let at = |name: &str| table.optional(name)[row];
+            let near = |name: &str, wanted: f64, off: f64| {
+                let found = at(name).expect(name);
+                assert!(
+                    (found - wanted).abs() <= off,
+                    "{name}: {found}, not {wanted}"
+                );
+            };
+            let height = |t: f64| w * t - 5.0 * t * t;
+            near("max(height)", height(w / 10.0), off);
+            near("min(z)", height(1.0).min(0.0), 1e-12);
+            near("mean(z)", w / 2.0 - 10.0 / 6.0, off);
+            near("at(0.3, [y, w])[1]", 0.3, 1e-12);
+            near("at(0.3, [y, w])[2]", w - 3.0, 1e-12);
+            near("event(w <= 0)", w / 10.0, 1e-12);
+            assert_eq!(at("event(z > 100)"), None);
+            // It holds from the start on.
+            assert_eq!(at("event(v > 0)"), None);
+            // y + z = t + w t − 5 t².
+            let first = ((w + 1.0) - ((w + 1.0_f64).powi(2) - 40.0).max(0.0).sqrt()) / 10.0;
+            match (w + 1.0).powi(2) > 40.0 {
+                true => near("event(2 < z + y)", first, 1e-12),
+                false => assert_eq!(at("event(2 < z + y)"), None),
+            }
+            match w < 5.0 {
+                true => near("event(z < 0)", w / 5.0, 1e-12),
+                // Where the run ends it is there, but for rounding.
+                false => assert!(at("event(z < 0)").is_none_or(|t| (t - 1.0).abs() < 1e-12)),
+            }
+        }
+    }
+}
+
+/// The time as a coordinate is in x, and no column is there twice.
+#[test]
+fn no_two_columns_have_one_name() {
+    let vary = [
+        "--vary",
+        "a = grid(0.1, 0.2, 2)",
+        "--until",
+        "0.1",
+        "--keep",
+        "end; max(t)",
+    ];
+    let table = swept("clock", &model("kapitza"), &vary);
+    assert_eq!(
+        table.names,
+        ["index", "a", "end t", "end q", "end w", "max(t)"]
+    );
+    for name in ["end t", "max(t)"] {
+        assert!(
+            table.column(name).iter().all(|t| (t - 0.1).abs() < 1e-12),
+            "{name}"
+        );
+    }
+    let folder = fresh("twice").display().to_string();
+    let options = [
+        "--vary",
+        "index = grid(0, 1, 2)",
+        "--until",
+        "1",
+        "--out",
+        &folder,
+    ];
+    let named = BALL.replace("drift: vec2 = [0, 0]", "index = 1");
+    let output = hamel(&[&["sweep", "-"], &options[..]].concat(), &named);
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("two columns would be called `index`"),
+        "{said}"
+    );
+}
+
+#[test]
+fn members_that_fail_are_rows_with_their_reasons() {
+    let grid = [
+        "--vary",
+        "m = grid(-1, 1, 3)",
+        "--until",
+        "0.1",
+        "--keep",
+        "end; max(z)",
+    ];
+    let table = swept("failed", BALL, &grid);
+    assert_eq!(table.column("m"), [-1.0, 0.0, 1.0]);
+    for (member, error) in table.errors.iter().enumerate() {
+        let kept = [
+            table.optional("end t")[member],
+            table.optional("max(z)")[member],
+        ];
+        match error {
+            Some(error) => {
+                assert!(error.starts_with("singular: the mass matrix"), "{error}");
+                assert_eq!((member < 2, kept), (true, [None, None]));
+            }
+            None => assert!(member == 2 && kept.iter().all(Option::is_some), "{member}"),
+        }
+    }
+    let growing = BALL.replace("force w = F", "force w = exp(20 * z) + F");
+    let options = [
+        "--vary",
+        "start w = grid(-4, 40, 2)",
+        "--until",
+        "1",
+        "--method",
+        "rkmk4",
+        "--step",
+        "0.05",
+    ];
+    let table = swept("diverging", &growing, &options);
+    assert_eq!(table.errors[0], None);
+    let error = table.errors[1].clone().expect("it diverges");
+    assert!(
+        error.starts_with("not finite: the run ends at t = "),
+        "{error}"
+    );
+    let options = ["--vary", "start c = grid(0.6, 2, 2)", "--until", "0.1"];
+    let table = swept("start", &model("pendulum"), &options);
+    assert_eq!(table.errors[0], None);
+    let error = table.errors[1].clone().expect("no such start");
+    assert!(
+        error.starts_with("start: coord: violates constraint 1"),
+        "{error}"
+    );
+}
