@@ -110,6 +110,45 @@ fn members_are_completed_as_states_are() {
     );
 }
 
+/// What is not varied is as the file says, also in the other entries of what is varied.
+#[test]
+fn members_are_changes_of_a_given_state() {
+    let folder = fresh("given");
+    fs::create_dir_all(&folder).expect("a folder");
+    let at = folder.join("state.json");
+    let state = r#"{"param": {"m": 1.5}, "velocity": {"w": [0.1, 0.2, 3]}}"#;
+    fs::write(&at, state).expect("a state");
+    let (at, top) = (at.display().to_string(), model("heavy_top"));
+    let options = ["--until", "0.1", "--step", "0.01"];
+    let vary = [
+        "--vary",
+        "start w[2] = grid(-1, 1, 2); g = grid(m, 9, 2)",
+        "--at",
+        &at,
+    ];
+    let table = swept("changed", &top, &[&vary[..], &options].concat());
+    assert_eq!(table.column("g"), [1.5, 9.0, 1.5, 9.0]);
+    for row in &table.rows {
+        let value: Vec<f64> = row.iter().map(|value| value.expect("a number")).collect();
+        let state = format!(
+            "{{\"param\": {{\"m\": 1.5, \"g\": {:?}}}, \"velocity\": {{\"w\": [0.1, {:?}, 3]}}}}",
+            value[2], value[1]
+        );
+        assert_eq!(value[3..], simulated("given", &top, &state, &options));
+    }
+    let by_joints = folder.join("joints.json");
+    fs::write(&by_joints, r#"{"configuration": {}}"#).expect("a state");
+    let (by_joints, out) = (by_joints.display().to_string(), folder.join("runs"));
+    let out = out.display().to_string();
+    let fixed = ["sweep", &top, "--out", &out, "--at", &by_joints];
+    let output = hamel(&[&fixed[..], &vary[..2], &options].concat(), "");
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("a sweep takes a state by coordinates"),
+        "{said}"
+    );
+}
+
 /// z = w t − g t²/2: lands at 2 w/g, is highest w²/2 g at w/g, and means w t/2 − g t²/6.
 #[test]
 fn what_is_kept_is_that_of_the_parabola() {

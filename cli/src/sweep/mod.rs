@@ -119,8 +119,8 @@ pub struct Arguments {
     /// Threads that members run on; by default, one for each core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Members of a file; by default, 64 to 10,000.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    /// Members of a file, which are in memory until it is written; by default, 64 to 10,000.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     shard_size: Option<u64>,
     /// Compute the i-th of N parts of the files, and no other; several machines may do so at once.
     #[arg(long, value_name = "i/N", value_parser = Part::read)]
