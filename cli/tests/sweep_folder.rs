@@ -67,14 +67,34 @@ fn status(folder: &Path) -> String {
     text(&output.stdout)
 }
 
-fn spawned(folder: &Path, options: &[&str]) -> Child {
+/// A process that ends with the test, whatever becomes of it.
+struct Running(Child);
+
+impl Running {
+    fn kill(&mut self) {
+        self.0.kill().expect("it is killed");
+        self.0.wait().expect("it has ended");
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn spawned(folder: &Path, options: &[&str]) -> Running {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hamel"));
     command.args(arguments(&model("heavy_top"), folder, options));
     let quiet = command.stdin(Stdio::null()).stdout(Stdio::null());
-    quiet
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the command runs")
+    Running(
+        quiet
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the command runs"),
+    )
 }
 
 fn until(what: &str, mut holds: impl FnMut() -> bool) {
@@ -90,19 +110,28 @@ fn changed(path: &PathBuf) -> SystemTime {
     known.modified().expect("a time")
 }
 
+/// A sweep that was killed when it had some of its shards, and its options: the first steps at which it is not over before.
+fn killed(folder: &str) -> (PathBuf, Vec<&'static str>) {
+    for step in ["1e-3", "1e-4", "1e-5"] {
+        let (folder, options) = (fresh(folder), [&SLOW[..], &["--step", step]].concat());
+        let mut child = spawned(&folder, &options);
+        until("a shard", || shards(&folder).len() > 2);
+        child.kill();
+        if shards(&folder).len() < 15 {
+            return (folder, options);
+        }
+    }
+    panic!("it is over before it is killed, however short its steps are");
+}
+
 #[test]
 fn a_killed_sweep_goes_on_where_it_was() {
+    let (folder, options) = killed("killed");
     let whole = fresh("whole");
-    done(&whole, &SLOW);
+    done(&whole, &options);
     assert_eq!(Table::read(&whole).column("index").len(), 60);
 
-    let folder = fresh("killed");
-    let mut child = spawned(&folder, &SLOW);
-    until("a shard", || shards(&folder).len() > 2);
-    child.kill().expect("it is killed");
-    child.wait().expect("it has ended");
     let known = shards(&folder);
-    assert!(known.len() < 15, "it was over before it was killed");
     let times: Vec<SystemTime> = known.iter().map(changed).collect();
     let said = status(&folder);
     let of = format!("{} of 15", known.len());
@@ -110,7 +139,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
     // What was being written.
     fs::write(folder.join(".hamel-abc.tmp"), "half").expect("a file");
 
-    let said = done(&folder, &SLOW);
+    let said = done(&folder, &options);
     let before = 4 * known.len();
     let wanted = format!(
         "{} members computed, 0 of them failed; {before} were there before",
@@ -123,7 +152,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
     );
     assert_eq!(bytes(&folder), bytes(&whole));
     assert!(!folder.join(".hamel-abc.tmp").exists());
-    let said = done(&folder, &SLOW);
+    let said = done(&folder, &options);
     assert!(said.contains(" 0 members computed"), "{said}");
     let said = status(&folder);
     assert!(
@@ -136,15 +165,14 @@ fn a_killed_sweep_goes_on_where_it_was() {
 fn a_folder_has_one_process_at_a_time() {
     let folder = fresh("busy");
     // Long enough that it does not end by itself.
-    let long = [&SLOW[..3], &["100000"], &SLOW[4..]].concat();
+    let long = [&SLOW[..3], &["1000000"], &SLOW[4..]].concat();
     let mut child = spawned(&folder, &long);
     until("a shard", || !shards(&folder).is_empty());
     for more in [&[][..], &["--shard", "2/3"]] {
         let said = refused(&folder, &[&long[..], more].concat());
         assert!(said.contains("another process computes"), "{said}");
     }
-    child.kill().expect("it is killed");
-    child.wait().expect("it has ended");
+    child.kill();
 
     let folder = fresh("busy-parts");
     let part = |part: &'static str| [&long[..], &["--shard", part]].concat();
@@ -161,10 +189,9 @@ fn a_folder_has_one_process_at_a_time() {
     let mut other = spawned(&folder, &part("1/2"));
     let first = folder.join("shard-000000.parquet");
     until("a shard of the other part", || first.exists());
-    assert!(other.try_wait().expect("a child").is_none());
+    assert!(other.0.try_wait().expect("a child").is_none());
     for child in [&mut child, &mut other] {
-        child.kill().expect("it is killed");
-        child.wait().expect("it has ended");
+        child.kill();
     }
     // Of 2/4 every fourth shard from the second on, of 1/2 every second one from the first on.
     let numbers = shards(&folder).into_iter().map(|path| {

@@ -78,6 +78,34 @@ fn ends_are_those_of_simulate() {
     }
 }
 
+/// Methods that depend on parameters and on the start are those of the member.
+#[test]
+fn methods_are_those_of_the_member() {
+    let plate = format!("{}/../examples/dzhanibekov.eom", env!("CARGO_MANIFEST_DIR"));
+    for method in ["splitting", "free"] {
+        let options = ["--until", "0.5", "--step", "0.01", "--method", method];
+        let vary = [
+            "--vary",
+            "J1 = grid(1, 1.5, 2); start w[1] = grid(0.1, 0.5, 2)",
+        ];
+        let table = swept(
+            &format!("plate-{method}"),
+            &plate,
+            &[&vary[..], &options].concat(),
+        );
+        for row in &table.rows {
+            let value: Vec<f64> = row.iter().map(|value| value.expect("a number")).collect();
+            let state = format!(
+                "{{\"param\": {{\"J1\": {:?}}}, \"velocity\": {{\"w\": [{:?}, 1, 0]}}}}",
+                value[1], value[2]
+            );
+            // Outputs stand behind the state.
+            let wanted = simulated(&format!("plate-{method}"), &plate, &state, &options);
+            assert_eq!(value[3..], wanted[..value.len() - 3], "{method}");
+        }
+    }
+}
+
 /// What is not given closes loops, and inputs by expressions have the parameters of their member.
 #[test]
 fn members_are_completed_as_states_are() {
