@@ -146,6 +146,8 @@ fn event(inner: Piece) -> Result<Item, Diagnostic> {
 #[cfg(test)]
 mod tests {
     use super::{Item, Of, read};
+    use crate::sweep::distribution::Distribution;
+    use crate::sweep::text::{Piece, refused as refused_text};
 
     fn refused(text: &str) -> String {
         format!("{:?}", read(text, 10.0).expect_err(text))
@@ -173,6 +175,42 @@ mod tests {
         };
         assert_eq!((sides[0].text, sides[1].text), ("[1, 2][1]", "r[3]"));
         assert!(matches!(kept[3].1, Item::Of(Of::At(2.5), _)));
+    }
+
+    /// Random texts are read or refused, and what is said can be shown.
+    #[test]
+    fn no_text_panics() {
+        let words = [
+            "max", "min(", "event(", "at(", "end", ";", ",", "(", ")", "[", "]", "{", "}", "<",
+            "<=", ">", "=", "ü", "→", " ", "1", "1e999", "x", "normal(", "grid(", "\n", "//", "'",
+        ];
+        let mut state: u64 = 1;
+        let mut next = |below: usize| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as usize % below
+        };
+        let (mut good, mut bad) = (0, 0);
+        for _ in 0..20_000 {
+            let text: String = (0..1 + next(9)).map(|_| words[next(words.len())]).collect();
+            let numbers = |text: &str| match text.len() {
+                1 => Ok(vec![1.0]),
+                _ => Err("unknown".to_string()),
+            };
+            if let Ok(piece) = Piece::of(&text) {
+                for entries in [1, 3] {
+                    if let Err(errors) = Distribution::read(piece, entries, &numbers) {
+                        refused_text("--vary", &text, &errors);
+                    }
+                }
+            }
+            match read(&text, 10.0) {
+                Ok(_) => good += 1,
+                Err(_) => bad += 1,
+            }
+        }
+        assert!(good > 50 && bad > 10_000, "{good} {bad}");
     }
 
     #[test]
