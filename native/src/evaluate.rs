@@ -101,7 +101,13 @@ fn sin_cos(x: f64, fused: bool) -> [f64; 2] {
     }
 }
 
-fn read(operand: Operand, values: &[f64], constants: &[f64], arguments: [&[f64]; 5]) -> f64 {
+/// The value of an operand.
+pub(crate) fn read(
+    operand: Operand,
+    values: &[f64],
+    constants: &[f64],
+    arguments: [&[f64]; 5],
+) -> f64 {
     let value = match operand.source {
         Source::Number(number) => Some(number),
         Source::Constant(index) => constants.get(index).copied(),

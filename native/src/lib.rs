@@ -122,6 +122,15 @@ impl Compiled {
         Constants(all, parts.tapes.kept())
     }
 
+    /// What it means that a pivot that depends on parameters alone is not positive, where one is not.
+    pub fn singular(&self, constants: &Constants) -> Option<Cause> {
+        let mut pivots = self.0.tapes.pivots.iter();
+        let positive = |pivot| evaluate::read(pivot, &[], &constants.0, [&[]; 5]) > 0.0;
+        pivots
+            .find(|(pivot, _)| !positive(*pivot))
+            .map(|(_, cause)| *cause)
+    }
+
     /// Calls a function with x, ξ and behind it z, u, ξ̇ and p. Entries that are missing are NaN, and so is what does
     /// not fit into `out`, which has to have the length of the result.
     ///

@@ -135,6 +135,7 @@ fn code_gives_the_bits_of_tapes() {
             parameters: PARAMETERS,
             lengths: LENGTHS,
             constants,
+            pivots: Vec::new(),
             functions,
         };
         let code = Compiled::of(tapes.clone());

@@ -5,11 +5,33 @@ use crate::failure::Failure;
 use hamel_codegen::program::{Cause, Function, Program};
 use hamel_native::{Compiled, Constants};
 
-/// Functions that were compiled together.
+/// Functions that were compiled together, for given parameters.
 #[derive(Clone, Debug)]
 pub struct Functions {
     compiled: Compiled,
     constants: Constants,
+}
+
+/// Those with these names that the program has.
+pub fn compiled(program: &Program, names: &[&str]) -> Result<Compiled, Failure> {
+    let all = names.iter().filter_map(|name| program.function(name));
+    let all: Vec<&Function> = all.collect();
+    Compiled::new(program, &all).map_err(|foreign| {
+        Failure::failed(format!(
+            "`{}` is a function in Rust, of which there are no numbers here",
+            foreign.name
+        ))
+    })
+}
+
+/// Where a function is.
+pub fn place(compiled: &Compiled, name: &str) -> Option<Place> {
+    let index = compiled.place(name)?;
+    let tape = compiled.tapes().functions.get(index)?;
+    Some(Place {
+        index,
+        length: tape.outputs.len(),
+    })
 }
 
 /// One of them.
@@ -28,36 +50,17 @@ impl Place {
 }
 
 impl Functions {
-    /// Those with these names that the program has.
-    pub fn new(program: &Program, names: &[&str], params: &[f64]) -> Result<Self, Failure> {
-        let all = names.iter().filter_map(|name| program.function(name));
-        let all: Vec<&Function> = all.collect();
-        let compiled = Compiled::new(program, &all).map_err(|foreign| {
-            Failure::failed(format!(
-                "`{}` is a function in Rust, of which there are no numbers here",
-                foreign.name
-            ))
-        })?;
-        Ok(Functions {
+    /// The functions with these parameters.
+    pub fn new(compiled: &Compiled, params: &[f64]) -> Self {
+        Functions {
             constants: compiled.constants(params),
-            compiled,
-        })
+            compiled: compiled.clone(),
+        }
     }
 
-    /// Where a function is.
-    pub fn known(&self, name: &str) -> Option<Place> {
-        let index = self.compiled.place(name)?;
-        let tape = self.compiled.tapes().functions.get(index)?;
-        Some(Place {
-            index,
-            length: tape.outputs.len(),
-        })
-    }
-
-    /// Where a function is that the program should have.
-    pub fn place(&self, program: &Program, name: &str) -> Result<Place, Failure> {
-        self.known(name)
-            .ok_or_else(|| super::missing(program, name))
+    /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
+    pub fn are_singular(&self) -> bool {
+        self.compiled.singular(&self.constants).is_some()
     }
 
     /// The result for x, ξ and z, u, ξ̇ and p; what it means that a pivot is not positive.

@@ -9,26 +9,23 @@ use crate::simulate::inputs::Inputs;
 use crate::singular::{self, Failed};
 use crate::state::State;
 pub use functions::{Functions, Place};
+use hamel::rotor::Rotor;
 use hamel::{Block, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::layout;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Argument, Cause, Program, Shape};
+use hamel_native::Compiled;
 use momenta::Momenta;
 pub use numbers::Numbers;
 use std::cell::{Cell, RefCell};
+use std::sync::Arc;
 
-/// A program with its parameters set; x, ξ and u are [`Numbers`].
-pub struct Interpreted {
-    functions: Functions,
+/// What runs of a description have in common, whatever their parameters: its functions, compiled.
+pub struct Mechanism {
+    compiled: Compiled,
     blocks: Vec<Block>,
-    start: (Numbers, Numbers),
-    inputs: Numbers,
-    /// What inputs are, where they do not keep these values.
-    given: Option<Inputs>,
-    /// Where they jump next.
-    before: Cell<f64>,
     chart: usize,
     rate: Place,
     chart_rate: Place,
@@ -45,14 +42,27 @@ pub struct Interpreted {
     outputs: Vec<Output>,
     invariants: Vec<Output>,
     momenta: Momenta,
-    evaluations: Cell<u64>,
     velocity_labels: Vec<String>,
     /// What is said where constraints depend on one another.
     dependent: String,
-    constant_singular: bool,
     constrained: bool,
     /// Whether energy changes otherwise than by loads: with the time, or by drives.
     driven: bool,
+}
+
+/// A mechanism with its parameters set; x, ξ and u are [`Numbers`].
+pub struct Interpreted {
+    of: Arc<Mechanism>,
+    functions: Functions,
+    rotors: Vec<Rotor<f64>>,
+    start: (Numbers, Numbers),
+    inputs: Numbers,
+    /// What inputs are, where they do not keep these values.
+    given: Option<Inputs>,
+    /// Where they jump next.
+    before: Cell<f64>,
+    evaluations: Cell<u64>,
+    constant_singular: bool,
     /// What had no value last.
     failed: RefCell<Option<Failed>>,
 }
@@ -67,10 +77,9 @@ pub struct Output {
     accelerated: bool,
 }
 
-impl Interpreted {
-    /// Compiles a complete program for the parameters, start and constant inputs of a state; the text of the description
-    /// is for messages.
-    pub fn new(generated: &Generated, state: &State, text: &str) -> Result<Self, Failure> {
+impl Mechanism {
+    /// Compiles a complete program; the text of the description is for messages.
+    pub fn new(generated: &Generated, text: &str) -> Result<Self, Failure> {
         let program = &generated.program;
         let model = &generated.model;
         // The energy is watched anyway.
@@ -78,14 +87,13 @@ impl Interpreted {
         let invariants: Vec<&String> = invariants.filter(|name| *name != "energy").collect();
         let outputs: Vec<&String> = model.outputs.iter().map(|(name, _)| name).collect();
         let described = outputs.iter().chain(&invariants).map(|name| name.as_str());
-        let names: Vec<&str> = SYSTEM
-            .iter()
-            .chain(momenta::NAMES)
-            .copied()
-            .chain(described)
-            .collect();
-        let functions = Functions::new(program, &names, &state.params)?;
-        let function = |name: &str| functions.place(program, name);
+        let names = SYSTEM.iter().chain(momenta::NAMES).copied();
+        let names: Vec<&str> = names.chain(described).collect();
+        let compiled = functions::compiled(program, &names)?;
+        let function = |name: &str| {
+            let place = functions::place(&compiled, name);
+            place.ok_or_else(|| missing(program, name))
+        };
         let output = |name: &&String| {
             let known = program.function(name.as_str());
             Ok(Output {
@@ -96,12 +104,11 @@ impl Interpreted {
                     .is_some_and(|function| function.arguments.contains(&Argument::Accelerations)),
             })
         };
-        Ok(Interpreted {
+        let list = |names: &[&String]| -> Result<Vec<Output>, Failure> {
+            names.iter().map(output).collect()
+        };
+        Ok(Mechanism {
             blocks: program.blocks.iter().copied().map(block).collect(),
-            start: (state.x.as_slice().into(), state.xi.as_slice().into()),
-            inputs: state.u.as_slice().into(),
-            given: None,
-            before: Cell::new(f64::INFINITY),
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
             rate: function("rate")?,
             chart_rate: function("chart_rate")?,
@@ -114,20 +121,39 @@ impl Interpreted {
             force: function("generalized_force")?,
             kinetic: function("kinetic_energy")?,
             potential: function("potential_energy")?,
-            outputs: outputs.iter().map(output).collect::<Result<_, Failure>>()?,
-            invariants: invariants
-                .iter()
-                .map(output)
-                .collect::<Result<_, Failure>>()?,
-            momenta: Momenta::new(program, &functions)?,
-            evaluations: Cell::new(0),
+            outputs: list(&outputs)?,
+            invariants: list(&invariants)?,
+            momenta: Momenta::new(program, &compiled),
             velocity_labels: singular::labels(&generated.active, text),
             dependent: singular::dependent(&generated.active, text),
-            constant_singular: constant_singular(program, &state.params),
             constrained: model.is_constrained(),
             driven: model.clock.is_some() || !model.accelerated.is_empty(),
-            failed: RefCell::new(None),
+            compiled,
+        })
+    }
+}
+
+impl Interpreted {
+    /// Compiles a complete program for the parameters, start and constant inputs of a state; the text of the description
+    /// is for messages.
+    pub fn new(generated: &Generated, state: &State, text: &str) -> Result<Self, Failure> {
+        Interpreted::of(&Arc::new(Mechanism::new(generated, text)?), state)
+    }
+
+    /// A mechanism with the parameters, start and constant inputs of a state.
+    pub fn of(mechanism: &Arc<Mechanism>, state: &State) -> Result<Self, Failure> {
+        let functions = Functions::new(&mechanism.compiled, &state.params);
+        Ok(Interpreted {
+            rotors: mechanism.momenta.rotors(&functions)?,
+            constant_singular: functions.are_singular(),
+            of: Arc::clone(mechanism),
             functions,
+            start: (state.x.as_slice().into(), state.xi.as_slice().into()),
+            inputs: state.u.as_slice().into(),
+            given: None,
+            before: Cell::new(f64::INFINITY),
+            evaluations: Cell::new(0),
+            failed: RefCell::new(None),
         })
     }
 
@@ -138,12 +164,12 @@ impl Interpreted {
 
     /// The entries of ξ as messages call them.
     pub fn velocity_labels(&self) -> &[String] {
-        &self.velocity_labels
+        &self.of.velocity_labels
     }
 
     /// What is said where constraints depend on one another.
     pub fn dependent(&self) -> &str {
-        &self.dependent
+        &self.of.dependent
     }
 
     /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
@@ -153,12 +179,12 @@ impl Interpreted {
 
     /// Whether there are constraints on the velocities.
     pub fn is_constrained(&self) -> bool {
-        self.constrained
+        self.of.constrained
     }
 
     /// Whether energy changes otherwise than by loads: with the time, or by drives.
     pub fn is_driven(&self) -> bool {
-        self.driven
+        self.of.driven
     }
 
     /// What had no value last, where something had none.
@@ -224,28 +250,28 @@ impl Interpreted {
 
     /// p = M ξ.
     pub fn momentum(&self, x: &[f64], xi: &[f64]) -> Numbers {
-        self.value(self.momentum, x, xi, &[])
+        self.value(self.of.momentum, x, xi, &[])
     }
 
     /// The power of the loads, f ξ.
     pub fn power(&self, t: f64, x: &[f64], xi: &[f64]) -> f64 {
-        let force = self.value(self.force, x, xi, &self.inputs(t, x, xi));
+        let force = self.value(self.of.force, x, xi, &self.inputs(t, x, xi));
         force.iter().zip(xi).map(|(f, v)| f * v).sum()
     }
 
     /// φ(x).
     pub fn constraint(&self, x: &[f64]) -> Numbers {
-        self.value(self.constraint, x, &[], &[])
+        self.value(self.of.constraint, x, &[], &[])
     }
 
     /// The outputs of the description.
     pub fn outputs(&self) -> &[Output] {
-        &self.outputs
+        &self.of.outputs
     }
 
     /// What the description claims to be constant, but the energy.
     pub fn invariants(&self) -> &[Output] {
-        &self.invariants
+        &self.of.invariants
     }
 
     /// The value of an output, matrices by rows; of accelerations, those of the forward dynamics,
@@ -256,6 +282,7 @@ impl Interpreted {
         if output.accelerated {
             let arguments = [x, xi, &u, &[], &[]];
             let accel = self
+                .of
                 .accel
                 .map(|accel| self.functions.call(accel, arguments));
             let accel = accel.and_then(Result::ok);
@@ -330,7 +357,7 @@ impl System for Interpreted {
     type Inputs = Numbers;
 
     fn blocks(&self) -> &[Block] {
-        &self.blocks
+        &self.of.blocks
     }
 
     fn zero_coordinates(&self) -> Numbers {
@@ -342,7 +369,7 @@ impl System for Interpreted {
     }
 
     fn zero_chart(&self) -> Numbers {
-        Numbers::filled(0.0, self.chart)
+        Numbers::filled(0.0, self.of.chart)
     }
 
     fn zero_inputs(&self) -> Numbers {
@@ -354,16 +381,16 @@ impl System for Interpreted {
     }
 
     fn rate(&self, x: &Numbers, xi: &Numbers) -> Numbers {
-        self.value(self.rate, x, xi, &[])
+        self.value(self.of.rate, x, xi, &[])
     }
 
     fn chart_rate(&self, x: &Numbers, xi: &Numbers) -> Numbers {
-        self.value(self.chart_rate, x, xi, &[])
+        self.value(self.of.chart_rate, x, xi, &[])
     }
 
     fn accel(&self, x: &Numbers, xi: &Numbers, u: &Numbers) -> Result<Numbers, Singular> {
         self.count();
-        let Some(accel) = self.accel else {
+        let Some(accel) = self.of.accel else {
             return Err(Singular::Mass);
         };
         let value = self.functions.call(accel, [x, xi, u, &[], &[]]);
@@ -374,19 +401,19 @@ impl System for Interpreted {
     }
 
     fn correction(&self, x: &Numbers) -> Numbers {
-        self.value(self.correction, x, &[], &[])
+        self.value(self.of.correction, x, &[], &[])
     }
 
     fn project_position(&self, x: &Numbers) -> Result<Option<Numbers>, Singular> {
         let arguments = [&**x, &[], &[], &[], &[]];
-        let function = self.project_position;
+        let function = self.of.project_position;
         let step = function.map(|function| self.functions.call(function, arguments));
         step.transpose().map_err(|cause| self.projection(cause))
     }
 
     fn project_velocity(&self, x: &Numbers, xi: &Numbers) -> Result<Option<Numbers>, Singular> {
         let arguments = [&**x, xi, &[], &[], &[]];
-        let function = self.project_velocity;
+        let function = self.of.project_velocity;
         let projected = function.map(|function| self.functions.call(function, arguments));
         projected
             .transpose()
@@ -402,10 +429,10 @@ impl System for Interpreted {
     }
 
     fn kinetic_energy(&self, x: &Numbers, xi: &Numbers) -> f64 {
-        self.scalar(self.kinetic, x, xi)
+        self.scalar(self.of.kinetic, x, xi)
     }
 
     fn potential_energy(&self, x: &Numbers) -> f64 {
-        self.scalar(self.potential, x, &[])
+        self.scalar(self.of.potential, x, &[])
     }
 }

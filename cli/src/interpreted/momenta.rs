@@ -1,6 +1,7 @@
 //! The traits by which methods step momenta; a system that lacks their functions is refused before a
 //! run begins.
 
+use super::functions::place;
 use super::{Functions, Interpreted, Numbers, Place};
 use crate::failure::Failure;
 use crate::singular::Failed;
@@ -8,11 +9,13 @@ use hamel::rotor::{Rotor, Symmetry};
 use hamel::{Canonical, Singular, Split};
 use hamel_codegen::program::Program;
 use hamel_codegen::program::structure::{self, Inertia, Structure};
+use hamel_native::Compiled;
 
 /// The functions of a system that splits, and those of generalised momenta.
 #[derive(Default)]
 pub struct Momenta {
-    rotors: Vec<Rotor<f64>>,
+    forms: Vec<Inertia>,
+    inertia: Option<Place>,
     centre: Option<Place>,
     uncentre: Option<Place>,
     momenta: Option<Place>,
@@ -36,28 +39,36 @@ pub const NAMES: &[&str] = &[
 
 impl Momenta {
     /// Those that a program has.
-    pub fn new(program: &Program, functions: &Functions) -> Result<Self, Failure> {
-        let mut rotors = Vec::new();
-        if let (Ok(splitting), Some(inertia)) =
-            (&program.structure.split, functions.known("rotor_inertia"))
-        {
-            let value = functions.call(inertia, [&[]; 5]);
-            let mut numbers = value.iter().flat_map(|numbers| numbers.iter().copied());
-            for form in &splitting.rotors {
-                let entries = numbers.by_ref().take(form.inertia.entries());
-                rotors.push(rotor(form.inertia, &entries.collect::<Vec<f64>>())?);
-            }
+    pub fn new(program: &Program, compiled: &Compiled) -> Self {
+        let known = |name: &str| place(compiled, name);
+        let split = program.structure.split.as_ref().ok();
+        Momenta {
+            forms: split.map_or_else(Vec::new, |splitting| {
+                splitting.rotors.iter().map(|form| form.inertia).collect()
+            }),
+            inertia: known("rotor_inertia"),
+            centre: known("centre"),
+            uncentre: known("uncentre"),
+            momenta: known("split_momenta"),
+            velocities: known("split_velocities"),
+            kick: known("kick"),
+            rate: known("momentum_rate"),
+            velocity: known("velocity_from_momentum"),
         }
-        Ok(Momenta {
-            rotors,
-            centre: functions.known("centre"),
-            uncentre: functions.known("uncentre"),
-            momenta: functions.known("split_momenta"),
-            velocities: functions.known("split_velocities"),
-            kick: functions.known("kick"),
-            rate: functions.known("momentum_rate"),
-            velocity: functions.known("velocity_from_momentum"),
-        })
+    }
+
+    /// The rotors with the parameters of functions.
+    pub fn rotors(&self, functions: &Functions) -> Result<Vec<Rotor<f64>>, Failure> {
+        let Some(inertia) = self.inertia else {
+            return Ok(Vec::new());
+        };
+        let value = functions.call(inertia, [&[]; 5]);
+        let mut numbers = value.iter().flat_map(|numbers| numbers.iter().copied());
+        let mut one = |&form: &Inertia| {
+            let entries: Vec<f64> = numbers.by_ref().take(form.entries()).collect();
+            rotor(form, &entries)
+        };
+        self.forms.iter().map(&mut one).collect()
     }
 }
 
@@ -90,7 +101,7 @@ impl Interpreted {
     pub fn structure(&self, program: &Program) -> Structure {
         let mut structure = program.structure.clone();
         if let Ok(splitting) = &mut structure.split {
-            for (form, rotor) in splitting.rotors.iter_mut().zip(&self.momenta.rotors) {
+            for (form, rotor) in splitting.rotors.iter_mut().zip(&self.rotors) {
                 form.inertia = Inertia::Principal(match rotor.symmetry {
                     Symmetry::Spherical => structure::Symmetry::Spherical,
                     Symmetry::Axial(axis) => structure::Symmetry::Axial(axis),
@@ -109,34 +120,38 @@ impl Split for Interpreted {
     const FREE: bool = false;
 
     fn rotors(&self) -> Vec<Rotor<f64>> {
-        self.momenta.rotors.clone()
+        self.rotors.clone()
     }
 
     fn centre(&self, x: &Numbers) -> Numbers {
-        match self.momenta.centre {
+        match self.of.momenta.centre {
             Some(centre) => self.found(Some(centre), [x, &[], &[], &[], &[]], x.len()),
             None => x.clone(),
         }
     }
 
     fn uncentre(&self, y: &Numbers) -> Numbers {
-        match self.momenta.uncentre {
+        match self.of.momenta.uncentre {
             Some(uncentre) => self.found(Some(uncentre), [y, &[], &[], &[], &[]], y.len()),
             None => y.clone(),
         }
     }
 
     fn split_momenta(&self, x: &Numbers, xi: &Numbers) -> Numbers {
-        self.found(self.momenta.momenta, [x, xi, &[], &[], &[]], self.chart)
+        self.found(
+            self.of.momenta.momenta,
+            [x, xi, &[], &[], &[]],
+            self.of.chart,
+        )
     }
 
     fn split_velocities(&self, x: &Numbers, p: &Numbers) -> Numbers {
-        self.found(self.momenta.velocities, [x, &[], &[], &[], p], p.len())
+        self.found(self.of.momenta.velocities, [x, &[], &[], &[], p], p.len())
     }
 
     fn kick(&self, x: &Numbers, u: &Numbers) -> Numbers {
         self.count();
-        self.found(self.momenta.kick, [x, &[], u, &[], &[]], self.chart)
+        self.found(self.of.momenta.kick, [x, &[], u, &[], &[]], self.of.chart)
     }
 }
 
@@ -147,12 +162,12 @@ impl Canonical for Interpreted {
 
     fn momentum_rate(&self, x: &Numbers, xi: &Numbers, u: &Numbers) -> Numbers {
         self.count();
-        self.found(self.momenta.rate, [x, xi, u, &[], &[]], xi.len())
+        self.found(self.of.momenta.rate, [x, xi, u, &[], &[]], xi.len())
     }
 
     fn velocity_from_momentum(&self, x: &Numbers, p: &Numbers) -> Result<Numbers, Singular> {
         let arguments = [&**x, &[], &[], &[], p];
-        match self.momenta.velocity {
+        match self.of.momenta.velocity {
             Some(velocity) => self.functions.call(velocity, arguments).map_err(|_| {
                 self.fails(Failed::Motion(x.to_vec()));
                 Singular::Mass

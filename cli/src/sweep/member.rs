@@ -3,7 +3,7 @@
 use super::vary::Vary;
 use super::watch::{Keeping, Watch};
 use crate::failure::Failure;
-use crate::interpreted::Interpreted;
+use crate::interpreted::{Interpreted, Mechanism};
 use crate::simulate::balance::Balance;
 use crate::simulate::inputs::Inputs;
 use crate::simulate::record::{Early, Plan, advance, ended};
@@ -11,13 +11,16 @@ use crate::state::State;
 use hamel_codegen::generate::Generated;
 use serde_json::{Map, Value};
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// What systems of all members are made of.
 pub struct Family {
     /// The system, with outputs for what is kept.
     pub generated: Generated,
-    /// Texts of the description, for states and for messages.
-    pub texts: [String; 2],
+    /// Its functions, compiled.
+    pub mechanism: Arc<Mechanism>,
+    /// The text of the description, for states and for messages.
+    pub text: String,
     /// What acts on members from outside.
     pub given: Option<Inputs>,
 }
@@ -92,12 +95,11 @@ impl Sweep {
 impl Family {
     /// The system of a member whose state is this: the only place where one is made.
     pub fn member(&self, state: &Value) -> Result<Interpreted, Early> {
-        let [text, shown] = &self.texts;
-        let state = State::of(&self.generated, text, state).map_err(|errors| Early {
+        let state = State::of(&self.generated, &self.text, state).map_err(|errors| Early {
             kind: "start",
             why: errors.join("; "),
         })?;
-        let system = Interpreted::new(&self.generated, &state, shown);
+        let system = Interpreted::of(&self.mechanism, &state);
         let system = system.map_err(|failure| of_start(&failure))?;
         let given = self.given.clone();
         let system = system.with(given.map(|given| given.with_params(&state.params)));

@@ -28,6 +28,7 @@ mod watch;
 mod work;
 
 use crate::failure::{Failure, print};
+use crate::interpreted::Mechanism;
 use crate::json::Json;
 use crate::method;
 use crate::number::grouped;
@@ -47,6 +48,7 @@ use member::{Family, Sweep};
 use serde_json::{Map, Value};
 use shard::Columns;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use submit::{Engine, Job};
 use vary::Vary;
 use watch::Keeping;
@@ -279,7 +281,8 @@ fn prepared(
     }
     let unvaried = vary.unvaried(&base);
     let family = Family {
-        texts: [source.text.clone(), source.shown().to_string()],
+        mechanism: Arc::new(Mechanism::new(&generated, source.shown())?),
+        text: source.text.clone(),
         given,
         generated,
     };

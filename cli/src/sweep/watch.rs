@@ -2,7 +2,7 @@
 
 use super::added;
 use super::keep::{Item, Kept, Of};
-use crate::interpreted::{Interpreted, Output};
+use crate::interpreted::{Interpreted, Numbers, Output};
 use crate::method::Stepper;
 use crate::names;
 use crate::simulate::record::Place;
@@ -213,7 +213,7 @@ impl<'a> Watch<'a> {
         for (kind, _) in &self.keeping.items {
             if *kind == Kind::End {
                 row.extend(self.keeping.timed.then_some(Some(end.t)));
-                row.extend(end.x.iter().chain(&end.xi).copied().map(Some));
+                row.extend(end.x.iter().chain(end.xi.iter()).copied().map(Some));
                 continue;
             }
             let Some(known) = known.next() else {
@@ -230,7 +230,7 @@ impl<'a> Watch<'a> {
 }
 
 fn value(system: &Interpreted, output: &Output, state: &State<Interpreted>) -> Vec<f64> {
-    system.output(output, state.t, &state.x, &state.xi)
+    system.output(output, state.t, &state.x, &state.xi).to_vec()
 }
 
 /// The greater or the lesser of each entry; what is not a number stays.
@@ -255,7 +255,7 @@ fn first(
     until: f64,
     holds: &dyn Fn(&State<Interpreted>) -> bool,
 ) -> f64 {
-    let inputs = |t, x: &Vec<f64>, xi: &Vec<f64>| system.inputs(t, x, xi);
+    let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (mut before, mut after) = (from.t, until);
     for _ in 0..HALVINGS {
         let middle = before + 0.5 * (after - before);

@@ -107,6 +107,8 @@ pub struct Tapes {
     pub lengths: [usize; 5],
     /// What depends on parameters alone: computed whenever they are set, and kept behind them.
     pub constants: Tape,
+    /// Pivots of what is constant at run time, which are constants: where one is not positive, M is not either.
+    pub pivots: Vec<(Operand, Cause)>,
     /// The functions.
     pub functions: Vec<Tape>,
 }
@@ -190,7 +192,20 @@ impl Tapes {
             let roots = [&function.outputs, guards].concat();
             call(&body(&program.graph, &roots), &function.outputs, guards)
         });
+        let pivots = Lowering {
+            places: &places,
+            time: Time::Call,
+            arguments: &[],
+            parameters,
+            values: FxHashMap::default(),
+        };
+        let pivots = program
+            .constant_guards
+            .iter()
+            .map(|&guard| (pivots.operand(guard), program.cause(guard)))
+            .collect();
         Ok(Tapes {
+            pivots,
             parameters,
             lengths: ARGUMENTS.map(|argument| program.length(argument)),
             constants,
