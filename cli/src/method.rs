@@ -238,7 +238,7 @@ pub enum Stepper {
     /// The free motion from the start, with nothing gathered on the way.
     Closed {
         /// Time, x and ξ of the start.
-        start: (Numbers, Numbers),
+        start: Box<(Numbers, Numbers)>,
         /// One free motion; its kicks are zero.
         motion: Splitting,
     },
@@ -257,7 +257,7 @@ pub enum Stepper {
 impl Stepper {
     fn closed_form(system: &Interpreted) -> Self {
         Stepper::Closed {
-            start: system.start(),
+            start: Box::new(system.start()),
             motion: Splitting::with_flow(system, Scheme::Strang, Flow::Exact),
         }
     }
@@ -313,7 +313,7 @@ where
             Stepper::Baseline(method) => method.step(system, state, h, inputs),
             Stepper::Splitting(method) => method.step(system, state, h, inputs),
             Stepper::Closed { start, motion } => {
-                let (x, xi) = start.clone();
+                let (x, xi) = (**start).clone();
                 let start: State<Sys> = State { t: 0.0, x, xi };
                 motion.step(system, &start, state.t + h, inputs)
             }

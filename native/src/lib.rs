@@ -147,19 +147,21 @@ impl Compiled {
         self.run(Some(function), &constants.0, arguments, out)
     }
 
-    /// A function of x, ξ and u for arguments of these lengths.
+    /// A function of x, ξ and u for arguments of these lengths; `None` where those of the program are others.
     pub fn sized<'a, const X: usize, const V: usize, const U: usize, const OUT: usize>(
         &'a self,
         function: usize,
         constants: &'a Constants,
-    ) -> Sized<'a, X, V, U, OUT> {
+    ) -> Option<Sized<'a, X, V, U, OUT>> {
+        let [x, xi, u, ..] = self.0.tapes.lengths;
+        let out = self.0.tapes.functions.get(function)?.outputs.len();
         let code = self.0.code.as_ref().ok();
-        Sized {
+        ((x, xi, u, out) == (X, V, U, OUT)).then(|| Sized {
             compiled: self,
             function,
             constants,
             fixed: code.and_then(|code| Fixed::new(code, function, &constants.0)),
-        }
+        })
     }
 
     #[inline]

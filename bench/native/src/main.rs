@@ -100,6 +100,7 @@ impl Case {
         let mut all: Vec<(f64, Compiled)> = (0..5).map(|_| compile()).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (compiling, compiled) = all.swap_remove(0);
+        assert_eq!(compiled.interpreted_because(), None, "{name}");
         Case {
             constants: compiled.constants(&program.defaults),
             compiled,
@@ -192,6 +193,7 @@ macro_rules! row {
             }
         };
         let sized = case.compiled.sized(0, &case.constants);
+        let sized = sized.expect("these are the lengths");
         let native = |count: u32| {
             let mut out = [0.0; $length];
             for _ in 0..count {
@@ -243,7 +245,7 @@ fn main() {
             "solo12",
             code::Solo<f64>,
             linearize,
-            36 * 48
+            36 * 54
         ),
         row!(
             "Talos, 38 freedoms",
