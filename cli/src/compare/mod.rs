@@ -1,4 +1,4 @@
-//! `hamel compare`: speed against error, interpreted.
+//! `hamel compare`: speed against error.
 
 mod reference;
 mod write;
@@ -43,7 +43,7 @@ const FINER: u64 = 4;
 /// Compares methods: error at the end, evaluations of forces, drift, time.
 ///
 /// Errors are measured against a reference solution, or against a much finer run of the best method.
-/// The equations are interpreted: compare times with each other only. T + V is constant without inputs,
+/// Functions are compiled, steps are not: compare times with each other only. T + V is constant without inputs,
 /// dissipation and other loads that do work; `momentum` is the drift of the invariants that the
 /// description claims. rkmk54 and rkmk8 are run in equal steps, and with tolerances of 1e-4 to 1e-11.
 #[derive(Args)]

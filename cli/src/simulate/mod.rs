@@ -1,4 +1,4 @@
-//! `hamel simulate`: a run in time, interpreted.
+//! `hamel simulate`: a run in time.
 
 pub mod balance;
 pub mod inputs;
@@ -28,8 +28,8 @@ use write::Format;
 
 /// Integrates the equations of motion from a start.
 ///
-/// The equations are interpreted: good for a look at a system, and some ten times slower than the
-/// generated code. Inputs keep the value that STATE.json gives them, or zero, where no --inputs and no --input says what
+/// The functions of the description become machine code at once, nearly as fast as generated Rust; a step of a small
+/// system, which is not compiled as a whole, can take five times as long. Inputs keep the value that STATE.json gives them, or zero, where no --inputs and no --input says what
 /// they are.
 #[derive(Args)]
 #[command(after_help = "Examples:
