@@ -73,7 +73,13 @@ fn doubt(program: &Program, function: &Function, state: &State, value: &[f64]) -
     for turn in 0..3 {
         let arguments = state.arguments.each_ref().map(|list| -> Vec<f64> {
             let entries = list.iter().enumerate();
-            let sign = |i: usize| if (i + turn) % 3 == 0 { -1.0 } else { 1.0 };
+            let sign = |i: usize| {
+                if (i + turn).is_multiple_of(3) {
+                    -1.0
+                } else {
+                    1.0
+                }
+            };
             entries.map(|(i, entry)| entry + CHANGE * sign(i)).collect()
         });
         let changed = State {
