@@ -1,6 +1,6 @@
 //! Functions of a program with its parameters set, as machine code where this machine has any.
 
-use super::Numbers;
+use super::numbers::Numbers;
 use crate::failure::Failure;
 use hamel_codegen::program::{Cause, Function, Program};
 use hamel_native::{Compiled, Constants};
