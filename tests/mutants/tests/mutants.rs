@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The crates that the command line is made of.
-const CRATES: [&str; 8] = [
-    "algebra", "codegen", "files", "macros", "runtime", "report", "urdf", "cli",
+const CRATES: [&str; 9] = [
+    "algebra", "codegen", "files", "macros", "native", "report", "runtime", "urdf", "cli",
 ];
 
 fn root() -> PathBuf {
