@@ -13,7 +13,11 @@ if [ ! -f "$environment/installed" ] || [ "$(cat "$environment/installed")" != "
     "$environment/bin/pip" --quiet --disable-pip-version-check install $wheels
     echo "$wheels" > "$environment/installed"
 fi
-cargo build --quiet --locked -p hamel-cli
+# One that was built with the tests will do: alone, its dependencies have other features, and are built anew.
+hamel="$target/debug/hamel"
+if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$hamel" ]; then
+    cargo build --quiet --locked -p hamel-cli
+fi
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
-"$environment/bin/python" tests/sweep/readers.py "$target/debug/hamel" "$folder"
+"$environment/bin/python" tests/sweep/readers.py "$hamel" "$folder"

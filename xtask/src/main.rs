@@ -40,8 +40,8 @@ const CI: Task = &[
     // Steps of real robots with their slopes, against Pinocchio's.
     "bash tests/robots/steps.sh",
     // Tables of sweeps in the programs that read them, and tasks of a scheduler of which one is killed.
-    "bash tests/sweep/run.sh",
-    "bash tests/sweep/hyperqueue.sh",
+    "HAMEL_BUILT=1 bash tests/sweep/run.sh",
+    "HAMEL_BUILT=1 bash tests/sweep/hyperqueue.sh",
     // A controller on microcontrollers, in QEMU.
     "bash tests/cortex/run.sh",
 ];
