@@ -1,9 +1,13 @@
 //! Memory that can be executed, and calls of it: all that is `unsafe` in this project.
 //!
 //! What makes a call sound:
-//! - The code of a function is made by [`lower`] alone. It reads, at whole places, from the constants and the five
-//!   arguments, and writes to the result and to its own stack. The greatest place that it can touch in each of the
-//!   seven is known from the tape (`Reach`), before the code is made, and every call compares lengths with it.
+//! - The code of a function is made by [`lower`] alone, of a tape whose steps read nothing that comes after them. It
+//!   reads, at whole places, from the constants and the five arguments, and writes to the result and to its own stack.
+//!   The greatest place that it can touch in each of the seven is known from the tape (`Reach`), before the code is made,
+//!   and every call compares lengths with it. Places are less than `LARGEST`, so that no offset is too large for an
+//!   instruction.
+//! - Frames that are longer than a page touch the pages of the stack in order: one that is too long ends the process, as
+//!   in Rust, and reaches nobody else's memory.
 //! - What is read is a number of 64 bits in a slice of such; any bits are one.
 //! - The result is borrowed exclusively, so that nothing else that is read changes while it is written.
 //! - Code is finished, and its memory made executable and not writable, before the address of a function is asked
@@ -36,6 +40,9 @@ type Entry = unsafe extern "C" fn(
     *const f64,
     *const f64,
 ) -> i32;
+
+/// Functions with more steps, and lists with more entries, have no code.
+const LARGEST: usize = 1 << 26;
 
 /// How a call ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,9 +94,8 @@ impl Reach {
     }
 }
 
-/// Functions in memory.
+/// Functions in memory, in the order of [`Tapes::all`].
 pub struct Code {
-    constants: Callable,
     functions: Vec<Callable>,
     size: usize,
     module: ManuallyDrop<JITModule>,
@@ -166,10 +172,21 @@ impl Code {
         let mut flags = builder();
         for (name, value) in [
             ("opt_level", "none"),
-            ("enable_verifier", if cfg!(test) { "true" } else { "false" }),
+            // Slower, but tests see what is wrong before it runs.
+            (
+                "enable_verifier",
+                if cfg!(debug_assertions) {
+                    "true"
+                } else {
+                    "false"
+                },
+            ),
             ("use_colocated_libcalls", "false"),
             ("is_pic", "false"),
             ("unwind_info", "false"),
+            // A frame that is longer than a page of the stack touches all its pages in order.
+            ("enable_probestack", "true"),
+            ("probestack_strategy", "inline"),
         ] {
             flags.set(name, value).map_err(|error| error.to_string())?;
         }
@@ -179,8 +196,8 @@ impl Code {
         if machine.pointer_bits() != 64 {
             return Err("addresses of this machine do not have 64 bits".into());
         }
-        let all = || tapes.functions.iter().chain([&tapes.constants]);
-        let calls: Vec<Callee> = all()
+        let calls: Vec<Callee> = tapes
+            .all()
             .flat_map(|tape| &tape.steps)
             .filter_map(callee)
             .collect();
@@ -195,7 +212,8 @@ impl Code {
             size: 0,
             fused,
         };
-        let made: Result<Vec<(FuncId, Vec<Cause>)>, String> = all()
+        let made: Result<Vec<(FuncId, Vec<Cause>)>, String> = tapes
+            .all()
             .enumerate()
             .map(|(index, tape)| making.function(index, tape))
             .collect();
@@ -215,9 +233,9 @@ impl Code {
                 return Err(why);
             }
         };
-        let mut functions: Vec<Callable> = made
+        let functions: Vec<Callable> = made
             .into_iter()
-            .zip(all())
+            .zip(tapes.all())
             .map(|((id, causes), tape)| {
                 let address = module.get_finalized_function(id);
                 // SAFETY: The function was declared with `signature`, which has these arguments and this result.
@@ -231,11 +249,7 @@ impl Code {
                 }
             })
             .collect();
-        let Some(constants) = functions.pop() else {
-            return Err("there is no function".into());
-        };
         let code = Code {
-            constants,
             functions,
             size,
             module,
@@ -248,25 +262,20 @@ impl Code {
         self.size
     }
 
-    /// Calls a function, or that of the constants. A call that does not have all that the function touches is left
-    /// undone.
+    /// Calls a function. A call that does not have all that it touches is left undone.
     #[inline]
     pub fn call(
         &self,
-        function: Option<usize>,
+        function: usize,
         constants: &[f64],
         arguments: [&[f64]; 5],
         out: &mut [f64],
     ) -> Ended {
-        let callable = match function {
-            None => Some(&self.constants),
-            Some(function) => self.functions.get(function),
-        };
         let Some(Callable {
             entry,
             reach,
             causes,
-        }) = callable
+        }) = self.functions.get(function)
         else {
             return Ended::Undone;
         };
@@ -369,6 +378,18 @@ struct Making {
 
 impl Making {
     fn function(&mut self, index: usize, tape: &Tape) -> Result<(FuncId, Vec<Cause>), String> {
+        if !tape.is_in_order() {
+            return Err(format!("`{}` reads what is not there yet", tape.name));
+        }
+        let reach = Reach::of(tape);
+        let lists = reach
+            .arguments
+            .into_iter()
+            .chain([reach.out, reach.constants]);
+        let largest = lists.chain([tape.values(), self.pool.start]).max();
+        if largest.is_some_and(|largest| largest > LARGEST) {
+            return Err(format!("`{}` is too long", tape.name));
+        }
         let pointer = self.module.target_config().pointer_type();
         let mut context = self.module.make_context();
         context.func.signature = signature(self.module.make_signature(), pointer);

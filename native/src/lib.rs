@@ -115,11 +115,12 @@ impl Compiled {
         all.resize(parts.tapes.parameters, f64::NAN);
         all.resize(parts.tapes.kept(), 0.0);
         all.extend_from_slice(&parts.numbers);
+        let mut constants = Constants(all, parts.tapes.kept());
         let mut kept = vec![0.0; parts.tapes.constants.outputs.len()];
         // It checks no pivots.
-        let _ = self.run(None, &all, [&[]; 5], &mut kept);
-        all[parts.tapes.parameters..parts.tapes.kept()].copy_from_slice(&kept);
-        Constants(all, parts.tapes.kept())
+        let _ = self.call(parts.tapes.functions.len(), &constants, [&[]; 5], &mut kept);
+        constants.0[parts.tapes.parameters..parts.tapes.kept()].copy_from_slice(&kept);
+        constants
     }
 
     /// What it means that a pivot that depends on parameters alone is not positive, where one is not.
@@ -131,8 +132,8 @@ impl Compiled {
             .map(|(_, cause)| *cause)
     }
 
-    /// Calls a function with x, ξ and behind it z, u, ξ̇ and p. Entries that are missing are NaN, and so is what does
-    /// not fit into `out`, which has to have the length of the result.
+    /// Calls a function with x, ξ and behind it z, u, ξ̇ and p. Entries that are missing are NaN; `out` has to have the
+    /// length of the result.
     ///
     /// # Errors
     /// What it means that a pivot is not positive; then `out` has no meaning.
@@ -144,7 +145,14 @@ impl Compiled {
         arguments: [&[f64]; 5],
         out: &mut [f64],
     ) -> Result<(), Cause> {
-        self.run(Some(function), &constants.0, arguments, out)
+        if let Ok(code) = &self.0.code {
+            match code.call(function, &constants.0, arguments, out) {
+                Ended::Well => return Ok(()),
+                Ended::At(cause) => return Err(cause),
+                Ended::Undone => {}
+            }
+        }
+        self.step(function, constants, arguments, out)
     }
 
     /// A function of x, ξ and u for arguments of these lengths; `None` where those of the program are others.
@@ -164,40 +172,17 @@ impl Compiled {
         })
     }
 
-    #[inline]
-    fn run(
-        &self,
-        function: Option<usize>,
-        constants: &[f64],
-        arguments: [&[f64]; 5],
-        out: &mut [f64],
-    ) -> Result<(), Cause> {
-        if let Ok(code) = &self.0.code {
-            match code.call(function, constants, arguments, out) {
-                Ended::Well => return Ok(()),
-                Ended::At(cause) => return Err(cause),
-                Ended::Undone => {}
-            }
-        }
-        self.step(function, constants, arguments, out)
-    }
-
     /// Step by step.
     #[cold]
     fn step(
         &self,
-        function: Option<usize>,
-        constants: &[f64],
+        function: usize,
+        constants: &Constants,
         arguments: [&[f64]; 5],
         out: &mut [f64],
     ) -> Result<(), Cause> {
-        let tapes = &self.0.tapes;
-        let tape = match function {
-            None => Some(&tapes.constants),
-            Some(function) => tapes.functions.get(function),
-        };
-        match tape {
-            Some(tape) => evaluate(tape, self.0.fused, constants, arguments, out),
+        match self.0.tapes.all().nth(function) {
+            Some(tape) => evaluate(tape, self.0.fused, &constants.0, arguments, out),
             None => {
                 out.fill(f64::NAN);
                 Ok(())
@@ -234,7 +219,7 @@ impl<const X: usize, const V: usize, const U: usize, const OUT: usize> Sized<'_,
             Some(Ended::Undone) | None => {
                 let arguments: [&[f64]; 5] = [x, xi, u, &[], &[]];
                 self.compiled
-                    .step(Some(self.function), &self.constants.0, arguments, out)
+                    .step(self.function, self.constants, arguments, out)
             }
         }
     }

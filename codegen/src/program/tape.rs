@@ -92,6 +92,22 @@ pub struct Tape {
 }
 
 impl Tape {
+    /// Whether steps and results read only values that are there before them.
+    pub fn is_in_order(&self) -> bool {
+        let mut known = 0;
+        let there = |operand: Operand, known: usize| match operand.source {
+            Source::Value(value) => value < known,
+            _ => true,
+        };
+        for step in &self.steps {
+            if !step.operands().all(|operand| there(operand, known)) {
+                return false;
+            }
+            known += step.results();
+        }
+        self.outputs.iter().all(|&output| there(output, known))
+    }
+
     /// How many values its steps have.
     pub fn values(&self) -> usize {
         self.steps.iter().map(Step::results).sum()
@@ -211,6 +227,11 @@ impl Tapes {
             constants,
             functions: functions.collect::<Result<_, Foreign>>()?,
         })
+    }
+
+    /// All tapes: the functions, and behind them the constants.
+    pub fn all(&self) -> impl Iterator<Item = &Tape> {
+        self.functions.iter().chain([&self.constants])
     }
 
     /// How many numbers depend on parameters alone, parameters among them.
