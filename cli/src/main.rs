@@ -7,7 +7,7 @@
 //! | `source` | reading and deriving a description |
 //! | `robot` | robots in URDF as descriptions, and the options for them |
 //! | `state` | reading the numbers of a state |
-//! | `interpreted` | a described system that the integrators can run |
+//! | `mechanism` | a described system that the integrators can run |
 //! | `singular` | which velocity has no inertia where a run or an evaluation fails |
 //! | `method` | the methods by their names, and which systems they are for |
 //! | `json`, `names`, `columns` | how results are written; pictures and numbers are those of `hamel-report` |
@@ -23,9 +23,9 @@ mod emit;
 mod eval;
 mod failure;
 mod import;
-mod interpreted;
 mod json;
 mod linearize;
+mod mechanism;
 mod method;
 mod names;
 mod ops;

@@ -1,7 +1,7 @@
 //! The methods by their names on the command line, and which systems they are for.
 
 use crate::failure::Failure;
-use crate::interpreted::{Interpreted, Numbers};
+use crate::mechanism::{Instance, Numbers};
 use crate::number::short;
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, General, Lgvi, Method, Scheme, Splitting};
@@ -33,7 +33,7 @@ struct Entry {
     kind: Kind,
     about: &'static str,
     needs: Needs,
-    make: fn(&Interpreted) -> Stepper,
+    make: fn(&Instance) -> Stepper,
 }
 
 macro_rules! entries {
@@ -42,7 +42,7 @@ macro_rules! entries {
     };
 }
 
-fn split(system: &Interpreted, scheme: Scheme) -> Stepper {
+fn split(system: &Instance, scheme: Scheme) -> Stepper {
     Stepper::Splitting(Splitting::new(system, scheme))
 }
 
@@ -106,7 +106,7 @@ impl Chosen {
     /// system's structure, where it cannot be run by it.
     pub fn new(
         name: &str,
-        system: &Interpreted,
+        system: &Instance,
         structure: &Structure,
         steps: u64,
     ) -> Result<Self, Failure> {
@@ -135,7 +135,7 @@ impl Chosen {
     }
 
     /// The same method for another system of the same structure: with other parameters, or another start.
-    pub fn of_another(&self, system: &Interpreted) -> Self {
+    pub fn of_another(&self, system: &Instance) -> Self {
         let entry = METHODS.iter().find(|entry| entry.name == self.name);
         let stepper = match (&self.stepper, entry) {
             // What is set beside the name stays.
@@ -164,7 +164,7 @@ pub struct Named {
 /// reasons.
 pub fn fitting(
     names: &[String],
-    system: &Interpreted,
+    system: &Instance,
     structure: &Structure,
 ) -> (Vec<Named>, Vec<Missing>) {
     let (mut fit, mut missing) = (Vec::new(), Vec::new());
@@ -226,7 +226,7 @@ impl Needs {
     }
 }
 
-/// A method as a type that steps interpreted systems.
+/// A method as a type that steps mechanisms.
 #[derive(Clone, Debug)]
 pub enum Stepper {
     /// One for any system.
@@ -255,7 +255,7 @@ pub enum Stepper {
 }
 
 impl Stepper {
-    fn closed_form(system: &Interpreted) -> Self {
+    fn closed_form(system: &Instance) -> Self {
         Stepper::Closed {
             start: Box::new(system.start()),
             motion: Splitting::with_flow(system, Scheme::Strang, Flow::Exact),

@@ -1,7 +1,7 @@
 //! Singular states in the names of the description: which velocity has no inertia.
 
 use crate::failure::Failure;
-use crate::interpreted::Interpreted;
+use crate::mechanism::Instance;
 use crate::names;
 use crate::number::short;
 use crate::state::solved::shown;
@@ -93,7 +93,7 @@ fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
     weakest
 }
 
-impl Interpreted {
+impl Instance {
     /// An error where the mass matrix is constant in time, and not positive definite with the parameters.
     pub fn check_parameters(&self, x: &[f64]) -> Result<(), Failure> {
         match self.constant_singular() {

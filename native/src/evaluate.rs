@@ -1,7 +1,7 @@
 //! Tapes step by step: where there is no machine code, and for the rare arguments that it leaves to this.
 
-use crate::trig::{self, Arithmetic};
 use hamel::Scalar;
+use hamel::trig::{self, Arithmetic};
 use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape};
@@ -85,20 +85,19 @@ impl Arithmetic for Rounded {
     fn plus(&mut self, a: f64, b: f64) -> f64 {
         a + b
     }
-
-    fn turned(&mut self, shifted: f64) -> [f64; 4] {
-        let row = (shifted.to_bits() & 3) as usize;
-        [0, 1, 2, 3].map(|i| trig::TURNED[4 * row + i])
-    }
 }
 
 /// (sin x, cos x), as generated code has it.
 fn sin_cos(x: f64, fused: bool) -> [f64; 2] {
     // Not `>`: NaN is far.
-    match x.abs() <= trig::FARTHEST {
-        true => trig::sin_cos(&mut Rounded { fused }, x),
-        false => Scalar::sin_cos(x).into(),
+    let near = x.abs() <= trig::FARTHEST;
+    if !near {
+        return Scalar::sin_cos(x).into();
     }
+    let w = &mut Rounded { fused };
+    let reduced = trig::reduced(w, x);
+    let row = trig::TURNED[(reduced.shifted.to_bits() & 3) as usize];
+    trig::turned(w, row, reduced)
 }
 
 /// The value of an operand.

@@ -12,7 +12,6 @@
 //! |---|---|
 //! | `spill` | which values are in registers, and where the others are |
 //! | `lower` | a tape as Cranelift's intermediate code |
-//! | `trig` | sine and cosine in line |
 //! | `code` | memory that can be executed, and calls: all that is `unsafe` |
 //! | `evaluate` | tapes step by step |
 
@@ -20,7 +19,6 @@ mod code;
 mod evaluate;
 mod lower;
 mod spill;
-mod trig;
 
 pub use evaluate::evaluate;
 pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};

@@ -1,13 +1,13 @@
 //! A tape as Cranelift's intermediate code, by the plan of [`crate::spill`].
 
 use crate::spill::{Action, Home, Id, Plan, is_call, plan};
-use crate::trig::{self, Arithmetic};
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{
     AbiParam, Block, FuncRef, InstBuilder, MemFlags, Signature, StackSlot, StackSlotData,
     StackSlotKind, Type, Value, types,
 };
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder};
+use hamel::trig::{self, Arithmetic};
 use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape};
@@ -52,8 +52,9 @@ impl Pool {
     fn turned(&mut self) -> usize {
         let (start, numbers) = (self.start, &mut self.numbers);
         *self.turned.get_or_insert_with(|| {
-            numbers.extend_from_slice(&trig::TURNED);
-            start + numbers.len() - trig::TURNED.len()
+            let place = start + numbers.len();
+            numbers.extend(trig::TURNED.iter().flatten());
+            place
         })
     }
 }
@@ -115,7 +116,20 @@ impl<'a, 'b> Writer<'a, 'b> {
         let farthest = self.constant(trig::FARTHEST);
         let near = self.ins().fcmp(FloatCC::LessThanOrEqual, size, farthest);
         self.end_unless(near, UNDONE);
-        trig::sin_cos(self, x)
+        let reduced = trig::reduced(self, x);
+        let row = self.row(reduced.shifted);
+        trig::turned(self, row, reduced)
+    }
+
+    /// The row of [`trig::TURNED`] whose number is the last two bits.
+    fn row(&mut self, shifted: Value) -> [Value; 4] {
+        let start = self.pool.turned();
+        let constants = self.constants;
+        let bits = self.ins().bitcast(types::I64, MemFlags::new(), shifted);
+        let quadrant = self.ins().band_imm(bits, 3);
+        let bytes = self.ins().ishl_imm(quadrant, 5);
+        let row = self.ins().iadd(constants, bytes);
+        [0, 1, 2, 3].map(|i| self.load(row, start + i))
     }
 
     /// A number.
@@ -322,16 +336,6 @@ impl Arithmetic for Writer<'_, '_> {
 
     fn plus(&mut self, a: Value, b: Value) -> Value {
         self.ins().fadd(a, b)
-    }
-
-    fn turned(&mut self, shifted: Value) -> [Value; 4] {
-        let start = self.pool.turned();
-        let constants = self.constants;
-        let bits = self.ins().bitcast(types::I64, MemFlags::new(), shifted);
-        let quadrant = self.ins().band_imm(bits, 3);
-        let bytes = self.ins().ishl_imm(quadrant, 5);
-        let row = self.ins().iadd(constants, bytes);
-        [0, 1, 2, 3].map(|i| self.load(row, start + i))
     }
 }
 

@@ -3,7 +3,7 @@
 use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape, Tapes};
-use hamel_native::Compiled;
+use hamel_native::{Compiled, evaluate};
 
 /// Tapes in every run.
 const TAPES: u64 = 10_000;
@@ -173,4 +173,47 @@ fn code_gives_the_bits_of_tapes() {
         well > 20_000 && ended > 500 && far < well / 2,
         "{well} {ended} {far}"
     );
+}
+
+/// By the runtime's own numbers, which know nothing of tapes.
+#[test]
+fn sine_and_cosine_are_those_of_the_runtime() {
+    let tape = Tape {
+        name: "turned".into(),
+        steps: vec![Step::SinCos(Operand {
+            source: Source::Argument(ARGUMENTS[0], 0),
+            negative: false,
+        })],
+        outputs: [0, 1]
+            .map(|value| Operand {
+                source: Source::Value(value),
+                negative: false,
+            })
+            .into(),
+    };
+    let mut random = Random(7);
+    for size in [1e-300, 1e-9, 0.5, 1.0, 3.0, 50.0, 1e4, 9.9e5, 1e7, 1e300] {
+        for _ in 0..2_000 {
+            let angle = size * random.number();
+            let (sine, cosine) = hamel::Scalar::sin_cos(angle);
+            let of = |fused| {
+                let mut out = [0.0; 2];
+                let arguments: [&[f64]; 5] = [&[angle], &[], &[], &[], &[]];
+                evaluate(&tape, fused, &[], arguments, &mut out).map(|()| out)
+            };
+            assert_eq!(
+                of(cfg!(target_feature = "fma")).map(|out| bits(&out)),
+                Ok(bits(&[sine, cosine])),
+                "{angle}"
+            );
+            for (out, exact) in of(true).into_iter().flatten().zip([sine, cosine]) {
+                // Near its zeros a value is as exact as the angle is.
+                let close = (out - exact).abs() <= 2.3e-16 * exact.abs() + 1e-26;
+                assert!(
+                    close || out.is_nan() && exact.is_nan(),
+                    "{angle}: {out} {exact}"
+                );
+            }
+        }
+    }
 }

@@ -93,7 +93,7 @@ mod split;
 mod state;
 mod store;
 mod system;
-mod trig;
+pub mod trig;
 #[cfg(feature = "wide")]
 pub mod wide;
 

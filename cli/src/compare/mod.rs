@@ -4,7 +4,7 @@ mod reference;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::interpreted::{Interpreted, Numbers};
+use crate::mechanism::{Instance, Numbers};
 use crate::method::{self, Named, Stepper};
 use crate::robot::RobotOptions;
 use crate::source::Source;
@@ -146,7 +146,7 @@ fn compare(
     if let Some(fields) = &fields {
         fields.start(&mut state)?;
     }
-    let system = Interpreted::new(&generated, &state, source.shown())?;
+    let system = Instance::new(&generated, &state, source.shown())?;
     system.check_parameters(&state.x)?;
     let structure = &generated.program.structure;
     let (methods, missing) = method::fitting(&arguments.methods, &system, structure);
@@ -206,7 +206,7 @@ fn compare(
             let (x2, xi2) = problem.end(&best.stepper, finest / 2).map_err(failed)?;
             // Two runs of a method of order p differ by 2ᵖ − 1 times the error of the finer one.
             let difference = relative(&x2, &x).max(relative(&xi2, &xi));
-            let order = Method::<Interpreted>::order(&best.stepper);
+            let order = Method::<Instance>::order(&best.stepper);
             case.reference = format!("{} with {finest} steps", best.name);
             case.reference_error =
                 hamel_report::data::kept(difference / (f64::from(order).exp2() - 1.0));
@@ -251,7 +251,7 @@ fn compare(
 /// The method of the highest order, baselines last; the first of them in the table.
 fn best(methods: &[Named]) -> &Named {
     let rank = |named: &Named| {
-        let order = Method::<Interpreted>::order(&named.stepper);
+        let order = Method::<Instance>::order(&named.stepper);
         (named.kind == Kind::Method, order)
     };
     let better = |best, named| {

@@ -1,8 +1,8 @@
 //! Numbers of frames that `--frame` names: pose, twist, Jacobian, bias acceleration.
 
 use crate::failure::Failure;
-use crate::interpreted::function;
 use crate::json::Json;
+use crate::mechanism::function;
 use crate::state::State;
 use hamel_codegen::functions::{FrameFunction, Jacobian};
 use hamel_codegen::generate::Generated;

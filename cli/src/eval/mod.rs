@@ -5,8 +5,8 @@ mod geometry;
 mod sample;
 
 use crate::failure::{Failure, print, warn};
-use crate::interpreted::{Interpreted, function};
 use crate::json::Json;
+use crate::mechanism::{Instance, function};
 use crate::names;
 use crate::robot::RobotOptions;
 use crate::source::Source;
@@ -136,7 +136,7 @@ fn motion(
     (state, text): (&State, &str),
     missing: &mut Vec<String>,
 ) -> Result<Vec<(&'static str, Json)>, Failure> {
-    let system = Interpreted::new(generated, state, text)?;
+    let system = Instance::new(generated, state, text)?;
     let State { params, x, xi, u } = state;
     let start = system.start();
     let vector = |name: &str| -> Result<Json, Failure> {

@@ -3,8 +3,8 @@
 use super::finite;
 use super::frames::{asked, kinematics};
 use crate::failure::{Failure, print};
-use crate::interpreted::{constant_singular, function};
 use crate::json::Json;
+use crate::mechanism::{constant_singular, function};
 use crate::names;
 use crate::singular;
 use crate::source::Source;

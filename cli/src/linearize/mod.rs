@@ -5,8 +5,8 @@ mod minimal;
 use crate::columns::aligned;
 use crate::eigenvalues::eigenvalues;
 use crate::failure::{Failure, print};
-use crate::interpreted::{Interpreted, function};
 use crate::json::Json;
+use crate::mechanism::{Instance, function};
 use crate::names;
 use crate::number::short;
 use crate::robot::RobotOptions;
@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
     let program = &generated.program;
     let State { params, x, xi, u } = &state;
-    let system = Interpreted::new(&generated, &state, source.shown())?;
+    let system = Instance::new(&generated, &state, source.shown())?;
     let none = |why: String| Failure::failed(format!("there is no linearisation: {why}"));
     let xi_dot = system.motion(x, xi, u).map_err(none)?;
     let flat = function(program, "linearize", params)?

@@ -1,7 +1,7 @@
 //! Whether a run with error control still follows the motion: its energy may change by the work of loads
 //! alone, and does so otherwise where a step has jumped across a singularity.
 
-use crate::interpreted::Interpreted;
+use crate::mechanism::Instance;
 use hamel::{State, System};
 
 /// A change of energy that no load accounts for means that the motion is lost where it is larger than this
@@ -31,7 +31,7 @@ pub struct Balance {
 
 impl Balance {
     /// Starts at a state.
-    pub fn new(system: &Interpreted, state: &State<Interpreted>) -> Self {
+    pub fn new(system: &Instance, state: &State<Instance>) -> Self {
         Balance {
             start: state.t,
             initial: energy(system, state),
@@ -46,7 +46,7 @@ impl Balance {
     }
 
     /// What is known with one more state.
-    pub fn after(mut self, system: &Interpreted, state: &State<Interpreted>) -> Self {
+    pub fn after(mut self, system: &Instance, state: &State<Instance>) -> Self {
         let h = (state.t - self.time).abs();
         let power = system.power(state.t, &state.x, &state.xi).abs();
         let gained = energy(system, state) - self.initial;
@@ -79,6 +79,6 @@ impl Balance {
     }
 }
 
-fn energy(system: &Interpreted, state: &State<Interpreted>) -> f64 {
+fn energy(system: &Instance, state: &State<Instance>) -> f64 {
     system.kinetic_energy(&state.x, &state.xi) + system.potential_energy(&state.x)
 }

@@ -11,7 +11,7 @@ mod summary;
 mod write;
 
 use crate::failure::{Failure, print};
-use crate::interpreted::Interpreted;
+use crate::mechanism::Instance;
 use crate::method;
 use crate::robot::RobotOptions;
 use crate::source::Source;
@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         until: arguments.stepping.until,
     };
     let given = inputs::Inputs::new(asked, &generated, &state)?;
-    let system = Interpreted::new(&generated, &state, source.shown())?.with(given);
+    let system = Instance::new(&generated, &state, source.shown())?.with(given);
     system.check_parameters(&state.x)?;
     let until = arguments.stepping.until;
     let mut plan = arguments

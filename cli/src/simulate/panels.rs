@@ -1,7 +1,7 @@
 //! The panels of a plot over time: coordinates, velocities, outputs.
 
 use super::record::{Run, Sample};
-use crate::interpreted::Interpreted;
+use crate::mechanism::Instance;
 use hamel::{s3, so3};
 use hamel_codegen::program::Shape;
 use hamel_codegen::syntax::ast::CoordKind;
@@ -14,7 +14,7 @@ type Line = (String, Vec<f64>);
 impl Run<'_> {
     /// Coordinates, velocities and outputs, vectors in panels of their own. Where the only attitude is drawn
     /// on a sphere it has no line here.
-    pub fn panels(&self, system: &Interpreted, on_sphere: bool) -> Vec<Panel> {
+    pub fn panels(&self, system: &Instance, on_sphere: bool) -> Vec<Panel> {
         let mut panels = self.coordinates(on_sphere);
         let groups = self.program.velocities.iter();
         let groups = groups.map(|group| (group.name.as_str(), group.len));

@@ -2,14 +2,14 @@
 
 use super::record::{Run, Sample};
 use super::rotor::poinsot;
-use crate::interpreted::Interpreted;
+use crate::mechanism::Instance;
 use hamel::s3;
 use hamel_codegen::model::layout::Block;
 use hamel_report::plot::{Panel, Path, Picture};
 
 impl Run<'_> {
     /// What a plot shows: coordinates, velocities, outputs, what is conserved, and how a body turns.
-    pub fn picture(&self, system: &Interpreted) -> Picture {
+    pub fn picture(&self, system: &Instance) -> Picture {
         let time: Vec<f64> = self.track.iter().map(|sample| sample.t).collect();
         let path = self.attitude();
         let mut panels = self.panels(system, path.is_some());

@@ -2,7 +2,7 @@
 
 use super::balance::Balance;
 use crate::failure::Failure;
-use crate::interpreted::{Interpreted, Numbers, Output};
+use crate::mechanism::{Instance, Numbers, Output};
 use crate::method::{Chosen, Stepper};
 use crate::names;
 use crate::number::short;
@@ -142,7 +142,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    fn of(system: &Interpreted, state: &State<Interpreted>) -> Self {
+    fn of(system: &Instance, state: &State<Instance>) -> Self {
         let (x, xi) = (&state.x, &state.xi);
         let values = |list: &[Output]| -> Vec<f64> {
             let values = list
@@ -183,11 +183,7 @@ pub struct Run<'a> {
 
 impl<'a> Run<'a> {
     /// Integrates; a numerical failure is part of the run, an impossible plan an error.
-    pub fn new(
-        generated: &'a Generated,
-        system: &Interpreted,
-        plan: Plan,
-    ) -> Result<Self, Failure> {
+    pub fn new(generated: &'a Generated, system: &Instance, plan: Plan) -> Result<Self, Failure> {
         let mut state = State::start(system);
         let mut monitor = Monitor::new(system, &state);
         let balance = Cell::new(Balance::new(system, &state));
@@ -204,7 +200,7 @@ impl<'a> Run<'a> {
             false => ProgressBar::hidden(),
         };
         let mut steps = 0;
-        let observe = |state: &State<Interpreted>, place: Place| {
+        let observe = |state: &State<Instance>, place: Place| {
             if place == Place::Sample {
                 samples.push(Sample::of(system, state));
                 return;
@@ -295,10 +291,10 @@ pub struct Early {
 
 /// What became of a run that has come to a state; an impossible plan is an error.
 pub fn ended(
-    system: &Interpreted,
+    system: &Instance,
     plan: &Plan,
     outcome: Result<(), StepError>,
-    state: &State<Interpreted>,
+    state: &State<Instance>,
     balance: Balance,
 ) -> Result<Option<Early>, Failure> {
     let (kind, why) = match outcome {
@@ -379,10 +375,10 @@ pub enum Place {
 
 /// Shows the end of a step that a tolerance has chosen, and before it what a plot needs of its path.
 fn show<const D: usize>(
-    report: Report<'_, Interpreted, D>,
+    report: Report<'_, Instance, D>,
     spacing: f64,
     samples: &Spacing,
-    observe: &mut impl FnMut(&State<Interpreted>, Place),
+    observe: &mut impl FnMut(&State<Instance>, Place),
 ) {
     let Report::Step(step) = report else {
         return;
@@ -401,11 +397,11 @@ fn show<const D: usize>(
 
 /// The run from the start to its end, in equal steps or in those that a tolerance asks for.
 pub fn advance(
-    system: &Interpreted,
+    system: &Instance,
     plan: &Plan,
-    state: &mut State<Interpreted>,
+    state: &mut State<Instance>,
     balance: &Cell<Balance>,
-    mut observe: impl FnMut(&State<Interpreted>, Place),
+    mut observe: impl FnMut(&State<Instance>, Place),
 ) -> Result<(), StepError> {
     let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
@@ -425,7 +421,7 @@ pub fn advance(
             let from = state.t;
             if end > from {
                 system.go_from(from);
-                let observe = |state: &State<Interpreted>| {
+                let observe = |state: &State<Instance>| {
                     if state.t > from {
                         observe(state, Place::End);
                     }
@@ -447,7 +443,7 @@ pub fn advance(
     let until = plan.until;
     let spacing = until / plan.points as f64;
     // A run that has lost the motion ends there.
-    let followed = |state: &State<Interpreted>| {
+    let followed = |state: &State<Instance>| {
         let here = balance.get().after(system, state);
         if here.lost(tolerance).is_some() {
             -1.0

@@ -2,7 +2,7 @@
 //! needs.
 
 use super::record::Sample;
-use crate::interpreted::{Interpreted, Numbers};
+use crate::mechanism::{Instance, Numbers};
 use hamel::{Block, System};
 use hamel_report::plot::Poinsot;
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Poinsot's construction of a run, where exactly one coordinate is an attitude, T = ½ ωᵀJω + (the rest) with
 /// a constant J in body axes, and |P| of P = J ω nearly constant.
-pub fn poinsot(system: &Interpreted, track: &[Sample]) -> Option<Poinsot> {
+pub fn poinsot(system: &Instance, track: &[Sample]) -> Option<Poinsot> {
     let row = attitude(system.blocks())?;
     let (first, last) = (track.first()?, track.last()?);
     let middle = track.get(track.len() / 2)?;
@@ -60,7 +60,7 @@ fn attitude(blocks: &[Block]) -> Option<usize> {
 }
 
 /// J of T in the rates of the chart, C⁻ᵀ M C⁻¹, where nothing couples the attitude to the rest.
-fn inertia(system: &Interpreted, at: &Sample, row: usize) -> Option<Matrix3<f64>> {
+fn inertia(system: &Instance, at: &Sample, row: usize) -> Option<Matrix3<f64>> {
     let n = at.xi.len();
     let columns = |of: &dyn Fn(&Numbers) -> Numbers| -> Vec<DVector<f64>> {
         let basis = |j: usize| {

@@ -2,7 +2,7 @@
 
 use super::record::{Every, Plan};
 use crate::failure::Failure;
-use crate::interpreted::Interpreted;
+use crate::mechanism::Instance;
 use crate::method::{self, AUTO, Chosen, Stepper};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -56,7 +56,7 @@ impl Stepping {
     pub fn plan(
         &self,
         generated: &Generated,
-        system: &Interpreted,
+        system: &Instance,
         every: Option<Every>,
     ) -> Result<Plan, Failure> {
         let step = self
@@ -72,7 +72,7 @@ impl Stepping {
     fn chosen(
         &self,
         generated: &Generated,
-        system: &Interpreted,
+        system: &Instance,
         steps: u64,
     ) -> Result<Chosen, Failure> {
         let structure = system.structure(&generated.program);

@@ -3,7 +3,7 @@
 use super::vary::Vary;
 use super::watch::{Keeping, Watch};
 use crate::failure::Failure;
-use crate::interpreted::{Interpreted, Mechanism};
+use crate::mechanism::{Instance, Mechanism};
 use crate::simulate::balance::Balance;
 use crate::simulate::inputs::Inputs;
 use crate::simulate::record::{Early, Plan, advance, ended};
@@ -94,12 +94,12 @@ impl Sweep {
 
 impl Family {
     /// The system of a member whose state is this: the only place where one is made.
-    pub fn member(&self, state: &Value) -> Result<Interpreted, Early> {
+    pub fn member(&self, state: &Value) -> Result<Instance, Early> {
         let state = State::of(&self.generated, &self.text, state).map_err(|errors| Early {
             kind: "start",
             why: errors.join("; "),
         })?;
-        let system = Interpreted::of(&self.mechanism, &state);
+        let system = Instance::of(&self.mechanism, &state);
         let system = system.map_err(|failure| of_start(&failure))?;
         let given = self.given.clone();
         let system = system.with(given.map(|given| given.with_params(&state.params)));

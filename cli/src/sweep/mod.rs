@@ -28,8 +28,8 @@ mod watch;
 mod work;
 
 use crate::failure::{Failure, print};
-use crate::interpreted::Mechanism;
 use crate::json::Json;
+use crate::mechanism::Mechanism;
 use crate::method;
 use crate::number::grouped;
 use crate::robot::RobotOptions;

@@ -2,7 +2,7 @@
 
 use super::added;
 use super::keep::{Item, Kept, Of};
-use crate::interpreted::{Interpreted, Numbers, Output};
+use crate::mechanism::{Instance, Numbers, Output};
 use crate::method::Stepper;
 use crate::names;
 use crate::simulate::record::Place;
@@ -108,17 +108,17 @@ struct Known {
 /// A member that is watched.
 pub struct Watch<'a> {
     keeping: &'a Keeping,
-    system: &'a Interpreted,
+    system: &'a Instance,
     stepper: &'a Stepper,
     known: Vec<Known>,
     /// The first and the last state that were seen.
     begin: f64,
-    last: Option<State<Interpreted>>,
+    last: Option<State<Instance>>,
 }
 
 impl<'a> Watch<'a> {
     /// Before the run.
-    pub fn new(keeping: &'a Keeping, system: &'a Interpreted, stepper: &'a Stepper) -> Self {
+    pub fn new(keeping: &'a Keeping, system: &'a Instance, stepper: &'a Stepper) -> Self {
         let known = keeping.items.iter().filter_map(|(kind, name)| {
             let Kind::Of(of) = kind else {
                 return None;
@@ -143,12 +143,12 @@ impl<'a> Watch<'a> {
     }
 
     /// Sees a state.
-    pub fn see(&mut self, state: &State<Interpreted>, place: Place) {
-        let value =
-            |output: usize, state: &State<Interpreted>| match self.system.outputs().get(output) {
-                Some(output) => value(self.system, output, state),
-                None => Vec::new(),
-            };
+    pub fn see(&mut self, state: &State<Instance>, place: Place) {
+        let value = |output: usize, state: &State<Instance>| match self.system.outputs().get(output)
+        {
+            Some(output) => value(self.system, output, state),
+            None => Vec::new(),
+        };
         if place == Place::Sample {
             let asked = self
                 .known
@@ -191,7 +191,7 @@ impl<'a> Watch<'a> {
                         && holds(&now)
                         && !holds(&known.last)
                     {
-                        let at = |state: &State<Interpreted>| holds(&value(known.output, state));
+                        let at = |state: &State<Instance>| holds(&value(known.output, state));
                         let time = first(self.system, self.stepper, before, state.t, &at);
                         known.values = vec![time];
                     }
@@ -206,7 +206,7 @@ impl<'a> Watch<'a> {
     }
 
     /// What is kept of a member that has ended in a state.
-    pub fn finish(self, end: &State<Interpreted>) -> Vec<Option<f64>> {
+    pub fn finish(self, end: &State<Instance>) -> Vec<Option<f64>> {
         let mut row = Vec::with_capacity(self.keeping.columns.len());
         let mut known = self.known.into_iter();
         let elapsed = end.t - self.begin;
@@ -229,7 +229,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-fn value(system: &Interpreted, output: &Output, state: &State<Interpreted>) -> Vec<f64> {
+fn value(system: &Instance, output: &Output, state: &State<Instance>) -> Vec<f64> {
     system.output(output, state.t, &state.x, &state.xi).to_vec()
 }
 
@@ -249,11 +249,11 @@ fn extreme(values: &mut Vec<f64>, now: &[f64], beyond: impl Fn(f64, f64) -> bool
 /// The first time known between a state and a later time at which something holds that does not hold in the state, and
 /// does at that time: by shorter and shorter steps of the method itself.
 fn first(
-    system: &Interpreted,
+    system: &Instance,
     stepper: &Stepper,
-    from: &State<Interpreted>,
+    from: &State<Instance>,
     until: f64,
-    holds: &dyn Fn(&State<Interpreted>) -> bool,
+    holds: &dyn Fn(&State<Instance>) -> bool,
 ) -> f64 {
     let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (mut before, mut after) = (from.t, until);

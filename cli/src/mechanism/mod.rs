@@ -51,7 +51,7 @@ pub struct Mechanism {
 }
 
 /// A mechanism with its parameters set; x, ξ and u are [`Numbers`].
-pub struct Interpreted {
+pub struct Instance {
     of: Arc<Mechanism>,
     functions: Functions,
     rotors: Vec<Rotor<f64>>,
@@ -133,17 +133,17 @@ impl Mechanism {
     }
 }
 
-impl Interpreted {
+impl Instance {
     /// Compiles a complete program for the parameters, start and constant inputs of a state; the text of the description
     /// is for messages.
     pub fn new(generated: &Generated, state: &State, text: &str) -> Result<Self, Failure> {
-        Interpreted::of(&Arc::new(Mechanism::new(generated, text)?), state)
+        Instance::of(&Arc::new(Mechanism::new(generated, text)?), state)
     }
 
     /// A mechanism with the parameters, start and constant inputs of a state.
     pub fn of(mechanism: &Arc<Mechanism>, state: &State) -> Result<Self, Failure> {
         let functions = Functions::new(&mechanism.compiled, &state.params);
-        Ok(Interpreted {
+        Ok(Instance {
             rotors: mechanism.momenta.rotors(&functions)?,
             constant_singular: functions.are_singular(),
             of: Arc::clone(mechanism),
@@ -217,7 +217,7 @@ impl Interpreted {
 
     /// The same with inputs that change.
     pub fn with(self, given: Option<Inputs>) -> Self {
-        Interpreted { given, ..self }
+        Instance { given, ..self }
     }
 
     /// Times at which inputs jump.
@@ -349,7 +349,7 @@ fn block(block: layout::Block) -> Block {
     }
 }
 
-impl System for Interpreted {
+impl System for Instance {
     type Scalar = f64;
     type Coordinates = Numbers;
     type Velocities = Numbers;

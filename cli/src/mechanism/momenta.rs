@@ -2,7 +2,7 @@
 //! run begins.
 
 use super::functions::place;
-use super::{Functions, Interpreted, Numbers, Place};
+use super::{Functions, Instance, Numbers, Place};
 use crate::failure::Failure;
 use crate::singular::Failed;
 use hamel::rotor::{Rotor, Symmetry};
@@ -89,7 +89,7 @@ fn rotor(inertia: Inertia, numbers: &[f64]) -> Result<Rotor<f64>, Failure> {
     rotor.map_err(|_| Failure::failed("an inertia has the wrong number of entries"))
 }
 
-impl Interpreted {
+impl Instance {
     /// The value of a function; NaN where there is none, which ends a run with an error.
     fn found(&self, function: Option<Place>, arguments: [&[f64]; 5], length: usize) -> Numbers {
         let value = function.map(|function| self.functions.call(function, arguments));
@@ -113,7 +113,7 @@ impl Interpreted {
     }
 }
 
-impl Split for Interpreted {
+impl Split for Instance {
     type Rotors = Vec<Rotor<f64>>;
 
     // Known at run time only; the method `free` asks the structure.
@@ -155,9 +155,9 @@ impl Split for Interpreted {
     }
 }
 
-impl Canonical for Interpreted {
+impl Canonical for Instance {
     fn momentum(&self, x: &Numbers, xi: &Numbers) -> Numbers {
-        Interpreted::momentum(self, x, xi)
+        Instance::momentum(self, x, xi)
     }
 
     fn momentum_rate(&self, x: &Numbers, xi: &Numbers, u: &Numbers) -> Numbers {
