@@ -1,7 +1,7 @@
 //! What ends a command early, and the exit status that it ends with.
 
+use std::cell::RefCell;
 use std::io::{ErrorKind, Write};
-use std::process::ExitCode;
 
 /// A failure, ready to be shown.
 #[derive(Debug)]
@@ -37,16 +37,24 @@ impl Failure {
         Failure::Usage(text)
     }
 
+    /// What is said, without colours.
+    pub fn text(&self) -> String {
+        match self {
+            Failure::Failed(text) | Failure::Usage(text) => plain(text),
+            Failure::Closed => String::new(),
+        }
+    }
+
     /// Writes the failure to standard error.
-    pub fn report(self) -> ExitCode {
+    pub fn report(self) -> u8 {
         let (text, code) = match self {
             Failure::Failed(text) => (text, 1),
             Failure::Usage(text) => (text, 2),
-            Failure::Closed => return ExitCode::SUCCESS,
+            Failure::Closed => return 0,
         };
         // Where standard error is gone there is nobody to tell.
         let _ = anstream::stderr().write_all(text.as_bytes());
-        ExitCode::from(code)
+        code
     }
 
     /// The graver of two failures, with the text of both.
@@ -87,19 +95,46 @@ fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
 }
 
 /// What the command line is answered with: help, the version, or what is wrong with it.
-pub fn said(answer: &clap::Error) -> ExitCode {
+pub fn said(answer: &clap::Error) -> u8 {
     let written = answer.print();
     match (answer.use_stderr(), printed(written)) {
-        (true, _) => ExitCode::from(2),
-        (false, Ok(())) => ExitCode::SUCCESS,
+        (true, _) => 2,
+        (false, Ok(())) => 0,
         (false, Err(failure)) => failure.report(),
     }
 }
 
-/// Writes what does not end the command to standard error.
+thread_local! {
+    /// Warnings, while somebody collects those of this thread.
+    static WARNINGS: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Writes what does not end the command to standard error, or where warnings are collected.
 pub fn warn(text: &str) {
-    // Where standard error is gone there is nobody to tell.
-    let _ = anstream::stderr().write_all(text.as_bytes());
+    let collected = WARNINGS.with_borrow_mut(|warnings| match warnings {
+        Some(all) => {
+            all.push_str(text);
+            true
+        }
+        None => false,
+    });
+    if !collected {
+        // Where standard error is gone there is nobody to tell.
+        let _ = anstream::stderr().write_all(text.as_bytes());
+    }
+}
+
+/// Does something, with its warnings as a text without colours.
+pub fn collected<T>(act: impl FnOnce() -> T) -> (T, String) {
+    let outer = WARNINGS.replace(Some(String::new()));
+    let done = act();
+    let warnings = WARNINGS.replace(outer).unwrap_or_default();
+    (done, plain(&warnings))
+}
+
+/// A text without colours.
+fn plain(text: &str) -> String {
+    anstream::adapter::strip_str(text).to_string()
 }
 
 /// Writes a file, whole or not at all.

@@ -6,35 +6,36 @@ use hamel_codegen::urdf::{self, Imported, Options, TOLERANCE};
 use std::path::Path;
 
 /// How a robot in URDF is read.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Robots in URDF")]
 pub struct RobotOptions {
     /// The base moves freely: `root_joint`, position and rotation, with its twist in body axes.
     #[arg(long)]
-    floating: bool,
+    pub floating: bool,
     /// A joint that does not move, with its angle (rad) or length (m); once for each joint.
     #[arg(long = "lock", value_name = "JOINT=VALUE", value_parser = lock)]
-    locks: Vec<(String, String)>,
+    pub locks: Vec<(String, String)>,
     /// Masses, centres of mass and inertias are run-time parameters, not exact constants.
     #[arg(long)]
-    params: bool,
+    pub params: bool,
     /// How joints move that mimic another one.
     #[arg(long, value_enum, value_name = "HOW")]
-    mimic: Option<Mimic>,
+    pub mimic: Option<Mimic>,
     /// Name of the system; by default the robot's.
     #[arg(long, value_name = "NAME")]
-    name: Option<String>,
+    pub name: Option<String>,
     /// Angles this near to a multiple of π/2 (rad) are that multiple, and entries this small beside
     /// the largest of their vector or matrix are 0; default 1e-9, 0 keeps every digit.
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
-    rounding: Option<f64>,
+    pub rounding: Option<f64>,
     /// Another value of a constant of the description, such as the length of a chain; once for each constant.
     #[arg(long = "const", value_name = "NAME=VALUE", value_parser = constant, help_heading = "Descriptions")]
     pub constants: Vec<(String, String)>,
 }
 
+/// How joints move that mimic another one.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Mimic {
+pub enum Mimic {
     /// As the joint that they mimic.
     Follow,
     /// By themselves.

@@ -7,6 +7,7 @@ use crate::number::short;
 use crate::state::solved::shown;
 use hamel::{Singular, StepError, System};
 use hamel_codegen::model::Model;
+use hamel_codegen::program::Cause;
 use nalgebra::DMatrix;
 
 /// Pivots that are smaller than this part of the diagonal entry that they began as are rounding of zero.
@@ -61,6 +62,20 @@ fn told(place: usize, names: &[String]) -> String {
     let name = names.get(place).map_or("", String::as_str);
     let number = place + 1;
     format!("the mass matrix is not positive definite at pivot {number} ({name})")
+}
+
+/// What it means that a pivot of a function is not positive.
+pub fn meaning(cause: Cause, model: &Model, text: &str) -> String {
+    match cause {
+        Cause::Velocity(place) => {
+            let names = labels(model, text);
+            let name = names.get(place).map_or("", String::as_str);
+            format!("the mass matrix is not positive definite: {name} has no inertia")
+        }
+        Cause::Mass => "the mass matrix is not positive definite".into(),
+        Cause::Constraint(_) => dependent(model, text),
+        Cause::Kinematics(_) => CONFIGURATION.into(),
+    }
 }
 
 /// What is said of a state where ξ̇ has no value, from the mass matrix there.

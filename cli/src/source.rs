@@ -12,9 +12,9 @@ use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
 use hamel_codegen::syntax::{self, ast::System};
 use hamel_codegen::urdf;
-use std::cell::Cell;
 use std::io::Read;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The path of standard input in messages.
 const STDIN: &str = "<stdin>";
@@ -30,12 +30,23 @@ pub struct Source {
     /// The robot that the description is made from, if it is.
     pub robot: Option<Robot>,
     /// Whether the warnings were shown.
-    warned: Cell<bool>,
+    warned: AtomicBool,
     /// Whether functions in Rust have to have values, by their stand-ins.
     evaluated: bool,
 }
 
 impl Source {
+    /// A text, and what messages call it.
+    pub fn new(path: String, text: String) -> Self {
+        Source {
+            path,
+            text,
+            robot: None,
+            warned: AtomicBool::new(false),
+            evaluated: false,
+        }
+    }
+
     /// Reads a file, or standard input where the path is `-`.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let stdin = path.as_os_str() == "-";
@@ -56,13 +67,7 @@ impl Source {
         let bytes =
             bytes.map_err(|error| Failure::usage(format!("cannot read {name}: {error}")))?;
         match String::from_utf8(bytes) {
-            Ok(text) => Ok(Source {
-                path: name,
-                text,
-                robot: None,
-                warned: Cell::new(false),
-                evaluated: false,
-            }),
+            Ok(text) => Ok(Source::new(name, text)),
             Err(error) => {
                 let place = error.utf8_error().valid_up_to();
                 Err(Failure::usage(format!(
@@ -105,8 +110,13 @@ impl Source {
 
     /// Reads a description, or a robot in URDF.
     pub fn open(path: &Path, options: &RobotOptions) -> Result<Self, Failure> {
-        let mut source = Source::read(path)?;
-        if urdf::is_urdf(path) || source.text.trim_start().starts_with('<') {
+        Source::read(path)?.given(options)
+    }
+
+    /// The description, or robot in URDF, that a text is.
+    pub fn given(self, options: &RobotOptions) -> Result<Self, Failure> {
+        let mut source = self;
+        if urdf::is_urdf(Path::new(&source.path)) || source.text.trim_start().starts_with('<') {
             if !options.constants.is_empty() {
                 let message = format!("{} is a robot: --const is for descriptions", source.path);
                 return Err(Failure::usage(message));
@@ -179,7 +189,7 @@ impl Source {
             path: self.path.clone(),
             text,
             robot: None,
-            warned: Cell::new(true),
+            warned: AtomicBool::new(true),
             evaluated: self.evaluated,
         }
     }
@@ -202,6 +212,14 @@ impl Source {
         self.available(Asked {
             jacobians: frames.to_vec(),
             ..Asked::only(functions)
+        })
+    }
+
+    /// Derives what is asked for by name, whatever the description's `generate` says.
+    pub fn derive_asked(&self, asked: &Asked) -> Result<Generated, Failure> {
+        self.derived(|mut model| {
+            model.asked = asked.clone();
+            Generated::of(model, 0)
         })
     }
 
@@ -323,7 +341,7 @@ impl Source {
 
     /// Shows the warnings on standard error, once. The text of a robot is the importer's, not the user's.
     fn warn(&self, model: &Model) {
-        if self.robot.is_none() && !self.warned.replace(true) {
+        if self.robot.is_none() && !self.warned.swap(true, Ordering::Relaxed) {
             failure::warn(&warnings(&model.warnings, &self.path, &self.text, true));
         }
     }

@@ -4,7 +4,7 @@ use crate::failure::{Failure, print};
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
-use hamel_codegen::tables::{self, Table};
+use hamel_codegen::tables::{self, Table, Tables};
 use std::path::PathBuf;
 
 /// Prints the tables of a description: φ, A, Y, γ, M, Γ, and what follows from them.
@@ -40,9 +40,13 @@ pub struct Arguments {
 /// How tables are written.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Format {
+    /// Aligned columns.
     Text,
+    /// For documents and notebooks.
     Markdown,
+    /// For papers.
     Latex,
+    /// For programs.
     Json,
 }
 
@@ -52,11 +56,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let generated = source.derive_available(&[])?;
     let tables = tables::tables(&generated, &arguments.of)
         .map_err(|why| Failure::failed(format!("{}: {why}", source.path)))?;
-    let text = match arguments.format {
-        Format::Text => tables::text(&tables, arguments.all),
-        Format::Markdown => tables::markdown(&tables, arguments.all),
-        Format::Latex => tables::latex(&tables, arguments.all),
-        Format::Json => format!("{:#}\n", tables::json(&tables, arguments.all)),
-    };
-    print(&text)
+    print(&written(&tables, arguments.format, arguments.all))
+}
+
+/// Tables as a text.
+pub fn written(tables: &Tables, format: Format, all: bool) -> String {
+    match format {
+        Format::Text => tables::text(tables, all),
+        Format::Markdown => tables::markdown(tables, all),
+        Format::Latex => tables::latex(tables, all),
+        Format::Json => format!("{:#}\n", tables::json(tables, all)),
+    }
 }

@@ -18,23 +18,77 @@ pub fn evaluate(
     arguments: [&[f64]; 5],
     out: &mut [f64],
 ) -> Result<(), Cause> {
-    let mut values: Vec<f64> = Vec::with_capacity(tape.values());
+    run(tape, &Rounded { fused }, constants, arguments, out)
+}
+
+/// The results of a tape in other numbers, such as those that carry slopes.
+///
+/// # Errors
+/// What a pivot that is not positive means.
+pub fn evaluate_in<S: Scalar>(
+    tape: &Tape,
+    constants: &[f64],
+    arguments: [&[S]; 5],
+    out: &mut [S],
+) -> Result<(), Cause> {
+    run(tape, &Own, constants, arguments, out)
+}
+
+/// What depends on how products and sums are rounded.
+trait Rounding<S> {
+    /// a b + c
+    fn fused(&self, a: S, b: S, c: S) -> S;
+    /// sin a and cos a
+    fn sin_cos(&self, a: S) -> [S; 2];
+}
+
+impl Rounding<f64> for Rounded {
+    fn fused(&self, a: f64, b: f64, c: f64) -> f64 {
+        Rounded { ..*self }.times_plus(a, b, c)
+    }
+
+    fn sin_cos(&self, a: f64) -> [f64; 2] {
+        sin_cos(a, self.fused)
+    }
+}
+
+/// As the numbers have it themselves.
+struct Own;
+
+impl<S: Scalar> Rounding<S> for Own {
+    fn fused(&self, a: S, b: S, c: S) -> S {
+        a.mul_add(b, c)
+    }
+
+    fn sin_cos(&self, a: S) -> [S; 2] {
+        a.sin_cos().into()
+    }
+}
+
+fn run<S: Scalar>(
+    tape: &Tape,
+    rounding: &impl Rounding<S>,
+    constants: &[f64],
+    arguments: [&[S]; 5],
+    out: &mut [S],
+) -> Result<(), Cause> {
+    let mut values: Vec<S> = Vec::with_capacity(tape.values());
     for step in &tape.steps {
         let of = |operand: Operand| read(operand, &values, constants, arguments);
         let value = match *step {
             Step::Add(a, b) => of(a) + of(b),
             Step::Multiply(a, b) => of(a) * of(b),
-            Step::Fused(a, b, c) => Rounded { fused }.times_plus(of(a), of(b), of(c)),
+            Step::Fused(a, b, c) => rounding.fused(of(a), of(b), of(c)),
             Step::Divide(a, b) => of(a) / of(b),
             Step::SinCos(a) => {
-                let [sine, cosine] = sin_cos(of(a), fused);
+                let [sine, cosine] = rounding.sin_cos(of(a));
                 values.push(sine);
                 cosine
             }
             Step::Apply(function, a) => apply(function, of(a)),
-            Step::Atan2(y, x) => Scalar::atan2(of(y), of(x)),
+            Step::Atan2(y, x) => of(y).atan2(of(x)),
             Step::Select(c, a, b) => of(c).select_positive(of(a), of(b)),
-            Step::Check(cause, pivot) => match of(pivot) > 0.0 {
+            Step::Check(cause, pivot) => match of(pivot).is_positive() {
                 true => continue,
                 false => return Err(cause),
             },
@@ -101,40 +155,42 @@ fn sin_cos(x: f64, fused: bool) -> [f64; 2] {
 }
 
 /// The value of an operand.
-pub(crate) fn read(
+pub(crate) fn read<S: Scalar>(
     operand: Operand,
-    values: &[f64],
+    values: &[S],
     constants: &[f64],
-    arguments: [&[f64]; 5],
-) -> f64 {
+    arguments: [&[S]; 5],
+) -> S {
     let value = match operand.source {
-        Source::Number(number) => Some(number),
-        Source::Constant(index) => constants.get(index).copied(),
+        Source::Number(number) => Some(S::from_f64(number)),
+        Source::Constant(index) => constants.get(index).copied().map(S::from_f64),
         Source::Value(index) => values.get(index).copied(),
         Source::Argument(argument, index) => {
             let place = ARGUMENTS.iter().position(|&of| of == argument);
             place.and_then(|place| arguments[place].get(index)).copied()
         }
     };
-    let value = value.unwrap_or(f64::NAN);
+    let value = value.unwrap_or_else(|| S::from_f64(f64::NAN));
     if operand.negative { -value } else { value }
 }
 
 /// A function of one argument, as generated code has it.
-pub fn apply(function: Function, a: f64) -> f64 {
+pub fn apply<S: Scalar>(function: Function, a: S) -> S {
     match function {
-        Function::Sin => Scalar::sin_cos(a).0,
-        Function::Cos => Scalar::sin_cos(a).1,
-        Function::Exp => Scalar::exp(a),
-        Function::Log => Scalar::ln(a),
-        Function::Sqrt | Function::Norm => Scalar::sqrt(a),
-        Function::Sinh => Scalar::sinh(a),
-        Function::Cosh => Scalar::cosh(a),
-        Function::Tanh => Scalar::tanh(a),
-        Function::Sign => Scalar::sign(a),
-        Function::Abs => Scalar::abs(a),
+        Function::Sin => a.sin_cos().0,
+        Function::Cos => a.sin_cos().1,
+        Function::Exp => a.exp(),
+        Function::Log => a.ln(),
+        Function::Sqrt | Function::Norm => a.sqrt(),
+        Function::Sinh => a.sinh(),
+        Function::Cosh => a.cosh(),
+        Function::Tanh => a.tanh(),
+        Function::Sign => a.sign(),
+        Function::Abs => a.abs(),
         Function::Inverse => a.inverse_of_length(),
         // Steps of their own.
-        Function::Atan2 | Function::Select | Function::Listed | Function::External => f64::NAN,
+        Function::Atan2 | Function::Select | Function::Listed | Function::External => {
+            S::from_f64(f64::NAN)
+        }
     }
 }

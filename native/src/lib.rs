@@ -20,7 +20,7 @@ mod evaluate;
 mod lower;
 mod spill;
 
-pub use evaluate::evaluate;
+pub use evaluate::{evaluate, evaluate_in};
 pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
 
 use code::{Code, Ended, Fixed};
@@ -90,6 +90,11 @@ impl Compiled {
         self.0.code.as_ref().err().map(String::as_str)
     }
 
+    /// Whether a step that a machine can round once is rounded once: last digits depend on it.
+    pub fn is_fused(&self) -> bool {
+        self.0.fused
+    }
+
     /// The tapes.
     pub fn tapes(&self) -> &Tapes {
         &self.0.tapes
@@ -124,7 +129,8 @@ impl Compiled {
     /// What it means that a pivot that depends on parameters alone is not positive, where one is not.
     pub fn singular(&self, constants: &Constants) -> Option<Cause> {
         let mut pivots = self.0.tapes.pivots.iter();
-        let positive = |pivot| evaluate::read(pivot, &[], &constants.0, [&[]; 5]) > 0.0;
+        let none: [&[f64]; 5] = [&[]; 5];
+        let positive = |pivot| evaluate::read(pivot, &[], &constants.0, none) > 0.0;
         pivots
             .find(|(pivot, _)| !positive(*pivot))
             .map(|(_, cause)| *cause)

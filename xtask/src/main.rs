@@ -42,6 +42,8 @@ const CI: Task = &[
     // Tables of sweeps in the programs that read them, and tasks of a scheduler of which one is killed.
     "HAMEL_BUILT=1 bash tests/sweep/run.sh",
     "HAMEL_BUILT=1 bash tests/sweep/hyperqueue.sh",
+    // The Python package against Pinocchio and SciPy, its types, examples and notebooks.
+    "HAMEL_BUILT=1 bash tests/python/run.sh",
     // A controller on microcontrollers, in QEMU.
     "bash tests/cortex/run.sh",
 ];
@@ -63,6 +65,8 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full HAMEL_PART=3 cargo test --locked -p hamel-tests-emitted compiled",
     "HAMEL_ATTACK=full HAMEL_PART=4 cargo test --locked -p hamel-tests-emitted compiled",
     "bash tests/robots/pinocchio.sh",
+    // As a user installs it.
+    "bash tests/python/wheel.sh",
 ];
 
 /// Takes the snapshots as they are now; `git diff` shows what to review.

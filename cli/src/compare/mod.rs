@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         machine: Machine {
             processor: "the machine of the command".into(),
             system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
-            code: "interpreted".into(),
+            code: "made into machine code at once".into(),
             repeats: REPEATS,
         },
         ..Report::default()

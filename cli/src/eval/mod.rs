@@ -78,6 +78,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(at) => at.state(&source, &generated)?,
         None => State::start(&generated.active),
     };
+    let shown = arguments.tables || generated.model.n() <= MOST_SHOWN;
+    let (value, missing) = numbers(&generated, &state, source.shown(), shown)?;
+    if !shown {
+        warn(&format!(
+            "gamma and Gamma, 2 × {}³ numbers, are left out: --tables prints them\n",
+            generated.model.n()
+        ));
+    }
+    print(&value.pretty())?;
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::failed(format!(
+            "{}: {}",
+            source.path,
+            missing.join("; ")
+        )))
+    }
+}
+
+/// The numbers of everything at a state, γ and Γ among them where they are wanted, and what has no value; `shown` is the text
+/// that messages give lines of.
+pub fn numbers(
+    generated: &Generated,
+    state: &State,
+    shown: &str,
+    with_tables: bool,
+) -> Result<(Json, Vec<String>), Failure> {
     let states = generated.model.states.iter();
     let states: Vec<String> = states.flat_map(names::group).collect();
     let mut members = vec![
@@ -102,32 +130,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let rows = rows(&generated.active, &known);
         members.push(("joints", Json::texts(&rows)));
     }
-    let shown = arguments.tables || generated.model.n() <= MOST_SHOWN;
-    members.extend(Geometry::new(&generated, &state, shown)?.members());
-    if !shown {
-        warn(&format!(
-            "gamma and Gamma, 2 × {}³ numbers, are left out: --tables prints them\n",
-            generated.model.n()
-        ));
-    }
+    members.extend(Geometry::new(generated, state, with_tables)?.members());
     let mut missing: Vec<String> = Vec::new();
-    members.extend(motion(&generated, (&state, source.shown()), &mut missing)?);
-    members.extend(frames::kinematics(&generated, &state)?.map(|all| ("kinematics", all)));
+    members.extend(motion(generated, (state, shown), &mut missing)?);
+    members.extend(frames::kinematics(generated, state)?.map(|all| ("kinematics", all)));
     let infinite = members.iter().filter(|(_, value)| !finite(value));
     let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
     if !infinite.is_empty() {
         missing.push(format!("not finite at this state: {}", infinite.join(", ")));
     }
-    print(&Json::object(members).pretty())?;
-    if missing.is_empty() {
-        Ok(())
-    } else {
-        Err(Failure::failed(format!(
-            "{}: {}",
-            source.path,
-            missing.join("; ")
-        )))
-    }
+    Ok((Json::object(members), missing))
 }
 
 /// Forces, rates, energies, outputs.

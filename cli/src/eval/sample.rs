@@ -8,6 +8,7 @@ use crate::mechanism::{constant_singular, function};
 use crate::names;
 use crate::singular;
 use crate::source::Source;
+use crate::state::State;
 use crate::state::file::File;
 use crate::state::joints::rows;
 use crate::state::sample::{ORDER, Sample};
@@ -47,7 +48,13 @@ pub fn run(source: &Source, at: &File, frames: &[String]) -> Result<(), Failure>
     let mut errors = Vec::new();
     let mut samples = Vec::new();
     for (index, one) in list.iter().enumerate() {
-        match Sample::parse(one, order, (&generated, &source.text), source.joints()) {
+        match Sample::parse(
+            State::start(&generated.active),
+            one,
+            order,
+            (&generated, &source.text),
+            source.joints(),
+        ) {
             Ok(sample) => samples.push(sample),
             Err(found) if several => {
                 errors.extend(

@@ -14,6 +14,7 @@ use crate::source::Source;
 use crate::state::State;
 use clap::{Args, ValueEnum};
 use hamel_codegen::functions::SLOPES;
+use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 use std::path::PathBuf;
 
@@ -61,26 +62,32 @@ enum Format {
 const ROUNDING: f64 = 1e-14;
 
 /// The numbers of a linearisation.
-struct Linear {
-    system: String,
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// Name of the system.
+    pub system: String,
     /// Names of h and δξ.
-    states: Vec<String>,
+    pub states: Vec<String>,
     /// Names of u.
-    inputs: Vec<String>,
-    a: Vec<Vec<f64>>,
-    b: Vec<Vec<f64>>,
+    pub inputs: Vec<String>,
+    /// A, by rows.
+    pub a: Vec<Vec<f64>>,
+    /// B, by rows.
+    pub b: Vec<Vec<f64>>,
     /// Names of the entries of y.
-    outputs: Vec<String>,
-    c: Vec<Vec<f64>>,
-    d: Vec<Vec<f64>>,
+    pub outputs: Vec<String>,
+    /// C, by rows.
+    pub c: Vec<Vec<f64>>,
+    /// D, by rows.
+    pub d: Vec<Vec<f64>>,
     /// How many displacements and velocities constraints give by these; none in the full form.
-    given: usize,
+    pub given: usize,
     /// Real and imaginary parts, the fastest growing first; `None` where they were not found.
-    eigenvalues: Option<Vec<(f64, f64)>>,
+    pub eigenvalues: Option<Vec<(f64, f64)>>,
     /// Whether there are states of first order.
-    with_states: bool,
+    pub with_states: bool,
     /// ξ̇ at the state.
-    xi_dot: Vec<f64>,
+    pub xi_dot: Vec<f64>,
 }
 
 /// Linearises and prints.
@@ -88,9 +95,28 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_linearized()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
+    let linear = linear(&generated, &state, source.shown(), arguments.full)?;
+    print(&match arguments.format {
+        Format::Text => text(&linear),
+        Format::Json => json(&linear).pretty(),
+    })?;
+    complete(&linear)
+}
+
+/// The linearisation at a state, of all displacements and velocities where it is `full`; `shown` is the text that messages
+/// give lines of.
+///
+/// # Errors
+/// Where the motion has no value at the state.
+pub fn linear(
+    generated: &Generated,
+    state: &State,
+    shown: &str,
+    full: bool,
+) -> Result<Linear, Failure> {
     let program = &generated.program;
-    let State { params, x, xi, u } = &state;
-    let system = Instance::new(&generated, &state, source.shown())?;
+    let State { params, x, xi, u } = state;
+    let system = Instance::new(generated, state, shown)?;
     let none = |why: String| Failure::failed(format!("there is no linearisation: {why}"));
     let xi_dot = system.motion(x, xi, u).map_err(none)?;
     let flat = function(program, "linearize", params)?
@@ -153,13 +179,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         given: 0,
         xi_dot,
     };
-    if !arguments.full {
+    if !full {
         let flat = function(program, "displacement_frame", params)?
             .call(x, &[], &[], &[])
             .map_err(|_| none(system.at(x)))?;
         let columns = flat.len() / x.len().max(1);
         let rows: Vec<Vec<f64>> = flat.chunks(columns.max(1)).map(<[f64]>::to_vec).collect();
-        if let Some(tangent) = minimal::tangent(&generated, &state, &rows) {
+        if let Some(tangent) = minimal::tangent(generated, state, &rows) {
             linear.given = linear.states.len() - tangent.kept.len();
             linear.a = tangent.of_square(&linear.a);
             linear.b = tangent.of_list(&linear.b);
@@ -168,11 +194,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     linear.eigenvalues = eigenvalues(&linear.a);
-    print(&match arguments.format {
-        Format::Text => text(&linear),
-        Format::Json => json(&linear).pretty(),
-    })?;
-    complete(&linear)
+    Ok(linear)
 }
 
 /// The failure that ends the command where eigenvalues are missing; A and B are printed before.

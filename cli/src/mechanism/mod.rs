@@ -3,12 +3,13 @@
 mod functions;
 mod momenta;
 mod numbers;
+mod varied;
 
 use crate::failure::Failure;
 use crate::simulate::inputs::Inputs;
 use crate::singular::{self, Failed};
 use crate::state::State;
-pub use functions::{Functions, Place};
+pub use functions::{Functions, Place, compiled};
 use hamel::rotor::Rotor;
 use hamel::{Block, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
@@ -21,6 +22,7 @@ use momenta::Momenta;
 pub use numbers::Numbers;
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
+pub use varied::{End, Varied};
 
 /// What runs of a description have in common, whatever their parameters: its functions, compiled.
 pub struct Mechanism {
@@ -89,7 +91,7 @@ impl Mechanism {
         let described = outputs.iter().chain(&invariants).map(|name| name.as_str());
         let names = SYSTEM.iter().chain(momenta::NAMES).copied();
         let names: Vec<&str> = names.chain(described).collect();
-        let compiled = functions::compiled(program, &names)?;
+        let compiled = compiled(program, &names)?;
         let function = |name: &str| {
             let place = functions::place(&compiled, name);
             place.ok_or_else(|| missing(program, name))
@@ -130,6 +132,11 @@ impl Mechanism {
             driven: model.clock.is_some() || !model.accelerated.is_empty(),
             compiled,
         })
+    }
+
+    /// Whether this machine rounds a product and a sum once.
+    pub fn is_fused(&self) -> bool {
+        self.compiled.is_fused()
     }
 }
 

@@ -47,6 +47,23 @@ pub struct Arguments {
 /// Derives and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
+    let all = base(&source)?;
+    if let Some(file) = &arguments.identified {
+        return identified::print_bodies(&all, &source, file, arguments.format);
+    }
+    print(&match arguments.format {
+        Format::Text => text(&all),
+        Format::Markdown => markdown(&all),
+        Format::Latex => latex(&all),
+        Format::Json => format!("{:#}\n", json(&all)),
+    })
+}
+
+/// The base parameters of a description.
+///
+/// # Errors
+/// Where it has none: with constraints, or with forces that are no robot's.
+pub fn base(source: &Source) -> Result<BaseParameters, Failure> {
     let model = source.model()?;
     let derived = regressor(&model).and_then(|regressor| {
         prove(&model, &regressor)?;
@@ -58,14 +75,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             source.path, model.name
         ))
     })?;
-    let all = BaseParameters::new(&regressor);
-    if let Some(file) = &arguments.identified {
-        return identified::print_bodies(&all, &source, file, arguments.format);
-    }
-    print(&match arguments.format {
-        Format::Text => text(&all),
-        Format::Markdown => markdown(&all),
-        Format::Latex => latex(&all),
-        Format::Json => format!("{:#}\n", json(&all)),
-    })
+    Ok(BaseParameters::new(&regressor))
 }

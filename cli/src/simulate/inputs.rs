@@ -6,24 +6,29 @@ mod file;
 use crate::failure::Failure;
 use crate::names;
 use crate::state::State;
+use clap::Args;
 use expressions::Expressions;
 use file::Table;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::syntax::path::plain;
 use hamel_codegen::syntax::suggest::closest;
+use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// What was asked for.
-#[derive(Clone, Copy, Debug)]
-pub struct Asked<'a> {
-    /// A file with columns of inputs.
-    pub file: Option<&'a PathBuf>,
-    /// Whether a value holds until the next row of it.
+/// What inputs are in a run.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Asked {
+    /// Inputs over time: a column `t` and columns with names of inputs, as in `t,F,tau[2]`; between two rows on a
+    /// straight line. Inputs without a column keep their values.
+    #[arg(long, value_name = "F.csv")]
+    pub inputs: Option<PathBuf>,
+    /// Values of --inputs hold until the next row, and behind the last.
+    #[arg(long, requires = "inputs")]
     pub hold: bool,
-    /// `NAME = EXPRESSION`.
-    pub expressions: &'a [String],
-    /// Length of the run.
-    pub until: f64,
+    /// An input as an expression of `t`, parameters, coordinates, velocities and states.
+    #[arg(long, value_name = "NAME = EXPR")]
+    pub input: Vec<String>,
 }
 
 /// u as a function of t, x and ξ.
@@ -31,22 +36,47 @@ pub struct Asked<'a> {
 pub struct Inputs {
     table: Option<Table>,
     expressions: Option<Expressions>,
+    law: Option<Law>,
+}
+
+/// A function of t, x and ξ that sets entries of u: a controller of another program.
+#[derive(Clone)]
+pub struct Law(pub Arc<Control>);
+
+/// What such a function is.
+pub type Control = dyn Fn(f64, &[f64], &[f64], &mut [f64]) + Send + Sync;
+
+impl fmt::Debug for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Law")
+    }
+}
+
+impl From<Law> for Inputs {
+    fn from(law: Law) -> Self {
+        Inputs {
+            table: None,
+            expressions: None,
+            law: Some(law),
+        }
+    }
 }
 
 impl Inputs {
-    /// Reads what was asked for; none where all inputs keep their values.
+    /// Reads what was asked for in a run of this length; none where all inputs keep their values.
     pub fn new(
-        asked: Asked,
+        asked: &Asked,
+        until: f64,
         generated: &Generated,
         state: &State,
     ) -> Result<Option<Self>, Failure> {
         let model = &generated.active;
         let entries: Vec<String> = model.inputs.iter().flat_map(names::group).collect();
-        let table = match asked.file {
-            Some(path) => Some(Table::read(path, &entries, asked.hold, asked.until)?),
+        let table = match &asked.inputs {
+            Some(path) => Some(Table::read(path, &entries, asked.hold, until)?),
             None => None,
         };
-        let expressions = Expressions::new(asked.expressions, model, &state.params)?;
+        let expressions = Expressions::new(&asked.input, model, &state.params)?;
         if let (Some(table), Some(expressions)) = (&table, &expressions) {
             let both = expressions.places().find(|place| table.has(*place));
             if let Some(place) = both {
@@ -56,7 +86,13 @@ impl Inputs {
                 )));
             }
         }
-        Ok((table.is_some() || expressions.is_some()).then_some(Inputs { table, expressions }))
+        Ok(
+            (table.is_some() || expressions.is_some()).then_some(Inputs {
+                table,
+                expressions,
+                law: None,
+            }),
+        )
     }
 
     /// Times at which inputs jump.
@@ -88,6 +124,9 @@ impl Inputs {
         }
         if let Some(expressions) = &self.expressions {
             expressions.set(t, x, xi, u);
+        }
+        if let Some(Law(law)) = &self.law {
+            law(t, x, xi, u);
         }
     }
 }

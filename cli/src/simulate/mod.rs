@@ -63,16 +63,8 @@ pub struct Arguments {
     /// Samples at the times in the column `t` of this file, and nowhere else.
     #[arg(long, value_name = "F.csv", conflicts_with = "every")]
     times: Option<PathBuf>,
-    /// Inputs over time: a column `t` and columns with names of inputs, as in `t,F,tau[2]`; between two rows on a
-    /// straight line. Inputs without a column keep their values.
-    #[arg(long, value_name = "F.csv")]
-    inputs: Option<PathBuf>,
-    /// Values of --inputs hold until the next row, and behind the last.
-    #[arg(long, requires = "inputs")]
-    hold: bool,
-    /// An input as an expression of `t`, parameters, coordinates, velocities and states.
-    #[arg(long, value_name = "NAME = EXPR")]
-    input: Vec<String>,
+    #[command(flatten)]
+    inputs: inputs::Asked,
     /// Plot of coordinates, velocities, outputs and what is conserved over time, with the path of a body
     /// axis where there is one attitude, and with Poinsot's construction of a body that is nearly free.
     #[arg(long, value_name = "F.svg")]
@@ -88,16 +80,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_all()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;
-    let asked = inputs::Asked {
-        file: arguments.inputs.as_ref(),
-        hold: arguments.hold,
-        expressions: &arguments.input,
-        until: arguments.stepping.until,
-    };
-    let given = inputs::Inputs::new(asked, &generated, &state)?;
+    let until = arguments.stepping.until;
+    let given = inputs::Inputs::new(&arguments.inputs, until, &generated, &state)?;
     let system = Instance::new(&generated, &state, source.shown())?.with(given);
     system.check_parameters(&state.x)?;
-    let until = arguments.stepping.until;
     let mut plan = arguments
         .stepping
         .plan(&generated, &system, arguments.every)?;

@@ -44,6 +44,23 @@ pub struct Stepping {
 impl Stepping {
     /// What can be said before anything is derived.
     pub fn check(&self) -> Result<(), Failure> {
+        let lengths = [
+            ("the length of a run", Some(self.until)),
+            ("a step", self.step),
+            ("a tolerance", self.tol),
+        ];
+        for (what, length) in lengths {
+            if !length.is_none_or(is_positive) {
+                return Err(Failure::usage(format!(
+                    "{what} has to be a number greater than zero"
+                )));
+            }
+        }
+        if self.step.is_some() && self.tol.is_some() {
+            return Err(Failure::usage(
+                "a step or a tolerance is needed, not both: by a tolerance steps are chosen",
+            ));
+        }
         match self.lambda.is_some() && self.method != "rk4" {
             true => Err(Failure::usage(
                 "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
@@ -110,10 +127,14 @@ fn adapts(chosen: &Chosen) -> bool {
     )
 }
 
+fn is_positive(value: f64) -> bool {
+    value.is_finite() && value > 0.0
+}
+
 /// A number greater than zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        Ok(value) if is_positive(value) => Ok(value),
         _ => Err("a number greater than zero is needed".into()),
     }
 }

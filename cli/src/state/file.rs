@@ -34,8 +34,13 @@ impl File {
     /// Reads a file beside a description, or standard input where the path is `-`.
     pub fn read(path: &Path, description: &Source) -> Result<Self, Failure> {
         let Source { path, text, .. } = description.beside(path, "state")?;
+        File::of(path, &text, description)
+    }
+
+    /// A text for a description, and what messages call it.
+    pub fn of(path: String, text: &str, description: &Source) -> Result<Self, Failure> {
         // Joints of a robot have any names.
-        let json = strict::parse(&text).and_then(|json| match description.robot {
+        let json = strict::parse(text).and_then(|json| match description.robot {
             None => plainly(json),
             Some(_) => Ok(json),
         });
@@ -52,14 +57,29 @@ impl File {
 
     /// The state, in whichever form it is given; a force, or a list of states, is refused.
     pub fn state(&self, source: &Source, generated: &Generated) -> Result<State, Failure> {
+        self.changes(State::start(&generated.active), source, generated)
+    }
+
+    /// Another state, changed by what the file gives.
+    pub fn changes(
+        &self,
+        start: State,
+        source: &Source,
+        generated: &Generated,
+    ) -> Result<State, Failure> {
         let state = match self.is_by_joints() {
-            true => self.by_joints(source, generated),
-            false => State::of(generated, &source.text, &self.json),
+            true => self.by_joints(start, source, generated),
+            false => start.changed(generated, &source.text, &self.json),
         };
         state.map_err(|errors| Failure::usages(&self.path, &errors))
     }
 
-    fn by_joints(&self, source: &Source, generated: &Generated) -> Result<State, Vec<String>> {
+    fn by_joints(
+        &self,
+        start: State,
+        source: &Source,
+        generated: &Generated,
+    ) -> Result<State, Vec<String>> {
         let refused = OF_EVAL
             .iter()
             .filter(|(part, _)| self.json.get(part).is_some());
@@ -67,8 +87,14 @@ impl File {
             .map(|(part, why)| format!("{part}: {why}"))
             .collect();
         match refused.is_empty() {
-            true => Sample::parse(&self.json, None, (generated, &source.text), source.joints())
-                .map(|read| read.state),
+            true => Sample::parse(
+                start,
+                &self.json,
+                None,
+                (generated, &source.text),
+                source.joints(),
+            )
+            .map(|read| read.state),
             false => Err(refused),
         }
     }

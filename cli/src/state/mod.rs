@@ -59,10 +59,19 @@ impl State {
 
     /// The start, changed by a JSON value with coordinates; `text` is that of the description.
     pub fn of(generated: &Generated, text: &str, json: &Value) -> Result<Self, Vec<String>> {
-        let model = &generated.active;
-        let mut state = State::start(model);
+        State::start(&generated.active).changed(generated, text, json)
+    }
+
+    /// The same, changed by a JSON value with coordinates.
+    pub fn changed(
+        self,
+        generated: &Generated,
+        text: &str,
+        json: &Value,
+    ) -> Result<Self, Vec<String>> {
+        let mut state = self;
         let mut reader = Reader::new(generated, text);
-        reader.state(json, model, &mut state);
+        reader.state(json, &generated.active, &mut state);
         reader.finish(generated, &mut state)?;
         Ok(state)
     }

@@ -43,9 +43,10 @@ pub fn is_sample(json: &Value) -> bool {
 }
 
 impl Sample {
-    /// Reads a sample; all mistakes at once. `order` is that of lists of forces, where the sample
+    /// Reads a sample, what changes a start; all mistakes at once. `order` is that of lists of forces, where the sample
     /// does not say one.
     pub fn parse(
+        start: State,
         json: &Value,
         order: Option<&Value>,
         (generated, text): (&Generated, &str),
@@ -53,7 +54,7 @@ impl Sample {
     ) -> Result<Self, Vec<String>> {
         let model = &generated.active;
         let mut sample = Sample {
-            state: State::start(model),
+            state: start,
             joints: joints(model, names),
             force: None,
         };

@@ -109,22 +109,16 @@ pub struct Arguments {
     /// Start and parameters where they are not varied, by coordinates; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// Inputs over time, as in `hamel simulate`.
-    #[arg(long, value_name = "F.csv")]
-    inputs: Option<PathBuf>,
-    /// Values of --inputs hold until the next row, and behind the last.
-    #[arg(long, requires = "inputs")]
-    hold: bool,
-    /// An input as an expression of `t`, parameters, coordinates, velocities and states.
-    #[arg(long, value_name = "NAME = EXPR")]
-    input: Vec<String>,
+    #[command(flatten)]
+    inputs: inputs::Asked,
     /// Threads that members run on; by default, one for each core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Members of a file, which are in memory until it is written; by default, 64 to 10,000.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     shard_size: Option<u64>,
-    /// Compute the i-th of N parts of the files, and no other; several machines may do so at once.
+    /// Compute the i-th of N parts of the files, and no other; several machines may do so at once. They all have to have
+    /// a fused multiply-add, or none of them: last digits differ, and a machine of the other kind is refused.
     #[arg(long, value_name = "i/N", value_parser = Part::read)]
     shard: Option<Part>,
     /// Let an engine compute the parts, as an array of tasks; the folder has to be one that all machines share.
@@ -254,13 +248,7 @@ fn prepared(
         }
     };
     let vary = Vary::read(vary, &generated, &state, arguments.seed, arguments.members)?;
-    let asked = inputs::Asked {
-        file: arguments.inputs.as_ref(),
-        hold: arguments.hold,
-        expressions: &arguments.input,
-        until: stepping.until,
-    };
-    let given = Inputs::new(asked, &generated, &state)?;
+    let given = Inputs::new(&arguments.inputs, stepping.until, &generated, &state)?;
     let both = vary.inputs(&generated);
     if let Some((_, name)) = both
         .iter()
@@ -337,7 +325,12 @@ fn fixed(
         Some(_) => None,
         None => Some(sweep.plan.step),
     };
-    let inputs = arguments.inputs.as_deref().map(read).transpose()?;
+    let arithmetic = match sweep.family.mechanism.is_fused() {
+        true => "fused multiply-add",
+        false => "separate multiply and add",
+    };
+    let asked = &arguments.inputs;
+    let inputs = asked.inputs.as_deref().map(read).transpose()?;
     let fixed = vec![
         ("vary", Json::Text(vary.trim().into())),
         ("keep", Json::Text(arguments.keep.trim().into())),
@@ -347,9 +340,11 @@ fn fixed(
         ("step", number(step)),
         ("tolerance", number(sweep.plan.tolerance)),
         ("lambda", number(stepping.lambda)),
-        ("input", Json::texts(&arguments.input)),
+        ("input", Json::texts(&asked.input)),
         ("inputs", text(inputs)),
-        ("hold", Json::Text(arguments.hold.to_string())),
+        ("hold", Json::Text(asked.hold.to_string())),
+        // Last digits differ between machines that round a product before they add, and those that do not.
+        ("arithmetic", Json::Text(arithmetic.into())),
         (
             "start",
             Json::Text(Value::from(sweep.base.clone()).to_string()),

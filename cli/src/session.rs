@@ -1,0 +1,602 @@
+//! A description as another program works with it: what the commands do, with numbers in place of texts.
+
+use crate::eval::numbers;
+use crate::failure::{Failure, collected};
+use crate::linearize::{self, Linear};
+use crate::mechanism::{Instance, Mechanism, Varied};
+use crate::method::{self, AUTO, Chosen, Stepper};
+use crate::names;
+use crate::regressor::base;
+use crate::robot::RobotOptions;
+use crate::simulate::inputs::{Asked, Inputs, Law};
+use crate::simulate::record::{Every, Run, Sample, Spacing};
+use crate::simulate::stepping::Stepping;
+use crate::singular;
+use crate::source::Source;
+use crate::state::State;
+use crate::state::file::File;
+use crate::state::joints::joints;
+use crate::tables::Format;
+use hamel::methods::General;
+use hamel::step;
+use hamel_codegen::functions::{Asked as Wanted, FunctionId, Jacobian, SLOPES, Serves};
+use hamel_codegen::generate::Generated;
+use hamel_codegen::model::Model;
+use hamel_codegen::program::{Argument, Cause, Shape};
+use hamel_codegen::tables::regressor::BaseParameters;
+use hamel_codegen::tables::{self, Table};
+use hamel_native::{Compiled, Constants};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// A description, derived, with what was compiled of it.
+pub struct Session {
+    source: Source,
+    generated: Generated,
+    /// The same with its linearisation.
+    linearized: OnceLock<Generated>,
+    mechanism: OnceLock<Arc<Mechanism>>,
+    /// Steps with slopes, for the parameters that were asked for last.
+    varied: Mutex<Option<Arc<Varied>>>,
+    functions: Mutex<BTreeMap<String, Function>>,
+}
+
+/// Names of entries, and groups of them: name, place of the first, number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Names {
+    /// Every entry, as in `w[2]`.
+    pub entries: Vec<String>,
+    /// What they belong to, as in `w`.
+    pub groups: Vec<(String, usize, usize)>,
+}
+
+/// A function of the description as machine code.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Its name.
+    pub name: String,
+    /// What it evaluates.
+    pub docs: String,
+    /// What it takes.
+    pub arguments: Vec<Argument>,
+    /// The shape of its result.
+    pub shape: Shape,
+    compiled: Compiled,
+}
+
+impl Function {
+    /// How many entries an argument has.
+    pub fn length(&self, argument: Argument) -> usize {
+        let all = hamel_native::ARGUMENTS.iter();
+        let lengths = all.zip(self.compiled.tapes().lengths);
+        lengths
+            .filter(|(of, _)| **of == argument)
+            .map(|(_, length)| length)
+            .sum()
+    }
+
+    /// Parameters, with what depends on them alone.
+    ///
+    /// # Errors
+    /// Where M is constant, and not positive definite with them.
+    pub fn constants(&self, params: &[f64]) -> Result<Constants, Cause> {
+        let constants = self.compiled.constants(params);
+        match self.compiled.singular(&constants) {
+            Some(cause) => Err(cause),
+            None => Ok(constants),
+        }
+    }
+
+    /// Its result for x, ξ and z, u, ξ̇ and p, of which those that it takes are read.
+    ///
+    /// # Errors
+    /// What it means that a pivot is not positive.
+    pub fn call(
+        &self,
+        constants: &Constants,
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> Result<(), Cause> {
+        self.compiled.call(0, constants, arguments, out)
+    }
+}
+
+/// A run: samples one after the other, each entry of a list beside the time.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Times of the samples.
+    pub t: Vec<f64>,
+    /// x of each sample.
+    pub x: Vec<f64>,
+    /// ξ and z of each sample.
+    pub xi: Vec<f64>,
+    /// Kinetic and potential energy of each sample, their sum.
+    pub energy: Vec<f64>,
+    /// Outputs by their names with the entries of each sample.
+    pub outputs: Vec<(String, Shape, Vec<f64>)>,
+    /// The same of what the description claims to be constant.
+    pub invariants: Vec<(String, Shape, Vec<f64>)>,
+    /// The method.
+    pub method: &'static str,
+    /// Why it was taken, where it was not asked for.
+    pub reason: Option<&'static str>,
+    /// How many steps there were.
+    pub steps: u64,
+    /// How often accelerations, forces or rates of momenta were evaluated.
+    pub evaluations: u64,
+    /// The largest change of the energy in any step, relative.
+    pub energy_deviation: f64,
+    /// The largest |φ|.
+    pub constraint: f64,
+    /// Why it ended early.
+    pub failure: Option<String>,
+}
+
+/// What one step of a method is taken with.
+pub struct Stepped {
+    instance: Instance,
+    stepper: Stepper,
+    lengths: [usize; 3],
+}
+
+impl Stepped {
+    /// How many entries x, ξ and u have.
+    pub fn lengths(&self) -> [usize; 3] {
+        self.lengths
+    }
+
+    /// x and ξ after a step of this length, in place.
+    ///
+    /// # Errors
+    /// Why there is no such step.
+    pub fn step(&self, x: &mut [f64], xi: &mut [f64], u: &[f64], h: f64) -> Result<(), String> {
+        let mut state = hamel::State::<Instance> {
+            t: 0.0,
+            x: (&*x).into(),
+            xi: (&*xi).into(),
+        };
+        let held = u.into();
+        let inputs = |_, _: &_, _: &_| Clone::clone(&held);
+        step(&self.instance, &self.stepper, &mut state, h, &inputs)
+            .map_err(|error| self.instance.said(&error))?;
+        x.copy_from_slice(&state.x);
+        xi.copy_from_slice(&state.xi);
+        Ok(())
+    }
+}
+
+impl Session {
+    /// A description or a robot in URDF from a file, with warnings.
+    ///
+    /// # Errors
+    /// What is wrong with it, with its source underlined.
+    pub fn open(path: &Path, options: &RobotOptions) -> Result<(Self, String), Failure> {
+        Session::of(|| Source::open(path, options))
+    }
+
+    /// A description or a robot in URDF from its text, which messages call `name`, with warnings.
+    ///
+    /// # Errors
+    /// What is wrong with it, with its source underlined.
+    pub fn read(
+        text: String,
+        name: &str,
+        options: &RobotOptions,
+    ) -> Result<(Self, String), Failure> {
+        Session::of(|| Source::new(name.into(), text).given(options))
+    }
+
+    fn of(source: impl FnOnce() -> Result<Source, Failure>) -> Result<(Self, String), Failure> {
+        let (derived, warnings) = collected(|| {
+            let source = source()?.in_numbers();
+            let generated = source.derive_available(&[])?;
+            Ok(Session {
+                source,
+                generated,
+                linearized: OnceLock::new(),
+                mechanism: OnceLock::new(),
+                varied: Mutex::default(),
+                functions: Mutex::default(),
+            })
+        });
+        Ok((derived?, warnings))
+    }
+
+    /// The name of the system.
+    pub fn name(&self) -> &str {
+        &self.generated.model.name
+    }
+
+    /// The text of the description, that of the importer for a robot.
+    pub fn text(&self) -> &str {
+        &self.source.text
+    }
+
+    fn model(&self) -> &Model {
+        &self.generated.active
+    }
+
+    /// The entries of x.
+    pub fn coordinates(&self) -> Names {
+        let coordinates = &self.generated.model.coordinates;
+        let groups = coordinates.iter().map(|coordinate| {
+            let entries = hamel_codegen::model::layout::entry_names("", coordinate.kind);
+            (coordinate.name.clone(), coordinate.offset, entries.len())
+        });
+        Names {
+            entries: names::coordinates(&self.generated.model),
+            groups: groups.collect(),
+        }
+    }
+
+    /// The entries of ξ, and of the states of first order behind it.
+    pub fn velocities(&self) -> Names {
+        Names {
+            entries: names::moving(self.model()),
+            groups: groups(&self.generated.program.moving()),
+        }
+    }
+
+    /// The entries of u.
+    pub fn inputs(&self) -> Names {
+        let inputs = &self.model().inputs;
+        Names {
+            entries: inputs.iter().flat_map(names::group).collect(),
+            groups: groups(inputs),
+        }
+    }
+
+    /// The entries of the parameters.
+    pub fn parameters(&self) -> Names {
+        let params = &self.generated.program.params;
+        Names {
+            entries: params.iter().flat_map(names::group).collect(),
+            groups: groups(params),
+        }
+    }
+
+    /// Joints, with the place of their velocities in ξ and their number.
+    pub fn joints(&self) -> Vec<(String, usize, usize)> {
+        let joints = joints(self.model(), self.source.joints()).into_iter();
+        joints
+            .map(|joint| (joint.name, joint.velocities.0, joint.velocities.1))
+            .collect()
+    }
+
+    /// The frames of the description.
+    pub fn frames(&self) -> Vec<String> {
+        let frames = self.model().frames.iter();
+        frames.map(|frame| frame.name.clone()).collect()
+    }
+
+    /// The outputs of the description.
+    pub fn outputs(&self) -> Vec<String> {
+        let outputs = self.model().outputs.iter();
+        outputs.map(|(name, _)| name.clone()).collect()
+    }
+
+    /// Parameters, start and zero inputs.
+    pub fn start(&self) -> State {
+        State::start(self.model())
+    }
+
+    /// The start with these parameters, changed by what a JSON text says; see `hamel eval --help`. Messages call the text
+    /// `name`.
+    ///
+    /// # Errors
+    /// All that is wrong with it.
+    pub fn state(&self, params: &[f64], json: &str, name: &str) -> Result<State, Failure> {
+        let start = State {
+            params: params.to_vec(),
+            ..self.start()
+        };
+        File::of(name.into(), json, &self.source)?.changes(start, &self.source, &self.generated)
+    }
+
+    /// Names of all functions that there are, also of those that are derived when they are asked for.
+    pub fn functions(&self) -> Vec<String> {
+        let program = &self.generated.program;
+        let is_public = |id: Option<FunctionId>| id.is_none_or(|id| id.row().named);
+        let there = program.functions.iter().filter(|f| is_public(f.id));
+        let mut all: Vec<String> = there.map(|function| function.name.clone()).collect();
+        let asked = FunctionId::ALL.iter();
+        let asked = asked.filter(|id| id.row().serves == Serves::Asked && id.row().named);
+        all.extend(asked.map(|id| id.name().to_string()));
+        all.extend(self.frames().iter().flat_map(|frame| {
+            let names = |own| {
+                let frame = frame.clone();
+                Jacobian { frame, own }.names().collect::<Vec<_>>()
+            };
+            [names(false), names(true)].concat()
+        }));
+        all.extend(self.outputs().iter().map(|name| format!("{name}{SLOPES}")));
+        let mut known = std::collections::BTreeSet::new();
+        all.retain(|name| known.insert(name.clone()));
+        all
+    }
+
+    /// A function by its name, compiled.
+    ///
+    /// # Errors
+    /// Where there is none of this name, or where it does not exist for this system.
+    pub fn function(&self, name: &str) -> Result<Function, Failure> {
+        let known = || {
+            self.functions
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
+        if let Some(function) = known().get(name) {
+            return Ok(function.clone());
+        }
+        let function = match self.generated.program.function(name) {
+            Some(_) => compiled(&self.generated, name)?,
+            None => compiled(&self.asked(name)?, name)?,
+        };
+        known().insert(name.into(), function.clone());
+        Ok(function)
+    }
+
+    /// What has a function that is not derived unless it is asked for.
+    fn asked(&self, name: &str) -> Result<Generated, Failure> {
+        let mut wanted = Wanted::only(&[]);
+        let frames = self.frames();
+        let frames = frames.iter().flat_map(|frame| {
+            [false, true].map(|own| Jacobian {
+                frame: frame.clone(),
+                own,
+            })
+        });
+        let id = FunctionId::named(name).filter(|id| id.row().named);
+        let of_frame = frames
+            .into_iter()
+            .find(|one| one.names().any(|of| of == name));
+        let output = name.strip_suffix(SLOPES);
+        let output = output.filter(|of| self.outputs().iter().any(|known| known == of));
+        match (id, of_frame, output) {
+            (Some(id), ..) => wanted.functions.push(id),
+            (_, Some(jacobian), _) => wanted.jacobians.push(jacobian),
+            (.., Some(output)) => wanted.slopes.push(output.into()),
+            (None, None, None) => {
+                let all = self.functions();
+                let close =
+                    hamel_codegen::syntax::suggest::closest(name, all.iter().map(String::as_str));
+                let meant =
+                    close.map_or_else(String::new, |close| format!("; did you mean `{close}`?"));
+                return Err(Failure::usage(format!(
+                    "{} has no function `{name}`{meant}",
+                    self.name()
+                )));
+            }
+        }
+        self.source.derive_asked(&wanted)
+    }
+
+    /// What it means that a pivot is not positive, in the names of the description.
+    pub fn meaning(&self, cause: Cause) -> String {
+        let shown = self.source.shown();
+        singular::meaning(cause, self.model(), shown)
+    }
+
+    fn mechanism(&self) -> Result<&Arc<Mechanism>, Failure> {
+        if let Some(mechanism) = self.mechanism.get() {
+            return Ok(mechanism);
+        }
+        let made = Mechanism::new(&self.generated, self.source.shown())?;
+        Ok(self.mechanism.get_or_init(|| Arc::new(made)))
+    }
+
+    fn instance(&self, state: &State) -> Result<Instance, Failure> {
+        let instance = Instance::of(self.mechanism()?, state)?;
+        instance.check_parameters(&state.x)?;
+        Ok(instance)
+    }
+
+    /// A run from a state; inputs are those of the state, of what is asked for, or of a law.
+    ///
+    /// # Errors
+    /// What cannot be run; a run that ends early has its reason in [`Motion::failure`].
+    pub fn simulate(
+        &self,
+        state: &State,
+        stepping: &Stepping,
+        (every, times): (Option<Every>, Option<Vec<f64>>),
+        (asked, law): (&Asked, Option<Law>),
+    ) -> Result<Motion, Failure> {
+        stepping.check()?;
+        let until = stepping.until;
+        let given = match law {
+            Some(law) => Some(law.into()),
+            None => Inputs::new(asked, until, &self.generated, state)?,
+        };
+        let system = self.instance(state)?.with(given);
+        let mut plan = stepping.plan(&self.generated, &system, every)?;
+        // All samples that are asked for are kept.
+        if let Some(times) = times {
+            ordered(&times, until)?;
+            plan.spacing = Spacing::Times(times);
+        }
+        let run = Run::new(&self.generated, &system, plan)?;
+        Ok(Motion::of(&run, &system))
+    }
+
+    /// Steps of a method, by its name or `auto`, with the parameters of a state.
+    ///
+    /// # Errors
+    /// Where the method does not fit.
+    pub fn stepped(&self, state: &State, method: &str) -> Result<Stepped, Failure> {
+        let instance = self.instance(state)?;
+        let structure = instance.structure(&self.generated.program);
+        let mut chosen = Chosen::new(method, &instance, &structure, 1)?;
+        if method == AUTO && matches!(chosen.stepper, Stepper::Closed { .. }) {
+            // It moves from the start alone.
+            chosen = Chosen::new("rkmk4", &instance, &structure, 1)?;
+        }
+        Ok(Stepped {
+            lengths: [state.x.len(), state.xi.len(), state.u.len()],
+            instance,
+            stepper: chosen.stepper,
+        })
+    }
+
+    /// The linearisation at a state, of all displacements and velocities where it is `full`.
+    ///
+    /// # Errors
+    /// Where the motion has no value there.
+    pub fn linearize(&self, state: &State, full: bool) -> Result<Linear, Failure> {
+        linearize::linear(self.linearized()?, state, self.source.shown(), full)
+    }
+
+    fn linearized(&self) -> Result<&Generated, Failure> {
+        if let Some(generated) = self.linearized.get() {
+            return Ok(generated);
+        }
+        let derived = self.source.derive_linearized()?;
+        Ok(self.linearized.get_or_init(|| derived))
+    }
+
+    /// Steps with slopes, with the parameters of a state, by one of the methods that are for any system.
+    ///
+    /// # Errors
+    /// Where there is no linearisation, or the method has no slopes.
+    pub fn varied(&self, state: &State, method: &str) -> Result<(Arc<Varied>, General), Failure> {
+        let mut general = General::ALL.iter();
+        let in_chart = |method: &&General| !matches!(method, General::Rk4 { .. });
+        let found = general.find(|one| one.name() == method).filter(in_chart);
+        let Some(found) = found else {
+            let names = General::ALL.iter().filter(in_chart).map(|one| one.name());
+            return Err(Failure::usage(format!(
+                "steps by `{method}` have no slopes here; those by {} have",
+                names.collect::<Vec<_>>().join(", ")
+            )));
+        };
+        let mut known = self.varied.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(varied) = known.as_ref().filter(|one| one.params() == state.params) {
+            return Ok((Arc::clone(varied), *found));
+        }
+        self.instance(state)?;
+        let varied = Arc::new(Varied::new(self.linearized()?, &state.params)?);
+        *known = Some(Arc::clone(&varied));
+        Ok((varied, *found))
+    }
+
+    /// What `hamel eval` prints of a state, with all of γ and Γ; where something has no value it is `null`.
+    ///
+    /// # Errors
+    /// Where functions in Rust have no numbers.
+    pub fn evaluate(&self, state: &State) -> Result<String, Failure> {
+        let shown = self.source.shown();
+        let (value, _) = numbers(&self.generated, state, shown, true)?;
+        Ok(value.pretty())
+    }
+
+    /// The base parameters.
+    ///
+    /// # Errors
+    /// Where there are none.
+    pub fn base_parameters(&self) -> Result<BaseParameters, Failure> {
+        base(&self.source)
+    }
+
+    /// Tables by their names, those that matter where none is named; every entry, where `all`.
+    ///
+    /// # Errors
+    /// Where a table is not known, or cannot be had.
+    pub fn tables(&self, of: &[String], format: Format, all: bool) -> Result<String, Failure> {
+        let named = of.iter().map(|name| Table::parse(name));
+        let named: Result<Vec<Table>, String> = named.collect();
+        let tables = named.and_then(|of| tables::tables(&self.generated, &of));
+        let tables = tables.map_err(Failure::usage)?;
+        Ok(crate::tables::written(&tables, format, all))
+    }
+
+    /// The names of the methods.
+    pub fn methods() -> Vec<&'static str> {
+        method::names()
+    }
+}
+
+impl Motion {
+    fn of(run: &Run, system: &Instance) -> Self {
+        let all = |of: fn(&Sample) -> &[f64]| -> Vec<f64> {
+            let entries = run.samples.iter().flat_map(of);
+            entries.copied().collect()
+        };
+        let parts = |of: fn(&Sample) -> &[f64], list: &[crate::mechanism::Output]| {
+            let mut first = 0;
+            let mut parts = Vec::new();
+            for output in list {
+                let place = first..first + output.shape.entries();
+                first = place.end;
+                let entries = run
+                    .samples
+                    .iter()
+                    .flat_map(|sample| &of(sample)[place.clone()]);
+                parts.push((
+                    output.name.clone(),
+                    output.shape,
+                    entries.copied().collect(),
+                ));
+            }
+            parts
+        };
+        Motion {
+            t: run.samples.iter().map(|sample| sample.t).collect(),
+            x: all(|sample| &sample.x),
+            xi: all(|sample| &sample.xi),
+            energy: run.samples.iter().map(|sample| sample.energy).collect(),
+            outputs: parts(|sample| &sample.outputs, system.outputs()),
+            invariants: parts(|sample| &sample.invariants, system.invariants()),
+            method: run.plan.method.name,
+            reason: run.plan.method.reason,
+            steps: run.steps,
+            evaluations: run.evaluations,
+            energy_deviation: run.monitor.relative_energy_deviation(),
+            constraint: run.monitor.constraint(),
+            failure: run.failure.clone(),
+        }
+    }
+}
+
+fn groups(groups: &[hamel_codegen::model::Group]) -> Vec<(String, usize, usize)> {
+    let parts = groups.iter();
+    parts
+        .map(|group| (group.name.clone(), group.offset, group.len))
+        .collect()
+}
+
+/// One function of a program, as machine code.
+fn compiled(generated: &Generated, name: &str) -> Result<Function, Failure> {
+    let program = &generated.program;
+    let Some(function) = program.function(name) else {
+        return Err(Failure::failed(format!(
+            "{} has no function `{name}`: the mass matrix has no inverse, or there is nothing that it could give",
+            program.name
+        )));
+    };
+    let compiled = crate::mechanism::compiled(program, &[name])?;
+    Ok(Function {
+        name: function.name.clone(),
+        docs: function.docs.join("\n"),
+        arguments: function.arguments.clone(),
+        shape: function.shape,
+        compiled,
+    })
+}
+
+/// Refuses times that do not increase, or are outside of a run.
+fn ordered(times: &[f64], until: f64) -> Result<(), Failure> {
+    let outside = times.iter().find(|time| !(0.0..=until).contains(*time));
+    let falling = times.windows(2).find(|pair| pair[0] >= pair[1]);
+    match (outside, falling) {
+        (Some(time), _) => Err(Failure::usage(format!(
+            "t = {time} is outside of the run, which is from 0 to {until}"
+        ))),
+        (None, Some(pair)) => Err(Failure::usage(format!(
+            "times have to increase: {} is not behind {}",
+            pair[1], pair[0]
+        ))),
+        (None, None) if times.is_empty() => Err(Failure::usage("there are no times for samples")),
+        (None, None) => Ok(()),
+    }
+}

@@ -1,0 +1,530 @@
+"""Systems, their functions, runs and linearisations."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._hamel import Function, HamelError, Session
+
+Array = NDArray[np.float64]
+Inputs = Union[
+    Mapping[str, Union[str, ArrayLike]],
+    Callable[[float, Array, Array], ArrayLike],
+    "str | os.PathLike[str]",
+    None,
+]
+
+
+class RunError(HamelError):
+    """A run that ended early; `run` has what there was before."""
+
+    def __init__(self, why: str, run: Run) -> None:
+        super().__init__(why)
+        self.run = run
+
+
+@dataclass(frozen=True)
+class State:
+    """Coordinates x, velocities xi with the states of first order behind them, inputs u and parameters."""
+
+    x: Array
+    xi: Array
+    u: Array
+    parameters: Array
+
+    def _numbers(self) -> tuple[Array, Array, Array, Array]:
+        return (self.x, self.xi, self.u, self.parameters)
+
+
+class Names(Sequence[str]):
+    """Names of the entries of an array; `names.slice("w")` are the places of a group of them."""
+
+    def __init__(self, entries: list[str], groups: list[tuple[str, int, int]]) -> None:
+        self._entries = tuple(entries)
+        self._groups = {name: slice(first, first + count) for name, first, count in groups}
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._entries[place]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __repr__(self) -> str:
+        return repr(list(self._entries))
+
+    @property
+    def groups(self) -> dict[str, slice]:
+        """Each name of the description, with the places of its entries."""
+        return dict(self._groups)
+
+    def slice(self, name: str) -> slice:
+        """The places of the entries of a name."""
+        try:
+            return self._groups[name]
+        except KeyError:
+            raise KeyError(f"no `{name}` here: there are {', '.join(self._groups)}") from None
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run: arrays with a row for each sample."""
+
+    t: Array
+    x: Array
+    xi: Array
+    energy: Array
+    outputs: dict[str, Array]
+    invariants: dict[str, Array]
+    method: str
+    #: Why the method was taken, where none was asked for.
+    reason: str | None
+    steps: int
+    evaluations: int
+    #: The largest change of the energy, relative.
+    energy_deviation: float
+    #: The largest |phi(x)| on the way.
+    constraint: float
+    #: Why the run ended early.
+    failure: str | None
+    coordinates: Names = field(repr=False)
+    velocities: Names = field(repr=False)
+
+    def __getitem__(self, name: str) -> Array:
+        """Coordinates, velocities or an output by the name in the description."""
+        if name in self.coordinates.groups:
+            part = self.x[:, self.coordinates.groups[name]]
+        elif name in self.velocities.groups:
+            part = self.xi[:, self.velocities.groups[name]]
+        elif name in self.outputs:
+            return self.outputs[name]
+        else:
+            raise KeyError(name)
+        return part[:, 0] if part.shape[1] == 1 else part
+
+
+@dataclass(frozen=True)
+class Linearization:
+    """d/dt (h, δξ) = A (h, δξ) + B δu and δy = C (h, δξ) + D δu: displacements h along the columns of A(x), changes δξ."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    states: list[str]
+    inputs: list[str]
+    outputs: list[str]
+    #: Of A, the fastest growing first.
+    eigenvalues: NDArray[np.complex128]
+    #: The accelerations at the state: where they are not zero, the matrices hold for that instant alone.
+    xi_dot: Array
+
+
+@dataclass(frozen=True)
+class StepSlopes:
+    """The state x, xi after a step, and (η, δξ)' = A (η, δξ) + B δu of displacements δx = A(x) η before and after it."""
+
+    x: Array
+    xi: Array
+    A: Array
+    B: Array
+
+
+@dataclass(frozen=True)
+class BaseParameters:
+    """What of all masses, centres of mass and inertias forces depend on: F = Y(x, xi, xi_dot) beta."""
+
+    #: The standard parameter that each of them is named by, and what belongs to it.
+    data: dict[str, Any]
+    text: str = field(repr=False)
+    latex: str = field(repr=False)
+    markdown: str = field(repr=False)
+
+    def __str__(self) -> str:
+        return self.text
+
+    def _repr_markdown_(self) -> str:
+        return self.markdown
+
+
+class Tables:
+    """Tables of coefficients: `str(tables)`, `tables.latex`, `tables.markdown` and `tables.data`."""
+
+    def __init__(self, session: Session, of: list[str], all: bool) -> None:
+        self._session, self._of, self._all = session, of, all
+        self._text = self._written("text")
+
+    def _written(self, form: str) -> str:
+        return self._session.tables(self._of, form, self._all)
+
+    def __str__(self) -> str:
+        return self._text
+
+    __repr__ = __str__
+
+    def _repr_markdown_(self) -> str:
+        return self.markdown
+
+    @property
+    def latex(self) -> str:
+        """For papers."""
+        return self._written("latex")
+
+    @property
+    def markdown(self) -> str:
+        """For documents and notebooks."""
+        return self._written("markdown")
+
+    @property
+    def data(self) -> Any:
+        """For programs."""
+        return json.loads(self._written("json"))
+
+
+def _plain(value: Any) -> Any:
+    """What JSON can say."""
+    if isinstance(value, Mapping):
+        return {str(name): _plain(part) for name, part in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    return value
+
+
+def _array(value: ArrayLike) -> Array:
+    return np.ascontiguousarray(value, dtype=np.float64)
+
+
+class System:
+    """A mechanical system: a description or a robot, derived and proved.
+
+    Every generated function is an attribute, and is called with arrays whose last axis has the entries::
+
+        system.accel(x, xi, u)            # (n,) for one state, (k, n) for k of them
+        system.mass_matrix(x)             # (n, n)
+        system.tool_jacobian(x)           # of a frame `tool`
+
+    `system.functions` lists them, with what they take and return in their docstrings.
+    """
+
+    def __init__(self, session: Session, source: tuple[str, str | None, dict[str, Any]], parameters: Array | None = None):
+        self._session = session
+        self._source = source
+        x, xi, u, defaults = session.start()
+        self._parameters = defaults if parameters is None else parameters
+        self._start = State(x, xi, u, self._parameters)
+        self._functions: dict[str, Function] = {}
+
+    # --- from where -------------------------------------------------------------------------------------------------
+
+    @classmethod
+    def _open(cls, path: str, text: str | None, options: dict[str, Any]) -> System:
+        session, said = Session.open(path, text, **options)
+        if said:
+            warnings.warn(said.rstrip().removeprefix("warning: "), stacklevel=3)
+        return cls(session, (path, text, options))
+
+    @classmethod
+    def from_file(
+        cls, path: str | os.PathLike[str], *, constants: Mapping[str, object] | None = None
+    ) -> System:
+        """The system that a file describes; `constants` are other values of its constants, such as the length of a chain."""
+        given = [(name, str(value)) for name, value in (constants or {}).items()]
+        return cls._open(os.fspath(path), None, {"constants": given})
+
+    @classmethod
+    def from_text(
+        cls, text: str, *, name: str = "<text>", constants: Mapping[str, object] | None = None
+    ) -> System:
+        """The system that a text describes; messages call it `name`."""
+        given = [(constant, str(value)) for constant, value in (constants or {}).items()]
+        return cls._open(name, text, {"constants": given})
+
+    @classmethod
+    def from_urdf(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        floating: bool = False,
+        lock: Mapping[str, float] | None = None,
+        parameters: bool = False,
+        mimic: Literal["follow", "free"] = "follow",
+        name: str | None = None,
+        rounding: float | None = None,
+    ) -> System:
+        """A robot in URDF.
+
+        `floating` gives it a base that moves freely, `lock` are joints that do not move with their angle or length,
+        `parameters` makes masses, centres of mass and inertias parameters; see `hamel import --help`.
+        """
+        options = {
+            "floating": floating,
+            "locks": [(joint, repr(value)) for joint, value in (lock or {}).items()],
+            "params": parameters,
+            "mimic": mimic,
+            "name": name,
+            "rounding": rounding,
+        }
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        return cls._open(os.fspath(path), text, options)
+
+    def with_parameters(self, **values: ArrayLike) -> System:
+        """The same system with other values of parameters, by their names."""
+        start = self.state(param=values)
+        system = System(self._session, self._source, start.parameters)
+        system._start = start
+        return system
+
+    def __reduce__(self) -> Any:
+        return (_restored, (self._source, self._parameters, self._start))
+
+    # --- what there is ----------------------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """The name of the system."""
+        return self._session.name
+
+    @property
+    def text(self) -> str:
+        """The text of the description; of a robot, the one that it was made into."""
+        return self._session.text
+
+    @property
+    def coordinates(self) -> Names:
+        """The entries of x."""
+        return Names(*self._session.coordinates())
+
+    @property
+    def velocities(self) -> Names:
+        """The entries of xi, and of the states of first order behind them."""
+        return Names(*self._session.velocities())
+
+    @property
+    def inputs(self) -> Names:
+        """The entries of u."""
+        return Names(*self._session.inputs())
+
+    @property
+    def parameters(self) -> Names:
+        """The entries of the parameters, whose values are `parameter_values`."""
+        return Names(*self._session.parameters())
+
+    @property
+    def parameter_values(self) -> Array:
+        """The values of the parameters."""
+        return self._parameters.copy()
+
+    @property
+    def outputs(self) -> list[str]:
+        """The outputs of the description."""
+        return self._session.outputs()
+
+    @property
+    def joints(self) -> dict[str, slice]:
+        """The joints, by the names that they have in a robot's file, with the places of their velocities in xi."""
+        return {name: slice(first, first + count) for name, first, count in self._session.joints()}
+
+    @property
+    def frames(self) -> list[str]:
+        """The frames of the description: `tool` has the functions `tool_pose`, `tool_twist`, `tool_jacobian` and others."""
+        return self._session.frames()
+
+    @property
+    def functions(self) -> list[str]:
+        """The names of all functions."""
+        return self._session.functions()
+
+    def function(self, name: str) -> Function:
+        """A function by its name; it is compiled when it is first asked for."""
+        found = self._functions.get(name)
+        if found is None:
+            found = self._functions[name] = self._session.function(name, self._parameters)
+        return found
+
+    def __getattr__(self, name: str) -> Function:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name in self._functions:
+            return self._functions[name]
+        if name not in self._session.functions():
+            raise AttributeError(f"{self._session.name} has no function `{name}`; `functions` lists them")
+        return self.function(name)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self._session.functions()})
+
+    def __repr__(self) -> str:
+        n, nu, m = len(self.velocities), len(self.coordinates), len(self.inputs)
+        return f"<System {self.name}: {nu} coordinates, {n} velocities, {m} inputs>"
+
+    # --- states -----------------------------------------------------------------------------------------------------
+
+    def start(self) -> State:
+        """The start of the description, with zero inputs."""
+        return self._start
+
+    def state(self, **parts: Mapping[str, Any]) -> State:
+        """A state by names: `system.state(coord={"q": 0.3}, velocity={"q_dot": 1.0}, input={"F": 2.0})`.
+
+        A robot's is given by its joints: `robot.state(configuration={"elbow": 0.3}, velocity={"elbow": 1.0})`. What is not
+        given is as at the start, and follows what is given where loops or other constraints ask for it.
+        """
+        return State(*self._session.state(self._parameters, json.dumps(_plain(parts))))
+
+    def _at(self, at: State | Mapping[str, Any] | None) -> tuple[Array, Array, Array, Array]:
+        if at is None:
+            at = self._start
+        elif isinstance(at, Mapping):
+            at = self.state(**at)
+        return tuple(map(_array, at._numbers()))  # type: ignore[return-value]
+
+    # --- what is asked ----------------------------------------------------------------------------------------------
+
+    def evaluate(self, at: State | Mapping[str, Any] | None = None) -> dict[str, Any]:
+        """Numbers of everything at a state, as `hamel eval` prints them: A, Y, gamma, M, Gamma, forces, energies."""
+        values: dict[str, Any] = json.loads(self._session.evaluate(self._at(at)))
+        return {name: _numeric(value) for name, value in values.items()}
+
+    def tables(self, *of: str, all: bool = False) -> Tables:
+        """Tables by their names, such as `gamma`, `M` and `Gamma`; those that matter where none is named."""
+        return Tables(self._session, list(of), all)
+
+    def simulate(
+        self,
+        until: float,
+        *,
+        at: State | Mapping[str, Any] | None = None,
+        method: str = "auto",
+        step: float | None = None,
+        tol: float | None = None,
+        rate: float | None = None,
+        every: int | None = None,
+        spacing: float | None = None,
+        times: ArrayLike | None = None,
+        inputs: Inputs = None,
+        hold: bool = False,
+    ) -> Run:
+        """A run from a state, by default the start.
+
+        Parameters
+        ----------
+        until : length of the run.
+        method : one of `hamel simulate --help`; `"auto"` takes what fits the system.
+        step : length of a step; `tol`: the error that a step may make, where steps are chosen by it.
+        rate : the rate at which the method `rk4` leads back to the constraint.
+        every : a sample after so many steps; `spacing`: at multiples of this time; `times`: at these times.
+        inputs : `{"F": 2.0, "tau": "-k * q"}` with numbers, or expressions of `t`, parameters, coordinates and velocities; or
+            a function of (t, x, xi) that returns u; or a file of CSV, whose values `hold` until the next row.
+
+        Raises RunError where a run ends early, with what there was until then.
+        """
+        state = self._at(at)
+        options: dict[str, Any] = {
+            "until": float(until),
+            "method": method,
+            "step": step,
+            "tol": tol,
+            "rate": rate,
+            "every": every,
+            "spacing": spacing,
+            "times": None if times is None else _array(times).tolist(),
+        }
+        if callable(inputs):
+            options["law"] = inputs
+        elif isinstance(inputs, Mapping):
+            fixed, expressions = state[2].copy(), []
+            names = self.inputs
+            for name, value in inputs.items():
+                if isinstance(value, str):
+                    expressions.append(f"{name} = {value}")
+                elif name in names.groups:
+                    fixed[names.groups[name]] = value
+                elif name in names:
+                    fixed[names.index(name)] = value
+                else:
+                    raise HamelError(f"{self.name} has no input `{name}`: there are {', '.join(names)}")
+            state = (state[0], state[1], fixed, state[3])
+            options["expressions"] = expressions
+        elif inputs is not None:
+            options["file"] = os.fspath(inputs)
+            options["hold"] = True if hold else None
+        found = self._session.simulate(state, options)
+        run = Run(**found, coordinates=self.coordinates, velocities=self.velocities)
+        if run.failure is not None:
+            raise RunError(run.failure, run)
+        return run
+
+    def step(
+        self,
+        x: ArrayLike,
+        xi: ArrayLike,
+        u: ArrayLike | None = None,
+        *,
+        h: float,
+        method: str = "auto",
+    ) -> tuple[Array, Array]:
+        """x and xi after a step of length h with constant inputs, of one state or of many along the first axes."""
+        state = self._at(None)
+        held = state[2] if u is None else u
+        return self._session.step(state, x, xi, held, h, method)
+
+    def step_slopes(
+        self,
+        at: State | Mapping[str, Any] | None = None,
+        *,
+        h: float,
+        method: str = "rkmk4",
+    ) -> StepSlopes:
+        """A step of length h from a state with constant inputs, and its slopes [A B]: rows and columns as in `linearize`.
+
+        They are those of the step itself, to rounding, not of the motion; with `full` displacements where constraints act.
+        """
+        state = self._at(at)
+        x, xi, slopes = self._session.step_slopes(state, h, method)
+        rows = slopes.shape[0]
+        return StepSlopes(x, xi, slopes[:, :rows], slopes[:, rows:])
+
+    def linearize(self, at: State | Mapping[str, Any] | None = None, *, full: bool = False) -> Linearization:
+        """The motion near a state. Constraints leave some displacements and velocities; `full` has all of them."""
+        return Linearization(**self._session.linearize(self._at(at), full))
+
+    def base_parameters(self) -> BaseParameters:
+        """The base parameters, those that the columns of `regressor` belong to."""
+        found = self._session.base_parameters()
+        return BaseParameters(json.loads(found["json"]), found["text"], found["latex"], found["markdown"])
+
+
+def _numeric(value: Any) -> Any:
+    """Lists of numbers as arrays, without a value as NaN."""
+    if isinstance(value, dict):
+        return {name: _numeric(part) for name, part in value.items()}
+    if isinstance(value, list) and not _has_text(value):
+        return np.array(value, dtype=np.float64)
+    return value
+
+
+def _has_text(value: Any) -> bool:
+    if isinstance(value, list):
+        return any(_has_text(part) for part in value)
+    return isinstance(value, str | dict)
+
+
+def _restored(source: tuple[str, str | None, dict[str, Any]], parameters: Array, start: State) -> System:
+    path, text, options = source
+    session, _ = Session.open(path, text, **options)
+    system = System(session, source, parameters)
+    system._start = start
+    return system

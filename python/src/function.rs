@@ -1,0 +1,367 @@
+//! Generated functions over arrays: the last axis has the entries of an argument, those before it are looped over.
+
+use crate::failure::{SingularError, raised};
+use hamel_cli::{Function as Compiled, Session};
+use hamel_codegen::program::{Argument, Cause, Shape};
+use hamel_native::{ARGUMENTS, Constants};
+use numpy::ndarray::{ArrayViewD, Axis, IxDyn};
+use numpy::{AllowTypeChange, PyArray1, PyArrayLikeDyn, PyArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::sync::Arc;
+
+// Its documentation in Python is that of the function.
+#[allow(missing_docs)]
+#[pyclass(frozen, module = "hamel")]
+pub struct Function {
+    session: Arc<Session>,
+    compiled: Compiled,
+    /// Parameters, and what depends on them alone; or why there is nothing.
+    constants: Result<Constants, Cause>,
+}
+
+/// The name that an argument has in Python.
+fn name(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Coordinates => "x",
+        Argument::Velocities => "xi",
+        Argument::Accelerations => "xi_dot",
+        Argument::Momenta => "p",
+        Argument::Inputs => "u",
+    }
+}
+
+/// The lengths of the axes of a result.
+pub fn axes(shape: Shape) -> Vec<usize> {
+    match shape {
+        Shape::Scalar => Vec::new(),
+        Shape::Vector(n) => vec![n],
+        Shape::Matrix(rows, columns) => vec![rows, columns],
+    }
+}
+
+/// Numbers as they were given: an array, or what NumPy makes one of.
+pub type Given<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
+
+/// An array whose last axis has the entries: a number alone is a list of one.
+pub fn entries_last(array: ArrayViewD<'_, f64>) -> ArrayViewD<'_, f64> {
+    match array.ndim() {
+        0 => array.insert_axis(Axis(0)),
+        _ => array,
+    }
+}
+
+/// An array over the axes that are looped over.
+pub struct Rows<'a> {
+    array: ArrayViewD<'a, f64>,
+    /// Room for entries that are not one behind the other.
+    room: Vec<f64>,
+}
+
+impl<'a> Rows<'a> {
+    /// An array, repeated along axes that it does not have.
+    pub fn new(array: &'a ArrayViewD<'_, f64>, axes: &[usize]) -> PyResult<Self> {
+        let last = array.shape().last().copied().unwrap_or(1);
+        let shape = [axes, &[last]].concat();
+        let array = array.broadcast(IxDyn(&shape));
+        let array = array.ok_or_else(|| PyValueError::new_err("arrays do not fit together"))?;
+        Ok(Rows {
+            array,
+            room: Vec::new(),
+        })
+    }
+
+    /// The entries at one place.
+    pub fn at(&mut self, place: &[usize]) -> &[f64] {
+        let mut row = self.array.clone();
+        for &index in place {
+            row.index_axis_inplace(Axis(0), index);
+        }
+        match row.to_slice() {
+            Some(slice) => slice,
+            None => {
+                self.room.clear();
+                self.room.extend(row.iter());
+                &self.room
+            }
+        }
+    }
+}
+
+/// The axes before the last of all arrays, which are repeated where they have the length 1.
+pub fn common<'a>(shapes: impl Iterator<Item = &'a [usize]>) -> PyResult<Vec<usize>> {
+    let mut all: Vec<usize> = Vec::new();
+    for shape in shapes {
+        let own = shape.split_last().map_or(&[][..], |(_, own)| own);
+        while all.len() < own.len() {
+            all.insert(0, 1);
+        }
+        let shift = all.len() - own.len();
+        for (length, own) in all.iter_mut().skip(shift).zip(own) {
+            match (*length, *own) {
+                (_, 1) => {}
+                (1, own) => *length = own,
+                (length, own) if length == own => {}
+                (length, own) => {
+                    return Err(PyValueError::new_err(format!(
+                        "arrays of {length} and of {own} states cannot be taken together"
+                    )));
+                }
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The place behind a place, in the order of rows.
+pub fn next(place: &mut [usize], axes: &[usize]) {
+    for (index, length) in place.iter_mut().zip(axes).rev() {
+        *index += 1;
+        if *index < *length {
+            return;
+        }
+        *index = 0;
+    }
+}
+
+impl Function {
+    /// A function by its name, with these parameters.
+    pub fn new(session: &Arc<Session>, name: &str, params: &[f64]) -> PyResult<Self> {
+        let compiled = session.function(name).map_err(raised)?;
+        Ok(Function {
+            constants: compiled.constants(params),
+            session: Arc::clone(session),
+            compiled,
+        })
+    }
+
+    /// The result at one place; behind the arguments that are taken may be parameters.
+    fn row(
+        &self,
+        taken: &[Argument],
+        rows: &mut [Rows<'_>],
+        place: &[usize],
+        out: &mut [f64],
+    ) -> Result<(), Cause> {
+        let (own, params) = rows.split_at_mut(taken.len());
+        let mut arguments: [&[f64]; 5] = [&[]; 5];
+        for (argument, rows) in taken.iter().zip(own) {
+            let slots = ARGUMENTS.iter().zip(&mut arguments);
+            let slot = slots.into_iter().find(|(of, _)| *of == argument);
+            if let Some((_, slot)) = slot {
+                *slot = rows.at(place);
+            }
+        }
+        match params.first_mut() {
+            Some(params) => {
+                let constants = self.compiled.constants(params.at(place))?;
+                self.compiled.call(&constants, arguments, out)
+            }
+            None => {
+                let constants = self.constants.as_ref().map_err(|cause| *cause)?;
+                self.compiled.call(constants, arguments, out)
+            }
+        }
+    }
+
+    fn singular(&self, cause: Cause, place: &[usize]) -> PyErr {
+        let why = self.session.meaning(cause);
+        SingularError::new_err(match place {
+            [] => why,
+            place => format!("{why}, at the index {place:?}"),
+        })
+    }
+
+    /// What was given for each of the arguments, by place or by name.
+    fn given<'py>(
+        &self,
+        args: &Bound<'py, PyTuple>,
+        kwargs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Vec<(Argument, Given<'py>)>> {
+        let own = &self.compiled.name;
+        let wanted = &self.compiled.arguments;
+        let signature = || {
+            let names: Vec<&str> = wanted.iter().map(|argument| name(*argument)).collect();
+            format!("{own}({})", names.join(", "))
+        };
+        if args.len() > wanted.len() {
+            let message = format!("{} was called with {} arrays", signature(), args.len());
+            return Err(PyTypeError::new_err(message));
+        }
+        for key in kwargs.into_iter().flat_map(|all| all.keys()) {
+            let key: String = key.extract()?;
+            let place = wanted.iter().position(|argument| name(*argument) == key);
+            if place.is_none_or(|place| place < args.len()) {
+                let message = match place {
+                    Some(_) => format!("{} has `{key}` twice", signature()),
+                    None => format!("{} takes no `{key}`", signature()),
+                };
+                return Err(PyTypeError::new_err(message));
+            }
+        }
+        let mut given = Vec::new();
+        for (place, &argument) in wanted.iter().enumerate() {
+            let length = self.compiled.length(argument);
+            let value = match (args.get_item(place), kwargs) {
+                (Ok(value), _) => Some(value),
+                (Err(_), Some(kwargs)) => kwargs.get_item(name(argument))?,
+                (Err(_), None) => None,
+            };
+            let array: Given<'py> = match value {
+                Some(value) => value.extract()?,
+                // There is nothing to say.
+                None if length == 0 => continue,
+                None => {
+                    let message = format!(
+                        "{} was called without `{}`, {length} numbers",
+                        signature(),
+                        name(argument)
+                    );
+                    return Err(PyTypeError::new_err(message));
+                }
+            };
+            let shape = array.as_array();
+            let last = shape.shape().last().copied();
+            // A number alone is a list of one.
+            if last != Some(length) && !(last.is_none() && length == 1) {
+                let message = format!(
+                    "`{}` of {} has {length} entries along its last axis, this array has the shape {:?}",
+                    name(argument),
+                    signature(),
+                    shape.shape()
+                );
+                return Err(PyValueError::new_err(message));
+            }
+            given.push((argument, array));
+        }
+        Ok(given)
+    }
+}
+
+#[pymethods]
+impl Function {
+    /// The name of the function.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.compiled.name
+    }
+
+    #[getter]
+    fn __name__(&self) -> &str {
+        &self.compiled.name
+    }
+
+    #[getter]
+    fn __doc__(&self) -> String {
+        let arguments = self.compiled.arguments.iter();
+        let arguments = arguments.map(|&argument| {
+            let length = self.compiled.length(argument);
+            format!("{}: (…, {length})", name(argument))
+        });
+        let arguments: Vec<String> = arguments.collect();
+        let axes: Vec<String> = axes(self.compiled.shape)
+            .iter()
+            .map(usize::to_string)
+            .collect();
+        format!(
+            "{}({}) -> ({})\n\n{}",
+            self.compiled.name,
+            arguments.join(", "),
+            [vec!["…".to_string()], axes].concat().join(", "),
+            self.compiled.docs
+        )
+    }
+
+    /// The names of its arguments, in order.
+    #[getter]
+    fn arguments(&self) -> Vec<&'static str> {
+        let arguments = self.compiled.arguments.iter();
+        arguments.map(|&argument| name(argument)).collect()
+    }
+
+    /// The shape of the result for one state.
+    #[getter]
+    fn shape(&self, py: Python<'_>) -> PyResult<Py<PyTuple>> {
+        Ok(PyTuple::new(py, axes(self.compiled.shape))?.unbind())
+    }
+
+    fn __repr__(&self) -> String {
+        let names = self.arguments().join(", ");
+        format!(
+            "<function {}({names}) of {}>",
+            self.compiled.name,
+            self.session.name()
+        )
+    }
+
+    /// The result for one state, or for all states that arrays have along their first axes.
+    #[pyo3(signature = (*args, parameters=None, singular="raise", **kwargs))]
+    fn __call__<'py>(
+        &self,
+        py: Python<'py>,
+        args: &Bound<'py, PyTuple>,
+        parameters: Option<Given<'py>>,
+        singular: &str,
+        kwargs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let raise = match singular {
+            "raise" => true,
+            "nan" => false,
+            other => {
+                let message = format!("`singular` is \"raise\" or \"nan\", not {other:?}");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        let given = self.given(args, kwargs)?;
+        let mut arrays: Vec<ArrayViewD<'_, f64>> = Vec::new();
+        for (_, array) in &given {
+            arrays.push(entries_last(array.as_array()));
+        }
+        if let Some(params) = &parameters {
+            let count = self.session.parameters().entries.len();
+            let array = entries_last(params.as_array());
+            if array.shape().last() != Some(&count) {
+                let message = format!(
+                    "parameters have {count} entries along their last axis, this array has the shape {:?}",
+                    array.shape()
+                );
+                return Err(PyValueError::new_err(message));
+            }
+            arrays.push(array);
+        }
+        let lead = common(arrays.iter().map(|array| array.shape()))?;
+        let mut rows: Vec<Rows<'_>> = Vec::new();
+        for array in &arrays {
+            rows.push(Rows::new(array, &lead)?);
+        }
+        let taken: Vec<Argument> = given.iter().map(|(argument, _)| *argument).collect();
+        let entries = self.compiled.shape.entries();
+        let states: usize = lead.iter().product();
+        let mut out = vec![f64::NAN; states * entries];
+        let failed = py.detach(|| {
+            let mut place = vec![0; lead.len()];
+            let mut results = out.chunks_mut(entries.max(1));
+            for _ in 0..states {
+                let result = results.next().unwrap_or_default();
+                if let Err(cause) = self.row(&taken, &mut rows, &place, result) {
+                    if raise {
+                        return Some((cause, place));
+                    }
+                    result.fill(f64::NAN);
+                }
+                next(&mut place, &lead);
+            }
+            None
+        });
+        if let Some((cause, place)) = failed {
+            return Err(self.singular(cause, &place));
+        }
+        let shape = [lead, axes(self.compiled.shape)].concat();
+        let array = PyArray1::from_vec(py, out).reshape(IxDyn(&shape))?;
+        match shape.is_empty() {
+            true => array.call_method0("item"),
+            false => Ok(array.into_any()),
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Inputs that a function in Python gives: u = f(t, x, ξ).
+
+use hamel_cli::{Control, Law};
+use numpy::{AllowTypeChange, PyArray1, PyArrayLike1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The first exception of a law.
+#[derive(Clone, Default)]
+pub struct Raised(Arc<Mutex<Option<PyErr>>>);
+
+impl Raised {
+    /// The exception, where there was one.
+    pub fn take(&self) -> Option<PyErr> {
+        let mut raised = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        raised.take()
+    }
+
+    fn is_set(&self) -> bool {
+        let raised = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        raised.is_some()
+    }
+
+    fn set(&self, error: PyErr) {
+        let mut raised = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        raised.get_or_insert(error);
+    }
+}
+
+/// A function in Python as a law. Where it raises an exception, inputs are NaN from then on, which ends the run, and the
+/// exception is kept.
+pub fn law(function: Py<PyAny>, raised: &Raised) -> Law {
+    let raised = raised.clone();
+    let control = move |t: f64, x: &[f64], xi: &[f64], u: &mut [f64]| {
+        let given = match raised.is_set() {
+            true => None,
+            false => Python::attach(|py| {
+                py.check_signals()
+                    .and_then(|()| called(py, &function, (t, x, xi), u.len()))
+                    .map_err(|error| raised.set(error))
+                    .ok()
+            }),
+        };
+        match given {
+            Some(given) => u.copy_from_slice(&given),
+            None => u.fill(f64::NAN),
+        }
+    };
+    let control: Arc<Control> = Arc::new(control);
+    Law(control)
+}
+
+fn called(
+    py: Python<'_>,
+    function: &Py<PyAny>,
+    (t, x, xi): (f64, &[f64], &[f64]),
+    length: usize,
+) -> PyResult<Vec<f64>> {
+    let x = PyArray1::from_slice(py, x);
+    let xi = PyArray1::from_slice(py, xi);
+    let given = function.bind(py).call1((t, x, xi))?;
+    // One input may be a number alone.
+    if let (1, Ok(number)) = (length, given.extract::<f64>()) {
+        return Ok(vec![number]);
+    }
+    let given: PyArrayLike1<'_, f64, AllowTypeChange> = given.extract()?;
+    let given: Vec<f64> = given.as_array().to_vec();
+    if given.len() != length {
+        return Err(PyValueError::new_err(format!(
+            "inputs are {length} numbers, the function has given {}",
+            given.len()
+        )));
+    }
+    Ok(given)
+}

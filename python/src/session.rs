@@ -1,0 +1,441 @@
+//! A description, and everything that is asked of it.
+
+use crate::failure::{HamelError, SingularError, raised};
+use crate::function::{Function, Given, Rows, axes, common, entries_last, next};
+use crate::law::{Raised, law};
+use hamel_cli::{Asked, Every, Format, Mimic, Names, RobotOptions, State, Stepping};
+use hamel_codegen::program::Shape;
+use numpy::ndarray::{ArrayViewD, IxDyn};
+use numpy::{Complex64, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Runs a command of the command line, whose words begin with the name of the program; its exit status.
+#[pyfunction]
+pub fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    py.detach(|| hamel_cli::command(words))
+}
+
+/// Runs a command; what is wrong is raised.
+#[pyfunction]
+pub fn asked(py: Python<'_>, words: Vec<OsString>) -> PyResult<()> {
+    py.detach(|| hamel_cli::asked(words)).map_err(raised)
+}
+
+/// A description, derived.
+#[pyclass(frozen, module = "hamel._hamel")]
+pub struct Session(Arc<hamel_cli::Session>);
+
+/// Numbers of a state: x, ξ with z, u, parameters.
+type Numbers<'py> = (
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+);
+
+/// The same, to Python.
+type Arrays<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+);
+
+/// x, ξ and the slopes of a step.
+type Stepped<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArrayDyn<f64>>,
+);
+
+/// Every entry, and groups by name, place and number.
+type Named = (Vec<String>, Vec<(String, usize, usize)>);
+
+fn arrays<'py>(py: Python<'py>, state: &State) -> Arrays<'py> {
+    let array = |numbers: &[f64]| PyArray1::from_slice(py, numbers);
+    (
+        array(&state.x),
+        array(&state.xi),
+        array(&state.u),
+        array(&state.params),
+    )
+}
+
+fn named(names: Names) -> Named {
+    (names.entries, names.groups)
+}
+
+/// Rows as a matrix.
+fn matrix<'py>(
+    py: Python<'py>,
+    rows: &[Vec<f64>],
+    columns: usize,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let flat: Vec<f64> = rows.iter().flatten().copied().collect();
+    PyArray1::from_vec(py, flat).reshape(IxDyn(&[rows.len(), columns]))
+}
+
+impl Session {
+    /// A state of arrays of the right lengths.
+    fn of(&self, (x, xi, u, params): Numbers<'_>) -> PyResult<State> {
+        let start = self.0.start();
+        let list = |what: &str, array: PyReadonlyArray1<'_, f64>, like: &[f64]| {
+            let numbers = array.as_array().to_vec();
+            match numbers.len() == like.len() {
+                true => Ok(numbers),
+                false => Err(PyValueError::new_err(format!(
+                    "{what} has {} entries, {} of these were given",
+                    like.len(),
+                    numbers.len()
+                ))),
+            }
+        };
+        Ok(State {
+            x: list("x", x, &start.x)?,
+            xi: list("xi", xi, &start.xi)?,
+            u: list("u", u, &start.u)?,
+            params: list("the list of parameters", params, &start.params)?,
+        })
+    }
+}
+
+#[pymethods]
+impl Session {
+    /// Reads a file where `text` is none, else a text whose name `path` is; with the warnings.
+    #[staticmethod]
+    #[pyo3(signature = (path, text=None, *, constants=Vec::new(), floating=false, locks=Vec::new(), params=false, mimic=None, name=None, rounding=None))]
+    fn open(
+        py: Python<'_>,
+        path: PathBuf,
+        text: Option<String>,
+        constants: Vec<(String, String)>,
+        floating: bool,
+        locks: Vec<(String, String)>,
+        params: bool,
+        mimic: Option<&str>,
+        name: Option<String>,
+        rounding: Option<f64>,
+    ) -> PyResult<(Self, String)> {
+        let mimic = match mimic {
+            None => None,
+            Some("follow") => Some(Mimic::Follow),
+            Some("free") => Some(Mimic::Free),
+            Some(other) => {
+                let message = format!("`mimic` is \"follow\" or \"free\", not {other:?}");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        let options = RobotOptions {
+            floating,
+            locks,
+            params,
+            mimic,
+            name,
+            rounding,
+            constants,
+        };
+        let opened = py.detach(|| match text {
+            Some(text) => hamel_cli::Session::read(text, &path.to_string_lossy(), &options),
+            None => hamel_cli::Session::open(Path::new(&path), &options),
+        });
+        let (session, warnings) = opened.map_err(raised)?;
+        Ok((Session(Arc::new(session)), warnings))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        self.0.text()
+    }
+
+    fn coordinates(&self) -> Named {
+        named(self.0.coordinates())
+    }
+
+    fn velocities(&self) -> Named {
+        named(self.0.velocities())
+    }
+
+    fn inputs(&self) -> Named {
+        named(self.0.inputs())
+    }
+
+    fn parameters(&self) -> Named {
+        named(self.0.parameters())
+    }
+
+    fn outputs(&self) -> Vec<String> {
+        self.0.outputs()
+    }
+
+    fn joints(&self) -> Vec<(String, usize, usize)> {
+        self.0.joints()
+    }
+
+    fn frames(&self) -> Vec<String> {
+        self.0.frames()
+    }
+
+    fn functions(&self) -> Vec<String> {
+        self.0.functions()
+    }
+
+    /// x, ξ, u and parameters of the description.
+    fn start<'py>(&self, py: Python<'py>) -> Arrays<'py> {
+        arrays(py, &self.0.start())
+    }
+
+    /// The same with these parameters, changed by a JSON text.
+    fn state<'py>(
+        &self,
+        py: Python<'py>,
+        params: PyReadonlyArray1<'py, f64>,
+        json: &str,
+    ) -> PyResult<Arrays<'py>> {
+        let params = params.as_array().to_vec();
+        let state = self.0.state(&params, json, "state").map_err(raised)?;
+        Ok(arrays(py, &state))
+    }
+
+    /// A function, with these parameters.
+    fn function(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        params: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Function> {
+        let params = params.as_array().to_vec();
+        py.detach(|| Function::new(&self.0, name, &params))
+    }
+
+    fn tables(&self, of: Vec<String>, format: &str, all: bool) -> PyResult<String> {
+        let format = match format {
+            "text" => Format::Text,
+            "markdown" => Format::Markdown,
+            "latex" => Format::Latex,
+            "json" => Format::Json,
+            other => {
+                let message = format!("no format is called {other:?}");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        self.0.tables(&of, format, all).map_err(raised)
+    }
+
+    /// What `hamel eval` prints, as JSON.
+    fn evaluate(&self, py: Python<'_>, state: Numbers<'_>) -> PyResult<String> {
+        let state = self.of(state)?;
+        py.detach(|| self.0.evaluate(&state)).map_err(raised)
+    }
+
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+        state: Numbers<'py>,
+        options: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let state = self.of(state)?;
+        let get = |name: &str| -> PyResult<Option<Bound<'py, PyAny>>> {
+            Ok(options.get_item(name)?.filter(|value| !value.is_none()))
+        };
+        let number = |name: &str| -> PyResult<Option<f64>> {
+            get(name)?.map(|value| value.extract()).transpose()
+        };
+        let stepping = Stepping {
+            until: number("until")?.unwrap_or(f64::NAN),
+            step: number("step")?,
+            tol: number("tol")?,
+            lambda: number("rate")?,
+            method: match get("method")? {
+                Some(name) => name.extract()?,
+                None => "auto".into(),
+            },
+        };
+        let every = match get("every")? {
+            Some(steps) => Some(Every::Steps(steps.extract::<u64>()?.max(1))),
+            None => number("spacing")?.map(Every::Time),
+        };
+        let times: Option<Vec<f64>> = get("times")?.map(|times| times.extract()).transpose()?;
+        let asked = Asked {
+            inputs: get("file")?.map(|path| path.extract()).transpose()?,
+            hold: get("hold")?.is_some(),
+            input: match get("expressions")? {
+                Some(all) => all.extract()?,
+                None => Vec::new(),
+            },
+        };
+        let thrown = Raised::default();
+        let own = get("law")?.map(|function| law(function.unbind(), &thrown));
+        let run = py.detach(|| {
+            self.0
+                .simulate(&state, &stepping, (every, times), (&asked, own))
+        });
+        if let Some(error) = thrown.take() {
+            return Err(error);
+        }
+        let run = run.map_err(raised)?;
+        let all = PyDict::new(py);
+        let samples = run.t.len();
+        let list = |numbers: Vec<f64>, own: &[usize]| {
+            let shape = [&[samples], own].concat();
+            PyArray1::from_vec(py, numbers).reshape(IxDyn(&shape))
+        };
+        let parts = |parts: Vec<(String, Shape, Vec<f64>)>| -> PyResult<Bound<'py, PyDict>> {
+            let all = PyDict::new(py);
+            for (name, shape, numbers) in parts {
+                all.set_item(name, list(numbers, &axes(shape))?)?;
+            }
+            Ok(all)
+        };
+        all.set_item("t", list(run.t, &[])?)?;
+        all.set_item("x", list(run.x, &[state.x.len()])?)?;
+        all.set_item("xi", list(run.xi, &[state.xi.len()])?)?;
+        all.set_item("energy", list(run.energy, &[])?)?;
+        all.set_item("outputs", parts(run.outputs)?)?;
+        all.set_item("invariants", parts(run.invariants)?)?;
+        all.set_item("method", run.method)?;
+        all.set_item("reason", run.reason)?;
+        all.set_item("steps", run.steps)?;
+        all.set_item("evaluations", run.evaluations)?;
+        all.set_item("energy_deviation", run.energy_deviation)?;
+        all.set_item("constraint", run.constraint)?;
+        all.set_item("failure", run.failure)?;
+        Ok(all)
+    }
+
+    /// x and ξ after a step of each of many states.
+    #[pyo3(signature = (state, x, xi, u, h, method))]
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        state: Numbers<'py>,
+        x: Given<'py>,
+        xi: Given<'py>,
+        u: Given<'py>,
+        h: f64,
+        method: &str,
+    ) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>)> {
+        let state = self.of(state)?;
+        let lengths = [state.x.len(), state.xi.len(), state.u.len()];
+        let given = [("x", &x), ("xi", &xi), ("u", &u)];
+        let mut arrays: Vec<ArrayViewD<'_, f64>> = Vec::new();
+        for ((name, array), length) in given.into_iter().zip(lengths) {
+            let array = entries_last(array.as_array());
+            if array.shape().last() != Some(&length) {
+                return Err(PyValueError::new_err(format!(
+                    "`{name}` has {length} entries along its last axis, this array has the shape {:?}",
+                    array.shape()
+                )));
+            }
+            arrays.push(array);
+        }
+        let lead = common(arrays.iter().map(|array| array.shape()))?;
+        let mut rows: Vec<Rows<'_>> = Vec::new();
+        for array in &arrays {
+            rows.push(Rows::new(array, &lead)?);
+        }
+        let [x_rows, xi_rows, u_rows] = rows.as_mut_slice() else {
+            return Err(PyTypeError::new_err("x, xi and u are needed"));
+        };
+        let states: usize = lead.iter().product();
+        let (mut all_x, mut all_xi) = (Vec::new(), Vec::new());
+        let stepped = py.detach(|| -> PyResult<()> {
+            let stepped = self.0.stepped(&state, method).map_err(raised)?;
+            let mut place = vec![0; lead.len()];
+            for _ in 0..states {
+                let mut x = x_rows.at(&place).to_vec();
+                let mut xi = xi_rows.at(&place).to_vec();
+                let ended = stepped.step(&mut x, &mut xi, u_rows.at(&place), h);
+                ended.map_err(|why| match place.as_slice() {
+                    [] => SingularError::new_err(why),
+                    place => SingularError::new_err(format!("{why}, at the index {place:?}")),
+                })?;
+                all_x.append(&mut x);
+                all_xi.append(&mut xi);
+                next(&mut place, &lead);
+            }
+            Ok(())
+        });
+        stepped?;
+        let array = |numbers: Vec<f64>, length: usize| {
+            let shape = [&lead[..], &[length]].concat();
+            PyArray1::from_vec(py, numbers).reshape(IxDyn(&shape))
+        };
+        Ok((array(all_x, lengths[0])?, array(all_xi, lengths[1])?))
+    }
+
+    /// x and ξ after a step of one state, and the slopes of the step.
+    #[pyo3(signature = (state, h, method))]
+    fn step_slopes<'py>(
+        &self,
+        py: Python<'py>,
+        state: Numbers<'py>,
+        h: f64,
+        method: &str,
+    ) -> PyResult<Stepped<'py>> {
+        let state = self.of(state)?;
+        let stepped = py.detach(|| {
+            let (varied, method) = self.0.varied(&state, method).map_err(raised)?;
+            let end = varied.step(&method, [&state.x, &state.xi, &state.u], h);
+            end.map_err(|error| SingularError::new_err(error.to_string()))
+        });
+        let (x, xi, slopes) = stepped?;
+        let columns = slopes.first().map_or(0, Vec::len);
+        Ok((
+            PyArray1::from_vec(py, x),
+            PyArray1::from_vec(py, xi),
+            matrix(py, &slopes, columns)?,
+        ))
+    }
+
+    fn linearize<'py>(
+        &self,
+        py: Python<'py>,
+        state: Numbers<'py>,
+        full: bool,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let state = self.of(state)?;
+        let linear = py
+            .detach(|| self.0.linearize(&state, full))
+            .map_err(raised)?;
+        let Some(eigenvalues) = &linear.eigenvalues else {
+            return Err(HamelError::new_err(
+                "the eigenvalues were not found: the QR algorithm does not converge for this A",
+            ));
+        };
+        let eigenvalues = eigenvalues.iter().map(|&(re, im)| Complex64::new(re, im));
+        let all = PyDict::new(py);
+        let (n, m) = (linear.states.len(), linear.inputs.len());
+        all.set_item("A", matrix(py, &linear.a, n)?)?;
+        all.set_item("B", matrix(py, &linear.b, m)?)?;
+        all.set_item("C", matrix(py, &linear.c, n)?)?;
+        all.set_item("D", matrix(py, &linear.d, m)?)?;
+        all.set_item("states", linear.states)?;
+        all.set_item("inputs", linear.inputs)?;
+        all.set_item("outputs", linear.outputs)?;
+        all.set_item("eigenvalues", PyArray1::from_iter(py, eigenvalues))?;
+        all.set_item("xi_dot", PyArray1::from_vec(py, linear.xi_dot))?;
+        Ok(all)
+    }
+
+    /// Base parameters: what is kept, values, and the table in three forms.
+    fn base_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        use hamel_codegen::tables::regressor::{json, latex, markdown, text};
+        let base = py.detach(|| self.0.base_parameters()).map_err(raised)?;
+        let all = PyDict::new(py);
+        all.set_item("json", json(&base).to_string())?;
+        all.set_item("text", text(&base))?;
+        all.set_item("latex", latex(&base))?;
+        all.set_item("markdown", markdown(&base))?;
+        Ok(all)
+    }
+}

@@ -1,0 +1,26 @@
+"""Where descriptions and robots are."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def models() -> Path:
+    return ROOT / "tests" / "models"
+
+
+@pytest.fixture
+def reference() -> Path:
+    return ROOT / "tests" / "reference"
+
+
+@pytest.fixture
+def robots() -> Path:
+    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    found = list(target.glob("robots/**/example-robot-data/robots"))
+    assert found, "run tests/robots/install.sh"
+    return found[0]
