@@ -31,7 +31,8 @@ export PYTHONPATH="$package" MYPYPATH="$package" MPLBACKEND=agg
 "$environment/bin/python" -m pytest --quiet -p no:cacheprovider python/tests
 scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
-for example in examples/python/*.py; do
-    "$environment/bin/python" "$example" "$scratch"
-done
+"$environment/bin/python" examples/python/balance.py "$scratch"
+# With fewer runs than in the pictures.
+"$environment/bin/python" examples/python/kapitza.py "$scratch" --points 16
+"$environment/bin/python" examples/python/basins.py "$scratch" --points 40
 "$environment/bin/python" tests/python/notebooks.py examples/python/*.ipynb
