@@ -14,14 +14,17 @@
 //! | `lower` | a tape as Cranelift's intermediate code |
 //! | `code` | memory that can be executed, and calls: all that is `unsafe` |
 //! | `evaluate` | tapes step by step |
+//! | `traced` | algorithms in Rust as tapes |
 
 mod code;
 mod evaluate;
 mod lower;
 mod spill;
+mod traced;
 
 pub use evaluate::{evaluate, evaluate_in};
 pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
+pub use traced::{Traced, inlined, traced};
 
 use code::{Code, Ended, Fixed};
 use hamel_codegen::program::{Cause, Function, Program};

@@ -43,6 +43,11 @@ pub struct Place {
 }
 
 impl Place {
+    /// Its place among the tapes.
+    pub fn index(self) -> usize {
+        self.index
+    }
+
     /// How many numbers its result has.
     pub fn length(self) -> usize {
         self.length
@@ -56,6 +61,14 @@ impl Functions {
             constants: compiled.constants(params),
             compiled: compiled.clone(),
         }
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &[f64] {
+        let known = self.constants.known();
+        known
+            .get(..self.compiled.tapes().parameters)
+            .unwrap_or(known)
     }
 
     /// Whether a mass matrix that is constant in time is not positive definite with these parameters.

@@ -4,6 +4,7 @@ mod functions;
 mod momenta;
 mod numbers;
 mod varied;
+mod whole;
 
 use crate::failure::Failure;
 use crate::simulate::inputs::Inputs;
@@ -23,10 +24,13 @@ pub use numbers::Numbers;
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 pub use varied::{End, Varied};
+pub use whole::Whole;
 
 /// What runs of a description have in common, whatever their parameters: its functions, compiled.
 pub struct Mechanism {
     compiled: Compiled,
+    /// Steps of methods that were compiled.
+    steps: whole::Steps,
     blocks: Vec<Block>,
     chart: usize,
     rate: Place,
@@ -110,6 +114,7 @@ impl Mechanism {
             names.iter().map(output).collect()
         };
         Ok(Mechanism {
+            steps: whole::Steps::default(),
             blocks: program.blocks.iter().copied().map(block).collect(),
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
             rate: function("rate")?,

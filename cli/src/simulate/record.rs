@@ -2,7 +2,7 @@
 
 use super::balance::Balance;
 use crate::failure::Failure;
-use crate::mechanism::{Instance, Numbers, Output};
+use crate::mechanism::{Instance, Numbers, Output, Whole};
 use crate::method::{Chosen, Stepper};
 use crate::names;
 use crate::number::short;
@@ -406,7 +406,6 @@ pub fn advance(
     let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
-        let method = &plan.method.stepper;
         let times = match &plan.spacing {
             Spacing::Times(times) => times.as_slice(),
             _ => &[],
@@ -426,7 +425,8 @@ pub fn advance(
                         observe(state, Place::End);
                     }
                 };
-                integrate(system, method, state, plan.step, end, &inputs, observe)?;
+                let whole = Whole::new(system, &plan.method.stepper, plan.step, end - from);
+                integrate(system, &whole, state, plan.step, end, &inputs, observe)?;
             }
             if times.contains(&end) {
                 observe(state, Place::Sample);

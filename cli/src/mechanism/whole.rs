@@ -1,0 +1,419 @@
+//! Whole steps as machine code: a method is run once on numbers that write down what it does with them.
+
+use super::{Instance, Mechanism};
+use crate::method::Stepper;
+use hamel::methods::{General, Method};
+use hamel::{Block, Singular, State, StepError, System};
+use hamel_codegen::program::Argument;
+use hamel_codegen::program::tape::{Source, Tape};
+use hamel_native::{Compiled, Constants, Tapes, Traced, inlined, traced};
+use std::cell::{Cell, OnceCell, RefCell};
+use std::sync::{Mutex, PoisonError};
+
+/// Steps of so many statements and more are not worth a compilation.
+const MOST: usize = 20_000;
+/// Nor are fewer steps of one length.
+const FEWEST: f64 = 1000.0;
+/// Lengths of steps that are kept.
+const KEPT: usize = 64;
+
+/// A method's step of one length as machine code; none where there can be none.
+#[derive(Clone)]
+pub struct Code {
+    method: String,
+    h: f64,
+    compiled: Option<Compiled>,
+    /// How often ξ̇ is evaluated in it.
+    evaluations: u64,
+}
+
+/// A method whose steps are machine code where all of them are of one length and inputs are constant.
+pub struct Whole<'a> {
+    stepper: &'a Stepper,
+    /// The code for steps of the length of the first.
+    code: OnceCell<Option<(Compiled, Constants, f64, u64)>>,
+    /// Room for x and ξ at its end.
+    end: RefCell<Vec<f64>>,
+    worthwhile: bool,
+}
+
+impl<'a> Whole<'a> {
+    /// A method for steps of this length over a time.
+    pub fn new(system: &Instance, stepper: &'a Stepper, length: f64, time: f64) -> Self {
+        Whole {
+            stepper,
+            code: OnceCell::new(),
+            end: RefCell::default(),
+            worthwhile: time / length >= FEWEST && system.given.is_none(),
+        }
+    }
+
+    fn code(&self, system: &Instance, h: f64) -> Option<&(Compiled, Constants, f64, u64)> {
+        if !self.worthwhile {
+            return None;
+        }
+        let code = self.code.get_or_init(|| {
+            let Stepper::General(method) = self.stepper else {
+                return None;
+            };
+            let code = system.of.step(method, h);
+            let compiled = code.compiled?;
+            let constants = compiled.constants(system.functions.params());
+            Some((compiled, constants, h, code.evaluations))
+        });
+        code.as_ref().filter(|(_, _, length, _)| *length == h)
+    }
+}
+
+impl Method<Instance> for Whole<'_> {
+    fn order(&self) -> u32 {
+        Method::<Instance>::order(self.stepper)
+    }
+
+    fn step<U>(
+        &self,
+        system: &Instance,
+        state: &State<Instance>,
+        h: f64,
+        inputs: &U,
+    ) -> Result<State<Instance>, StepError>
+    where
+        U: Fn(
+            f64,
+            &<Instance as System>::Coordinates,
+            &<Instance as System>::Velocities,
+        ) -> <Instance as System>::Inputs,
+    {
+        self.follow(system, state, h, inputs, &mut None)
+    }
+
+    fn follow<U>(
+        &self,
+        system: &Instance,
+        state: &State<Instance>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<<Instance as System>::Chart>,
+    ) -> Result<State<Instance>, StepError>
+    where
+        U: Fn(
+            f64,
+            &<Instance as System>::Coordinates,
+            &<Instance as System>::Velocities,
+        ) -> <Instance as System>::Inputs,
+    {
+        if let Some((compiled, constants, _, evaluations)) = self.code(system, h) {
+            let u = inputs(state.t, &state.x, &state.xi);
+            let arguments: [&[f64]; 5] = [&state.x, &state.xi, &u, &[], &[]];
+            let mut end = self.end.borrow_mut();
+            end.resize(state.x.len() + state.xi.len(), f64::NAN);
+            let ended = compiled.call(0, constants, arguments, &mut end);
+            // Where it has no end, the method says why.
+            if ended.is_ok() && end.iter().all(|number| number.is_finite()) {
+                let evaluated = system.evaluations.get() + evaluations;
+                system.evaluations.set(evaluated);
+                let (x, xi) = end.split_at(state.x.len());
+                return Ok(State {
+                    t: state.t + h,
+                    x: x.into(),
+                    xi: xi.into(),
+                });
+            }
+        }
+        self.stepper.follow(system, state, h, inputs, force)
+    }
+}
+
+impl Mechanism {
+    /// A step of a method as machine code, made when it is first asked for.
+    fn step(&self, method: &General, h: f64) -> Code {
+        let name = format!("{method:?}");
+        let mut known = self.steps.lock().unwrap_or_else(PoisonError::into_inner);
+        let same = |code: &&Code| code.method == name && code.h == h;
+        if let Some(code) = known.iter().find(same) {
+            return code.clone();
+        }
+        let tape = self.tape(method, h);
+        let code = Code {
+            method: name,
+            h,
+            evaluations: tape.as_ref().map_or(0, |(_, evaluations)| *evaluations),
+            compiled: tape.and_then(|(tape, _)| {
+                let tapes = Tapes {
+                    functions: vec![tape],
+                    ..self.compiled.tapes().clone()
+                };
+                let compiled = Compiled::of(tapes);
+                // Step by step the method itself is as fast.
+                compiled.interpreted_because().is_none().then_some(compiled)
+            }),
+        };
+        if known.len() >= KEPT {
+            known.clear();
+        }
+        known.push(code.clone());
+        code
+    }
+
+    /// What a step does, and how often it evaluates ξ̇.
+    fn tape(&self, method: &General, h: f64) -> Option<(Tape, u64)> {
+        let explicit = matches!(
+            method,
+            General::Rkmk4
+                | General::Cf4
+                | General::Rkmk54
+                | General::Rkmk8
+                | General::SemiImplicitEuler
+                | General::Rk4 { .. }
+        );
+        let accel = self.accel.filter(|_| explicit)?;
+        let tapes = self.compiled.tapes();
+        // Before it is written: a step has a few evaluations.
+        if tapes.functions.get(accel.index())?.steps.len() > MOST {
+            return None;
+        }
+        let [x, xi, u, ..] = tapes.lengths;
+        let entries = |argument: Argument, count: usize| -> Vec<Traced> {
+            let entries = (0..count).map(|index| Source::Argument(argument, index));
+            entries.map(Traced::argument).collect()
+        };
+        let written = Written {
+            of: self,
+            accel: accel.index(),
+            lengths: [x, xi, u],
+            evaluations: Cell::new(0),
+        };
+        let state = State::<Written> {
+            t: 0.0,
+            x: entries(Argument::Coordinates, x),
+            xi: entries(Argument::Velocities, xi),
+        };
+        let held = entries(Argument::Inputs, u);
+        let inputs = |_, _: &Vec<Traced>, _: &Vec<Traced>| held.clone();
+        let mut failed = false;
+        let tape = traced("step", || match method.step(&written, &state, h, &inputs) {
+            Ok(end) => [end.x, end.xi].concat(),
+            Err(_) => {
+                failed = true;
+                Vec::new()
+            }
+        });
+        let tape = tape.filter(|tape| !failed && tape.steps.len() <= MOST)?;
+        Some((tape, written.evaluations.get()))
+    }
+}
+
+/// A mechanism whose numbers write down what is done with them.
+struct Written<'a> {
+    of: &'a Mechanism,
+    accel: usize,
+    lengths: [usize; 3],
+    evaluations: Cell<u64>,
+}
+
+impl Written<'_> {
+    fn call(&self, function: usize, arguments: [&[Traced]; 3]) -> Vec<Traced> {
+        let [x, xi, u] = arguments;
+        let tape = self.of.compiled.tapes().functions.get(function);
+        tape.map_or_else(Vec::new, |tape| inlined(tape, [x, xi, u, &[], &[]]))
+    }
+}
+
+fn zeros(length: usize) -> Vec<Traced> {
+    vec![Traced::default(); length]
+}
+
+impl System for Written<'_> {
+    type Scalar = Traced;
+    type Coordinates = Vec<Traced>;
+    type Velocities = Vec<Traced>;
+    type Chart = Vec<Traced>;
+    type Inputs = Vec<Traced>;
+
+    fn blocks(&self) -> &[Block] {
+        &self.of.blocks
+    }
+
+    fn zero_coordinates(&self) -> Vec<Traced> {
+        zeros(self.lengths[0])
+    }
+
+    fn zero_velocities(&self) -> Vec<Traced> {
+        zeros(self.lengths[1])
+    }
+
+    fn zero_chart(&self) -> Vec<Traced> {
+        zeros(self.of.chart)
+    }
+
+    fn zero_inputs(&self) -> Vec<Traced> {
+        zeros(self.lengths[2])
+    }
+
+    fn start(&self) -> (Vec<Traced>, Vec<Traced>) {
+        (self.zero_coordinates(), self.zero_velocities())
+    }
+
+    fn rate(&self, x: &Vec<Traced>, xi: &Vec<Traced>) -> Vec<Traced> {
+        self.call(self.of.rate.index(), [x, xi, &[]])
+    }
+
+    fn chart_rate(&self, x: &Vec<Traced>, xi: &Vec<Traced>) -> Vec<Traced> {
+        self.call(self.of.chart_rate.index(), [x, xi, &[]])
+    }
+
+    fn accel(
+        &self,
+        x: &Vec<Traced>,
+        xi: &Vec<Traced>,
+        u: &Vec<Traced>,
+    ) -> Result<Vec<Traced>, Singular> {
+        self.evaluations.set(self.evaluations.get() + 1);
+        Ok(self.call(self.accel, [x, xi, u]))
+    }
+
+    fn correction(&self, x: &Vec<Traced>) -> Vec<Traced> {
+        self.call(self.of.correction.index(), [x, &[], &[]])
+    }
+
+    // A step of a method projects nothing: that is done behind it.
+    fn project_position(&self, _: &Vec<Traced>) -> Result<Option<Vec<Traced>>, Singular> {
+        Ok(None)
+    }
+
+    fn project_velocity(
+        &self,
+        _: &Vec<Traced>,
+        _: &Vec<Traced>,
+    ) -> Result<Option<Vec<Traced>>, Singular> {
+        Ok(None)
+    }
+
+    fn constraint_norm(&self, _: &Vec<Traced>) -> Traced {
+        Traced::default()
+    }
+
+    fn kinetic_energy(&self, _: &Vec<Traced>, _: &Vec<Traced>) -> Traced {
+        Traced::default()
+    }
+
+    fn potential_energy(&self, _: &Vec<Traced>) -> Traced {
+        Traced::default()
+    }
+}
+
+/// Steps that were made of a mechanism.
+pub type Steps = Mutex<Vec<Code>>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::Numbers;
+    use crate::robot::RobotOptions;
+    use crate::source::Source;
+    use crate::state::State as Start;
+    use std::path::Path;
+    use std::sync::Arc;
+
+    const METHODS: [General; 6] = [
+        General::Rkmk4,
+        General::Cf4,
+        General::Rkmk54,
+        General::Rkmk8,
+        General::SemiImplicitEuler,
+        General::Rk4 { lambda: 3.0 },
+    ];
+    const H: f64 = 1e-2;
+
+    fn instance(model: &str) -> Instance {
+        let path = Path::new("../tests/models").join(model);
+        let source = Source::open(&path, &RobotOptions::default()).expect("a description");
+        let generated = source.derive_all().expect("derived");
+        let mechanism = Mechanism::new(&generated, &source.text).expect("compiled");
+        let start = Start::start(&generated.active);
+        Instance::of(&Arc::new(mechanism), &start).expect("an instance")
+    }
+
+    fn end(
+        system: &Instance,
+        method: &impl Method<Instance>,
+        state: &State<Instance>,
+    ) -> State<Instance> {
+        let u = system.inputs(state.t, &state.x, &state.xi);
+        let held = |_, _: &Numbers, _: &Numbers| u.clone();
+        let end = method.step(system, state, H, &held);
+        end.expect("a step")
+    }
+
+    /// Code that is made of a method has its numbers: to the bit, but where a sine is rounded otherwise.
+    #[test]
+    fn steps_as_code_are_those_of_the_method() {
+        let models = [
+            "heavy_top.eom",
+            "free_body.eom",
+            "double_pendulum_angles.eom",
+            "double_pendulum_circles.eom",
+            "heavy_top_quaternion.eom",
+            "rolling_disk.eom",
+            "kapitza.eom",
+            "four_bar_loop.eom",
+            "lagging_drone.eom",
+        ];
+        for model in models {
+            let system = instance(model);
+            for method in METHODS {
+                let stepper = Stepper::General(method);
+                let whole = Whole::new(&system, &stepper, H, 1e3);
+                let mut state = State::<Instance>::start(&system);
+                for _ in 0..20 {
+                    let before = system.evaluations();
+                    let slow = end(&system, &stepper, &state);
+                    let between = system.evaluations();
+                    let fast = end(&system, &whole, &state);
+                    assert_eq!(system.evaluations() - between, between - before);
+                    let pairs = fast.x.iter().chain(&*fast.xi);
+                    let pairs = pairs.zip(slow.x.iter().chain(&*slow.xi));
+                    for (a, b) in pairs {
+                        let off = (a - b).abs() / b.abs().max(1.0);
+                        assert!(off < 1e-14, "{model} {method:?}: {a} {b}");
+                    }
+                    assert_eq!(fast.t, slow.t);
+                    state = slow;
+                }
+                let code = whole.code.get().and_then(Option::as_ref);
+                assert!(code.is_some(), "{model} {method:?} is no code");
+            }
+        }
+    }
+
+    /// What has no end is told by the method: the code ends where a pivot is not positive.
+    #[test]
+    fn steps_without_an_end_say_why() {
+        let system = instance("heavy_top.eom");
+        let stepper = Stepper::General(General::Rkmk4);
+        let whole = Whole::new(&system, &stepper, H, 1e3);
+        let mut state = State::<Instance>::start(&system);
+        // Turned so far in one step that series do not hold, and faster than any number.
+        for speed in [1e4, f64::MAX] {
+            state.xi.as_mut().fill(speed);
+            let held = |_, _: &Numbers, _: &Numbers| Numbers::filled(0.0, 0);
+            let slow = stepper.step(&system, &state, H, &held);
+            let fast = whole.step(&system, &state, H, &held);
+            assert_eq!(format!("{slow:?}"), format!("{fast:?}"));
+        }
+    }
+
+    /// Iterations are no tapes, and few steps are not worth one.
+    #[test]
+    fn what_is_no_code() {
+        let system = instance("heavy_top.eom");
+        let state = State::<Instance>::start(&system);
+        let implicit = Stepper::General(General::BackwardEuler);
+        let few = Stepper::General(General::Rkmk4);
+        for (stepper, time) in [(implicit, 1e3), (few, 1.0)] {
+            let whole = Whole::new(&system, &stepper, H, time);
+            end(&system, &whole, &state);
+            assert!(whole.code.get().and_then(Option::as_ref).is_none());
+        }
+    }
+}
