@@ -11,8 +11,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let robots = robots.ok_or("HAMEL_ROBOTS is not set: start this by bench/native/run.sh")?;
     let folder = PathBuf::from(std::env::var_os("OUT_DIR").ok_or("no folder")?);
     let mut builder = Builder::new();
-    for model in ["free_body", "heavy_top", "double_pendulum_angles"] {
-        let model = format!("../../tests/models/{model}.eom");
+    let models = ["free_body", "heavy_top", "double_pendulum_angles"];
+    let models = models.map(|model| format!("../../tests/models/{model}.eom"));
+    for model in models.into_iter().chain(["../../examples/dzhanibekov.eom".into()]) {
         println!("cargo:rerun-if-changed={model}");
         builder = builder.file(keep(
             &folder,

@@ -7,7 +7,7 @@ bash tests/robots/install.sh
 robots=$(find "$PWD/${CARGO_TARGET_DIR:-target}/robots" -type d -path '*example-robot-data/robots' | head -n 1)
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
-cargo build --release --manifest-path bench/native/Cargo.toml --target-dir target/bench-native
+cargo build --release --manifest-path bench/native/Cargo.toml --target-dir target/bench-native --bin hamel-bench-native
 # One core, where the system can say so.
 pin=$(command -v taskset || true)
 ${pin:+$pin -c 0} target/bench-native/release/hamel-bench-native

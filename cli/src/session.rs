@@ -213,7 +213,7 @@ impl Session {
         &self.source.text
     }
 
-    fn model(&self) -> &Model {
+    fn active(&self) -> &Model {
         &self.generated.active
     }
 
@@ -233,14 +233,14 @@ impl Session {
     /// The entries of ξ, and of the states of first order behind it.
     pub fn velocities(&self) -> Names {
         Names {
-            entries: names::moving(self.model()),
+            entries: names::moving(self.active()),
             groups: groups(&self.generated.program.moving()),
         }
     }
 
     /// The entries of u.
     pub fn inputs(&self) -> Names {
-        let inputs = &self.model().inputs;
+        let inputs = &self.active().inputs;
         Names {
             entries: inputs.iter().flat_map(names::group).collect(),
             groups: groups(inputs),
@@ -258,7 +258,7 @@ impl Session {
 
     /// Joints, with the place of their velocities in ξ and their number.
     pub fn joints(&self) -> Vec<(String, usize, usize)> {
-        let joints = joints(self.model(), self.source.joints()).into_iter();
+        let joints = joints(self.active(), self.source.joints()).into_iter();
         joints
             .map(|joint| (joint.name, joint.velocities.0, joint.velocities.1))
             .collect()
@@ -266,19 +266,19 @@ impl Session {
 
     /// The frames of the description.
     pub fn frames(&self) -> Vec<String> {
-        let frames = self.model().frames.iter();
+        let frames = self.active().frames.iter();
         frames.map(|frame| frame.name.clone()).collect()
     }
 
     /// The outputs of the description.
     pub fn outputs(&self) -> Vec<String> {
-        let outputs = self.model().outputs.iter();
+        let outputs = self.active().outputs.iter();
         outputs.map(|(name, _)| name.clone()).collect()
     }
 
     /// Parameters, start and zero inputs.
     pub fn start(&self) -> State {
-        State::start(self.model())
+        State::start(self.active())
     }
 
     /// The start with these parameters, changed by what a JSON text says; see `hamel eval --help`. Messages call the text
@@ -375,7 +375,7 @@ impl Session {
     /// What it means that a pivot is not positive, in the names of the description.
     pub fn meaning(&self, cause: Cause) -> String {
         let shown = self.source.shown();
-        singular::meaning(cause, self.model(), shown)
+        singular::meaning(cause, self.active(), shown)
     }
 
     fn mechanism(&self) -> Result<&Arc<Mechanism>, Failure> {

@@ -53,6 +53,9 @@ type Stepped<'py> = (
     Bound<'py, PyArrayDyn<f64>>,
 );
 
+/// x and ξ of many states.
+type Ends<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
+
 /// Every entry, and groups by name, place and number.
 type Named = (Vec<String>, Vec<(String, usize, usize)>);
 
@@ -323,7 +326,7 @@ impl Session {
         u: Given<'py>,
         h: f64,
         method: &str,
-    ) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>)> {
+    ) -> PyResult<Ends<'py>> {
         let state = self.of(state)?;
         let lengths = [state.x.len(), state.xi.len(), state.u.len()];
         let given = [("x", &x), ("xi", &xi), ("u", &u)];

@@ -216,7 +216,40 @@ macro_rules! row {
     }};
 }
 
+/// Bytes of memory that this process has been given, where the system says so.
+fn memory() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim()
+        .trim_end_matches(" kB")
+        .parse::<f64>()
+        .ok()
+        .map(|kilo| kilo * 1024.0)
+}
+
+/// The largest function here, too large for a compiler in a bench: [A B] of Talos. How long it takes, and what memory.
+fn humanoid() {
+    let text = text!("talos_reduced").replace("generate accel;", "generate linearize;");
+    let program = program(&text);
+    let function = program.function("linearize").expect("asked for");
+    let tapes = Tapes::new(&program, &[function]).expect("it calls nothing");
+    let steps = tapes.functions[0].steps.len();
+    let before = memory();
+    let start = Instant::now();
+    let compiled = Compiled::of(tapes);
+    let taken = start.elapsed().as_secs_f64();
+    assert_eq!(compiled.interpreted_because(), None);
+    let more = before
+        .zip(memory())
+        .map(|(before, after)| (after - before) / 1e6);
+    let more = more.map_or_else(String::new, |more| {
+        format!(", with {more:.0} MB more than before")
+    });
+    println!("\nTalos, [A B], {steps} steps: made in {taken:.2} s{more}");
+}
+
 fn main() {
+    humanoid();
     println!(
         "| function | steps | rustc, ns | at once, ns | ratio | step by step, ns | made in ms | µs a step beyond 0.3 ms |"
     );

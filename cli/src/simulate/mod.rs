@@ -28,9 +28,9 @@ use write::Format;
 
 /// Integrates the equations of motion from a start.
 ///
-/// The functions of the description become machine code at once, nearly as fast as generated Rust; a step of a small
-/// system, which is not compiled as a whole, can take five times as long. Inputs keep the value that STATE.json gives them, or zero, where no --inputs and no --input says what
-/// they are.
+/// The functions of the description become machine code at once, and so do whole steps of explicit methods where inputs are
+/// constant: a run takes up to twice the time of generated Rust, where steps are small. Inputs keep the value that
+/// STATE.json gives them, or zero, where no --inputs and no --input says what they are.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel simulate dzhanibekov.eom --until 100 --plot flip.svg
