@@ -27,6 +27,7 @@ pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
 pub use traced::{Traced, inlined, traced};
 
 use code::{Code, Ended, Fixed};
+use hamel::Scalar;
 use hamel_codegen::program::{Cause, Function, Program};
 use std::sync::Arc;
 
@@ -133,7 +134,7 @@ impl Compiled {
     pub fn singular(&self, constants: &Constants) -> Option<Cause> {
         let mut pivots = self.0.tapes.pivots.iter();
         let none: [&[f64]; 5] = [&[]; 5];
-        let positive = |pivot| evaluate::read(pivot, &[], &constants.0, none) > 0.0;
+        let positive = |pivot| Scalar::is_positive(evaluate::read(pivot, &[], &constants.0, none));
         pivots
             .find(|(pivot, _)| !positive(*pivot))
             .map(|(_, cause)| *cause)

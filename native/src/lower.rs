@@ -1,7 +1,7 @@
 //! A tape as Cranelift's intermediate code, by the plan of [`crate::spill`].
 
 use crate::spill::{Action, Home, Id, Plan, is_call, plan};
-use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{
     AbiParam, Block, FuncRef, InstBuilder, MemFlags, Signature, StackSlot, StackSlotData,
     StackSlotKind, Type, Value, types,
@@ -13,6 +13,8 @@ use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape};
 use std::collections::HashMap;
 
+/// The bits of infinity.
+const INFINITE: i64 = f64::INFINITY.to_bits().cast_signed();
 /// What a function returns where all is well.
 pub const WELL: i32 = 0;
 /// What it returns where the tape has to be evaluated step by step. Positive numbers are those of causes, from 1.
@@ -283,8 +285,11 @@ impl<'a, 'b> Writer<'a, 'b> {
             }
             Step::Check(cause, _) => {
                 let pivot = self.signed(a);
-                let zero = self.constant(0.0);
-                let positive = self.ins().fcmp(FloatCC::GreaterThan, pivot, zero);
+                // Positive and finite by its bits, 1 to those below infinity, as generated code has it.
+                let bits = self.ins().bitcast(types::I64, MemFlags::new(), pivot);
+                let bits = self.ins().iadd_imm(bits, -1);
+                let limit = self.ins().iconst(types::I64, INFINITE - 1);
+                let positive = self.ins().icmp(IntCC::UnsignedLessThan, bits, limit);
                 let known = causes.iter().position(|&known| known == cause);
                 let place = known.unwrap_or_else(|| {
                     causes.push(cause);

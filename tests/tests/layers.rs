@@ -212,6 +212,7 @@ fn no_file_hides_two_ideas() {
         "runtime/src",
         "report/src",
         "cli/src",
+        "python/src",
         "bench/src",
     ] {
         for (path, text) in sources(folder) {

@@ -56,7 +56,7 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test free_rotation --test stiff",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files",
     "bash tests/robots/install.sh",
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --bin hamel --test states --test emitted --test shaken",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --lib --test states --test emitted --test shaken",
     "HAMEL_ATTACK=full cargo test --locked -p hamel-tests-c99",
     // Not optimised, and a fifth at a time: compiling is all of the work.
     "HAMEL_ATTACK=full HAMEL_PART=0 cargo test --locked -p hamel-tests-emitted",
@@ -65,6 +65,8 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full HAMEL_PART=3 cargo test --locked -p hamel-tests-emitted compiled",
     "HAMEL_ATTACK=full HAMEL_PART=4 cargo test --locked -p hamel-tests-emitted compiled",
     "bash tests/robots/pinocchio.sh",
+    // An array of tasks on Slurm, which is installed where it is missing.
+    "bash tests/sweep/slurm.sh",
     // As a user installs it.
     "bash tests/python/wheel.sh",
 ];

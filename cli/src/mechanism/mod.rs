@@ -349,7 +349,9 @@ pub fn constant_singular(program: &Program, params: &[f64]) -> bool {
     symbols.extend_from_slice(params);
     symbols.resize(program.graph.symbols().len(), f64::NAN);
     let pivots = evaluate(&program.graph, &program.constant_guards, &symbols);
-    pivots.iter().any(|&pivot| pivot.is_nan() || pivot <= 0.0)
+    pivots
+        .iter()
+        .any(|&pivot| !(pivot.is_finite() && pivot > 0.0))
 }
 
 fn block(block: layout::Block) -> Block {

@@ -1,5 +1,11 @@
 //! A description as another program works with it: what the commands do, with numbers in place of texts.
 
+mod function;
+mod motion;
+
+pub use function::Function;
+pub use motion::Motion;
+
 use crate::eval::numbers;
 use crate::failure::{Failure, collected};
 use crate::linearize::{self, Linear};
@@ -9,7 +15,7 @@ use crate::names;
 use crate::regressor::base;
 use crate::robot::RobotOptions;
 use crate::simulate::inputs::{Asked, Inputs, Law};
-use crate::simulate::record::{Every, Run, Sample, Spacing};
+use crate::simulate::record::{Every, Run, Spacing};
 use crate::simulate::stepping::Stepping;
 use crate::singular;
 use crate::source::Source;
@@ -17,15 +23,15 @@ use crate::state::State;
 use crate::state::file::File;
 use crate::state::joints::joints;
 use crate::tables::Format;
+use function::compiled;
 use hamel::methods::General;
 use hamel::step;
 use hamel_codegen::functions::{Asked as Wanted, FunctionId, Jacobian, SLOPES, Serves};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
-use hamel_codegen::program::{Argument, Cause, Shape};
+use hamel_codegen::program::Cause;
 use hamel_codegen::tables::regressor::BaseParameters;
 use hamel_codegen::tables::{self, Table};
-use hamel_native::{Compiled, Constants};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -49,88 +55,6 @@ pub struct Names {
     pub entries: Vec<String>,
     /// What they belong to, as in `w`.
     pub groups: Vec<(String, usize, usize)>,
-}
-
-/// A function of the description as machine code.
-#[derive(Clone, Debug)]
-pub struct Function {
-    /// Its name.
-    pub name: String,
-    /// What it evaluates.
-    pub docs: String,
-    /// What it takes.
-    pub arguments: Vec<Argument>,
-    /// The shape of its result.
-    pub shape: Shape,
-    compiled: Compiled,
-}
-
-impl Function {
-    /// How many entries an argument has.
-    pub fn length(&self, argument: Argument) -> usize {
-        let all = hamel_native::ARGUMENTS.iter();
-        let lengths = all.zip(self.compiled.tapes().lengths);
-        lengths
-            .filter(|(of, _)| **of == argument)
-            .map(|(_, length)| length)
-            .sum()
-    }
-
-    /// Parameters, with what depends on them alone.
-    ///
-    /// # Errors
-    /// Where M is constant, and not positive definite with them.
-    pub fn constants(&self, params: &[f64]) -> Result<Constants, Cause> {
-        let constants = self.compiled.constants(params);
-        match self.compiled.singular(&constants) {
-            Some(cause) => Err(cause),
-            None => Ok(constants),
-        }
-    }
-
-    /// Its result for x, ξ and z, u, ξ̇ and p, of which those that it takes are read.
-    ///
-    /// # Errors
-    /// What it means that a pivot is not positive.
-    pub fn call(
-        &self,
-        constants: &Constants,
-        arguments: [&[f64]; 5],
-        out: &mut [f64],
-    ) -> Result<(), Cause> {
-        self.compiled.call(0, constants, arguments, out)
-    }
-}
-
-/// A run: samples one after the other, each entry of a list beside the time.
-#[derive(Clone, Debug)]
-pub struct Motion {
-    /// Times of the samples.
-    pub t: Vec<f64>,
-    /// x of each sample.
-    pub x: Vec<f64>,
-    /// ξ and z of each sample.
-    pub xi: Vec<f64>,
-    /// Kinetic and potential energy of each sample, their sum.
-    pub energy: Vec<f64>,
-    /// Outputs by their names with the entries of each sample.
-    pub outputs: Vec<(String, Shape, Vec<f64>)>,
-    /// The same of what the description claims to be constant.
-    pub invariants: Vec<(String, Shape, Vec<f64>)>,
-    /// The method.
-    pub method: &'static str,
-    /// Why it was taken, where it was not asked for.
-    pub reason: Option<&'static str>,
-    /// How many steps there were.
-    pub steps: u64,
-    /// How often accelerations, forces or rates of momenta were evaluated.
-    pub evaluations: u64,
-    /// The largest change of the energy in any step, relative.
-    pub energy_deviation: f64,
-    /// The largest |φ|.
-    pub constraint: f64,
-    /// Why it ended early.
-    pub failure: Option<String>,
 }
 
 /// What one step of a method is taken with.
@@ -516,72 +440,11 @@ impl Session {
     }
 }
 
-impl Motion {
-    fn of(run: &Run, system: &Instance) -> Self {
-        let all = |of: fn(&Sample) -> &[f64]| -> Vec<f64> {
-            let entries = run.samples.iter().flat_map(of);
-            entries.copied().collect()
-        };
-        let parts = |of: fn(&Sample) -> &[f64], list: &[crate::mechanism::Output]| {
-            let mut first = 0;
-            let mut parts = Vec::new();
-            for output in list {
-                let place = first..first + output.shape.entries();
-                first = place.end;
-                let entries = run
-                    .samples
-                    .iter()
-                    .flat_map(|sample| &of(sample)[place.clone()]);
-                parts.push((
-                    output.name.clone(),
-                    output.shape,
-                    entries.copied().collect(),
-                ));
-            }
-            parts
-        };
-        Motion {
-            t: run.samples.iter().map(|sample| sample.t).collect(),
-            x: all(|sample| &sample.x),
-            xi: all(|sample| &sample.xi),
-            energy: run.samples.iter().map(|sample| sample.energy).collect(),
-            outputs: parts(|sample| &sample.outputs, system.outputs()),
-            invariants: parts(|sample| &sample.invariants, system.invariants()),
-            method: run.plan.method.name,
-            reason: run.plan.method.reason,
-            steps: run.steps,
-            evaluations: run.evaluations,
-            energy_deviation: run.monitor.relative_energy_deviation(),
-            constraint: run.monitor.constraint(),
-            failure: run.failure.clone(),
-        }
-    }
-}
-
 fn groups(groups: &[hamel_codegen::model::Group]) -> Vec<(String, usize, usize)> {
     let parts = groups.iter();
     parts
         .map(|group| (group.name.clone(), group.offset, group.len))
         .collect()
-}
-
-/// One function of a program, as machine code.
-fn compiled(generated: &Generated, name: &str) -> Result<Function, Failure> {
-    let program = &generated.program;
-    let Some(function) = program.function(name) else {
-        return Err(Failure::failed(format!(
-            "{} has no function `{name}`: the mass matrix has no inverse, or there is nothing that it could give",
-            program.name
-        )));
-    };
-    let compiled = crate::mechanism::compiled(program, &[name])?;
-    Ok(Function {
-        name: function.name.clone(),
-        docs: function.docs.join("\n"),
-        arguments: function.arguments.clone(),
-        shape: function.shape,
-        compiled,
-    })
 }
 
 /// Refuses times that do not increase, or are outside of a run.

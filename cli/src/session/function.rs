@@ -1,0 +1,77 @@
+//! One function of a description as machine code.
+
+use crate::failure::Failure;
+use crate::mechanism;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::program::{Argument, Cause, Shape};
+use hamel_native::{Compiled, Constants};
+
+/// A function of the description as machine code.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Its name.
+    pub name: String,
+    /// What it evaluates.
+    pub docs: String,
+    /// What it takes.
+    pub arguments: Vec<Argument>,
+    /// The shape of its result.
+    pub shape: Shape,
+    compiled: Compiled,
+}
+
+impl Function {
+    /// How many entries an argument has.
+    pub fn length(&self, argument: Argument) -> usize {
+        let all = hamel_native::ARGUMENTS.iter();
+        let lengths = all.zip(self.compiled.tapes().lengths);
+        lengths
+            .filter(|(of, _)| **of == argument)
+            .map(|(_, length)| length)
+            .sum()
+    }
+
+    /// Parameters, with what depends on them alone.
+    ///
+    /// # Errors
+    /// Where M is constant, and not positive definite with them.
+    pub fn constants(&self, params: &[f64]) -> Result<Constants, Cause> {
+        let constants = self.compiled.constants(params);
+        match self.compiled.singular(&constants) {
+            Some(cause) => Err(cause),
+            None => Ok(constants),
+        }
+    }
+
+    /// Its result for x, ξ and z, u, ξ̇ and p, of which those that it takes are read.
+    ///
+    /// # Errors
+    /// What it means that a pivot is not positive.
+    pub fn call(
+        &self,
+        constants: &Constants,
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> Result<(), Cause> {
+        self.compiled.call(0, constants, arguments, out)
+    }
+}
+
+/// A function of a program by its name.
+pub(super) fn compiled(generated: &Generated, name: &str) -> Result<Function, Failure> {
+    let program = &generated.program;
+    let Some(function) = program.function(name) else {
+        return Err(Failure::failed(format!(
+            "{} has no function `{name}`: the mass matrix has no inverse, or there is nothing that it could give",
+            program.name
+        )));
+    };
+    let compiled = mechanism::compiled(program, &[name])?;
+    Ok(Function {
+        name: function.name.clone(),
+        docs: function.docs.join("\n"),
+        arguments: function.arguments.clone(),
+        shape: function.shape,
+        compiled,
+    })
+}
