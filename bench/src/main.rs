@@ -18,7 +18,7 @@ struct Arguments {
     /// Folder of the report.
     #[arg(long, value_name = "DIR", default_value = "docs/report")]
     out: PathBuf,
-    /// Only these cases; the README and its summary are then left alone.
+    /// Only these cases; the book and its summary are then left alone.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     cases: Vec<String>,
     /// How often each run is timed.

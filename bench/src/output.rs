@@ -8,11 +8,11 @@ use hamel_report::number::grouped;
 use hamel_report::page::{self, Picture};
 use hamel_report::plot::{Figure, PlotError, drifts, precision};
 use hamel_report::summary::summary;
-use hamel_report::{json, markdown, readme};
+use hamel_report::{excerpt, json, markdown};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The runs behind the block of the README, in the repository.
+/// The runs behind the part of the book that is written from them, in the repository.
 pub const SUMMARY: &str = "docs/summary.json";
 
 /// Writes `report.json`, `report.md`, `index.html` and the pictures; the names of the files.
@@ -84,15 +84,18 @@ fn file_of(case: &Case) -> Option<String> {
     job.picture.then(|| format!("{}.svg", case.name))
 }
 
-/// What is kept of a whole report in the repository at `root`: the block of `README.md`, and the runs that it is
-/// made of, in [`SUMMARY`].
+/// The chapter of the book that has a part written from the report.
+pub const CHAPTER: &str = "docs/book/src/integrators.md";
+
+/// What is kept of a whole report in the repository at `root`: the part of [`CHAPTER`], and the runs that it is made of, in
+/// [`SUMMARY`].
 ///
 /// # Errors
-/// Where there is no README, or it has no block.
+/// Where there is no such chapter, or it has no such part.
 pub fn keep(report: &Report, root: &Path) -> Result<(), BenchError> {
-    let path = root.join("README.md");
+    let path = root.join(CHAPTER);
     let text = fs::read_to_string(&path).map_err(|error| unwritten(&path, &error))?;
-    let new = readme::replaced(&text, &readme::block(report))
+    let new = excerpt::replaced(&text, &excerpt::block(report))
         .ok_or_else(|| BenchError(format!("{}: no block of the report", path.display())))?;
     let kept = json::write(&summary(report)).map_err(|error| BenchError(error.to_string()))?;
     written(&root.join(SUMMARY), &kept)?;

@@ -492,10 +492,10 @@ fn names_stay_when_something_is_added() {
     assert!(before.iter().all(|name| after.contains(name)), "{after:?}");
 }
 
-/// What the README shows is right.
+/// What the book shows is right.
 #[test]
-fn the_readme_shows_a_description() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
+fn the_book_shows_a_description() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/book/src/mechanisms.md");
     let page = std::fs::read_to_string(path).expect("a page");
     let mut blocks = page.split("```text\n").skip(1);
     let block = blocks

@@ -13,9 +13,9 @@
 //! | [`solution`] | reference solutions as files |
 //! | [`data`] | the results, as they stand in JSON |
 //! | [`work`] | work to reach an error, between the runs measured |
-//! | [`markdown`], [`json`], [`page`], [`readme`] | what people and programs read |
+//! | [`markdown`], [`json`], [`page`], [`excerpt`] | what people and programs read |
 //! | `code` | code between backticks, in pages and pictures |
-//! | [`summary`] | the runs behind the block of a README |
+//! | [`summary`] | the runs behind that part |
 //! | [`plot`] | pictures as SVG |
 //! | [`number`] | numbers as people read them |
 //!
@@ -33,6 +33,7 @@ pub mod counted;
 pub mod data;
 pub mod drift;
 pub mod entry;
+pub mod excerpt;
 pub mod json;
 pub mod markdown;
 pub mod measure;
@@ -40,7 +41,6 @@ pub mod number;
 pub mod page;
 pub mod plot;
 pub mod problem;
-pub mod readme;
 pub mod solution;
 pub mod summary;
 pub mod work;

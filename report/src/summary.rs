@@ -1,9 +1,9 @@
-//! The few runs of a report that its block in a README is made of: small enough to be kept.
+//! The few runs of a report that its part of the book is made of: small enough to be kept.
 
 use crate::auto::{TARGET, fastest};
 use crate::data::{Case, MethodRun, MethodRuns, Report};
 
-/// The report without what [`crate::readme::block`] does not read: of every case the fastest method, that of
+/// The report without what [`crate::excerpt::block`] does not read: of every case the fastest method, that of
 /// `auto` and rkmk4, and of these the two runs between which the error falls to 1e-9.
 pub fn summary(report: &Report) -> Report {
     Report {

@@ -5,7 +5,7 @@ use hamel_report::data::{
 };
 use hamel_report::plot::precision;
 use hamel_report::summary::summary;
-use hamel_report::{json, markdown, page, readme};
+use hamel_report::{excerpt, json, markdown, page};
 
 /// error = 1/n⁴ with 4 n evaluations and 1 µs a step, so that 1e-6 takes 10^1.5 steps and 1e-9
 /// 10^2.25.
@@ -208,10 +208,10 @@ fn the_page_sets_code_apart() {
 }
 
 #[test]
-fn the_summary_says_what_the_readme_says() {
+fn the_summary_says_what_the_book_says() {
     let whole = report();
     let small = summary(&whole);
-    assert_eq!(readme::block(&small), readme::block(&whole));
+    assert_eq!(excerpt::block(&small), excerpt::block(&whole));
     assert_eq!(summary(&small), small);
     let [rkmk4] = &small.cases[0].methods[..] else {
         panic!("one method is in the block: {small:?}");
@@ -221,16 +221,16 @@ fn the_summary_says_what_the_readme_says() {
 }
 
 #[test]
-fn the_readme_names_the_fastest_method() {
-    let block = readme::block(&report());
+fn the_book_names_the_fastest_method() {
+    let block = excerpt::block(&report());
     let row = "| A top | <heavy> | `rkmk4` | 711 | 178 µs | 178 µs | - | - |";
     assert!(
         block.lines().last() == Some(&row.replace(" | <heavy>", " \\| <heavy>")),
         "{block}"
     );
-    let text = format!("a\n{}\nold\n{}\nb\n", readme::BEGIN, readme::END);
-    let new = readme::replaced(&text, &block).expect("a block");
-    assert_eq!(readme::present(&new), Some(block.as_str()));
+    let text = format!("a\n{}\nold\n{}\nb\n", excerpt::BEGIN, excerpt::END);
+    let new = excerpt::replaced(&text, &block).expect("a block");
+    assert_eq!(excerpt::present(&new), Some(block.as_str()));
     assert!(new.starts_with("a\n") && new.ends_with("\nb\n") && !new.contains("old"));
-    assert_eq!(readme::replaced("nothing", &block), None);
+    assert_eq!(excerpt::replaced("nothing", &block), None);
 }

@@ -5,7 +5,7 @@ use hamel::{Sampled, State, System, integrate};
 use hamel_tests::free_body::{FreeBody, FreeBodyInputs, FreeBodyParameters, FreeBodyState};
 use hamel_tests::wheel_motors::{WheelMotors, WheelMotorsState};
 
-/// What the README shows: a body under a constant force along its third axis falls as its centre of mass does.
+/// What the book shows: a body under a constant force along its third axis falls as its centre of mass does.
 #[test]
 fn a_program_needs_no_index() {
     let body = FreeBody::<f64>::new(FreeBodyParameters {

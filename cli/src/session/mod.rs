@@ -61,15 +61,9 @@ pub struct Names {
 pub struct Stepped {
     instance: Instance,
     stepper: Stepper,
-    lengths: [usize; 3],
 }
 
 impl Stepped {
-    /// How many entries x, ξ and u have.
-    pub fn lengths(&self) -> [usize; 3] {
-        self.lengths
-    }
-
     /// x and ξ after a step of this length, in place.
     ///
     /// # Errors
@@ -357,7 +351,6 @@ impl Session {
             chosen = Chosen::new("rkmk4", &instance, &structure, 1)?;
         }
         Ok(Stepped {
-            lengths: [state.x.len(), state.xi.len(), state.u.len()],
             instance,
             stepper: chosen.stepper,
         })

@@ -1,4 +1,4 @@
-//! The block of a text that is written from a report, between two comments.
+//! The part of the book that is written from a report, between two comments.
 
 use crate::auto::{self, TARGET, fastest};
 use crate::data::{MethodRun, Report};

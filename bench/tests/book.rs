@@ -1,11 +1,11 @@
-//! What the README says of speed and error is what was measured: its block is made of `docs/summary.json`, which the
+//! What the book says of speed and error is what was measured: its table is made of `docs/summary.json`, which the
 //! command of the report writes beside it.
 
 use hamel_bench::cases::ALL;
-use hamel_bench::output::SUMMARY;
+use hamel_bench::output::{CHAPTER, SUMMARY};
 use hamel_report::data::Report;
 use hamel_report::summary::summary;
-use hamel_report::{json, readme};
+use hamel_report::{excerpt, json};
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -22,20 +22,20 @@ fn measured() -> Report {
 }
 
 #[test]
-fn the_block_of_the_readme_is_what_was_measured() {
+fn the_table_of_the_book_is_what_was_measured() {
     let report = measured();
-    let readme = read("README.md");
-    let present = readme::present(&readme).expect("a block");
+    let chapter = read(CHAPTER);
+    let present = excerpt::present(&chapter).expect("a block");
     assert_eq!(
         present,
-        readme::block(&report),
+        excerpt::block(&report),
         "run the command of the report"
     );
     assert!(present.lines().count() > 10, "{present}");
-    // The README names the command, with the features that a full report has.
+    // The chapter names the command, with the features that a full report has.
     let (command, folder) = report.command.split_once(" -- ").expect("arguments");
     for part in [command, folder] {
-        assert!(readme.contains(part), "{part}");
+        assert!(chapter.contains(part), "{part}");
     }
 }
 
