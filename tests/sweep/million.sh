@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# A million free bodies of a thousand steps each: killed in the middle, the same command again, every member there once; time and
+# memory. Needs cargo and the environment of tests/sweep/run.sh; takes some minutes.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
+if [ ! -f "$target/sweep-readers/installed" ]; then
+    bash tests/sweep/run.sh
+fi
+hamel="${HAMEL:-$target/release/hamel}"
+if [ -z "${HAMEL:-}" ]; then
+    cargo build --quiet --release --locked -p hamel-cli
+fi
+folder="$(mktemp -d)"
+trap 'rm -rf "$folder"' EXIT
+"$target/sweep-readers/bin/python" tests/sweep/million.py "$hamel" "$folder"
