@@ -73,6 +73,16 @@ fn named(names: Names) -> Named {
     (names.entries, names.groups)
 }
 
+/// Refuses what is no length of a step; backwards it is negative.
+fn length(h: f64) -> PyResult<()> {
+    match h.is_finite() && h != 0.0 {
+        true => Ok(()),
+        false => Err(HamelError::new_err(format!(
+            "a step of the length {h} is none"
+        ))),
+    }
+}
+
 /// Rows as a matrix.
 fn matrix<'py>(
     py: Python<'py>,
@@ -220,7 +230,7 @@ impl Session {
         py.detach(|| Function::new(&self.0, name, &params))
     }
 
-    fn tables(&self, of: Vec<String>, format: &str, all: bool) -> PyResult<String> {
+    fn tables(&self, py: Python<'_>, of: Vec<String>, format: &str, all: bool) -> PyResult<String> {
         let format = match format {
             "text" => Format::Text,
             "markdown" => Format::Markdown,
@@ -231,7 +241,8 @@ impl Session {
                 return Err(PyValueError::new_err(message));
             }
         };
-        self.0.tables(&of, format, all).map_err(raised)
+        py.detach(|| self.0.tables(&of, format, all))
+            .map_err(raised)
     }
 
     /// What `hamel eval` prints, as JSON.
@@ -264,8 +275,20 @@ impl Session {
             },
         };
         let every = match get("every")? {
-            Some(steps) => Some(Every::Steps(steps.extract::<u64>()?.max(1))),
-            None => number("spacing")?.map(Every::Time),
+            Some(steps) => match steps.extract::<i64>()? {
+                steps @ 1.. => Some(Every::Steps(steps.unsigned_abs())),
+                _ => {
+                    return Err(HamelError::new_err(
+                        "`every` is a number of steps, 1 or greater",
+                    ));
+                }
+            },
+            None => match number("spacing")? {
+                Some(time) if !(time.is_finite() && time > 0.0) => {
+                    return Err(HamelError::new_err("`spacing` is a time greater than zero"));
+                }
+                spacing => spacing.map(Every::Time),
+            },
         };
         let times: Option<Vec<f64>> = get("times")?.map(|times| times.extract()).transpose()?;
         let asked = Asked {
@@ -328,6 +351,7 @@ impl Session {
         method: &str,
     ) -> PyResult<Ends<'py>> {
         let state = self.of(state)?;
+        length(h)?;
         let lengths = [state.x.len(), state.xi.len(), state.u.len()];
         let given = [("x", &x), ("xi", &xi), ("u", &u)];
         let mut arrays: Vec<ArrayViewD<'_, f64>> = Vec::new();
@@ -386,6 +410,7 @@ impl Session {
         method: &str,
     ) -> PyResult<Stepped<'py>> {
         let state = self.of(state)?;
+        length(h)?;
         let stepped = py.detach(|| {
             let (varied, method) = self.0.varied(&state, method).map_err(raised)?;
             let end = varied.step(&method, [&state.x, &state.xi, &state.u], h);

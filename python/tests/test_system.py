@@ -218,11 +218,19 @@ def test_what_cannot_be_run(pendulum):
         ({"inputs": {"force": 1.0}}, "no input"),
         ({"inputs": {"tau": "q +"}}, "tau"),
         ({"inputs": "nowhere.csv"}, "nowhere.csv"),
+        ({"inputs": {"tau": [1.0, 2.0]}}, "has 1 entries, 2 were given"),
+        ({"every": 0}, "1 or greater"),
+        ({"every": -2}, "1 or greater"),
+        ({"spacing": -0.1}, "greater than zero"),
+        ({"at": {"coord": {"q": float("nan")}}}, "state.coord.q: a finite number"),
     ]:
         with pytest.raises(hamel.HamelError, match=why):
             pendulum.simulate(1.0, **options)
     with pytest.raises(hamel.HamelError, match="greater than zero"):
         pendulum.simulate(float("nan"))
+    for h in (0.0, float("nan")):
+        with pytest.raises(hamel.HamelError, match="is none"):
+            pendulum.step([0.0], [0.0], [0.0], h=h)
 
 
 def test_exceptions_of_a_controller_come_through(pendulum):
@@ -350,6 +358,8 @@ def test_errors_show_their_place(models, tmp_path):
         hamel.System.from_file(tmp_path / "nothing.eom")
     with pytest.raises(FileNotFoundError):
         hamel.System.from_urdf(tmp_path / "nothing.urdf")
+    with pytest.raises(hamel.HamelError, match="is no robot in URDF"):
+        hamel.System.from_urdf(models / "pendulum.eom")
     with pytest.raises(hamel.HamelError, match="no constants"):
         hamel.System.from_text(PENDULUM, constants={"n": 3})
 

@@ -325,9 +325,12 @@ fn fixed(
         Some(_) => None,
         None => Some(sweep.plan.step),
     };
-    let arithmetic = match sweep.family.mechanism.is_fused() {
-        true => "fused multiply-add",
-        false => "separate multiply and add",
+    // Functions as this machine has it, methods as this program was compiled.
+    let compiled = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+    let arithmetic = match (sweep.family.mechanism.is_fused(), compiled) {
+        (true, true) => "fused multiply-add",
+        (true, false) => "fused multiply-add in functions",
+        (false, _) => "separate multiply and add",
     };
     let asked = &arguments.inputs;
     let inputs = asked.inputs.as_deref().map(read).transpose()?;

@@ -191,14 +191,16 @@ class Tables:
         return json.loads(self._written("json"))
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any, place: str = "state") -> Any:
     """What JSON can say."""
     if isinstance(value, Mapping):
-        return {str(name): _plain(part) for name, part in value.items()}
+        return {str(name): _plain(part, f"{place}.{name}") for name, part in value.items()}
     if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
+        return _plain(value.tolist(), place)
     if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
+        return [_plain(part, place) for part in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        raise HamelError(f"{place}: a finite number is needed, {value} was given")
     return value
 
 
@@ -268,16 +270,19 @@ class System:
         `floating` gives it a base that moves freely, `lock` are joints that do not move with their angle or length,
         `parameters` makes masses, centres of mass and inertias parameters; see `hamel import --help`.
         """
-        options = {
+        options: dict[str, Any] = {
             "floating": floating,
             "locks": [(joint, repr(value)) for joint, value in (lock or {}).items()],
             "params": parameters,
-            "mimic": mimic,
+            # What it is without a word.
+            "mimic": None if mimic == "follow" else mimic,
             "name": name,
             "rounding": rounding,
         }
         with open(path, encoding="utf-8") as file:
             text = file.read()
+        if not text.lstrip().startswith("<"):
+            raise HamelError(f"{os.fspath(path)} is no robot in URDF; `System.from_file` reads descriptions")
         return cls._open(os.fspath(path), text, options)
 
     def with_parameters(self, **values: ArrayLike) -> System:
@@ -450,10 +455,14 @@ class System:
             for name, value in inputs.items():
                 if isinstance(value, str):
                     expressions.append(f"{name} = {value}")
-                elif name in names.groups:
-                    fixed[names.groups[name]] = value
-                elif name in names:
-                    fixed[names.index(name)] = value
+                elif name in names.groups or name in names:
+                    first = names.index(name) if name in names else names.groups[name].start
+                    places = names.groups.get(name, slice(first, first + 1))
+                    entries = np.ravel(np.asarray(value, dtype=np.float64))
+                    if entries.size != places.stop - places.start:
+                        wanted = places.stop - places.start
+                        raise HamelError(f"the input `{name}` has {wanted} entries, {entries.size} were given")
+                    fixed[places] = entries
                 else:
                     raise HamelError(f"{self.name} has no input `{name}`: there are {', '.join(names)}")
             state = (state[0], state[1], fixed, state[3])
