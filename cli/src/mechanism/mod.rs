@@ -3,6 +3,7 @@
 mod functions;
 mod momenta;
 mod numbers;
+mod taped;
 mod varied;
 mod whole;
 

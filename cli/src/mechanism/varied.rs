@@ -1,13 +1,14 @@
 //! Steps with their slopes: functions as tapes that are evaluated in dual numbers, as many directions at a time as such a
 //! number has.
 
-use super::{block, singular};
+use super::block;
+use super::taped::{Places, Taped, Tapes};
 use crate::failure::Failure;
 use hamel::methods::General;
-use hamel::{Block, Dual, Singular, State, StepError, System, step};
+use hamel::{Dual, State, StepError, step};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::{Cause, Function};
-use hamel_native::{Compiled, Constants, Tapes, evaluate, evaluate_in};
+use hamel_native::{Compiled, Constants, evaluate, evaluate_in};
 
 /// Directions of a number.
 const WIDTH: usize = 8;
@@ -35,20 +36,9 @@ pub struct Varied {
     compiled: Compiled,
     params: Vec<f64>,
     constants: Constants,
-    blocks: Vec<Block>,
-    chart: usize,
-    lengths: [usize; 3],
-    rate: usize,
-    chart_rate: usize,
-    accel: usize,
-    correction: usize,
-    constraint: usize,
-    kinetic: usize,
-    potential: usize,
+    places: Places,
     frame: usize,
     coframe: usize,
-    project_position: Option<usize>,
-    project_velocity: Option<usize>,
 }
 
 /// x and ξ at the end of a step, and its slopes by rows of (η, ξ, z) and columns of (η, ξ, z, u).
@@ -62,7 +52,7 @@ impl Varied {
         let all: Vec<&Function> = all.collect();
         let known = all.iter().map(|function| function.name.clone());
         let known: Vec<String> = known.collect();
-        let tapes = Tapes::new(program, &all).map_err(|foreign| {
+        let tapes = hamel_native::Tapes::new(program, &all).map_err(|foreign| {
             Failure::failed(format!(
                 "`{}` is a function in Rust, of which there are no slopes here",
                 foreign.name
@@ -79,20 +69,22 @@ impl Varied {
         Ok(Varied {
             params: params.to_vec(),
             constants: compiled.constants(params),
-            blocks: program.blocks.iter().copied().map(block).collect(),
-            chart: program.blocks.iter().map(|block| block.dimension()).sum(),
-            lengths: [x, xi, u],
-            rate: place("rate")?,
-            chart_rate: place("chart_rate")?,
-            accel: place("accel")?,
-            correction: place("correction")?,
-            constraint: place("constraint")?,
-            kinetic: place("kinetic_energy")?,
-            potential: place("potential_energy")?,
+            places: Places {
+                blocks: program.blocks.iter().copied().map(block).collect(),
+                chart: program.blocks.iter().map(|block| block.dimension()).sum(),
+                lengths: [x, xi, u],
+                rate: place("rate")?,
+                chart_rate: place("chart_rate")?,
+                accel: place("accel")?,
+                correction: place("correction")?,
+                constraint: place("constraint")?,
+                kinetic: place("kinetic_energy")?,
+                potential: place("potential_energy")?,
+                project_position: find("project_position"),
+                project_velocity: find("project_velocity"),
+            },
             frame: place("displacement_frame")?,
             coframe: place("displacement_coframe")?,
-            project_position: find("project_position"),
-            project_velocity: find("project_velocity"),
             compiled,
         })
     }
@@ -112,7 +104,7 @@ impl Varied {
         [x, xi, u]: [&[f64]; 3],
         h: f64,
     ) -> Result<End, StepError> {
-        let [nu, moving, inputs] = self.lengths;
+        let [nu, moving, inputs] = self.places.lengths;
         let frame = self.matrix(self.frame, x, nu);
         let displacements = frame.first().map_or(0, Vec::len);
         let rows = displacements + moving;
@@ -129,14 +121,14 @@ impl Varied {
                 value,
                 slopes: std::array::from_fn(|d| row.get(first + d).copied().unwrap_or(0.0)),
             });
-            let mut state = State::<Varied> {
+            let mut state = State::<Taped<&Varied>> {
                 t: 0.0,
                 x: varied.collect(),
                 xi: list(xi, |i, value| along(value, displacements + i)),
             };
             let held = list(u, |i, value| along(value, rows + i));
             let given = |_, _: &_, _: &_| held.clone();
-            step(self, method, &mut state, h, &given)?;
+            step(&Taped(self), method, &mut state, h, &given)?;
             end_x = state.x.iter().map(|number| number.value).collect();
             end_xi = state.xi.iter().map(|number| number.value).collect();
             let coframe = self.matrix(self.coframe, &end_x, displacements);
@@ -168,36 +160,6 @@ impl Varied {
         let columns = flat.len() / rows.max(1);
         flat.chunks(columns.max(1)).map(<[f64]>::to_vec).collect()
     }
-
-    fn call(
-        &self,
-        function: usize,
-        x: &[Number],
-        xi: &[Number],
-        u: &[Number],
-    ) -> Result<Vec<Number>, Cause> {
-        let tape = &self.compiled.tapes().functions[function];
-        let mut out = vec![Number::constant(f64::NAN); tape.outputs.len()];
-        let constants = self.constants.known();
-        evaluate_in(tape, constants, [x, xi, u, &[], &[]], &mut out)?;
-        Ok(out)
-    }
-
-    /// The value of a function that has one everywhere.
-    fn value(&self, function: usize, x: &[Number], xi: &[Number]) -> Vec<Number> {
-        let length = self.compiled.tapes().functions[function].outputs.len();
-        let value = self.call(function, x, xi, &[]);
-        value.unwrap_or_else(|_| vec![Number::constant(f64::NAN); length])
-    }
-
-    fn number(&self, function: usize, x: &[Number], xi: &[Number]) -> Number {
-        let value = self.value(function, x, xi);
-        value.first().copied().unwrap_or(Number::constant(f64::NAN))
-    }
-
-    fn zero(length: usize) -> Vec<Number> {
-        vec![Number::constant(0.0); length]
-    }
 }
 
 fn list(values: &[f64], number: impl Fn(usize, f64) -> Number) -> Vec<Number> {
@@ -205,85 +167,18 @@ fn list(values: &[f64], number: impl Fn(usize, f64) -> Number) -> Vec<Number> {
     values.map(|(i, &value)| number(i, value)).collect()
 }
 
-impl System for Varied {
-    type Scalar = Number;
-    type Coordinates = Vec<Number>;
-    type Velocities = Vec<Number>;
-    type Chart = Vec<Number>;
-    type Inputs = Vec<Number>;
+impl Tapes for &Varied {
+    type Number = Number;
 
-    fn blocks(&self) -> &[Block] {
-        &self.blocks
+    fn places(&self) -> &Places {
+        &self.places
     }
 
-    fn zero_coordinates(&self) -> Vec<Number> {
-        Varied::zero(self.lengths[0])
-    }
-
-    fn zero_velocities(&self) -> Vec<Number> {
-        Varied::zero(self.lengths[1])
-    }
-
-    fn zero_chart(&self) -> Vec<Number> {
-        Varied::zero(self.chart)
-    }
-
-    fn zero_inputs(&self) -> Vec<Number> {
-        Varied::zero(self.lengths[2])
-    }
-
-    fn start(&self) -> (Vec<Number>, Vec<Number>) {
-        (self.zero_coordinates(), self.zero_velocities())
-    }
-
-    fn rate(&self, x: &Vec<Number>, xi: &Vec<Number>) -> Vec<Number> {
-        self.value(self.rate, x, xi)
-    }
-
-    fn chart_rate(&self, x: &Vec<Number>, xi: &Vec<Number>) -> Vec<Number> {
-        self.value(self.chart_rate, x, xi)
-    }
-
-    fn accel(
-        &self,
-        x: &Vec<Number>,
-        xi: &Vec<Number>,
-        u: &Vec<Number>,
-    ) -> Result<Vec<Number>, Singular> {
-        self.call(self.accel, x, xi, u).map_err(singular)
-    }
-
-    fn correction(&self, x: &Vec<Number>) -> Vec<Number> {
-        self.value(self.correction, x, &[])
-    }
-
-    fn project_position(&self, x: &Vec<Number>) -> Result<Option<Vec<Number>>, Singular> {
-        let step = self.project_position;
-        let step = step.map(|function| self.call(function, x, &[], &[]));
-        step.transpose().map_err(singular)
-    }
-
-    fn project_velocity(
-        &self,
-        x: &Vec<Number>,
-        xi: &Vec<Number>,
-    ) -> Result<Option<Vec<Number>>, Singular> {
-        let projected = self.project_velocity;
-        let projected = projected.map(|function| self.call(function, x, xi, &[]));
-        projected.transpose().map_err(singular)
-    }
-
-    fn constraint_norm(&self, x: &Vec<Number>) -> Number {
-        let residuals = self.value(self.constraint, x, &[]);
-        let sizes = residuals.into_iter().map(hamel::Scalar::abs);
-        sizes.fold(Number::constant(0.0), hamel::Scalar::max)
-    }
-
-    fn kinetic_energy(&self, x: &Vec<Number>, xi: &Vec<Number>) -> Number {
-        self.number(self.kinetic, x, xi)
-    }
-
-    fn potential_energy(&self, x: &Vec<Number>) -> Number {
-        self.number(self.potential, x, &[])
+    fn call(&self, function: usize, [x, xi, u]: [&[Number]; 3]) -> Result<Vec<Number>, Cause> {
+        let tape = &self.compiled.tapes().functions[function];
+        let mut out = vec![Number::constant(f64::NAN); tape.outputs.len()];
+        let constants = self.constants.known();
+        evaluate_in(tape, constants, [x, xi, u, &[], &[]], &mut out)?;
+        Ok(out)
     }
 }

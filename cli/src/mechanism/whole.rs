@@ -1,12 +1,13 @@
 //! Whole steps as machine code: a method is run once on numbers that write down what it does with them.
 
+use super::taped::{Places, Taped, Tapes};
 use super::{Instance, Mechanism};
 use crate::method::Stepper;
 use hamel::methods::{General, Method};
-use hamel::{Block, Singular, State, StepError, System};
-use hamel_codegen::program::Argument;
+use hamel::{State, StepError, System};
 use hamel_codegen::program::tape::{Source, Tape};
-use hamel_native::{Compiled, Constants, Tapes, Traced, inlined, traced};
+use hamel_codegen::program::{Argument, Cause};
+use hamel_native::{Compiled, Constants, Traced, inlined, traced};
 use std::cell::{Cell, OnceCell, RefCell};
 use std::sync::{Mutex, PoisonError};
 
@@ -139,7 +140,7 @@ impl Mechanism {
             h,
             evaluations: tape.as_ref().map_or(0, |(_, evaluations)| *evaluations),
             compiled: tape.and_then(|(tape, _)| {
-                let tapes = Tapes {
+                let tapes = hamel_native::Tapes {
                     functions: vec![tape],
                     ..self.compiled.tapes().clone()
                 };
@@ -177,13 +178,26 @@ impl Mechanism {
             let entries = (0..count).map(|index| Source::Argument(argument, index));
             entries.map(Traced::argument).collect()
         };
-        let written = Written {
+        let written = Taped(Written {
             of: self,
-            accel: accel.index(),
-            lengths: [x, xi, u],
+            places: Places {
+                blocks: self.blocks.clone(),
+                chart: self.chart,
+                lengths: [x, xi, u],
+                rate: self.rate.index(),
+                chart_rate: self.chart_rate.index(),
+                accel: accel.index(),
+                correction: self.correction.index(),
+                constraint: self.constraint.index(),
+                kinetic: self.kinetic.index(),
+                potential: self.potential.index(),
+                // A step of a method projects nothing: that is done behind it.
+                project_position: None,
+                project_velocity: None,
+            },
             evaluations: Cell::new(0),
-        };
-        let state = State::<Written> {
+        });
+        let state = State::<Taped<Written>> {
             t: 0.0,
             x: entries(Argument::Coordinates, x),
             xi: entries(Argument::Velocities, xi),
@@ -199,106 +213,30 @@ impl Mechanism {
             }
         });
         let tape = tape.filter(|tape| !failed && tape.steps.len() <= MOST)?;
-        Some((tape, written.evaluations.get()))
+        Some((tape, written.0.evaluations.get()))
     }
 }
 
 /// A mechanism whose numbers write down what is done with them.
 struct Written<'a> {
     of: &'a Mechanism,
-    accel: usize,
-    lengths: [usize; 3],
+    places: Places,
     evaluations: Cell<u64>,
 }
 
-impl Written<'_> {
-    fn call(&self, function: usize, arguments: [&[Traced]; 3]) -> Vec<Traced> {
-        let [x, xi, u] = arguments;
+impl Tapes for Written<'_> {
+    type Number = Traced;
+
+    fn places(&self) -> &Places {
+        &self.places
+    }
+
+    fn call(&self, function: usize, [x, xi, u]: [&[Traced]; 3]) -> Result<Vec<Traced>, Cause> {
+        if function == self.places.accel {
+            self.evaluations.set(self.evaluations.get() + 1);
+        }
         let tape = self.of.compiled.tapes().functions.get(function);
-        tape.map_or_else(Vec::new, |tape| inlined(tape, [x, xi, u, &[], &[]]))
-    }
-}
-
-fn zeros(length: usize) -> Vec<Traced> {
-    vec![Traced::default(); length]
-}
-
-impl System for Written<'_> {
-    type Scalar = Traced;
-    type Coordinates = Vec<Traced>;
-    type Velocities = Vec<Traced>;
-    type Chart = Vec<Traced>;
-    type Inputs = Vec<Traced>;
-
-    fn blocks(&self) -> &[Block] {
-        &self.of.blocks
-    }
-
-    fn zero_coordinates(&self) -> Vec<Traced> {
-        zeros(self.lengths[0])
-    }
-
-    fn zero_velocities(&self) -> Vec<Traced> {
-        zeros(self.lengths[1])
-    }
-
-    fn zero_chart(&self) -> Vec<Traced> {
-        zeros(self.of.chart)
-    }
-
-    fn zero_inputs(&self) -> Vec<Traced> {
-        zeros(self.lengths[2])
-    }
-
-    fn start(&self) -> (Vec<Traced>, Vec<Traced>) {
-        (self.zero_coordinates(), self.zero_velocities())
-    }
-
-    fn rate(&self, x: &Vec<Traced>, xi: &Vec<Traced>) -> Vec<Traced> {
-        self.call(self.of.rate.index(), [x, xi, &[]])
-    }
-
-    fn chart_rate(&self, x: &Vec<Traced>, xi: &Vec<Traced>) -> Vec<Traced> {
-        self.call(self.of.chart_rate.index(), [x, xi, &[]])
-    }
-
-    fn accel(
-        &self,
-        x: &Vec<Traced>,
-        xi: &Vec<Traced>,
-        u: &Vec<Traced>,
-    ) -> Result<Vec<Traced>, Singular> {
-        self.evaluations.set(self.evaluations.get() + 1);
-        Ok(self.call(self.accel, [x, xi, u]))
-    }
-
-    fn correction(&self, x: &Vec<Traced>) -> Vec<Traced> {
-        self.call(self.of.correction.index(), [x, &[], &[]])
-    }
-
-    // A step of a method projects nothing: that is done behind it.
-    fn project_position(&self, _: &Vec<Traced>) -> Result<Option<Vec<Traced>>, Singular> {
-        Ok(None)
-    }
-
-    fn project_velocity(
-        &self,
-        _: &Vec<Traced>,
-        _: &Vec<Traced>,
-    ) -> Result<Option<Vec<Traced>>, Singular> {
-        Ok(None)
-    }
-
-    fn constraint_norm(&self, _: &Vec<Traced>) -> Traced {
-        Traced::default()
-    }
-
-    fn kinetic_energy(&self, _: &Vec<Traced>, _: &Vec<Traced>) -> Traced {
-        Traced::default()
-    }
-
-    fn potential_energy(&self, _: &Vec<Traced>) -> Traced {
-        Traced::default()
+        Ok(tape.map_or_else(Vec::new, |tape| inlined(tape, [x, xi, u, &[], &[]])))
     }
 }
 

@@ -1,0 +1,155 @@
+//! A mechanism in numbers of another kind: its functions are tapes, and who has the numbers says what a tape makes of them.
+
+use super::singular;
+use hamel::{Block, Scalar, Singular, System};
+use hamel_codegen::program::Cause;
+
+/// Where functions stand among the tapes, and the shape of what they take.
+#[derive(Clone, Debug)]
+pub struct Places {
+    pub blocks: Vec<Block>,
+    pub chart: usize,
+    /// Of x, ξ with z, and u.
+    pub lengths: [usize; 3],
+    pub rate: usize,
+    pub chart_rate: usize,
+    pub accel: usize,
+    pub correction: usize,
+    pub constraint: usize,
+    pub kinetic: usize,
+    pub potential: usize,
+    pub project_position: Option<usize>,
+    pub project_velocity: Option<usize>,
+}
+
+/// Tapes in numbers of a kind.
+pub trait Tapes {
+    /// The kind.
+    type Number: Scalar;
+
+    /// Where they are.
+    fn places(&self) -> &Places;
+
+    /// The result of one for x, ξ and u.
+    fn call(
+        &self,
+        function: usize,
+        arguments: [&[Self::Number]; 3],
+    ) -> Result<Vec<Self::Number>, Cause>;
+}
+
+/// The system that tapes are.
+pub struct Taped<T>(pub T);
+
+impl<T: Tapes> Taped<T> {
+    /// The value of a function with so many entries; where it has none they are NaN.
+    fn value(
+        &self,
+        function: usize,
+        length: usize,
+        x: &[T::Number],
+        xi: &[T::Number],
+    ) -> Vec<T::Number> {
+        let value = self.0.call(function, [x, xi, &[]]);
+        value.unwrap_or_else(|_| vec![T::Number::from_f64(f64::NAN); length])
+    }
+
+    fn number(&self, function: usize, x: &[T::Number], xi: &[T::Number]) -> T::Number {
+        let value = self.value(function, 1, x, xi).first().copied();
+        value.unwrap_or(T::Number::from_f64(f64::NAN))
+    }
+
+    fn zeros(length: usize) -> Vec<T::Number> {
+        vec![T::Number::default(); length]
+    }
+}
+
+impl<T: Tapes> System for Taped<T> {
+    type Scalar = T::Number;
+    type Coordinates = Vec<T::Number>;
+    type Velocities = Vec<T::Number>;
+    type Chart = Vec<T::Number>;
+    type Inputs = Vec<T::Number>;
+
+    fn blocks(&self) -> &[Block] {
+        &self.0.places().blocks
+    }
+
+    fn zero_coordinates(&self) -> Self::Coordinates {
+        Self::zeros(self.0.places().lengths[0])
+    }
+
+    fn zero_velocities(&self) -> Self::Velocities {
+        Self::zeros(self.0.places().lengths[1])
+    }
+
+    fn zero_chart(&self) -> Self::Chart {
+        Self::zeros(self.0.places().chart)
+    }
+
+    fn zero_inputs(&self) -> Self::Inputs {
+        Self::zeros(self.0.places().lengths[2])
+    }
+
+    fn start(&self) -> (Self::Coordinates, Self::Velocities) {
+        (self.zero_coordinates(), self.zero_velocities())
+    }
+
+    fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates {
+        let places = self.0.places();
+        self.value(places.rate, places.lengths[0], x, xi)
+    }
+
+    fn chart_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart {
+        let places = self.0.places();
+        self.value(places.chart_rate, places.chart, x, xi)
+    }
+
+    fn accel(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+        u: &Self::Inputs,
+    ) -> Result<Self::Velocities, Singular> {
+        let accel = self.0.places().accel;
+        self.0.call(accel, [x, xi, u]).map_err(singular)
+    }
+
+    fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates {
+        let places = self.0.places();
+        self.value(places.correction, places.lengths[0], x, &[])
+    }
+
+    fn project_position(
+        &self,
+        x: &Self::Coordinates,
+    ) -> Result<Option<Self::Velocities>, Singular> {
+        let step = self.0.places().project_position;
+        let step = step.map(|function| self.0.call(function, [x, &[], &[]]));
+        step.transpose().map_err(singular)
+    }
+
+    fn project_velocity(
+        &self,
+        x: &Self::Coordinates,
+        xi: &Self::Velocities,
+    ) -> Result<Option<Self::Velocities>, Singular> {
+        let projected = self.0.places().project_velocity;
+        let projected = projected.map(|function| self.0.call(function, [x, xi, &[]]));
+        projected.transpose().map_err(singular)
+    }
+
+    fn constraint_norm(&self, x: &Self::Coordinates) -> T::Number {
+        let residuals = self.value(self.0.places().constraint, 1, x, &[]);
+        let sizes = residuals.into_iter().map(Scalar::abs);
+        sizes.fold(T::Number::default(), Scalar::max)
+    }
+
+    fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> T::Number {
+        self.number(self.0.places().kinetic, x, xi)
+    }
+
+    fn potential_energy(&self, x: &Self::Coordinates) -> T::Number {
+        self.number(self.0.places().potential, x, &[])
+    }
+}
