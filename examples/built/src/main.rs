@@ -1,0 +1,58 @@
+//! Mechanisms that are described in Rust, without any text: a drone, and a chain of ten links.
+//!
+//! `cargo run -p built` prints the tables of both, and how long the code is that is generated for them. A test
+//! generates the same code from descriptions that were written as text.
+
+mod chain;
+mod drone;
+
+use hamel_codegen::scene::Scene;
+use hamel_codegen::tables::{tables, text};
+use std::error::Error;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    for scene in [drone::drone()?, chain::chain(10)?] {
+        print(&scene)?;
+    }
+    Ok(())
+}
+
+/// Prints the tables of a mechanism, and says how much code it takes.
+fn print(scene: &Scene) -> Result<(), Box<dyn Error>> {
+    let generated = scene.generate()?;
+    println!("{}", text(&tables(&generated, &[])?, false));
+    let lines = scene.rust(&generated)?.lines().count();
+    let functions = generated.program.functions.len();
+    println!("{functions} functions in {lines} lines of Rust\n");
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use hamel_codegen::scene::Scene;
+
+    /// The code without its head, which names the description that it was made of.
+    fn code(scene: &Scene) -> String {
+        let generated = scene.generate().expect("a correct description");
+        let file = scene.rust(&generated).expect("Rust");
+        let (_, code) = file.split_once("\n\n").expect("a head");
+        code.to_string()
+    }
+
+    #[test]
+    fn the_drone_is_that_of_its_text() {
+        let text = include_str!("../../../tests/models/drone.eom");
+        let written = Scene::parse(text).expect("a description");
+        assert_eq!(code(&super::drone::drone().expect("built")), code(&written));
+    }
+
+    #[test]
+    fn the_chain_is_that_of_its_text() {
+        let written = Scene::parse(include_str!("../chain.eom")).expect("a description");
+        let built = super::chain::chain(10).expect("built");
+        let built = code(&built);
+        assert_eq!(built, code(&written));
+        // A chain of nine links is another mechanism.
+        assert_ne!(code(&super::chain::chain(9).expect("built")), built);
+    }
+}
