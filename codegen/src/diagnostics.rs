@@ -77,12 +77,17 @@ impl Report {
         self.errors.push(error);
     }
 
-    /// Adds an error, unless the same is said of the same place already.
-    pub fn push_once(&mut self, error: Diagnostic) {
+    /// Whether the same is said of the same place already.
+    pub fn has(&self, error: &Diagnostic) -> bool {
         let same = |known: &Diagnostic| {
             known.message == error.message && known.span.range() == error.span.range()
         };
-        if !self.errors.iter().any(same) {
+        self.errors.iter().any(same)
+    }
+
+    /// Adds an error, unless the same is said of the same place already.
+    pub fn push_once(&mut self, error: Diagnostic) {
+        if !self.has(&error) {
             self.errors.push(error);
         }
     }

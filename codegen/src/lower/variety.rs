@@ -13,7 +13,8 @@ use crate::model::layout::{Block, blocks, constraint};
 use crate::model::points::{HIGHEST_DEGREE, Points};
 use crate::model::value::Value;
 use crate::model::{class, samples};
-use crate::syntax::ast::{ItemKind, Span, System};
+use crate::syntax::ast::{Expr, ItemKind, Span, System};
+use std::collections::BTreeMap;
 
 /// What a row of φ says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,36 +41,40 @@ pub struct Variety {
     pub near: Option<Vec<f64>>,
     /// x at the start, where guesses were solved for the constraints.
     pub assembled: Option<Vec<f64>>,
-    /// Statements that could be evaluated off X.
-    read: Vec<usize>,
+    /// What kept constraints from having a value off X, by their statements. What is wrong on X too is reported
+    /// there; the rest is the reason that [`Variety::check`] gives.
+    unread: BTreeMap<usize, Vec<Diagnostic>>,
 }
 
 impl Variety {
-    /// Reads all constraints; names and shapes in them are checked later, on X.
+    /// Reads all constraints, with the names that they mention.
+    ///
+    /// Errors are kept for [`Variety::check`]: all that is read here is read again on X, where what is equal modulo φ is
+    /// one node, and where the same mistakes are reported.
     pub fn read(system: &System, seed: u64, report: &mut Report) -> Self {
         let mut random = Random::new(seed ^ 0xf4ee);
         let mut graph = Graph::new(seed ^ 0xf4ee, class::PARAM);
         let mut next = |_: &mut Graph| -> Fp { random.element() };
         let mut scope = Scope::new(system, true);
-        let mut silent = Report::new();
-        let declared = declare(system, &mut graph, &mut next, &mut scope, &mut silent);
+        let mut before = Report::new();
+        let declared = declare(system, &mut graph, &mut next, &mut scope, &mut before);
         graph.set_reals(samples::anywhere(graph.symbols().len(), seed));
-        Names::read(system, &mut graph, &mut scope, &mut silent);
-        let (mut rows, mut read, mut complete) = (Vec::new(), Vec::new(), !declared.faulty);
-        for (index, item) in system.items.iter().enumerate() {
-            let ItemKind::Constraint { left, right } = &item.kind else {
-                continue;
-            };
-            let mut evaluator = Evaluator::new(&mut graph, &scope, &mut silent);
+        Names::read(system, &mut graph, &mut scope, &mut before);
+        let before = before.finish().err().unwrap_or_default();
+        let (mut rows, mut unread, mut complete) = (Vec::new(), BTreeMap::new(), !declared.faulty);
+        for (index, left, right) in written(system) {
+            let mut own = Report::new();
+            let mut evaluator = Evaluator::new(&mut graph, &scope, &mut own);
             let sides = (evaluator.value(left), evaluator.value(right));
             let difference = match sides {
                 (Some(a), Some(b)) if a.same_shape(&b) => a.zip(&b, |x, y| graph.sub(x, y)),
                 _ => {
                     complete = false;
+                    let own = own.finish().err().unwrap_or_default();
+                    unread.insert(index, [own, before.clone()].concat());
                     continue;
                 }
             };
-            read.push(index);
             match check(&graph, &difference, left.span.to(right.span)) {
                 Ok(edges) => rows.extend(edges.into_iter().map(|edge| (edge, index))),
                 Err(error) => {
@@ -87,15 +92,10 @@ impl Variety {
         let constraints: Vec<Edge> = rows.iter().map(|(edge, _)| *edge).collect();
         let mut assembled = None;
         let near = (!constraints.is_empty()).then(|| {
-            let defaults = defaults::read(system, &mut graph, &scope, &declared, &mut silent);
-            let mut start = start::read(
-                system,
-                &mut graph,
-                &scope,
-                &declared,
-                &defaults,
-                &mut silent,
-            );
+            // What is wrong with these is said on X, where they are read for the model.
+            let again = &mut Report::new();
+            let defaults = defaults::read(system, &mut graph, &scope, &declared, again);
+            let mut start = start::read(system, &mut graph, &scope, &declared, &defaults, again);
             if let (Some(start), true) = (&mut start, start::guess::any(system)) {
                 let numbers = declared.numbers(&defaults, Some(start));
                 let graph = &mut graph;
@@ -123,7 +123,7 @@ impl Variety {
             seed,
             near,
             assembled,
-            read,
+            unread,
         };
         variety.collect(&declared, &rows);
         if let Some(near) = variety.near.clone().filter(|_| complete) {
@@ -202,12 +202,10 @@ impl Variety {
         point(&self.points).unwrap_or_else(|| vec![Fp::ONE; self.points.symbols])
     }
 
-    /// Reports what is wrong with names and shapes in the constraints, in the graph with points on X.
+    /// Reports what is wrong with names and shapes in the constraints, in the graph with points on X, and why a
+    /// constraint has a value there and nowhere else.
     pub fn check(&self, system: &System, graph: &mut Graph, scope: &Scope, report: &mut Report) {
-        for (index, item) in system.items.iter().enumerate() {
-            let ItemKind::Constraint { left, right } = &item.kind else {
-                continue;
-            };
+        for (index, left, right) in written(system) {
             let mut evaluator = Evaluator::new(graph, scope, report);
             let (a, b) = (evaluator.value(left), evaluator.value(right));
             let (Some(a), Some(b)) = (a, b) else { continue };
@@ -219,14 +217,17 @@ impl Variety {
                     b.shape()
                 );
                 report.push(Diagnostic::new(span, message).help("both sides need the same shape"));
-            } else if !self.read.contains(&index) {
-                report.push(
-                    Diagnostic::new(
-                        span,
-                        "this constraint has no value away from where it holds",
-                    )
-                    .help("write it without what other constraints make zero or unit"),
-                );
+            } else if let Some(reasons) = self.unread.get(&index) {
+                let error = Diagnostic::new(
+                    span,
+                    "this constraint has no value away from where it holds",
+                )
+                .help("write it without what other constraints make zero or unit");
+                let mut reasons = reasons.iter();
+                report.push(match reasons.find(|reason| !report.has(reason)) {
+                    Some(reason) => error.note(reason.span, &reason.message),
+                    None => error,
+                });
             } else if self.origins.contains(&Origin::Statement(index))
                 && a.zip(&b, |x, y| graph.sub(x, y))
                     .entries()
@@ -240,6 +241,16 @@ impl Variety {
             }
         }
     }
+}
+
+/// The statements of the user's constraints, with both sides of each.
+fn written(system: &System) -> Vec<(usize, &Expr, &Expr)> {
+    let items = system.items.iter().enumerate();
+    let sides = items.filter_map(|(index, item)| match &item.kind {
+        ItemKind::Constraint { left, right } => Some((index, left, right)),
+        _ => None,
+    });
+    sides.collect()
 }
 
 /// The rows of a constraint, where it is one.
