@@ -1,5 +1,6 @@
 //! Dependencies point one way; what a stage must not know is checked in its sources.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -250,4 +251,54 @@ fn the_architecture_page_is_true() {
         }
     }
     assert!(seen > 20, "the page has lost its map");
+}
+
+/// The names in the tables of dependencies of a manifest, but for those of build scripts: they are there for their
+/// features, too.
+fn dependencies(manifest: &str) -> Vec<String> {
+    let (mut names, mut inside) = (Vec::new(), false);
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            inside = line.ends_with("dependencies]") && !line.contains("build-");
+        } else if let (true, Some((name, _))) = (inside, line.split_once('='))
+            && !line.starts_with([' ', '#'])
+        {
+            names.push(name.trim().trim_end_matches(".workspace").replace('-', "_"));
+        }
+    }
+    names
+}
+
+#[test]
+fn every_dependency_is_used() {
+    let workspace = fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
+    let members = workspace.lines().find(|line| line.starts_with("members"));
+    let members = members.expect("members").split('"').skip(1).step_by(2);
+    let mut unused = Vec::new();
+    for member in members {
+        let manifest = root().join(member).join("Cargo.toml");
+        let manifest = fs::read_to_string(manifest).expect("a manifest");
+        let mut text = String::new();
+        let mut open = vec![root().join(member)];
+        while let Some(path) = open.pop() {
+            // Packages within the folder of this one have dependencies of their own.
+            let other = path.join("Cargo.toml").exists() && path != root().join(member);
+            if path.is_dir() && !other && !path.ends_with("target") {
+                let entries = fs::read_dir(&path).expect("a folder");
+                open.extend(entries.map(|entry| entry.expect("an entry").path()));
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                text += &fs::read_to_string(&path).expect("readable");
+            }
+        }
+        let words: HashSet<&str> = text
+            .split(|letter: char| !letter.is_alphanumeric() && letter != '_')
+            .collect();
+        let names = dependencies(&manifest);
+        let idle = names.iter().filter(|name| !words.contains(name.as_str()));
+        unused.extend(idle.map(|name| format!("{member}: {name}")));
+    }
+    assert!(
+        unused.is_empty(),
+        "dependencies that nothing uses: {unused:?}"
+    );
 }
