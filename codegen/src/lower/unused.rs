@@ -4,9 +4,9 @@
 //! are written out: a frame that a joint moves is used by the joint. Names that begin with `_` are left alone.
 
 use crate::diagnostics::Diagnostic;
+use crate::syntax::ast::visit::{Visit, parts, visit};
 use crate::syntax::ast::{
-    Acting, Components, Conserved, Declaration, End, Expr, ExprKind, Ident, Item, ItemKind, Load,
-    Origins, Source, Span, System, Table, Wanted,
+    Expr, ExprKind, Ident, Item, ItemKind, Origins, Span, System, Target, Wanted,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,7 +17,7 @@ pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
         origins: Some(&system.origins),
         ..Uses::default()
     };
-    uses.names.extend(used.iter().map(String::as_str));
+    uses.names.extend(used.iter().cloned());
     system.items.iter().for_each(|item| uses.item(item));
     let mut found = Vec::new();
     let mut placed = BTreeSet::new();
@@ -79,12 +79,12 @@ fn frame(item: &Item) -> Option<&str> {
 /// The names that statements mention, but for what they declare.
 #[derive(Default)]
 struct Uses<'a> {
-    names: BTreeSet<&'a str>,
+    names: BTreeSet<String>,
     /// How names are written.
     origins: Option<&'a Origins>,
 }
 
-impl<'a> Uses<'a> {
+impl Uses<'_> {
     /// A warning, or the place of what is used.
     fn unused(&self, name: &Ident, kind: &str) -> Result<Diagnostic, Span> {
         let Ident { name, span } = name;
@@ -101,197 +101,60 @@ impl<'a> Uses<'a> {
         })
     }
 
-    fn name(&mut self, name: &'a Ident) {
-        self.names.insert(&name.name);
-    }
-
-    fn names(&mut self, list: impl IntoIterator<Item = &'a Ident>) {
-        list.into_iter().for_each(|name| self.name(name));
-    }
-
-    fn all(&mut self, list: impl IntoIterator<Item = &'a Expr>) {
-        list.into_iter().for_each(|expr| self.expr(expr));
-    }
-
-    fn expr(&mut self, expr: &'a Expr) {
-        match &expr.kind {
-            ExprKind::Name(name) => _ = self.names.insert(name),
-            ExprKind::Call(function, _) => self.name(function),
-            _ => {}
-        }
-        self.all(expr.parts());
-    }
-
-    fn values(&mut self, list: &'a [Declaration]) {
-        self.all(
-            list.iter()
-                .filter_map(|declaration| declaration.value.as_ref()),
-        );
-    }
-
-    fn end(&mut self, end: &'a End) {
-        self.all(&end.at);
-        self.name(&end.frame);
-    }
-
-    fn acting(&mut self, acting: &'a Acting) {
-        match acting {
-            Acting::Between(from, to) => [from, to].into_iter().for_each(|end| self.end(end)),
-            Acting::On(expr) => self.expr(expr),
-        }
-    }
-
-    fn load(&mut self, load: &'a Load) {
-        match load {
-            Load::Force { force, at } => self.all([force].into_iter().chain(at)),
-            Load::Torque { torque } => self.expr(torque),
-            Load::Wrench { force, torque, at } => {
-                self.all([force, torque].into_iter().chain(at));
-            }
-        }
-    }
-
-    fn item(&mut self, item: &'a Item) {
+    fn item(&mut self, item: &Item) {
         match &item.kind {
-            ItemKind::Param(list)
-            | ItemKind::Const(list)
-            | ItemKind::Let(list)
-            | ItemKind::Velocity(list)
-            | ItemKind::Input(list)
-            | ItemKind::State(list) => self.values(list),
-            ItemKind::Coord(_) | ItemKind::Time(_) => {}
-            ItemKind::Prescribe { target, value, .. } => {
-                self.name(&target.name);
-                self.expr(value);
-            }
+            // A frame that a joint moves is used by the joint.
+            ItemKind::Joint(joint) => _ = self.names.insert(joint.moves.name.clone()),
+            ItemKind::Prescribe { target, .. } => _ = self.names.insert(target.name.name.clone()),
             ItemKind::Function(function) => {
-                let mut inner = Uses::default();
-                inner.expr(&function.value);
-                for (parameter, _) in &function.parameters {
-                    inner.names.remove(parameter.name.as_str());
-                }
-                self.names.extend(inner.names);
+                return self.within(item, function.parameters.iter().map(|(name, _)| name));
             }
-            ItemKind::External(function) => {
-                let mut inner = Uses::default();
-                function.stand_in.iter().for_each(|value| inner.expr(value));
-                for parameter in &function.parameters {
-                    inner.names.remove(parameter.name.as_str());
-                }
-                self.names.extend(inner.names);
-            }
-            ItemKind::Table(Table {
-                source: Source::Points(points, _),
-                ..
-            }) => points.iter().for_each(|(a, b)| self.all([a, b])),
-            ItemKind::Table(_) => {}
-            ItemKind::Constraint { left, right } => self.all([left, right]),
-            ItemKind::Rate { value, .. }
-            | ItemKind::Generalized { value, .. }
-            | ItemKind::Start { value, .. }
-            | ItemKind::Guess { value, .. }
-            | ItemKind::Output { value, .. } => self.expr(value),
-            ItemKind::Inactive(list) | ItemKind::Independent(list) => self.all(list),
-            ItemKind::Nonholonomic {
-                left,
-                right,
-                stabilized,
-            }
-            | ItemKind::Loop {
-                left,
-                right,
-                stabilized,
-            } => self.all([left, right].into_iter().chain(stabilized)),
-            ItemKind::Frame { on, pose, .. } => {
-                self.names(on);
-                self.expr(pose);
-            }
-            ItemKind::Joint(joint) => {
-                self.names(joint.on.iter().chain([&joint.moves]));
-                self.all(joint.axes.iter().chain(&joint.at).chain(&joint.follows));
-                let fields = joint.fields.iter();
-                self.all(fields.flat_map(|(_, _, values)| values));
-            }
-            ItemKind::Body(body) => {
-                self.name(&body.frame);
-                self.all(body.mass.iter().chain(&body.com));
-                self.all(body.inertia.iter().map(|(inertia, _)| inertia));
-            }
-            ItemKind::Particle { mass, at, on } => {
-                self.all([mass, at]);
-                self.names(on);
-            }
-            ItemKind::Kinetic(expr)
-            | ItemKind::Potential(expr)
-            | ItemKind::Gravity(expr)
-            | ItemKind::Dissipation(expr) => self.expr(expr),
-            ItemKind::Load {
-                load,
-                frame,
-                from,
-                axes,
-            } => {
-                self.load(load);
-                self.names([frame].into_iter().chain(from));
-                if let Components::Frame(frame) = axes {
-                    self.name(frame);
-                }
-            }
-            ItemKind::Push { force, from, to } => {
-                self.expr(force);
-                self.end(from);
-                self.end(to);
-            }
-            ItemKind::Spring {
-                stiffness,
-                length,
-                acting,
-            } => {
-                self.all([stiffness].into_iter().chain(length));
-                self.acting(acting);
-            }
-            ItemKind::Damper {
-                coefficient,
-                acting,
-            } => {
-                self.expr(coefficient);
-                self.acting(acting);
-            }
-            ItemKind::Invariant {
-                conserved, when, ..
-            } => {
-                self.conserved(conserved);
-                self.all(when.iter().flat_map(|set| [&set.target, &set.value]));
-            }
+            ItemKind::External(function) => return self.within(item, &function.parameters),
+            // The functions that are asked for are no names of the description; the frames of Jacobians are.
             ItemKind::Generate(all) => {
                 for wanted in all {
                     if let Wanted::Jacobian { frame, .. } = wanted {
-                        self.name(frame);
+                        self.names.insert(frame.name.clone());
                     }
                 }
+                return;
             }
-            // Written out already.
-            ItemKind::Include(..)
-            | ItemKind::Component(_)
-            | ItemKind::Part(_)
-            | ItemKind::Repeat(_) => {}
+            _ => {}
         }
+        visit(&mut item.clone(), self);
     }
 
-    fn conserved(&mut self, conserved: &'a Conserved) {
-        match conserved {
-            Conserved::Energy => {}
-            Conserved::LinearMomentum { of, along } => {
-                self.names(of);
-                self.all(along);
-            }
-            Conserved::AngularMomentum { of, about, along } => {
-                self.names(of);
-                self.all(about.iter().chain(along));
-            }
-            Conserved::Value(expr) => self.expr(expr),
+    /// What the statement of a function mentions, but for its parameters.
+    fn within<'p>(&mut self, item: &Item, parameters: impl IntoIterator<Item = &'p Ident>) {
+        let mut inner = Uses::default();
+        visit(&mut item.clone(), &mut inner);
+        for parameter in parameters {
+            inner.names.remove(&parameter.name);
         }
+        self.names.extend(inner.names);
     }
+}
+
+impl Visit for Uses<'_> {
+    fn declares(&mut self, _: &mut Ident, _: bool) {}
+
+    fn uses(&mut self, name: &mut Ident) {
+        self.names.insert(name.name.clone());
+    }
+
+    // Rates, starts and forces are said of what there is; they use nothing.
+    fn target(&mut self, _: &mut Target) {}
+
+    fn expr(&mut self, expr: &mut Expr) {
+        match &expr.kind {
+            ExprKind::Name(name) => _ = self.names.insert(name.clone()),
+            ExprKind::Call(function, _) => _ = self.names.insert(function.name.clone()),
+            _ => {}
+        }
+        parts(expr).into_iter().for_each(|part| self.expr(part));
+    }
+
+    fn place(&mut self, _: &mut Span) {}
 }
 
 #[cfg(test)]
