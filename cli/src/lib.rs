@@ -68,7 +68,7 @@ Examples:
   hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
   hamel import arm.urdf -o arm.eom              a robot in URDF as a description
 
-FILE may be a robot in URDF, and `-`: it is then read from standard input.
+FILE is a description (.eom) or a robot (.urdf); `-` reads standard input.
 Exit status: 0 done, 1 a description or a check failed, 2 wrong usage or unreadable files.";
 
 /// Generates equations of motion in redundant coordinates and quasi-velocities.

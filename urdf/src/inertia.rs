@@ -1,6 +1,6 @@
 //! Which links have to have mass, and which inertias are those of a body.
 
-use crate::plan::{Motion, Plan};
+use crate::plan::{Mobility, Plan};
 use crate::problem::Problems;
 use crate::robot::{Inertial, Kind, Robot};
 use crate::tree::Tree;
@@ -34,13 +34,16 @@ pub(crate) fn check(
         .collect();
     let mut moves = vec![floating; robot.links.len()];
     for edge in &tree.joints {
-        let still = matches!(plan.motions[edge.joint], Motion::Fixed | Motion::Locked(_));
+        let still = matches!(
+            plan.motions[edge.joint],
+            Mobility::Fixed | Mobility::Locked(_)
+        );
         moves[edge.child] = moves[edge.parent] || !still;
     }
     for edge in tree.joints.iter().rev() {
         carries[edge.parent] |= carries[edge.child];
         let joint = &robot.joints[edge.joint];
-        if !carries[edge.child] && plan.motions[edge.joint] == Motion::Free {
+        if !carries[edge.child] && plan.motions[edge.joint] == Mobility::Free {
             let link = &robot.links[edge.child].name;
             let name = &joint.name.name;
             let lock = match joint.kind {
@@ -94,7 +97,10 @@ fn bare(
         .collect();
     let mut own = vec![floating; robot.links.len()];
     for edge in tree.joints.iter().rev() {
-        let still = matches!(plan.motions[edge.joint], Motion::Fixed | Motion::Locked(_));
+        let still = matches!(
+            plan.motions[edge.joint],
+            Mobility::Fixed | Mobility::Locked(_)
+        );
         own[edge.child] = !still;
         given[edge.parent] |= still && given[edge.child];
     }

@@ -65,7 +65,7 @@ pub fn import(xml: &str, options: &Options) -> Result<Imported, Vec<Problem>> {
         &mut errors,
         &mut warnings,
     );
-    let moving = |motion: &plan::Motion| matches!(motion, plan::Motion::Free);
+    let moving = |motion: &plan::Mobility| matches!(motion, plan::Mobility::Free);
     if !options.floating && !plan.motions.iter().any(moving) {
         errors.push(
             &read.robot.range,

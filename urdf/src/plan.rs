@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// How a joint moves.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Motion {
+pub(crate) enum Mobility {
     /// It has coordinates of its own.
     Free,
     /// It is fixed by its type.
@@ -31,7 +31,7 @@ pub(crate) struct Linear {
 /// The motions of all joints, by index.
 #[derive(Debug)]
 pub(crate) struct Plan {
-    pub(crate) motions: Vec<Motion>,
+    pub(crate) motions: Vec<Mobility>,
     /// Whether another joint follows this one: its angle has to be a coordinate then.
     pub(crate) followed: Vec<bool>,
 }
@@ -53,20 +53,20 @@ pub(crate) fn plan(
     let mut motions = Vec::new();
     for (number, joint) in robot.joints.iter().enumerate() {
         motions.push(match (joint.kind, locks.get(&number), &joint.mimic) {
-            (Kind::Fixed, ..) => Motion::Fixed,
-            (_, Some(value), _) => Motion::Locked(Linear {
+            (Kind::Fixed, ..) => Mobility::Fixed,
+            (_, Some(value), _) => Mobility::Locked(Linear {
                 value: value.clone(),
                 steps: Vec::new(),
             }),
             (_, None, Some(_)) if options.mimic == Mimic::Follow => {
                 follow(robot, number, &index, &locks, errors)
             }
-            _ => Motion::Free,
+            _ => Mobility::Free,
         });
     }
     let mut followed = vec![false; motions.len()];
     for motion in &motions {
-        if let Motion::Follows(source, _) = motion {
+        if let Mobility::Follows(source, _) = motion {
             followed[*source] = true;
         }
     }
@@ -146,7 +146,7 @@ fn follow(
     index: &BTreeMap<&str, usize>,
     locks: &BTreeMap<usize, Decimal>,
     errors: &mut Problems<'_>,
-) -> Motion {
+) -> Mobility {
     let mut steps = Vec::new();
     let mut at = number;
     loop {
@@ -154,11 +154,11 @@ fn follow(
         if let Some(value) = locks.get(&at) {
             steps.reverse();
             let value = value.clone();
-            return Motion::Locked(Linear { value, steps });
+            return Mobility::Locked(Linear { value, steps });
         }
         let Some(mimic) = &joint.mimic else {
             steps.reverse();
-            return Motion::Follows(at, steps);
+            return Mobility::Follows(at, steps);
         };
         let source = index.get(mimic.source.name.as_str()).copied();
         let Some(next) = source else {
@@ -166,7 +166,7 @@ fn follow(
             if at == number {
                 unknown("joint", &mimic.source, index.keys().copied(), errors);
             }
-            return Motion::Free;
+            return Mobility::Free;
         };
         let one = |kind| matches!(kind, Kind::Revolute | Kind::Continuous | Kind::Prismatic);
         if !one(robot.joints[next].kind) || !one(joint.kind) {
@@ -177,7 +177,7 @@ fn follow(
                     "both have to be revolute, continuous or prismatic",
                 );
             }
-            return Motion::Free;
+            return Mobility::Free;
         }
         steps.push((mimic.multiplier.clone(), mimic.offset.clone()));
         if next == number || steps.len() > robot.joints.len() {
@@ -188,7 +188,7 @@ fn follow(
                     "one joint of the circle has to move by itself",
                 );
             }
-            return Motion::Free;
+            return Mobility::Free;
         }
         at = next;
     }

@@ -13,7 +13,7 @@ use super::calculus::Calculus;
 use super::candidates::Candidates;
 use super::frames::{Twist, by_rows, by_velocities, change, flat};
 use super::program::Builder;
-use super::quantity::{Motion, motions};
+use super::quantity::{MovingMass, motions};
 use super::tree::Placement;
 use super::tree::draft::has_more_inertia;
 use crate::algebra::graph::{Edge, Graph};
@@ -93,7 +93,7 @@ impl Builder<'_> {
 }
 
 /// The masses whose frames depend on the configuration.
-fn moving(model: &mut Model, calculus: &mut Calculus) -> Vec<Motion> {
+fn moving(model: &mut Model, calculus: &mut Calculus) -> Vec<MovingMass> {
     let all = motions(model, calculus, None);
     let moves = moves(model);
     let kept = all.into_iter().zip(moves).filter(|(_, moves)| *moves);
@@ -115,13 +115,13 @@ pub(crate) fn moves(model: &Model) -> Vec<bool> {
 }
 
 /// The mass of what moves.
-fn mass(graph: &mut Graph, moving: &[Motion]) -> Edge {
+fn mass(graph: &mut Graph, moving: &[MovingMass]) -> Edge {
     let masses: Vec<Edge> = moving.iter().map(|motion| motion.mass).collect();
     graph.sum(&masses)
 }
 
 /// c, where there is mass.
-fn centre(graph: &mut Graph, moving: &[Motion]) -> Vec3 {
+fn centre(graph: &mut Graph, moving: &[MovingMass]) -> Vec3 {
     let mut first = zero3(graph);
     for motion in moving {
         let part = scale3(graph, motion.mass, motion.centre);

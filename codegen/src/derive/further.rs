@@ -6,7 +6,7 @@ use super::accel::setting::Setting;
 use super::accel::{Acceleration, recursions};
 use super::calculus::Calculus;
 use super::candidates::Candidates;
-use super::linearize::{Displacements, Linear, Motion, linearize, slopes, with_states};
+use super::linearize::{Displacements, ForwardDynamics, Linear, linearize, slopes, with_states};
 use super::program::{Builder, MOST_LITERAL, shape_of};
 use super::reduction::Reduction;
 use super::regressor::Regressor;
@@ -124,7 +124,7 @@ impl Builder<'_> {
             let known = motion.pivots.iter().copied().zip(causes);
             let (guards, causes): (Vec<Edge>, Vec<Cause>) =
                 known.filter(|(pivot, _)| varying(pivot)).unzip();
-            let nearby = Motion {
+            let nearby = ForwardDynamics {
                 graph: &graph,
                 xi_dot: &motion.xi_dot,
                 guards: &guards,

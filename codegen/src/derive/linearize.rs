@@ -31,7 +31,7 @@ const MOST_TERMS: usize = 40;
 const MOST_WORK: usize = 1_000_000;
 
 /// ξ̇ = F as edges of a graph that grew from the model's.
-pub struct Motion<'a> {
+pub struct ForwardDynamics<'a> {
     /// The graph.
     pub graph: &'a Graph,
     /// F, one entry for each active velocity.
@@ -172,7 +172,7 @@ pub fn slopes(
 /// Linearises; `model` is that of the active velocities. The cheapest of three ways is taken: F itself
 /// differentiated; M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all columns; the
 /// entries expanded, their coefficients computed when parameters are set.
-pub fn linearize(model: &Model, motion: &Motion, care: &Care) -> Linear {
+pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear {
     let upper = upper(model, motion);
     let placements = care.placements().iter();
     let recursions: Vec<Recursion> = placements
@@ -213,7 +213,7 @@ pub fn linearize(model: &Model, motion: &Motion, care: &Care) -> Linear {
 }
 
 /// After resubstitution, where that finds something.
-fn polished(linear: &Linear, motion: &Motion) -> Option<Linear> {
+fn polished(linear: &Linear, motion: &ForwardDynamics) -> Option<Linear> {
     let (graph, mut edges) = resubstitute(&linear.graph, &linear.roots(), motion.graph)?;
     let columns = linear.rows.first().map_or(1, |row| row.len().max(1));
     let guards = edges.split_off(edges.len() - linear.guards.len());
@@ -226,7 +226,7 @@ fn polished(linear: &Linear, motion: &Motion) -> Option<Linear> {
 }
 
 /// The rows of ḣ.
-fn upper(model: &Model, motion: &Motion) -> Linear {
+fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
     let mut graph = motion.graph.clone();
     let nearby = &motion.nearby;
     let mut columns = columns(model, &mut graph, nearby);
@@ -269,7 +269,7 @@ fn columns(model: &Model, graph: &mut Graph, nearby: &Displacements) -> Vec<Deri
 }
 
 /// F differentiated as it stands.
-fn explicit(model: &Model, motion: &Motion, upper: &Linear) -> Linear {
+fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
     let mut graph = motion.graph.clone();
     let mut columns = columns(model, &mut graph, &motion.nearby);
     let mut rows = carried(upper, &mut graph);
@@ -286,7 +286,7 @@ fn explicit(model: &Model, motion: &Motion, upper: &Linear) -> Linear {
 }
 
 /// M δξ̇ = ∂(M F) − (∂M) F, all columns with one factorisation.
-fn implicit(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
+fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<Linear> {
     let (mass, right) = motion.implicit?;
     let mut graph = motion.graph.clone();
     let mut columns = columns(model, &mut graph, &motion.nearby);
@@ -319,7 +319,7 @@ fn implicit(model: &Model, motion: &Motion, upper: &Linear) -> Option<Linear> {
 /// The same for a tree of links, by recursion; M factored from the leaves to the root.
 fn recursive(
     model: &Model,
-    motion: &Motion,
+    motion: &ForwardDynamics,
     recursion: &Recursion,
     upper: &Linear,
 ) -> Option<Linear> {
@@ -341,7 +341,7 @@ fn recursive(
 }
 
 /// Every entry as a sum of monomials with coefficients of parameters alone, where all are short.
-fn expanded(model: &Model, explicit: &Linear, motion: &Motion) -> Option<Linear> {
+fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Option<Linear> {
     let mut forms = NormalForms::within(&model.points, MOST_WORK);
     let mut source = explicit.graph.clone();
     let mut polynomials = Vec::new();

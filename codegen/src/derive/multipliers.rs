@@ -4,13 +4,14 @@
 //! equations of motion that the solved velocities belong to, by the pivots of the reduction.
 
 use super::accel::Acceleration;
-use super::accel::parts::{Axes, Reference, Variant, parts};
+use super::accel::parts::{Reference, Variant, parts};
 use super::calculus::Calculus;
 use super::reduction::Reduction;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::solve_symmetric;
 use crate::algebra::transplant::{map_symbols, rebuild};
 use crate::model::{Model, class};
+use crate::syntax::ast::Axes;
 
 /// M ξ̇ + h + ∂V − f of some velocities of the full frame, with ξ̇ₐ as symbols: bodies traced in the full frame.
 pub fn residuals(full: &Model, reduction: &Reduction, velocities: &[usize]) -> (Graph, Vec<Edge>) {

@@ -65,7 +65,7 @@ pub fn of_total(
 }
 
 /// One mass in motion, world axes.
-pub struct Motion {
+pub struct MovingMass {
     /// The mass (kg).
     pub mass: Edge,
     /// Its centre of mass (m).
@@ -77,7 +77,7 @@ pub struct Motion {
 }
 
 /// The bodies on a frame, or everything.
-pub fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) -> Vec<Motion> {
+pub fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) -> Vec<MovingMass> {
     let graph = &mut model.graph;
     let mut all = Vec::new();
     for body in &model.bodies {
@@ -90,7 +90,7 @@ pub fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) ->
         let velocity = calculus.rate3(graph, centre);
         let omega = calculus.spin(graph, &frame.rotation);
         let spin = apply3(graph, &body.inertia_com, omega);
-        all.push(Motion {
+        all.push(MovingMass {
             mass: body.mass,
             centre,
             momentum: scale3(graph, body.mass, velocity),
@@ -100,7 +100,7 @@ pub fn motions(model: &mut Model, calculus: &mut Calculus, of: Option<usize>) ->
     if of.is_none() {
         for particle in &model.particles {
             let velocity = calculus.rate3(graph, particle.position);
-            all.push(Motion {
+            all.push(MovingMass {
                 mass: particle.mass,
                 centre: particle.position,
                 momentum: scale3(graph, particle.mass, velocity),

@@ -1,7 +1,7 @@
 //! The order in which a description is read, with its checkpoints.
 
 use super::declare::{Declared, NextValue, declare};
-use super::motion::Motion;
+use super::motion::TimeDerivative;
 use super::names::Names;
 use super::rate::At;
 use super::scope::Scope;
@@ -176,7 +176,7 @@ impl<'a> Reading<'a> {
         });
         let kinematics = kinematics::read(system, graph, scope, variety, declared, at, report);
         if let Some(kinematics) = &kinematics {
-            let motion = Motion::new(
+            let motion = TimeDerivative::new(
                 &declared.x,
                 &kinematics.rate,
                 &declared.xi,

@@ -2,7 +2,7 @@
 
 use super::declare::{Declared, shape_fits};
 use super::expression::Evaluator;
-use super::motion::Motion;
+use super::motion::TimeDerivative;
 use super::scope::Scope;
 use super::time;
 use crate::algebra::derivation::Derivation;
@@ -93,7 +93,7 @@ fn rates(graph: &mut Graph, scope: &Scope, x: &[Edge]) -> (Scope, Vec<Edge>) {
         x_dot.push(graph.symbol("rate", class::RATE, value));
     }
     let mut scope = scope.clone();
-    scope.rates = Some(Motion::new(x, &x_dot, &[], &[]));
+    scope.rates = Some(TimeDerivative::new(x, &x_dot, &[], &[]));
     (scope, x_dot)
 }
 

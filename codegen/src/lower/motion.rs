@@ -1,4 +1,4 @@
-//! Motion of frames and of their points: the functions `position`, `velocity`, `acceleration`,
+//! Motions of frames and of their points: the functions `position`, `velocity`, `acceleration`,
 //! `angular_velocity` and `angular_acceleration`.
 //!
 //! | call | value | unit |
@@ -37,17 +37,17 @@ pub fn needs_rates(function: &str) -> bool {
 
 /// ẋ and ξ̇: what d/dt does to x and ξ.
 #[derive(Clone, Debug)]
-pub struct Motion {
+pub struct TimeDerivative {
     seeds: Vec<(u32, Edge)>,
     /// What was asked for so far.
     pub seen: RefCell<Vec<Observed>>,
 }
 
-impl Motion {
+impl TimeDerivative {
     /// Along ẋ = `rate` and the symbols ξ̇.
     pub fn new(x: &[Edge], rate: &[Edge], xi: &[Edge], xi_dot: &[Edge]) -> Self {
         let pairs = x.iter().zip(rate).chain(xi.iter().zip(xi_dot));
-        Motion {
+        TimeDerivative {
             seeds: pairs.map(|(symbol, &rate)| (symbol.node(), rate)).collect(),
             seen: RefCell::new(Vec::new()),
         }

@@ -1,7 +1,7 @@
 //! Names and what they stand for.
 
 use super::curve::Curve;
-use super::motion::Motion;
+use super::motion::TimeDerivative;
 use crate::algebra::function::Function;
 use crate::algebra::graph::{Edge, NodeId};
 use crate::diagnostics::{Diagnostic, Report};
@@ -131,11 +131,11 @@ pub struct Scope {
     /// Whether values are those at points off the variety: what holds on it alone is not checked.
     pub free: bool,
     /// How x and ξ move, once the rates are known.
-    pub motion: Option<Motion>,
+    pub motion: Option<TimeDerivative>,
     /// Whether the rates are in error: what needs them is no further error.
     pub unmoved: bool,
     /// How x moves along symbols that stand for ẋ, in definitions of velocities.
-    pub rates: Option<Motion>,
+    pub rates: Option<TimeDerivative>,
     /// The functions of the description.
     pub functions: BTreeMap<String, Defined>,
     /// The tables of the description; `None` where they are in error.

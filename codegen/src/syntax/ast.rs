@@ -184,10 +184,10 @@ pub enum Components {
     Frame(Ident),
 }
 
-/// The axes in which the components of a load are computed with.
+/// The axes in which components are computed: those of a load, or of a motion that is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// Those of the frame that the load acts on.
+    /// Those of the frame itself.
     Body,
     /// Those of the world.
     World,

@@ -23,7 +23,7 @@ use crate::so3::{self, Matrix, Vector};
 
 /// One torque-free motion: constants and start.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<S> {
+pub(crate) struct FreeRotation<S> {
     /// P/|P|
     unit: Vector<S>,
     /// |P|
@@ -74,7 +74,7 @@ fn exchange<S: Scalar>(axes: &mut [Named<S>; 3], a: usize, b: usize, condition: 
     axes[b] = mix(first, second);
 }
 
-impl<S: Scalar> Motion<S> {
+impl<S: Scalar> FreeRotation<S> {
     /// The motion with angular momentum `p` now, in principal axes.
     pub(crate) fn new(moments: Vector<S>, p: Vector<S>) -> Self {
         let (zero, one) = (S::default(), S::from_f64(1.0));
@@ -202,7 +202,7 @@ pub fn exact<S: Scalar, A: Attitude<S>>(
     moments: Vector<S>,
     h: S,
 ) -> A {
-    let (f, after) = Motion::new(moments, *p).after(h);
+    let (f, after) = FreeRotation::new(moments, *p).after(h);
     *p = after;
     attitude.turned_by_matrix(f)
 }
@@ -210,7 +210,7 @@ pub fn exact<S: Scalar, A: Attitude<S>>(
 /// The time between two flips of a torque-free rotor, half a period of its angular velocity: 2K/|u̇|;
 /// for a given angular momentum in principal axes. Infinite or NaN where it does not flip.
 pub fn half_period<S: Scalar>(moments: Vector<S>, p: Vector<S>) -> S {
-    let motion = Motion::new(moments, p);
+    let motion = FreeRotation::new(moments, p);
     let quarter = Mean::new(motion.complement).quarter_period();
     S::from_f64(2.0) * quarter / motion.rate.abs()
 }

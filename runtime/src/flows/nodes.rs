@@ -6,7 +6,7 @@
 //! ends, whose absolute accuracy does not suffer from their length.
 
 use crate::flows::carlson::third_kind;
-use crate::flows::exact::Motion;
+use crate::flows::exact::FreeRotation;
 use crate::flows::jacobi::{Jacobi, Mean, SERIES_BELOW, Series};
 use crate::scalar::{Scalar, epsilon};
 
@@ -30,7 +30,7 @@ const GAUSS: [(f64, f64); 5] = [
 
 /// The motion after the time `h`.
 #[inline]
-pub(crate) fn advance<S: Scalar>(motion: &Motion<S>, h: S) -> Angle<S> {
+pub(crate) fn advance<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
     let size = (motion.rate * h).abs();
     for count in [1, 2, 4, 8] {
         let limit = S::from_f64(SERIES_BELOW * f64::from(count));
@@ -52,7 +52,7 @@ pub(crate) fn advance<S: Scalar>(motion: &Motion<S>, h: S) -> Angle<S> {
 
 /// In `count` equal panels of |u| below the limit of the series.
 #[inline]
-fn panels<S: Scalar>(motion: &Motion<S>, h: S, count: u32) -> Angle<S> {
+fn panels<S: Scalar>(motion: &FreeRotation<S>, h: S, count: u32) -> Angle<S> {
     let one = S::from_f64(1.0);
     let series = Series::new(motion.m);
     let h = h / S::from_f64(f64::from(count));
@@ -89,7 +89,7 @@ fn separatrix<S: Scalar>() -> (S, S) {
 }
 
 /// By whole periods and the integral of the third kind.
-fn long<S: Scalar>(motion: &Motion<S>, h: S) -> Angle<S> {
+fn long<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
     let (zero, one, two) = (S::default(), S::from_f64(1.0), S::from_f64(2.0));
     let (floor, far) = separatrix::<S>();
     let endless = motion.complement;

@@ -2,7 +2,7 @@
 
 use super::Writer;
 use crate::options::Mimic;
-use crate::plan::Motion;
+use crate::plan::Mobility;
 use crate::problem::place;
 use crate::robot::Cleaned;
 
@@ -127,6 +127,6 @@ impl Writer<'_> {
 
     /// Whether a joint's angle is a coordinate that others follow.
     pub(super) fn is_followed(&self, joint: usize) -> bool {
-        self.plan.followed[joint] && self.plan.motions[joint] == Motion::Free
+        self.plan.followed[joint] && self.plan.motions[joint] == Mobility::Free
     }
 }

@@ -3,7 +3,7 @@
 use super::Writer;
 use crate::angle::Angle;
 use crate::decimal::{Decimal, vector};
-use crate::plan::{Linear, Motion};
+use crate::plan::{Linear, Mobility};
 use crate::robot::{Joint, Kind};
 use crate::tree::Edge;
 
@@ -24,7 +24,7 @@ impl Writer<'_> {
             false => format!(" on {}", self.names.links[edge.parent]),
         };
         let (kind, pose) = match &motion {
-            Motion::Locked(value) => ("fixed".to_string(), locked(joint, value)),
+            Mobility::Locked(value) => ("fixed".to_string(), locked(joint, value)),
             _ => {
                 let kind = self.kind(edge.joint);
                 let rotation = joint.origin.rotation.text();
@@ -33,7 +33,7 @@ impl Writer<'_> {
         };
         let at = pose.map_or_else(String::new, |pose| format!(" at {pose}"));
         let follows = match &motion {
-            Motion::Follows(source, steps) => {
+            Mobility::Follows(source, steps) => {
                 let source = self.names.joints[*source].clone();
                 format!(" follows {}", linear(source, steps))
             }
@@ -52,7 +52,7 @@ impl Writer<'_> {
             }
             self.page.line(range, "};");
         }
-        if let (Motion::Follows(source, steps), Some(damping)) = (&motion, &joint.damping) {
+        if let (Mobility::Follows(source, steps), Some(damping)) = (&motion, &joint.damping) {
             let rate = format!("{}_dot", self.names.joints[*source]);
             let factors: Vec<_> = steps
                 .iter()
@@ -62,7 +62,7 @@ impl Writer<'_> {
             let damper = format!("damper coefficient {} on {rate};", damping.text);
             self.page.line(range, &damper);
         }
-        if motion == Motion::Free {
+        if motion == Mobility::Free {
             match joint.kind {
                 Kind::Floating => {
                     let from = if rooted {
@@ -101,7 +101,7 @@ impl Writer<'_> {
             Kind::Prismatic => format!("prismatic {}", axis()),
             // What follows an angle needs the angle.
             Kind::Continuous
-                if self.plan.motions[index] == Motion::Free && !self.is_followed(index) =>
+                if self.plan.motions[index] == Mobility::Free && !self.is_followed(index) =>
             {
                 format!("continuous {}", axis())
             }
@@ -110,9 +110,9 @@ impl Writer<'_> {
     }
 
     /// What the statement does not say.
-    fn comments(&self, joint: &Joint, motion: &Motion) -> Vec<String> {
+    fn comments(&self, joint: &Joint, motion: &Mobility) -> Vec<String> {
         let mut comments = Vec::new();
-        if let Motion::Locked(_) = motion {
+        if let Mobility::Locked(_) = motion {
             comments.push("Locked.".to_string());
             return comments;
         }
@@ -132,7 +132,7 @@ impl Writer<'_> {
                 "Damping {text} of several freedoms is not modelled."
             ));
         }
-        if let (Some(mimic), Motion::Free) = (&joint.mimic, motion) {
+        if let (Some(mimic), Mobility::Free) = (&joint.mimic, motion) {
             let steps = [(mimic.multiplier.clone(), mimic.offset.clone())];
             let expression = linear(mimic.source.name.clone(), &steps);
             comments.push(format!("In the URDF it follows {expression}."));
@@ -238,20 +238,20 @@ fn linear(start: String, steps: &[(Decimal, Decimal)]) -> String {
 }
 
 /// What stands in the braces.
-fn fields(joint: &Joint, motion: &Motion, name: &str) -> Vec<String> {
+fn fields(joint: &Joint, motion: &Mobility, name: &str) -> Vec<String> {
     let one = matches!(
         joint.kind,
         Kind::Revolute | Kind::Continuous | Kind::Prismatic
     );
-    if !one || matches!(motion, Motion::Fixed | Motion::Locked(_)) {
+    if !one || matches!(motion, Mobility::Fixed | Mobility::Locked(_)) {
         return Vec::new();
     }
     let mut fields = Vec::new();
-    if *motion == Motion::Free {
+    if *motion == Mobility::Free {
         fields.push(format!("force {name}_tau;"));
     }
     // What follows is damped by its leader, below.
-    if let (Some(damping), Motion::Free) = (&joint.damping, motion) {
+    if let (Some(damping), Mobility::Free) = (&joint.damping, motion) {
         fields.push(format!("damping {};", damping.text));
     }
     let mut bounds = Vec::new();

@@ -7,7 +7,7 @@ mod page;
 
 use crate::names::Names;
 use crate::options::{Imported, Options};
-use crate::plan::{Motion, Plan};
+use crate::plan::{Mobility, Plan};
 use crate::robot::{Kind, Read, Robot};
 use crate::tree::{Edge, Tree};
 use page::Page;
@@ -71,7 +71,7 @@ impl Writer<'_> {
         let mut moving = vec![self.options.floating; self.robot.links.len()];
         for edge in &self.tree.joints {
             let motion = &self.plan.motions[edge.joint];
-            let still = matches!(motion, Motion::Fixed | Motion::Locked(_));
+            let still = matches!(motion, Mobility::Fixed | Mobility::Locked(_));
             moving[edge.child] = moving[edge.parent] || !still;
         }
         moving
@@ -79,7 +79,7 @@ impl Writer<'_> {
 
     /// Joints with coordinates of their own, in the order of the tree.
     fn free(&self) -> impl Iterator<Item = &Edge> {
-        let free = |edge: &&Edge| self.plan.motions[edge.joint] == Motion::Free;
+        let free = |edge: &&Edge| self.plan.motions[edge.joint] == Mobility::Free;
         self.tree.joints.iter().filter(free)
     }
 

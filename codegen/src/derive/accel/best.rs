@@ -1,12 +1,12 @@
 //! Computations of ξ̇ compared: of each family of candidates the best is polished first.
 
-use super::parts::Axes;
 use super::saddle::Projections;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::resubstitute::resubstitute;
 use crate::derive::care::Care;
 use crate::model::Model;
 use crate::program::count::{Count, count, depth};
+use crate::syntax::ast::Axes;
 
 /// The chosen computation of ξ̇.
 #[derive(Clone, Debug)]

@@ -13,15 +13,7 @@ use crate::derive::inertia::{accumulate, kinetic_mass, symmetric};
 use crate::derive::normal::without_coordinates;
 use crate::derive::{energy, kinematics, loads};
 use crate::model::{Body, Model};
-
-/// The axes in which linear motion is traced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axes {
-    /// Those of the body's frame.
-    Body,
-    /// Those of the world.
-    World,
-}
+use crate::syntax::ast::Axes;
 
 /// The point of a body whose motion is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

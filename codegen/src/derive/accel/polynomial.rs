@@ -2,7 +2,7 @@
 //! constant coefficients, and factored anew. Small systems get their shortest code this way; M may
 //! be inverted into the coefficients where it is constant.
 
-use super::parts::{Axes, Reference, Variant, parts};
+use super::parts::{Reference, Variant, parts};
 use super::solve::{Plan, solve};
 use super::{Acceleration, Parts, all_plans, elimination};
 use crate::algebra::graph::{Edge, Graph};
@@ -15,6 +15,7 @@ use crate::derive::calculus::Calculus;
 use crate::derive::normal::{Collected, NormalForms, collect, variable_node};
 use crate::model::Model;
 use crate::program::count::{count, depth};
+use crate::syntax::ast::Axes;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most run-time terms of a system that is expanded.

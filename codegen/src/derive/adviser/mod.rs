@@ -16,7 +16,7 @@ use crate::algebra::transplant::substitute;
 use crate::model::{Coordinate, Model};
 use crate::program::count::{Count, count};
 use crate::syntax::ast::CoordKind;
-use rates::Rates;
+use rates::RateDraft;
 
 /// More combinations than this are not tried.
 const MOST: usize = 24;
@@ -216,7 +216,7 @@ fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, Strin
     let mut own = model.clone();
     let rows = kinematics::left_inverse(&mut own)
         .ok_or("the rates of this description leave A without a left inverse")?;
-    let mut rates = Rates::new(model, &mut own.graph);
+    let mut rates = RateDraft::new(model, &mut own.graph);
     for (moves, way) in combination {
         rates.take(moves, *way);
     }

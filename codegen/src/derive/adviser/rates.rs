@@ -9,7 +9,7 @@ use crate::model::{Coordinate, Model};
 use crate::syntax::ast::CoordKind;
 
 /// ẋ = A' ξ' as it is put together.
-pub struct Rates<'a> {
+pub struct RateDraft<'a> {
     model: &'a Model,
     graph: &'a mut Graph,
     /// ẋ so far.
@@ -56,10 +56,10 @@ impl Names {
     }
 }
 
-impl<'a> Rates<'a> {
+impl<'a> RateDraft<'a> {
     /// No rates yet; `graph` has grown from the model's.
     pub fn new(model: &'a Model, graph: &'a mut Graph) -> Self {
-        Rates {
+        RateDraft {
             model,
             rate: vec![graph.zero(); model.nu()],
             graph,

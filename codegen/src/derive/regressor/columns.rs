@@ -6,7 +6,7 @@ use super::parameters::{ENTRIES, Link};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, apply_transposed, apply3, cross, identity3, zero3};
 use crate::derive::tree::Tree;
-use crate::derive::tree::inverse::{Motion, Wrench, carried, motions};
+use crate::derive::tree::inverse::{LinkMotion, Wrench, carried, motions};
 use crate::model::Model;
 use crate::program::count::count;
 
@@ -70,7 +70,7 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
     .collect()
 }
 
-fn motions_of(model: &mut Model, tree: &Tree) -> Vec<Motion> {
+fn motions_of(model: &mut Model, tree: &Tree) -> Vec<LinkMotion> {
     let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
     motions(&mut model.graph, tree, &xi, &xi_dot, gravity)
 }
@@ -80,7 +80,7 @@ fn of_link(
     graph: &mut Graph,
     tree: &Tree,
     index: usize,
-    (link, motion): (&Link, &Motion),
+    (link, motion): (&Link, &LinkMotion),
     own: &[usize],
     route: Route,
 ) -> Vec<Vec<Edge>> {

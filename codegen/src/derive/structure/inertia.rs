@@ -3,7 +3,7 @@
 
 use super::centre::{Shift, shift};
 use super::constant::settle;
-use super::rates::{Part, Rates, dependence, measure_alike, rates};
+use super::rates::{Part, RateMaps, dependence, measure_alike, rates};
 use super::setting::Setting;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, matrix, multiply, solve_symmetric, transpose};
@@ -14,7 +14,7 @@ use crate::program::structure::Reason;
 /// A system whose inertia falls apart.
 pub struct Separated {
     /// w = B ξ, ξ = N w.
-    pub rates: Rates,
+    pub rates: RateMaps,
     /// y − x and its rate.
     pub shift: Shift,
     /// J of every rotor, in order.

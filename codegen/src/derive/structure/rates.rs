@@ -67,7 +67,7 @@ pub fn parts(model: &Model) -> Vec<Part> {
 }
 
 /// B and N.
-pub struct Rates {
+pub struct RateMaps {
     /// w = B ξ.
     pub of_velocities: Vec<Vec<Edge>>,
     /// ξ = N w.
@@ -76,7 +76,7 @@ pub struct Rates {
 
 /// B and N of a model with as many velocities as its blocks have rates, in another graph with its
 /// symbols.
-pub fn rates(model: &Model, graph: &mut Graph) -> Option<Rates> {
+pub fn rates(model: &Model, graph: &mut Graph) -> Option<RateMaps> {
     let mut own = model.clone();
     let y = left_inverse(&mut own)?;
     let columns = transpose(&own.a);
@@ -91,14 +91,14 @@ pub fn rates(model: &Model, graph: &mut Graph) -> Option<Rates> {
             .map(|row| rebuild(&own.graph, graph, row))
             .collect()
     };
-    Some(Rates {
+    Some(RateMaps {
         of_velocities: transpose(&carry(&b)),
         to_velocities: carry(&n),
     })
 }
 
 /// Whether det B is the same everywhere: d ln det B = tr (N dB) vanishes along all rates.
-pub fn measure_alike(model: &Model, graph: &mut Graph, rates: &Rates) -> bool {
+pub fn measure_alike(model: &Model, graph: &mut Graph, rates: &RateMaps) -> bool {
     let zero = graph.zero();
     let tangents = all_tangents(graph, &model.blocks, &model.x, |_| true);
     // Entries that depend on coordinates: of large frames they are few.

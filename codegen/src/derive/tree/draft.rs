@@ -21,14 +21,14 @@ pub struct Draft {
     /// The origin in axes of the link before.
     pub position: Vec3,
     /// How the link moves.
-    pub motion: Motion,
+    pub motion: JointMotion,
     /// Its inertia.
     pub mass: Mass,
 }
 
 /// How a link moves against the one before.
 #[derive(Clone, Debug)]
-pub enum Motion {
+pub enum JointMotion {
     /// It turns about the third axis of its frame.
     Hinge {
         /// Cosine and sine of the angle as the description has them.
@@ -49,7 +49,7 @@ impl Draft {
     pub fn finish(self, graph: &mut Graph) -> Link {
         let zero = zero3(graph);
         let (turns, freedoms, drift) = match self.motion {
-            Motion::Hinge {
+            JointMotion::Hinge {
                 angle: (cos, sin),
                 phase: (c, s),
                 mut turns,
@@ -69,7 +69,7 @@ impl Draft {
                 };
                 (turns, vec![freedom], (zero, zero))
             }
-            Motion::Other(rotation, freedoms, drift) => {
+            JointMotion::Other(rotation, freedoms, drift) => {
                 let mut turns = Vec::new();
                 let identity = identity3(graph);
                 match rotation {
@@ -227,7 +227,7 @@ fn joint(
     on: &Mat3,
     turn: &Mat3,
     shift: Vec3,
-) -> Option<(Motion, Mat3, Mat3)> {
+) -> Option<(JointMotion, Mat3, Mat3)> {
     let moving = columns(model, calculus, turn, shift);
     let graph = &mut model.graph;
     let free3 = |graph: &Graph, v: &Vec3| v.iter().all(|e| graph.is_free(e.node()));
@@ -247,7 +247,7 @@ fn joint(
             rate,
         } = found;
         let graph = &mut model.graph;
-        let motion = Motion::Hinge {
+        let motion = JointMotion::Hinge {
             angle,
             phase: (graph.one(), graph.zero()),
             turns: Vec::new(),
@@ -285,7 +285,7 @@ fn joint(
             rate: vec![(i, one)],
         });
     }
-    Some((Motion::Other(rotation, freedoms, drift), base, frame))
+    Some((JointMotion::Other(rotation, freedoms, drift), base, frame))
 }
 
 /// For every velocity that moves a frame in its parent the columns vee(Eᵀ ∂ᵢE) and Eᵀ ∂ᵢp.

@@ -36,7 +36,7 @@ impl Wrench {
 
 /// A link's motion in its axes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion {
+pub(crate) struct LinkMotion {
     /// Angular velocity.
     pub(crate) omega: Vec3,
     /// Angular acceleration.
@@ -74,9 +74,9 @@ pub(crate) fn motions(
     xi: &[Edge],
     xi_dot: &[Edge],
     gravity: Vec3,
-) -> Vec<Motion> {
+) -> Vec<LinkMotion> {
     let zero = zero3(graph);
-    let ground = Motion {
+    let ground = LinkMotion {
         omega: zero,
         alpha: zero,
         a: gravity.map(|entry| -entry),
@@ -84,7 +84,7 @@ pub(crate) fn motions(
         carried: [zero; 3],
         relative: (zero, zero),
     };
-    let mut motions: Vec<Motion> = Vec::with_capacity(tree.links.len());
+    let mut motions: Vec<LinkMotion> = Vec::with_capacity(tree.links.len());
     for link in &tree.links {
         let before = link.parent.map_or(ground, |parent| motions[parent]);
         motions.push(outward(graph, link, &before, xi, xi_dot));
@@ -95,10 +95,10 @@ pub(crate) fn motions(
 fn outward(
     graph: &mut Graph,
     link: &Link,
-    before: &Motion,
+    before: &LinkMotion,
     xi: &[Edge],
     xi_dot: &[Edge],
-) -> Motion {
+) -> LinkMotion {
     let zero = zero3(graph);
     let mut relative = (zero, zero);
     // The drift is that of the model's ξ: at rest there is none.
@@ -134,7 +134,7 @@ fn outward(
         a = add3(graph, a, coriolis);
     }
     let a = add3(graph, a, change.1);
-    Motion {
+    LinkMotion {
         omega,
         alpha,
         a,
@@ -158,8 +158,8 @@ fn tensor(graph: &mut Graph, omega: Vec3, alpha: Vec3) -> Mat3 {
     u
 }
 
-pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &Motion) -> Wrench {
-    let Motion { a, u, .. } = motion;
+pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &LinkMotion) -> Wrench {
+    let LinkMotion { a, u, .. } = motion;
     let s = &mass.second;
     let push = scale3(graph, mass.mass, *a);
     let swing = apply3(graph, u, mass.first);

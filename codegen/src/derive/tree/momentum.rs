@@ -7,13 +7,13 @@
 //! (torque k × ω + l × v, force l × ω).
 
 use super::Tree;
-use super::inverse::{Motion, Wrench, carried, collect_with, motions, wrench};
+use super::inverse::{LinkMotion, Wrench, carried, collect_with, motions, wrench};
 use super::mass::Mass;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, cross, zero3};
 
 /// The momentum of each link about its origin, in its axes, and the twists of the links.
-fn momenta(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec<Wrench>, Vec<Motion>) {
+fn momenta(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec<Wrench>, Vec<LinkMotion>) {
     // As accelerations from rest the rates give twists, and the wrenches that go with them are momenta.
     let (none, still) = (zero3(graph), vec![graph.zero(); xi.len()]);
     let twists = motions(graph, tree, &still, xi, none);

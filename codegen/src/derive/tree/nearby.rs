@@ -6,7 +6,7 @@
 //! Forces of a joint are covectors on such variations, carried towards the root as wrenches are.
 //! After Carpentier and Mansard (2018) and Singh, Russell and Wensing (2022), in axes of links.
 
-use super::inverse::{Motion, Wrench, carried, motions, wrench};
+use super::inverse::{LinkMotion, Wrench, carried, motions, wrench};
 use super::mass::Mass;
 use super::{Freedom, Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
@@ -155,7 +155,7 @@ fn follow(graph: &mut Graph, change: &Wrench, freedom: &Freedom, total: &Wrench)
 }
 
 /// What the link before does, as seen from a link that is displaced.
-fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &Motion) -> Variation {
+fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
     let [omega, alpha, a] = motion.carried.map(|v| cross(graph, v, freedom.angular));
     let gyro = cross(graph, omega, motion.relative.0);
     let alpha = add3(graph, alpha, gyro);
@@ -173,7 +173,7 @@ fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &Motion) -> Variation
 }
 
 /// A faster joint.
-fn faster(graph: &mut Graph, freedom: &Freedom, motion: &Motion) -> Variation {
+fn faster(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
     let before = motion.carried[0];
     let twice = add3(graph, before, motion.omega);
     let (a, b) = (
@@ -287,7 +287,7 @@ impl Response {
         graph: &mut Graph,
         link: &Link,
         mass: &Mass,
-        motion: &Motion,
+        motion: &LinkMotion,
         before: Vec3,
     ) -> Self {
         // δα = δω × ω_rel, δa = 2 δω × v_rel.

@@ -7,7 +7,7 @@
 //! far as `safe` allows, and a direction is taken only where its numbers keep their digits; axes that are
 //! almost parallel are placed as parallel ones are, and their tilt is turned by Rx(a) Ry(b).
 
-use super::draft::{Draft, Motion};
+use super::draft::{Draft, JointMotion};
 use super::safe::Safe;
 use super::turn::Turn;
 use crate::algebra::graph::{Edge, Function, Graph};
@@ -49,7 +49,7 @@ pub fn keep(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
 }
 
 fn is_hinge(link: &Draft) -> bool {
-    matches!(link.motion, Motion::Hinge { .. })
+    matches!(link.motion, JointMotion::Hinge { .. })
 }
 
 /// The number of links that hang on each, itself included.
@@ -188,7 +188,7 @@ fn turn_base(graph: &mut Graph, link: &mut Draft, turn: &Turn) {
 
 /// Adds a constant to the angle of a link's hinge.
 fn advance(graph: &mut Graph, link: &mut Draft, (c, s): (Edge, Edge)) {
-    if let Motion::Hinge { phase, .. } = &mut link.motion {
+    if let JointMotion::Hinge { phase, .. } = &mut link.motion {
         let (cc, ss) = (graph.mul(phase.0, c), graph.mul(phase.1, s));
         let (sc, cs) = (graph.mul(phase.1, c), graph.mul(phase.0, s));
         *phase = (graph.sub(cc, ss), graph.add(sc, cs));
@@ -211,7 +211,7 @@ fn factor(graph: &mut Graph, link: &mut Draft, safe: &Safe) {
         }
     }
     advance(graph, link, (rest[0][0], rest[1][0]));
-    if let Motion::Hinge { turns, .. } = &mut link.motion {
+    if let JointMotion::Hinge { turns, .. } = &mut link.motion {
         turns.extend(first);
     }
 }

@@ -4,7 +4,7 @@
 //! About a hinge along z the parts m, h_z and S_zz are those of masses on the axis, at rest in the
 //! link before. A slider does not turn, so that S goes as a whole; a ball joint leaves m.
 
-use super::draft::{Draft, Motion};
+use super::draft::{Draft, JointMotion};
 use super::mass::Mass;
 use super::turn::Turn;
 use crate::algebra::graph::Graph;
@@ -18,7 +18,7 @@ pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
         let own = links[j].mass;
         let mut left = own;
         match &links[j].motion {
-            Motion::Hinge { .. } => {
+            JointMotion::Hinge { .. } => {
                 moved.mass = own.mass;
                 moved.first[2] = own.first[2];
                 moved.second[2][2] = own.second[2][2];
@@ -26,7 +26,7 @@ pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
                 left.first[2] = zero;
                 left.second[2][2] = zero;
             }
-            Motion::Other(rotation, freedoms, _) => {
+            JointMotion::Other(rotation, freedoms, _) => {
                 let none = zero3(graph);
                 if rotation.is_none() && freedoms.iter().all(|f| f.angular == none) {
                     moved.second = own.second;
@@ -41,9 +41,9 @@ pub fn regroup(graph: &mut Graph, links: &mut [Draft]) {
         }
         let varies = links[j].position.iter().any(|p| !graph.is_free(p.node()));
         let turns = match &links[j].motion {
-            Motion::Hinge { turns, .. } => turns.clone(),
+            JointMotion::Hinge { turns, .. } => turns.clone(),
             // What slides keeps the axes that the link before had, before those were turned.
-            Motion::Other(..) => vec![Turn::By(links[j].base)],
+            JointMotion::Other(..) => vec![Turn::By(links[j].base)],
         };
         links[j].mass = left;
         if let Some(parent) = links[j].parent {

@@ -3,9 +3,10 @@
 use super::inverse::{inverse, wrenches};
 use super::{Placement, Tree, articulated, composite, nearby};
 use crate::algebra::derivation::Derivation;
-use crate::derive::accel::parts::{Axes, Reference, Variant, parts};
+use crate::derive::accel::parts::{Reference, Variant, parts};
 use crate::derive::calculus::Calculus;
 use crate::model::Model;
+use crate::syntax::ast::Axes;
 
 fn chain(n: usize, placement: &str) -> Model {
     let mut text = String::from("system Chain { gravity [0, 0, -9.81];\n");

@@ -38,7 +38,7 @@ pub fn refute(model: &Model) -> Result<(), Vec<Diagnostic>> {
     if model.invariants.is_empty() {
         return Ok(());
     }
-    let Some(mut motion) = Motion::new(model) else {
+    let Some(mut motion) = Equations::new(model) else {
         let message = "the invariants cannot be checked: the rates leave A without a left inverse";
         return Err(vec![
             Diagnostic::new(model.span, message).help("check the rates"),
@@ -99,7 +99,7 @@ pub fn identities(model: &Model) -> Vec<Identity> {
     if model.invariants.is_empty() {
         return Vec::new();
     }
-    let Some(mut motion) = Motion::new(model) else {
+    let Some(mut motion) = Equations::new(model) else {
         return Vec::new();
     };
     let mut prover = Prover::new(model);
@@ -140,16 +140,16 @@ pub fn identities(model: &Model) -> Vec<Identity> {
 }
 
 /// The equations of motion that claims are held against.
-struct Motion {
+struct Equations {
     reference: Reference,
     calculus: Calculus,
 }
 
-impl Motion {
+impl Equations {
     fn new(model: &Model) -> Option<Self> {
         let reference = Reference::new(model)?;
         let calculus = Calculus::new(&reference.model);
-        Some(Motion {
+        Some(Equations {
             reference,
             calculus,
         })

@@ -5,7 +5,7 @@
 //! with σ = 1 (ξ for the energy, an axis for an angular momentum), which M⁻¹ ∂I/∂ξ comes to where
 //! equal values are one node; else, for n ≤ 3, w = ∂I/∂ξ adj M and σ = det M.
 
-use super::Motion;
+use super::Equations;
 use super::remainder::readable;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph, Node};
@@ -90,7 +90,7 @@ impl Prover {
     }
 
     /// Tries to prove that an expression of the motion's graph is constant.
-    pub fn prove(&mut self, motion: &mut Motion, claim: &Invariant, entry: Edge) -> Proof {
+    pub fn prove(&mut self, motion: &mut Equations, claim: &Invariant, entry: Edge) -> Proof {
         let covector = self.covector(motion, claim, entry);
         let graph = &motion.reference.model.graph;
         let entry = rebuild(graph, &mut self.model.graph, &[entry])[0];
@@ -120,7 +120,7 @@ impl Prover {
     /// M⁻¹ ∂I/∂ξ in the motion's graph, where it merges with what is there, carried to free points.
     fn covector(
         &mut self,
-        motion: &mut Motion,
+        motion: &mut Equations,
         claim: &Invariant,
         entry: Edge,
     ) -> Option<Vec<Edge>> {
