@@ -96,12 +96,6 @@ pub fn read(
                     dynamics.wrenches.extend(wrenches);
                 }
             }
-            ItemKind::Spring { .. }
-            | ItemKind::Damper { .. }
-            | ItemKind::Push { .. }
-            | ItemKind::Dissipation(_) => {
-                reader.element(&item.kind, item.span, start, &mut dynamics);
-            }
             ItemKind::Generalized { target, value } => {
                 if let Some((offset, entries)) = reader.generalized(target, value) {
                     for (place, edge) in entries.into_iter().enumerate() {
@@ -116,7 +110,7 @@ pub fn read(
                 let value = reader.evaluator.value(value);
                 dynamics.outputs.extend(name_of(item).zip(value));
             }
-            _ => {}
+            kind => _ = reader.element(kind, item.span, start, &mut dynamics),
         }
     }
     // Rayleigh: fᵢ = −∂D/∂ξⁱ.
@@ -128,6 +122,7 @@ pub fn read(
     let mut outputs = output_names(system, report);
     outputs.extend(super::invariants::names(system));
     dynamics.asked = asked(system, &outputs, frames, report);
+    has_inertia |= dynamics.kinetic != graph.zero();
     if !has_inertia && !dynamics.asked.is_kinematic() {
         report.push(
             Diagnostic::new(system.name.span, "the system has no inertia")

@@ -20,7 +20,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Acting, CoordKind, Expr, ExprKind, ItemKind, Span};
 
 impl Reader<'_, '_> {
-    /// Reads a statement of this kind into energies and forces; `start` are the numbers of all
+    /// Reads a statement into energies and forces, where it is one of these; `start` are the numbers of all
     /// symbols at the start.
     pub fn element(
         &mut self,
@@ -51,7 +51,12 @@ impl Reader<'_, '_> {
             } => {
                 let factor = self.constant_scalar(coefficient, "the coefficient of a damper");
                 let along = match acting {
-                    Acting::On(expr) => Along::Scalar(self.damper_rate(expr, factor, dynamics)?),
+                    Acting::On(expr) => {
+                        let rate = self.acted_rate("a damper", "damper coefficient c", expr)?;
+                        let energy = self.half_square(factor?, rate);
+                        self.resist(energy, dynamics);
+                        Along::Scalar(rate)
+                    }
                     Acting::Between(from, to) => {
                         let line = self.line("damper", span, from, to);
                         let line = line?;
@@ -246,14 +251,10 @@ impl Reader<'_, '_> {
         Some(())
     }
 
-    /// A damper on a rate e, D = ½ c e².
-    fn damper_rate(
-        &mut self,
-        expr: &Expr,
-        coefficient: Option<Edge>,
-        dynamics: &mut Dynamics,
-    ) -> Option<Edge> {
-        let rate = self.evaluator.scalar(expr, "what a damper acts on")?;
+    /// A rate that an element acts on, whose statement begins with `written`.
+    fn acted_rate(&mut self, what: &str, written: &str, expr: &Expr) -> Option<Edge> {
+        let on = format!("what {what} acts on");
+        let rate = self.evaluator.scalar(expr, &on)?;
         let graph = &mut *self.evaluator.graph;
         let rate = time::linear(graph, self.declared, rate);
         let known = class::PARAM | class::CONFIGURATION | class::VELOCITY;
@@ -261,20 +262,26 @@ impl Reader<'_, '_> {
         let linear = graph.class(rate.node()) & !known == 0
             && is_quadratic(graph.clone(), square, &self.declared.xi);
         let message = if rate == graph.zero() {
-            "this damper does nothing: the rate that it acts on is 0"
+            let (_, name) = what.split_once(' ').unwrap_or(("", what));
+            format!("this {name} does nothing: the rate that it acts on is 0")
         } else if linear {
-            let half = graph.ratio(1, 2);
-            let half = graph.mul(half, coefficient?);
-            let energy = graph.mul(half, square);
-            self.resist(energy, dynamics);
             return Some(rate);
         } else {
-            "what a damper acts on has to be a rate, linear in the velocities"
+            format!("{on} has to be a rate, linear in the velocities")
         };
         self.evaluator.error(
             Diagnostic::new(expr.span, message)
-                .help("write a rate, as in `damper coefficient c on w2 - w1;`"),
+                .help(format!("write a rate, as in `{written} on w2 - w1;`")),
         )
+    }
+
+    /// ½ c e² of a rate e.
+    fn half_square(&mut self, coefficient: Edge, rate: Edge) -> Edge {
+        let graph = &mut *self.evaluator.graph;
+        let square = graph.mul(rate, rate);
+        let half = graph.ratio(1, 2);
+        let half = graph.mul(half, coefficient);
+        graph.mul(half, square)
     }
 
     /// Adds to D what acts by −∂D/∂ξⁱ.

@@ -7,6 +7,7 @@ mod reuse;
 mod span;
 mod table;
 pub mod visit;
+mod wanted;
 
 pub use expression::{BinaryOp, Choice, Comparison, Expr, ExprKind};
 pub use joint::{Joint, JointField, JointKind};
@@ -14,6 +15,7 @@ pub use origins::{Included, Origins, Texts};
 pub use reuse::{Argument, Component, Counter, Parameter, Part, Repeat};
 pub use span::Span;
 pub use table::{Between, Beyond, Source, Table};
+pub use wanted::Wanted;
 
 /// A name with its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -477,18 +479,4 @@ pub enum ItemKind {
     Part(Part),
     /// `for i in 1..n { … }`
     Repeat(Repeat),
-}
-
-/// What `generate` lists.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Wanted {
-    /// A function by its name.
-    Function(Ident),
-    /// `jacobian f in f`: the kinematics of a frame, and the frame in whose axes components are.
-    Jacobian {
-        /// The frame.
-        frame: Ident,
-        /// `world` where absent.
-        axes: Option<Ident>,
-    },
 }

@@ -5,8 +5,24 @@ use super::cursor::{Cursor, Parsed};
 use super::expression::expression;
 use super::path;
 
+/// The words that these statements start with.
+const WORDS: [&str; 2] = ["spring", "damper"];
+
+/// Whether a word starts one of these statements.
+pub(super) fn is_one(word: &str) -> bool {
+    WORDS.contains(&word)
+}
+
+/// What follows such a word.
+pub(super) fn element(word: &str, cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    match word {
+        "spring" => spring(cursor),
+        _ => damper(cursor),
+    }
+}
+
 /// `stiffness k [length l] from … to …`, or `… on q2 - q1`
-pub(super) fn spring(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+fn spring(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     cursor.expect_word("stiffness")?;
     let stiffness = expression(cursor)?;
     let length = if cursor.eat_word("length") {
@@ -22,7 +38,7 @@ pub(super) fn spring(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
 }
 
 /// `coefficient c from … to …`, or `… on w2 - w1`
-pub(super) fn damper(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+fn damper(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     cursor.expect_word("coefficient")?;
     let coefficient = expression(cursor)?;
     Ok(ItemKind::Damper {

@@ -80,8 +80,7 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
         "force" => load::force(cursor)?,
         "torque" => load::torque(cursor)?,
         "wrench" => load::wrench(cursor)?,
-        "spring" => element::spring(cursor)?,
-        "damper" => element::damper(cursor)?,
+        word if element::is_one(word) => element::element(word, cursor)?,
         "dissipation" => ItemKind::Dissipation(expression(cursor)?),
         "invariant" => invariant::invariant(cursor)?,
         "generate" => ItemKind::Generate(functions(cursor)?),
@@ -104,11 +103,9 @@ pub(super) fn statement(cursor: &mut Cursor<'_>) -> Parsed<Vec<Item>> {
             | "force"
             | "torque"
             | "wrench"
-            | "spring"
-            | "damper"
             | "generate"
             | "include"
-    );
+    ) || element::is_one(word);
     cursor.end(!names)?;
     let span = since(start, cursor);
     Ok(vec![Item { kind, span }])
