@@ -92,6 +92,8 @@ system Everything {
     spring stiffness m length 2 from f to e on g;
     spring stiffness m on q - 1;
     damper coefficient m on u;
+    inerter inertance m from f to e on g;
+    inerter inertance 2 * m on u;
     dissipation m * u^2;
     generalized force v = -m * v;
     start X.p = [0, 0, 1], q = 2, u ~ 1.2;

@@ -1,8 +1,9 @@
-//! Springs, dampers, forces along a line, and dissipation.
+//! Springs, dampers, inerters, forces along a line, and dissipation.
 //!
 //! Between two points with difference d and distance ℓ = |d|: a spring has V = ½ k (ℓ − l)², which
 //! is ½ k d·d for l = 0; a damper has D = ½ c ℓ̇²; a force F drives the points apart. All of these act
-//! as wrenches on the frames of the two points. On a scalar e: V = ½ k (e − l)², D = ½ c e². What is
+//! as wrenches on the frames of the two points. On a scalar e: V = ½ k (e − l)², D = ½ c e². An inerter has
+//! T = ½ b ℓ̇² or ½ b e² (Smith 2002), a part of the kinetic energy. What is
 //! left of D acts by Rayleigh's fᵢ = −∂D/∂ξⁱ (W; N, N m).
 
 use super::functions::angle_from;
@@ -69,6 +70,23 @@ impl Reader<'_, '_> {
                     .elements
                     .dampers
                     .push(Damper { coefficient, along });
+            }
+            ItemKind::Inerter { inertance, acting } => {
+                let factor = self.constant_scalar(inertance, "the inertance of an inerter");
+                let rate = match acting {
+                    Acting::On(expr) => {
+                        self.acted_rate("an inerter", "inerter inertance b", expr)?
+                    }
+                    Acting::Between(from, to) => {
+                        let line = self.line("inerter", span, from, to)?;
+                        let length = self.length(&line, start)?;
+                        self.rate(length)?
+                    }
+                };
+                let energy = self.half_square(factor?, rate);
+                self.evaluator
+                    .continuous(&Value::Scalar(energy), span, "a kinetic energy")?;
+                dynamics.kinetic = self.evaluator.graph.add(dynamics.kinetic, energy);
             }
             ItemKind::Push { force, from, to } => {
                 let value = self.evaluator.scalar(force, "a force along a line");

@@ -311,7 +311,7 @@ impl Load {
 }
 
 /// What a spring or a damper acts on: two points, as a pair, along the line between them; or a scalar, of the
-/// configuration for a spring, linear in the velocities for a damper.
+/// configuration for a spring, linear in the velocities for a damper and an inerter.
 #[derive(Clone, Debug)]
 pub struct Between(Acting);
 
@@ -327,7 +327,7 @@ impl From<Expr> for Between {
     }
 }
 
-/// A spring, a damper, or a force along a line.
+/// A spring, a damper, an inerter, or a force along a line.
 #[derive(Clone, Debug)]
 pub struct Element(pub(super) ItemKind);
 
@@ -358,6 +358,14 @@ impl Element {
     pub fn damper(coefficient: impl Into<Expr>, between: impl Into<Between>) -> Element {
         Element(ItemKind::Damper {
             coefficient: coefficient.into(),
+            acting: between.into().0,
+        })
+    }
+
+    /// An inerter (kg, kg m²): its force is in proportion to the relative acceleration.
+    pub fn inerter(inertance: impl Into<Expr>, between: impl Into<Between>) -> Element {
+        Element(ItemKind::Inerter {
+            inertance: inertance.into(),
             acting: between.into().0,
         })
     }

@@ -137,6 +137,13 @@ pub fn statement(item: &Item) -> String {
             let coefficient = written(coefficient);
             format!("damper coefficient {coefficient} {}", on_what(acting))
         }
+        ItemKind::Inerter { inertance, acting } => {
+            format!(
+                "inerter inertance {} {}",
+                written(inertance),
+                on_what(acting)
+            )
+        }
         ItemKind::Dissipation(power) => format!("dissipation {}", written(power)),
         ItemKind::Generalized { target, value } => {
             format!("generalized force {} = {}", part(target), written(value))

@@ -430,6 +430,13 @@ pub enum ItemKind {
         /// What it acts on.
         acting: Acting,
     },
+    /// `inerter inertance b from p on f to q on g;` or `… on w2 - w1;`
+    Inerter {
+        /// The inertance.
+        inertance: Expr,
+        /// What it acts on.
+        acting: Acting,
+    },
     /// `dissipation d * w^2 / 2;` Rayleigh's function.
     Dissipation(Expr),
     /// `generalized force w = -d * w;` dual to a velocity.

@@ -1,4 +1,4 @@
-//! Springs and dampers, and the two points that they act between.
+//! Springs, dampers and inerters, and the two points that they act between.
 
 use super::ast::{Acting, End, ItemKind};
 use super::cursor::{Cursor, Parsed};
@@ -6,7 +6,7 @@ use super::expression::expression;
 use super::path;
 
 /// The words that these statements start with.
-const WORDS: [&str; 2] = ["spring", "damper"];
+const WORDS: [&str; 3] = ["spring", "damper", "inerter"];
 
 /// Whether a word starts one of these statements.
 pub(super) fn is_one(word: &str) -> bool {
@@ -17,7 +17,8 @@ pub(super) fn is_one(word: &str) -> bool {
 pub(super) fn element(word: &str, cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     match word {
         "spring" => spring(cursor),
-        _ => damper(cursor),
+        "damper" => damper(cursor),
+        _ => inerter(cursor),
     }
 }
 
@@ -43,6 +44,16 @@ fn damper(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     let coefficient = expression(cursor)?;
     Ok(ItemKind::Damper {
         coefficient,
+        acting: acting(cursor)?,
+    })
+}
+
+/// `inertance b from … to …`, or `… on w2 - w1`
+fn inerter(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
+    cursor.expect_word("inertance")?;
+    let inertance = expression(cursor)?;
+    Ok(ItemKind::Inerter {
+        inertance,
         acting: acting(cursor)?,
     })
 }

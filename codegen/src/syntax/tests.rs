@@ -288,6 +288,9 @@ fn told(kind: &ItemKind) -> String {
             coefficient,
             acting,
         } => format!("damper {} {}", spelled(coefficient), acts(acting)),
+        Inerter { inertance, acting } => {
+            format!("inerter {} {}", spelled(inertance), acts(acting))
+        }
         Dissipation(value) => format!("dissipation {}", spelled(value)),
         Invariant {
             name,

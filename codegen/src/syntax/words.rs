@@ -1,7 +1,7 @@
 //! The words of the language.
 
 /// The statements, each with the sentence that shows its form.
-const STATEMENTS: [(&str, &str); 40] = [
+const STATEMENTS: [(&str, &str); 41] = [
     (
         "param",
         "a parameter is written `param m = 1.3, s: vec3 = [0, 0, 1];`",
@@ -98,6 +98,10 @@ const STATEMENTS: [(&str, &str); 40] = [
     (
         "damper",
         "a damper is written `damper coefficient c from p on f to q on g;` or `damper coefficient c on w2 - w1;`",
+    ),
+    (
+        "inerter",
+        "an inerter is written `inerter inertance b from p on f to q on g;` or `inerter inertance b on w2 - w1;`",
     ),
     (
         "dissipation",

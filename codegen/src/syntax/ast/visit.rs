@@ -166,10 +166,14 @@ pub fn visit(item: &mut Item, to: &mut impl Visit) {
             acting(on, to);
         }
         ItemKind::Damper {
-            coefficient,
+            coefficient: factor,
+            acting: on,
+        }
+        | ItemKind::Inerter {
+            inertance: factor,
             acting: on,
         } => {
-            to.expr(coefficient);
+            to.expr(factor);
             acting(on, to);
         }
         ItemKind::Output { name, value } => {
