@@ -232,25 +232,42 @@ fn no_file_hides_two_ideas() {
     }
 }
 
-/// The map in ARCHITECTURE.md names folders and files that exist.
+/// Whether a word in backticks is a path of the repository.
+fn is_path(word: &str) -> bool {
+    word.contains('/') && !word.contains(' ') && !word.contains("::") && !word.contains('*')
+}
+
+/// The map in ARCHITECTURE.md and the pages behind it name folders and files that exist.
 #[test]
 fn the_architecture_page_is_true() {
-    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
-    let mut seen = 0;
-    for word in page.split('`').skip(1).step_by(2) {
-        let is_path = word.contains('/')
-            && !word.contains(' ')
-            && !word.contains("::")
-            && !word.contains('*');
-        if is_path {
-            seen += 1;
+    for (name, least) in [
+        ("ARCHITECTURE.md", 60),
+        ("docs/where-to-look.md", 200),
+        ("docs/decisions.md", 5),
+        ("CONTRIBUTING.md", 20),
+    ] {
+        let page = fs::read_to_string(root().join(name)).expect("a page");
+        let paths: Vec<&str> = page.split('`').skip(1).step_by(2).collect();
+        let paths: Vec<&str> = paths.into_iter().filter(|word| is_path(word)).collect();
+        for path in &paths {
             assert!(
-                root().join(word).exists(),
-                "ARCHITECTURE.md names `{word}`, which does not exist"
+                root().join(path).exists(),
+                "{name} names `{path}`, which does not exist"
             );
         }
+        assert!(paths.len() > least, "{name} has lost its paths");
     }
-    assert!(seen > 20, "the page has lost its map");
+}
+
+/// A stranger reads the map in ten minutes.
+#[test]
+fn the_architecture_page_is_short() {
+    let page = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    let words = page.split_whitespace().count();
+    assert!(
+        words <= 2000,
+        "{words} words: single files belong in docs/where-to-look.md, reasons in docs/decisions.md"
+    );
 }
 
 /// The names in the tables of dependencies of a manifest, but for those of build scripts: they are there for their
@@ -301,4 +318,25 @@ fn every_dependency_is_used() {
         unused.is_empty(),
         "dependencies that nothing uses: {unused:?}"
     );
+}
+
+/// What nobody can read again is no review: snapshots stay below 25,000 lines.
+#[test]
+fn snapshots_can_be_read() {
+    let (mut lines, mut files) = (0, 0);
+    let mut open = vec![root()];
+    while let Some(path) = open.pop() {
+        if path.is_dir() && !path.ends_with("target") && !path.ends_with(".git") {
+            let entries = fs::read_dir(&path).expect("a folder");
+            open.extend(entries.map(|entry| entry.expect("an entry").path()));
+        } else if path
+            .extension()
+            .is_some_and(|extension| extension == "snap")
+        {
+            lines += fs::read_to_string(&path).expect("readable").lines().count();
+            files += 1;
+        }
+    }
+    assert!(files > 200, "the snapshots have gone");
+    assert!(lines < 25_000, "{lines} lines of snapshots");
 }
