@@ -94,6 +94,11 @@ enum Command {
     Import(import::Arguments),
 }
 
+/// The subcommands and options of the command line, for its reference.
+pub fn described() -> clap::Command {
+    <Line as clap::CommandFactory>::command()
+}
+
 /// Runs a command, whose words begin with the name of the program, and shows what it says; its exit status.
 pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
     let line = match Line::try_parse_from(words) {

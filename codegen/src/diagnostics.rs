@@ -1,6 +1,7 @@
 //! Placed errors, collected so that one build reports all of them; placed warnings have the same form.
 
 use crate::syntax::ast::{Span, Texts};
+use std::panic::Location;
 
 /// One error or warning: where, what is wrong, and what to do about it.
 #[derive(Clone, Debug)]
@@ -19,10 +20,13 @@ pub struct Diagnostic {
     pub inverse: bool,
     /// Whether a proof failed: a fault of the generator, or of the point that was read at.
     pub unproved: bool,
+    /// Where the generator makes it: the book has an example for every such place.
+    pub site: &'static Location<'static>,
 }
 
 impl Diagnostic {
     /// An error at a place.
+    #[track_caller]
     pub fn new(span: Span, message: impl Into<String>) -> Self {
         Diagnostic {
             span,
@@ -32,6 +36,7 @@ impl Diagnostic {
             texts: Texts::default(),
             inverse: false,
             unproved: false,
+            site: Location::caller(),
         }
     }
 

@@ -17,6 +17,7 @@
 //! | [`program`] | binding times, operation counts, interpretation |
 //! | [`emit`] | Rust text; no algebra |
 //! | [`tables`] | what people read |
+//! | [`vocabulary`] | the words of the language, for references and editors |
 //! | `scene` | descriptions as data, built in Rust or read from text |
 //! | [`generate`], [`expand()`], [`Builder`] | the front ends; `urdf` with the feature of that name |
 
@@ -41,6 +42,7 @@ pub mod syntax;
 pub mod tables;
 #[cfg(feature = "urdf")]
 pub mod urdf;
+pub mod vocabulary;
 
 #[cfg(feature = "files")]
 pub use builder::{BuildError, Builder};

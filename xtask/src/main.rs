@@ -1,4 +1,4 @@
-//! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask bless`.
+//! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask book`, `cargo xtask bless`.
 //!
 //! Each task is a list of commands, run in order from the root of the repository; the first that fails
 //! ends it.
@@ -44,6 +44,11 @@ const CI: Task = &[
     "HAMEL_BUILT=1 bash tests/sweep/hyperqueue.sh",
     // The Python package against Pinocchio and SciPy, its types, examples and notebooks.
     "HAMEL_BUILT=1 bash tests/python/run.sh",
+    // The book, whose links are looked at once it is built.
+    "bash docs/book/install.sh",
+    "cargo run --locked -p hamel-book -- build",
+    "target/tools/bin/mdbook build target/book-pages --dest-dir ../book",
+    "cargo run --locked -p hamel-book -- check target/book",
     // A controller on microcontrollers, in QEMU.
     "bash tests/cortex/run.sh",
 ];
@@ -71,6 +76,14 @@ const ATTACK: Task = &[
     "bash tests/python/wheel.sh",
 ];
 
+/// The book, by mdBook, into `target/book`; every link in it leads somewhere, and nothing comes from the network.
+const BOOK: Task = &[
+    "bash docs/book/install.sh",
+    "cargo run --locked -p hamel-book -- build",
+    "target/tools/bin/mdbook build target/book-pages --dest-dir ../book",
+    "cargo run --locked -p hamel-book -- check target/book",
+];
+
 /// Takes the snapshots as they are now; `git diff` shows what to review.
 const BLESS: Task = &[
     "INSTA_UPDATE=always INSTA_FORCE_PASS=1 cargo test --workspace --locked --no-fail-fast",
@@ -79,7 +92,7 @@ const BLESS: Task = &[
     "git --no-pager diff --stat -- *.snap",
 ];
 
-const TASKS: [(&str, Task, &str); 4] = [
+const TASKS: [(&str, Task, &str); 5] = [
     (
         "quick",
         QUICK,
@@ -95,6 +108,7 @@ const TASKS: [(&str, Task, &str); 4] = [
         ATTACK,
         "the random attacks at full size, and all robots against Pinocchio: some two hours",
     ),
+    ("book", BOOK, "the book, into target/book"),
     ("bless", BLESS, "takes the snapshots as they are now"),
 ];
 

@@ -77,12 +77,7 @@ impl Evaluator<'_> {
     fn no_function(&mut self, function: &Ident) -> Option<Value> {
         let name = &function.name;
         let error = Diagnostic::new(function.span, format!("no function is called `{name}`"));
-        let known = || {
-            reserved()
-                .chain(FUNCTIONS)
-                .chain(NAMES_OF_ALL)
-                .filter(|name| usage(name).is_some())
-        };
+        let known = names;
         if self.scope.get(name).is_some() {
             return self.error(error.help("a product is written with `*`"));
         }
@@ -127,6 +122,14 @@ impl Evaluator<'_> {
 /// Functions whose names values and functions of a description may share.
 const NAMES_OF_ALL: [&str; 2] = ["translation", "angle"];
 
+/// The functions of the language by their names.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    reserved()
+        .chain(FUNCTIONS)
+        .chain(NAMES_OF_ALL)
+        .filter(|name| usage(name).is_some())
+}
+
 /// Takes the name of a function of the description, which none of the language's has.
 pub fn claim(name: &Ident, scope: &mut Scope, report: &mut Report) {
     if is_function(&name.name) {
@@ -159,7 +162,7 @@ const ZERO_DIVISOR: Fault = Fault::Why(
 );
 
 /// How a function is called.
-fn usage(name: &str) -> Option<Cow<'static, str>> {
+pub(crate) fn usage(name: &str) -> Option<Cow<'static, str>> {
     let text = match name {
         "sin" => "`sin(angle)` of a scalar",
         "cos" => "`cos(angle)` of a scalar",

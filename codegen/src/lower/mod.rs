@@ -51,3 +51,4 @@ mod unused;
 mod variety;
 
 pub use build::{build, build_at};
+pub(crate) use functions::{names as function_names, usage as function_usage};

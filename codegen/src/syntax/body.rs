@@ -20,6 +20,11 @@ const FIELDS: [(&str, &str); 3] = [
     ),
 ];
 
+/// What a body has, each with its form.
+pub(crate) fn fields_of() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FIELDS.into_iter()
+}
+
 /// `particle mass m at p [on f]`
 pub(super) fn particle(cursor: &mut Cursor<'_>) -> Parsed<ItemKind> {
     cursor.expect_word("mass")?;

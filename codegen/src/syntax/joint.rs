@@ -87,6 +87,16 @@ const FIELDS: [(&str, JointField, &str); 8] = [
     ),
 ];
 
+/// The names of the kinds.
+pub(crate) fn kinds() -> impl Iterator<Item = &'static str> {
+    KINDS.into_iter().map(|(name, ..)| name)
+}
+
+/// The names of the fields, each with its form.
+pub(crate) fn fields_of() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FIELDS.into_iter().map(|(name, _, form)| (name, form))
+}
+
 /// The name of a field.
 pub(crate) fn field_name(field: JointField) -> &'static str {
     FIELDS

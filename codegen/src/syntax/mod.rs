@@ -53,9 +53,12 @@ mod tests;
 pub use files::read_files;
 pub use tokens::Places;
 
+pub(crate) use body::fields_of as body_fields;
 pub(crate) use joint::{
-    endings as joint_endings, field_name as joint_field, kind_name as joint_kind,
+    endings as joint_endings, field_name as joint_field, fields_of as joint_fields,
+    kind_name as joint_kind, kinds as joint_kinds,
 };
+pub(crate) use words::forms as statement_forms;
 
 /// Parses a description given as tokens; places in it are places of these tokens.
 pub fn parse_tokens(tokens: TokenStream) -> (Places, Result<ast::System, Vec<Diagnostic>>) {

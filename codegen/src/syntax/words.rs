@@ -155,6 +155,11 @@ pub(super) fn statements() -> impl Iterator<Item = &'static str> {
     STATEMENTS.iter().map(|(word, _)| *word)
 }
 
+/// The words that start statements, each with its form.
+pub(crate) fn forms() -> impl Iterator<Item = (&'static str, &'static str)> {
+    STATEMENTS.into_iter()
+}
+
 /// Whether a word starts statements.
 pub(super) fn is_statement(word: &str) -> bool {
     form(word).is_some()

@@ -1,0 +1,20 @@
+//! Builds the book from `docs/book`: runs the commands that its pages show and puts in what they print, and writes the
+//! parts of the reference that follow from the code.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `page` | the blocks and directives of a page |
+//! | `shell` | the folder in which the commands of a page run |
+//! | `lists` | the functions and options, as the code has them |
+//! | `errors` | the errors of the generator, with descriptions that have them |
+//! | `rare` | the errors that no example has |
+//! | `build` | all pages, into a folder that mdBook reads |
+//! | `html` | the links of the pages that mdBook has made |
+
+pub mod build;
+pub mod errors;
+pub mod html;
+pub mod lists;
+pub mod page;
+pub mod rare;
+pub mod shell;

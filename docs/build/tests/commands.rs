@@ -1,0 +1,95 @@
+//! README and book: their commands run as they stand, one after the other on each page, in a folder that has nothing but what the
+//! page has made and the repository's descriptions; links lead somewhere; every chapter is in the list of chapters.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use hamel_book::page::{blocks, own};
+use hamel_book::shell::Shell;
+
+/// Lines of a README at most.
+const SHORT: usize = 150;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// README and chapters, with their texts.
+fn pages() -> Vec<(PathBuf, String)> {
+    let root = root();
+    let chapters = hamel_book::build::pages(&root).expect("the book");
+    let chapters = chapters
+        .into_iter()
+        .map(|(path, text)| (root.join("docs/book/src").join(path), text));
+    let others = ["README.md", "python/README.md"].map(|name| root.join(name));
+    let others = others.map(|path| (path.clone(), fs::read_to_string(path).expect("a page")));
+    chapters.chain(others).collect()
+}
+
+#[test]
+fn commands_run_as_they_stand() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book");
+    let program = Path::new(env!("CARGO_BIN_EXE_hamel-book"));
+    let mut commands = 0;
+    for (page, text) in pages() {
+        let name = page
+            .file_stem()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        let script: String = blocks(&text, "sh").into_iter().map(own).collect();
+        if script.is_empty() {
+            continue;
+        }
+        let shell = Shell::new(
+            &root(),
+            &folder.join(name).join(commands.to_string()),
+            program,
+        );
+        let shell = shell.expect("a folder");
+        commands += script.matches("hamel ").count();
+        if let Err(error) = shell.run(&script) {
+            panic!("{}:\n{error}", page.display());
+        }
+    }
+    assert!(commands > 25, "{commands}");
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let mut links = 0;
+    for (page, text) in pages() {
+        for rest in text.split("](").skip(1) {
+            let target = rest.split([')', '#']).next().unwrap_or_default();
+            if target.is_empty() || target.contains("://") {
+                continue;
+            }
+            let folder = page.parent().expect("a folder");
+            assert!(folder.join(target).exists(), "{}: {target}", page.display());
+            links += 1;
+        }
+    }
+    assert!(links > 20, "{links}");
+}
+
+#[test]
+fn every_chapter_is_listed() {
+    let folder = root().join("docs/book/src");
+    let list = fs::read_to_string(folder.join("SUMMARY.md")).expect("a list");
+    for (page, _) in pages() {
+        let Ok(name) = page.strip_prefix(&folder) else {
+            continue;
+        };
+        let name = name.display().to_string();
+        assert!(
+            name == "SUMMARY.md" || list.contains(&format!("({name})")),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn the_readme_is_short() {
+    let text = fs::read_to_string(root().join("README.md")).expect("a README");
+    assert!(text.lines().count() <= SHORT);
+}
