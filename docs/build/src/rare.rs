@@ -112,12 +112,6 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "lower/variety.rs",
-        "\"this constraint has no value away from where it holds\"",
-        "this constraint has no value away from where it holds",
-        "it divides by what other constraints make zero",
-    ),
-    (
-        "lower/variety.rs",
         "\"this constraint does not hold where it was solved\"",
         "this constraint does not hold where it was solved",
         "it is an equation of roots: write it as a polynomial equation",
