@@ -18,7 +18,7 @@
 #![allow(unsafe_code)]
 
 use crate::evaluate::apply;
-use crate::lower::{Callee, Pool, UNDONE, WELL, callee, lower, signature};
+use crate::lower::{Callee, Pool, Target, UNDONE, WELL, callee, lower, signature};
 use cranelift_codegen::ir::{AbiParam, types};
 use cranelift_codegen::settings::{Configurable, Flags, builder};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
@@ -91,6 +91,15 @@ impl Reach {
             }
         }
         reach
+    }
+
+    /// The same where every list has so many numbers in place of each.
+    fn of_lanes(self, lanes: usize) -> Self {
+        Reach {
+            constants: lanes * self.constants,
+            out: lanes * self.out,
+            arguments: self.arguments.map(|place| lanes * place),
+        }
     }
 }
 
@@ -168,7 +177,7 @@ impl Code {
     ///
     /// # Errors
     /// Why this machine has no code.
-    pub fn new(tapes: &Tapes, fused: bool) -> Result<(Self, Vec<f64>), String> {
+    pub fn new(tapes: &Tapes, target: Target) -> Result<(Self, Vec<f64>), String> {
         let mut flags = builder();
         for (name, value) in [
             ("opt_level", "none"),
@@ -210,7 +219,7 @@ impl Code {
             pool: Pool::behind(tapes.kept()),
             context: FunctionBuilderContext::new(),
             size: 0,
-            fused,
+            target,
         };
         let made: Result<Vec<(FuncId, Vec<Cause>)>, String> = tapes
             .all()
@@ -242,6 +251,7 @@ impl Code {
                 let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
                 let mut reach = Reach::of(tape);
                 reach.constants = reach.constants.max(pool.start + pool.numbers.len());
+                let reach = reach.of_lanes(target.lanes());
                 Callable {
                     entry,
                     reach,
@@ -373,7 +383,7 @@ struct Making {
     pool: Pool,
     context: FunctionBuilderContext,
     size: usize,
-    fused: bool,
+    target: Target,
 }
 
 impl Making {
@@ -420,7 +430,7 @@ impl Making {
             callees.insert(callee, here);
         }
         let mut builder = FunctionBuilder::new(&mut context.func, &mut self.context);
-        let causes = lower(&mut builder, &mut self.pool, tape, &callees, self.fused);
+        let causes = lower(&mut builder, &mut self.pool, tape, &callees, self.target);
         builder.finalize();
         self.module
             .define_function(id, &mut context)

@@ -13,21 +13,25 @@
 //! | `spill` | which values are in registers, and where the others are |
 //! | `lower` | a tape as Cranelift's intermediate code |
 //! | `code` | memory that can be executed, and calls: all that is `unsafe` |
+//! | `repeat` | functions whose result is their next argument, for one state or for two at once |
 //! | `evaluate` | tapes step by step |
 //! | `traced` | algorithms in Rust as tapes |
 
 mod code;
 mod evaluate;
 mod lower;
+mod repeat;
 mod spill;
 mod traced;
 
 pub use evaluate::{evaluate, evaluate_in};
 pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
+pub use repeat::Paired;
 pub use traced::{Traced, inlined, traced};
 
 use code::{Code, Ended, Fixed};
 use hamel::Scalar;
+use lower::Target;
 use hamel_codegen::program::{Cause, Function, Program};
 use std::sync::Arc;
 
@@ -67,7 +71,11 @@ impl Compiled {
     /// The functions of tapes.
     pub fn of(tapes: Tapes) -> Self {
         let fused = code::is_fused();
-        let (code, numbers) = match Code::new(&tapes, fused) {
+        let target = Target {
+            fused,
+            paired: false,
+        };
+        let (code, numbers) = match Code::new(&tapes, target) {
             Ok((code, numbers)) => (Ok(code), numbers),
             Err(why) => (Err(why), Vec::new()),
         };

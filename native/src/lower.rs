@@ -1,4 +1,7 @@
 //! A tape as Cranelift's intermediate code, by the plan of [`crate::spill`].
+//!
+//! Code is written for one set of numbers, or for two at once: then every list holds pairs, one number of each lane, and
+//! a lane has the bits that it would have alone.
 
 use crate::spill::{Action, Home, Id, Plan, is_call, plan};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
@@ -61,6 +64,45 @@ impl Pool {
     }
 }
 
+/// How code is written.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Whether a b + c is one instruction.
+    pub fused: bool,
+    /// Whether there are two lanes.
+    pub paired: bool,
+}
+
+impl Target {
+    /// How many numbers stand side by side.
+    pub fn lanes(self) -> usize {
+        if self.paired { 2 } else { 1 }
+    }
+
+    /// The type of a value.
+    fn number(self) -> Type {
+        if self.paired {
+            types::F64X2
+        } else {
+            types::F64
+        }
+    }
+
+    /// Pairs stand at even places of lists, which need not be those of whole registers.
+    fn flags(self) -> MemFlags {
+        if self.paired {
+            MemFlags::new().with_notrap()
+        } else {
+            MemFlags::trusted()
+        }
+    }
+
+    /// How far an entry is from the first.
+    fn bytes(self, place: usize) -> i32 {
+        i32::try_from(8 * self.lanes() * place).unwrap_or(i32::MAX)
+    }
+}
+
 /// Functions that code calls.
 pub type Callees = HashMap<Callee, FuncRef>;
 
@@ -97,7 +139,7 @@ pub fn signature(mut empty: Signature, pointer: Type) -> Signature {
 struct Writer<'a, 'b> {
     builder: &'a mut FunctionBuilder<'b>,
     pool: &'a mut Pool,
-    fused: bool,
+    target: Target,
     constants: Value,
     out: Value,
     arguments: [Value; 5],
@@ -117,6 +159,10 @@ impl<'a, 'b> Writer<'a, 'b> {
         let size = self.ins().fabs(x);
         let farthest = self.constant(trig::FARTHEST);
         let near = self.ins().fcmp(FloatCC::LessThanOrEqual, size, farthest);
+        let near = match self.target.paired {
+            true => self.ins().vall_true(near),
+            false => near,
+        };
         self.end_unless(near, UNDONE);
         let reduced = trig::reduced(self, x);
         let row = self.row(reduced.shifted);
@@ -126,12 +172,62 @@ impl<'a, 'b> Writer<'a, 'b> {
     /// The row of [`trig::TURNED`] whose number is the last two bits.
     fn row(&mut self, shifted: Value) -> [Value; 4] {
         let start = self.pool.turned();
-        let constants = self.constants;
-        let bits = self.ins().bitcast(types::I64, MemFlags::new(), shifted);
-        let quadrant = self.ins().band_imm(bits, 3);
-        let bytes = self.ins().ishl_imm(quadrant, 5);
-        let row = self.ins().iadd(constants, bytes);
-        [0, 1, 2, 3].map(|i| self.load(row, start + i))
+        let rows: Vec<[Value; 4]> = self
+            .alone(shifted)
+            .into_iter()
+            .map(|shifted| {
+                let constants = self.constants;
+                let bits = self.ins().bitcast(types::I64, MemFlags::new(), shifted);
+                let quadrant = self.ins().band_imm(bits, 3);
+                // A row has four entries.
+                let length = i64::from(self.target.bytes(4).ilog2());
+                let away = self.ins().ishl_imm(quadrant, length);
+                let row = self.ins().iadd(constants, away);
+                [0, 1, 2, 3].map(|i| {
+                    let (flags, place) = (self.target.flags(), self.target.bytes(start + i));
+                    self.ins().load(types::F64, flags, row, place)
+                })
+            })
+            .collect();
+        [0, 1, 2, 3].map(|i| {
+            let entries: Vec<Value> = rows.iter().map(|row| row[i]).collect();
+            self.together(&entries)
+        })
+    }
+
+    /// The numbers of a value, lane by lane.
+    fn alone(&mut self, value: Value) -> Vec<Value> {
+        match self.target.paired {
+            true => vec![
+                self.ins().extractlane(value, 0),
+                self.ins().extractlane(value, 1),
+            ],
+            false => vec![value],
+        }
+    }
+
+    /// The value that has these numbers in its lanes.
+    fn together(&mut self, lanes: &[Value]) -> Value {
+        match *lanes {
+            [first, second] => {
+                let value = self.ins().scalar_to_vector(types::F64X2, first);
+                self.ins().insertlane(value, second, 1)
+            }
+            [one] => one,
+            _ => self.constant(f64::NAN),
+        }
+    }
+
+    /// In each lane one value where a comparison holds, and else another.
+    fn choose(&mut self, (a, how, b): (Value, FloatCC, Value), then: Value, other: Value) -> Value {
+        let holds = self.ins().fcmp(how, a, b);
+        match self.target.paired {
+            true => {
+                let mask = self.ins().bitcast(types::F64X2, MemFlags::new(), holds);
+                self.ins().bitselect(mask, then, other)
+            }
+            false => self.ins().select(holds, then, other),
+        }
     }
 
     /// A number.
@@ -149,13 +245,15 @@ impl<'a, 'b> Writer<'a, 'b> {
     }
 
     fn load(&mut self, base: Value, place: usize) -> Value {
-        let flags = MemFlags::trusted();
-        self.ins().load(types::F64, flags, base, bytes(place))
+        let target = self.target;
+        self.ins()
+            .load(target.number(), target.flags(), base, target.bytes(place))
     }
 
     fn store(&mut self, value: Value, base: Value, place: usize) {
-        let flags = MemFlags::trusted();
-        self.ins().store(flags, value, base, bytes(place));
+        let target = self.target;
+        self.ins()
+            .store(target.flags(), value, base, target.bytes(place));
     }
 
     /// A value that is in memory.
@@ -170,7 +268,11 @@ impl<'a, 'b> Writer<'a, 'b> {
             }
             Home::Out(place) => self.load(self.out, place),
             Home::Slot(slot) => match self.stack {
-                Some(stack) => self.ins().stack_load(types::F64, stack, bytes(slot)),
+                Some(stack) => {
+                    let target = self.target;
+                    self.ins()
+                        .stack_load(target.number(), stack, target.bytes(slot))
+                }
                 None => self.constant(f64::NAN),
             },
             // A plan loads what is in memory.
@@ -220,7 +322,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                     true => (b.0, a.0),
                     false => (a.0, b.0),
                 };
-                if self.fused {
+                if self.target.fused {
                     let first = self.signed((first, a.1 != b.1));
                     let sum = self.signed(c);
                     self.ins().fma(first, second, sum)
@@ -249,17 +351,14 @@ impl<'a, 'b> Writer<'a, 'b> {
                 let a = self.signed(a);
                 let (zero, one, minus) =
                     (self.constant(0.0), self.constant(1.0), self.constant(-1.0));
-                let below = self.ins().fcmp(FloatCC::LessThan, a, zero);
-                let below = self.ins().select(below, minus, a);
-                let above = self.ins().fcmp(FloatCC::GreaterThan, a, zero);
-                self.ins().select(above, one, below)
+                let below = self.choose((a, FloatCC::LessThan, zero), minus, a);
+                self.choose((a, FloatCC::GreaterThan, zero), one, below)
             }
             Step::Apply(Function::Inverse, _) => {
                 let a = self.signed(a);
                 let (shortest, one) = (self.constant(SHORTEST), self.constant(1.0));
                 let size = self.ins().fabs(a);
-                let short = self.ins().fcmp(FloatCC::LessThan, size, shortest);
-                let by = self.ins().select(short, shortest, a);
+                let by = self.choose((size, FloatCC::LessThan, shortest), shortest, a);
                 self.ins().fdiv(one, by)
             }
             Step::Apply(..) | Step::Atan2(..) => {
@@ -269,33 +368,38 @@ impl<'a, 'b> Writer<'a, 'b> {
                     let nan = self.constant(f64::NAN);
                     return Some([nan, nan]);
                 };
-                let call = match step {
-                    Step::Atan2(..) => self.ins().call(callee, &[a, b]),
-                    _ => self.ins().call(callee, &[a]),
-                };
-                self.builder.inst_results(call)[0]
+                let (a, b) = (self.alone(a), self.alone(b));
+                let mut results = Vec::with_capacity(a.len());
+                for (a, b) in a.into_iter().zip(b) {
+                    let call = match step {
+                        Step::Atan2(..) => self.ins().call(callee, &[a, b]),
+                        _ => self.ins().call(callee, &[a]),
+                    };
+                    results.push(self.builder.inst_results(call)[0]);
+                }
+                self.together(&results)
             }
             Step::Select(..) => {
                 let [c, a, b] = values.map(|value| self.signed(value));
                 let (zero, one) = (self.constant(0.0), self.constant(1.0));
-                let number = self.ins().fcmp(FloatCC::LessThan, c, one);
-                let other = self.ins().select(number, b, c);
-                let positive = self.ins().fcmp(FloatCC::GreaterThan, c, zero);
-                self.ins().select(positive, a, other)
+                let other = self.choose((c, FloatCC::LessThan, one), b, c);
+                self.choose((c, FloatCC::GreaterThan, zero), a, other)
             }
             Step::Check(cause, _) => {
                 let pivot = self.signed(a);
-                // Positive and finite by its bits, 1 to those below infinity, as generated code has it.
-                let bits = self.ins().bitcast(types::I64, MemFlags::new(), pivot);
-                let bits = self.ins().iadd_imm(bits, -1);
-                let limit = self.ins().iconst(types::I64, INFINITE - 1);
-                let positive = self.ins().icmp(IntCC::UnsignedLessThan, bits, limit);
                 let known = causes.iter().position(|&known| known == cause);
                 let place = known.unwrap_or_else(|| {
                     causes.push(cause);
                     causes.len() - 1
                 });
-                self.end_unless(positive, i32::try_from(place + 1).unwrap_or(UNDONE));
+                for pivot in self.alone(pivot) {
+                    // Positive and finite by its bits, 1 to those below infinity, as generated code has it.
+                    let bits = self.ins().bitcast(types::I64, MemFlags::new(), pivot);
+                    let bits = self.ins().iadd_imm(bits, -1);
+                    let limit = self.ins().iconst(types::I64, INFINITE - 1);
+                    let positive = self.ins().icmp(IntCC::UnsignedLessThan, bits, limit);
+                    self.end_unless(positive, i32::try_from(place + 1).unwrap_or(UNDONE));
+                }
                 return None;
             }
         };
@@ -307,7 +411,7 @@ impl Arithmetic for Writer<'_, '_> {
     type Number = Value;
 
     fn is_fused(&self) -> bool {
-        self.fused
+        self.target.fused
     }
 
     fn number(&mut self, number: f64) -> Value {
@@ -323,7 +427,7 @@ impl Arithmetic for Writer<'_, '_> {
     }
 
     fn times_plus(&mut self, a: Value, b: Value, c: Value) -> Value {
-        if self.fused {
+        if self.target.fused {
             return self.ins().fma(a, b, c);
         }
         let product = self.ins().fmul(a, b);
@@ -331,7 +435,7 @@ impl Arithmetic for Writer<'_, '_> {
     }
 
     fn less_times(&mut self, c: Value, a: Value, b: Value) -> Value {
-        if self.fused {
+        if self.target.fused {
             let a = self.ins().fneg(a);
             return self.ins().fma(a, b, c);
         }
@@ -356,7 +460,7 @@ pub fn lower(
     pool: &mut Pool,
     tape: &Tape,
     callees: &Callees,
-    fused: bool,
+    target: Target,
 ) -> Vec<Cause> {
     let plan = plan(tape);
     let entry = builder.create_block();
@@ -368,13 +472,14 @@ pub fn lower(
     let code = builder.append_block_param(ends, types::I32);
     // A function without a frame is called sooner.
     let stack = (plan.slots > 0).then(|| {
-        let size = u32::try_from(8 * plan.slots).unwrap_or(u32::MAX);
-        let slots = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
+        let size = u32::try_from(target.bytes(plan.slots)).unwrap_or(u32::MAX);
+        let alignment = if target.paired { 4 } else { 3 };
+        let slots = StackSlotData::new(StackSlotKind::ExplicitSlot, size, alignment);
         builder.create_sized_stack_slot(slots)
     });
     let mut writer = Writer {
         pool,
-        fused,
+        target,
         constants: given[0],
         out: given[1],
         arguments: [2, 3, 4, 5, 6].map(|place| given[place]),
@@ -418,7 +523,8 @@ fn body(w: &mut Writer, tape: &Tape, plan: &Plan, callees: &Callees) -> Vec<Caus
                 if let (Some(value), Home::Slot(slot), Some(stack)) =
                     (values[id], plan.homes[id], w.stack)
                 {
-                    w.ins().stack_store(value, stack, bytes(slot));
+                    let place = w.target.bytes(slot);
+                    w.ins().stack_store(value, stack, place);
                 }
             }
             Action::Step(index) => {
@@ -456,9 +562,4 @@ fn body(w: &mut Writer, tape: &Tape, plan: &Plan, callees: &Callees) -> Vec<Caus
         }
     }
     causes
-}
-
-/// How far an entry is from the first.
-fn bytes(place: usize) -> i32 {
-    i32::try_from(8 * place).unwrap_or(i32::MAX)
 }

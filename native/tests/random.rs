@@ -1,9 +1,9 @@
-//! Random tapes by machine code and step by step: the same bits, the same pivots.
+//! Random tapes by machine code, alone and in two lanes, and step by step: the same bits, the same pivots.
 
 use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape, Tapes};
-use hamel_native::{Compiled, evaluate};
+use hamel_native::{Compiled, Constants, Paired, evaluate};
 
 /// Tapes in every run.
 const TAPES: u64 = 10_000;
@@ -118,7 +118,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
 #[test]
 fn code_gives_the_bits_of_tapes() {
     let mut random = Random(42);
-    let (mut well, mut ended, mut far) = (0, 0, 0);
+    let (mut well, mut ended, mut far, mut pairs) = (0, 0, 0, 0);
     let mut made = 0;
     while made < TAPES {
         let kept = random.below(4);
@@ -141,13 +141,17 @@ fn code_gives_the_bits_of_tapes() {
         let code = Compiled::of(tapes.clone());
         assert_eq!(code.interpreted_because(), None);
         let steps = Compiled::interpreted(tapes.clone());
+        let paired = Paired::new(&code).expect("code for two lanes");
+        let mut before: Option<Lane> = None;
         for _ in 0..4 {
             let parameters: Vec<f64> = (0..PARAMETERS).map(|_| random.number()).collect();
             let arguments = LENGTHS
                 .map(|length| -> Vec<f64> { (0..length).map(|_| random.number()).collect() });
+            let lists = arguments.clone();
             let arguments = [0, 1, 2, 3, 4].map(|i| arguments[i].as_slice());
             let (own, others) = (code.constants(&parameters), steps.constants(&parameters));
             assert_eq!(bits(own.known()), bits(others.known()));
+            let mut results = Vec::new();
             for (place, tape) in tapes.functions.iter().enumerate() {
                 let mut out = vec![1.0; tape.outputs.len()];
                 let mut expected = out.clone();
@@ -165,14 +169,49 @@ fn code_gives_the_bits_of_tapes() {
                     }
                     Err(_) => ended += 1,
                 }
+                results.push(result.ok().map(|()| out));
+            }
+            let lane = (own, lists, results);
+            if let Some(before) = before.replace(lane.clone()) {
+                pairs += together(&paired, &before, &lane);
             }
         }
     }
     // Each of them was met often enough to say something.
     assert!(
-        well > 20_000 && ended > 500 && far < well / 2,
-        "{well} {ended} {far}"
+        well > 20_000 && ended > 500 && far < well / 2 && pairs > 10_000,
+        "{well} {ended} {far} {pairs}"
     );
+}
+
+/// Constants, arguments, and the results of all functions, where they have one.
+type Lane = (Constants, [Vec<f64>; 5], Vec<Option<Vec<f64>>>);
+
+/// Calls functions for two lanes; how many had results, each of which is that of its lane alone.
+fn together(paired: &Paired, first: &Lane, second: &Lane) -> usize {
+    let pairs = |first: &[f64], second: &[f64]| -> Vec<f64> {
+        let both = first.iter().zip(second);
+        both.flat_map(|(&a, &b)| [a, b]).collect()
+    };
+    let constants = paired.constants([&first.0, &second.0]);
+    let arguments = [0, 1, 2, 3, 4].map(|i| pairs(&first.1[i], &second.1[i]));
+    let arguments = [0, 1, 2, 3, 4].map(|i| arguments[i].as_slice());
+    let mut well = 0;
+    for (place, alone) in first.2.iter().zip(&second.2).enumerate() {
+        let (Some(a), Some(b)) = alone else {
+            let length = [alone.0, alone.1].into_iter().flatten().map(Vec::len).max();
+            let mut out = vec![0.0; 2 * length.unwrap_or(9)];
+            assert!(!paired.call(place, &constants, arguments, &mut out));
+            continue;
+        };
+        let mut out = vec![1.0; 2 * a.len()];
+        // Where an angle is too large for the code, both lanes are evaluated step by step.
+        if paired.call(place, &constants, arguments, &mut out) {
+            assert_eq!(bits(&out), bits(&pairs(a, b)));
+            well += 1;
+        }
+    }
+    well
 }
 
 /// By the runtime's own numbers, which know nothing of tapes.

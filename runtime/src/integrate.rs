@@ -111,30 +111,42 @@ where
     Ok(())
 }
 
-/// Equal steps from one time to another.
-pub(crate) struct Grid {
+/// The equal steps that [`integrate`] takes from one time to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
     from: f64,
     until: f64,
-    /// How many there are.
     pub(crate) count: u64,
 }
 
 impl Grid {
-    /// The fewest equal steps no longer than `length`.
-    pub(crate) fn new(from: f64, until: f64, length: f64) -> Result<Self, StepError> {
+    /// The fewest equal steps no longer than `length`; none where both times are the same.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidStep`] where a length or a time is not finite, the length is zero, or the steps are too many
+    /// to tell their times apart.
+    pub fn new(from: f64, until: f64, length: f64) -> Result<Self, StepError> {
         let count = count_steps(until - from, length)?;
         Ok(Self { from, until, count })
     }
 
-    /// The length of a step, with its sign; there has to be one.
+    /// How many steps there are.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The length of a step, negative where it leads backwards in time; NaN where there is no step.
     #[inline]
-    pub(crate) fn step(&self) -> f64 {
+    #[must_use]
+    pub fn step(&self) -> f64 {
         (self.until - self.from) / self.count as f64
     }
 
     /// The time after `index` steps, exactly `until` after the last.
     #[inline]
-    pub(crate) fn time(&self, index: u64) -> f64 {
+    #[must_use]
+    pub fn time(&self, index: u64) -> f64 {
         if index == self.count {
             self.until
         } else {

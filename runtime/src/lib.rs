@@ -102,7 +102,7 @@ pub use dual::Dual;
 pub use error::{Singular, StepError};
 #[cfg(feature = "macros")]
 pub use hamel_macros::rigid_eom;
-pub use integrate::{integrate, step};
+pub use integrate::{Grid, integrate, step};
 pub use lanes::Lanes;
 pub use methods::Method;
 pub use monitor::Monitor;

@@ -4,7 +4,7 @@ use super::taped::{Places, Taped, Tapes};
 use super::{Instance, Mechanism};
 use crate::method::Stepper;
 use hamel::methods::{General, Method};
-use hamel::{State, StepError, System};
+use hamel::{Grid, State, StepError, System};
 use hamel_codegen::program::tape::{Source, Tape};
 use hamel_codegen::program::{Argument, Cause};
 use hamel_native::{Compiled, Constants, Traced, inlined, traced};
@@ -36,6 +36,7 @@ pub struct Whole<'a> {
     /// Room for x and ξ at its end.
     end: RefCell<Vec<f64>>,
     worthwhile: bool,
+    length: f64,
 }
 
 impl<'a> Whole<'a> {
@@ -46,6 +47,7 @@ impl<'a> Whole<'a> {
             code: OnceCell::new(),
             end: RefCell::default(),
             worthwhile: time / length >= FEWEST && system.given.is_none(),
+            length,
         }
     }
 
@@ -63,6 +65,35 @@ impl<'a> Whole<'a> {
             Some((compiled, constants, h, code.evaluations))
         });
         code.as_ref().filter(|(_, _, length, _)| *length == h)
+    }
+
+    /// Takes all steps to a time at once, where nobody looks at what is between and all of them are machine code; whether
+    /// it did. Where one of them fails the state stays as it was, and steps one by one say why.
+    pub fn run(&self, system: &Instance, state: &mut State<Instance>, until: f64) -> bool {
+        // What a projection moves after a step, or an input that changes, is not in the code.
+        if system.of.project_position.is_some() || system.of.project_velocity.is_some() {
+            return false;
+        }
+        let Ok(grid) = Grid::new(state.t, until, self.length) else {
+            return false;
+        };
+        let Some((compiled, constants, _, evaluations)) = self.code(system, grid.step()) else {
+            return false;
+        };
+        let u = system.inputs(state.t, &state.x, &state.xi);
+        let mut all = [&*state.x, &*state.xi].concat();
+        if compiled.repeat(0, constants, &mut all, &u, grid.count()) < grid.count() {
+            return false;
+        }
+        let evaluated = system.evaluations.get() + evaluations * grid.count();
+        system.evaluations.set(evaluated);
+        let (x, xi) = all.split_at(state.x.len());
+        *state = State {
+            t: until,
+            x: x.into(),
+            xi: xi.into(),
+        };
+        true
     }
 }
 

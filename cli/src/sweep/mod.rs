@@ -281,6 +281,7 @@ fn prepared(
     let mut plan = stepping.plan(&family.generated, &system, None)?;
     if !keeping.looks_within() {
         plan.points = 1;
+        plan.quiet = true;
     }
     let times = keeping.times();
     if !times.is_empty() {
