@@ -18,7 +18,8 @@
 #![allow(unsafe_code)]
 
 use crate::evaluate::apply;
-use crate::lower::{Callee, Pool, Target, UNDONE, WELL, callee, lower, signature};
+use crate::lower::{Callee, UNDONE, WELL, callee, lower, signature};
+use crate::target::{Pool, Target};
 use cranelift_codegen::ir::{AbiParam, types};
 use cranelift_codegen::settings::{Configurable, Flags, builder};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};

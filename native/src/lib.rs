@@ -11,6 +11,7 @@
 //! | file | owns |
 //! |---|---|
 //! | `spill` | which values are in registers, and where the others are |
+//! | `target` | what code is written for, one set of numbers or two; the numbers that it reads |
 //! | `lower` | a tape as Cranelift's intermediate code |
 //! | `code` | memory that can be executed, and calls: all that is `unsafe` |
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |
@@ -22,6 +23,7 @@ mod evaluate;
 mod lower;
 mod repeat;
 mod spill;
+mod target;
 mod traced;
 
 pub use evaluate::{evaluate, evaluate_in};
@@ -31,9 +33,9 @@ pub use traced::{Traced, inlined, traced};
 
 use code::{Code, Ended, Fixed};
 use hamel::Scalar;
-use lower::Target;
 use hamel_codegen::program::{Cause, Function, Program};
 use std::sync::Arc;
+use target::Target;
 
 /// Functions of a program that can be called: by machine code where there can be any.
 #[derive(Clone, Debug)]

@@ -4,6 +4,7 @@
 //! a lane has the bits that it would have alone.
 
 use crate::spill::{Action, Home, Id, Plan, is_call, plan};
+use crate::target::{Pool, Target};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{
     AbiParam, Block, FuncRef, InstBuilder, MemFlags, Signature, StackSlot, StackSlotData,
@@ -24,84 +25,6 @@ pub const WELL: i32 = 0;
 pub const UNDONE: i32 = -1;
 /// Lengths below this are divided by as if they were this long.
 const SHORTEST: f64 = 1e-100;
-
-/// Numbers that code reads from memory, behind the constants.
-#[derive(Debug, Default)]
-pub struct Pool {
-    /// Where they begin.
-    pub start: usize,
-    /// The numbers.
-    pub numbers: Vec<f64>,
-    places: HashMap<u64, usize>,
-    turned: Option<usize>,
-}
-
-impl Pool {
-    /// Numbers that begin behind so many constants.
-    pub fn behind(start: usize) -> Self {
-        Pool {
-            start,
-            ..Pool::default()
-        }
-    }
-
-    fn place(&mut self, number: f64) -> usize {
-        let (start, numbers) = (self.start, &mut self.numbers);
-        *self.places.entry(number.to_bits()).or_insert_with(|| {
-            numbers.push(number);
-            start + numbers.len() - 1
-        })
-    }
-
-    /// Where the rows of quarter turns begin.
-    fn turned(&mut self) -> usize {
-        let (start, numbers) = (self.start, &mut self.numbers);
-        *self.turned.get_or_insert_with(|| {
-            let place = start + numbers.len();
-            numbers.extend(trig::TURNED.iter().flatten());
-            place
-        })
-    }
-}
-
-/// How code is written.
-#[derive(Clone, Copy, Debug)]
-pub struct Target {
-    /// Whether a b + c is one instruction.
-    pub fused: bool,
-    /// Whether there are two lanes.
-    pub paired: bool,
-}
-
-impl Target {
-    /// How many numbers stand side by side.
-    pub fn lanes(self) -> usize {
-        if self.paired { 2 } else { 1 }
-    }
-
-    /// The type of a value.
-    fn number(self) -> Type {
-        if self.paired {
-            types::F64X2
-        } else {
-            types::F64
-        }
-    }
-
-    /// Pairs stand at even places of lists, which need not be those of whole registers.
-    fn flags(self) -> MemFlags {
-        if self.paired {
-            MemFlags::new().with_notrap()
-        } else {
-            MemFlags::trusted()
-        }
-    }
-
-    /// How far an entry is from the first.
-    fn bytes(self, place: usize) -> i32 {
-        i32::try_from(8 * self.lanes() * place).unwrap_or(i32::MAX)
-    }
-}
 
 /// Functions that code calls.
 pub type Callees = HashMap<Callee, FuncRef>;

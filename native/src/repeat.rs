@@ -2,7 +2,7 @@
 //! of them in the lanes of one code.
 
 use crate::code::{Code, Ended};
-use crate::lower::Target;
+use crate::target::Target;
 use crate::{Compiled, Constants};
 
 impl Compiled {
@@ -101,11 +101,17 @@ impl Paired {
 /// Two lists of one length as one of pairs.
 fn paired(first: &[f64], second: &[f64]) -> Vec<f64> {
     let pairs = first.iter().zip(second);
-    pairs.flat_map(|(&first, &second)| [first, second]).collect()
+    pairs
+        .flat_map(|(&first, &second)| [first, second])
+        .collect()
 }
 
 /// Takes `next` from `state` so many times, or until there is no next one that is finite; how many there were.
-fn repeated(state: &mut [f64], times: u64, mut call: impl FnMut(&[f64], &mut [f64]) -> bool) -> u64 {
+fn repeated(
+    state: &mut [f64],
+    times: u64,
+    mut call: impl FnMut(&[f64], &mut [f64]) -> bool,
+) -> u64 {
     let mut here = state.to_vec();
     let mut next = vec![f64::NAN; state.len()];
     let mut done = 0;
