@@ -12,6 +12,7 @@
 //! | `method` | the methods by their names, and which systems they are for |
 //! | `json`, `names`, `columns` | how results are written; pictures and numbers are those of `hamel-report` |
 //! | `progress` | what long work shows |
+//! | `drawing` | what of a mechanism can be drawn at a state, as plain numbers |
 //! | `session` | the same for other front ends: numbers in place of texts |
 //! | `failure` | errors, warnings and exit statuses |
 
@@ -19,6 +20,7 @@ mod check;
 mod columns;
 mod compare;
 mod constants;
+pub mod drawing;
 mod eigenvalues;
 mod emit;
 mod eval;
@@ -41,6 +43,7 @@ mod state;
 mod sweep;
 mod tables;
 
+pub use drawing::{Drawing, Drawn, Scene};
 pub use failure::Failure;
 pub use linearize::Linear;
 pub use mechanism::{End, Varied};

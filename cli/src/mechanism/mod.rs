@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::simulate::inputs::Inputs;
 use crate::singular::{self, Failed};
 use crate::state::State;
-pub use functions::{Functions, Place, compiled};
+pub use functions::{Functions, Place, compiled, place};
 use hamel::rotor::Rotor;
 use hamel::{Block, Singular, System};
 use hamel_codegen::algebra::numeric::evaluate;
@@ -97,10 +97,7 @@ impl Mechanism {
         let names = SYSTEM.iter().chain(momenta::NAMES).copied();
         let names: Vec<&str> = names.chain(described).collect();
         let compiled = compiled(program, &names)?;
-        let function = |name: &str| {
-            let place = functions::place(&compiled, name);
-            place.ok_or_else(|| missing(program, name))
-        };
+        let function = |name: &str| place(&compiled, name).ok_or_else(|| missing(program, name));
         let output = |name: &&String| {
             let known = program.function(name.as_str());
             Ok(Output {

@@ -6,6 +6,7 @@ mod motion;
 pub use function::Function;
 pub use motion::Motion;
 
+use crate::drawing::Drawing;
 use crate::eval::numbers;
 use crate::failure::{Failure, collected};
 use crate::linearize::{self, Linear};
@@ -425,6 +426,14 @@ impl Session {
         let tables = named.and_then(|of| tables::tables(&self.generated, &of));
         let tables = tables.map_err(Failure::usage)?;
         Ok(crate::tables::written(&tables, format, all))
+    }
+
+    /// What of the mechanism can be drawn, compiled for any parameters and states.
+    ///
+    /// # Errors
+    /// Where a frame depends on a function in Rust.
+    pub fn drawing(&self) -> Result<Drawing, Failure> {
+        Drawing::new(&self.generated)
     }
 
     /// The names of the methods.

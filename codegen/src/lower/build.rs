@@ -194,7 +194,7 @@ impl<'a> Reading<'a> {
         let joints = joints::read(system, graph, scope, report);
         let armature = joints::armature(system, graph, scope, declared, &mut dynamics, report);
         let invariants = invariants::read(system, graph, scope, &frames, declared, report);
-        let mut constraints =
+        let (mut constraints, closures) =
             pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
         let (drives, prescribed, accelerated) = prescribe::read(
             system,
@@ -287,6 +287,7 @@ impl<'a> Reading<'a> {
             completion: kinematics.completion,
             frames,
             joints,
+            closures,
             bodies: dynamics.bodies,
             particles: dynamics.particles,
             kinetic: dynamics.kinetic,

@@ -8,6 +8,7 @@ use super::scope::Scope;
 use super::time;
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::Vec3;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
 use crate::model::pfaffian::{Kind, Pfaffian};
@@ -15,7 +16,7 @@ use crate::model::value::Value;
 use crate::syntax::ast::{Expr, ItemKind, Span, System};
 use crate::syntax::written::{equation, written};
 
-/// Reads all rows, in the order of the text.
+/// Reads all rows, in the order of the text, and the points that loops bring together.
 pub fn read(
     system: &System,
     graph: &mut Graph,
@@ -23,12 +24,14 @@ pub fn read(
     declared: &Declared,
     kinematics: Option<&Kinematics>,
     report: &mut Report,
-) -> Vec<Pfaffian> {
+) -> (Vec<Pfaffian>, Vec<(Vec3, Vec3)>) {
     let mut all = Vec::new();
+    let mut closures = Vec::new();
     let mut reader = Reader {
         evaluator: Evaluator::new(graph, scope, report),
         declared,
         kinematics,
+        sides: None,
     };
     for item in &system.items {
         match &item.kind {
@@ -51,21 +54,25 @@ pub fn read(
                 left,
                 right,
                 stabilized,
-            } => all.extend(
-                reader
-                    .closed_loop(left, right, stabilized.as_ref())
-                    .unwrap_or_default(),
-            ),
+            } => {
+                let rows = reader.closed_loop(left, right, stabilized.as_ref());
+                if let Some(rows) = rows {
+                    all.extend(rows);
+                    closures.extend(reader.sides);
+                }
+            }
             _ => {}
         }
     }
-    all
+    (all, closures)
 }
 
 struct Reader<'a> {
     evaluator: Evaluator<'a>,
     declared: &'a Declared,
     kinematics: Option<&'a Kinematics>,
+    /// Both sides of the equation that was read last, where they are points of space.
+    sides: Option<(Vec3, Vec3)>,
 }
 
 impl Reader<'_> {
@@ -246,6 +253,7 @@ impl Reader<'_> {
     fn difference(&mut self, left: &Expr, right: &Expr) -> Option<Vec<Edge>> {
         let (a, b) = (self.evaluator.value(left), self.evaluator.value(right));
         let (a, b) = (a?, b?);
+        self.sides = None;
         let graph = &mut *self.evaluator.graph;
         // `… = 0` is meant entry by entry.
         let is_zero = matches!(b, Value::Scalar(edge) if edge.abs() == graph.zero());
@@ -259,6 +267,7 @@ impl Reader<'_> {
                     .help("both sides need the same shape, or 0 on the right"),
             );
         }
+        self.sides = a.as_vec3().zip(b.as_vec3());
         Some(a.zip(&b, |x, y| graph.sub(x, y)).entries())
     }
 

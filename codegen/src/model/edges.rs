@@ -136,7 +136,7 @@ fields!(Elements {
     scalar_dissipation;
 });
 fields!(Model {
-    x, xi, xi_dot, u, momenta, rate, a, frames, bodies, particles, wrenches, elements, dissipation, observed,
+    x, xi, xi_dot, u, momenta, rate, a, frames, closures, bodies, particles, wrenches, elements, dissipation, observed,
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, whole;
     name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, clock,

@@ -11,6 +11,8 @@ pub struct Joint {
     pub kind: JointKind,
     /// The name of the frame that it carries.
     pub frame: String,
+    /// Unit vectors along its axes, in the axes of its place (-): none, one, or the two of a universal joint.
+    pub axes: Vec<[f64; 3]>,
     /// The names of its coordinates; none where it follows others.
     pub coordinates: Vec<String>,
     /// The names of its velocities.

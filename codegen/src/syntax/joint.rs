@@ -106,7 +106,7 @@ pub(crate) fn field_name(field: JointField) -> &'static str {
 }
 
 /// The name of a kind.
-pub(crate) fn kind_name(kind: JointKind) -> &'static str {
+pub fn kind_name(kind: JointKind) -> &'static str {
     KINDS
         .iter()
         .find(|(_, known, ..)| *known == kind)

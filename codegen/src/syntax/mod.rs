@@ -53,10 +53,12 @@ mod tests;
 pub use files::read_files;
 pub use tokens::Places;
 
+pub use joint::kind_name as joint_kind;
+
 pub(crate) use body::fields_of as body_fields;
 pub(crate) use joint::{
     endings as joint_endings, field_name as joint_field, fields_of as joint_fields,
-    kind_name as joint_kind, kinds as joint_kinds,
+    kinds as joint_kinds,
 };
 pub(crate) use words::forms as statement_forms;
 

@@ -143,7 +143,7 @@ pub(super) fn numbers(
 }
 
 /// The number that an expression of numbers and constants is.
-fn number(graph: &Graph, edge: Edge) -> Option<f64> {
+pub(super) fn number(graph: &Graph, edge: Edge) -> Option<f64> {
     if graph.class(edge.node()) != 0 {
         return None;
     }

@@ -20,6 +20,8 @@ mod written;
 
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
+use crate::lower::axes;
+use crate::lower::expression::Evaluator;
 use crate::lower::scope::Scope;
 use crate::model::joints::Joint;
 use crate::syntax::ast::{self, Ident, ItemKind, JointField, System};
@@ -38,11 +40,13 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, report: &mut Repo
             let limit = numbers(JointField::Limit);
             let speed = numbers(JointField::MaxSpeed);
             let force = numbers(JointField::MaxForce);
+            let axes = directions(joint, graph, scope);
             let (coordinates, velocities) = names(joint);
             joints.push(Joint {
                 name: joint.name.name.clone(),
                 kind: joint.kind.0,
                 frame: joint.moves.name.clone(),
+                axes,
                 coordinates,
                 velocities,
                 limit: limit.and_then(|list| <[f64; 2]>::try_from(list).ok()),
@@ -52,6 +56,19 @@ pub fn read(system: &System, graph: &mut Graph, scope: &Scope, report: &mut Repo
         }
     }
     joints
+}
+
+/// Unit vectors along the axes of a joint; what is wrong with one is reported where its frame is read.
+fn directions(joint: &ast::Joint, graph: &mut Graph, scope: &Scope) -> Vec<[f64; 3]> {
+    let mut reported = Report::default();
+    let mut direction = |axis: &ast::Expr| {
+        let value = Evaluator::new(graph, scope, &mut reported).value(axis)?;
+        let [a, b, c] = axes::unit(graph, &value)
+            .ok()?
+            .map(|entry| fields::number(graph, entry));
+        Some([a?, b?, c?])
+    };
+    joint.axes.iter().filter_map(&mut direction).collect()
 }
 
 /// The names of the coordinates and of the velocities of a joint.

@@ -1,0 +1,143 @@
+//! What of a model is drawn, as expressions, and what moves with what.
+//!
+//! A point is fixed to a frame where the rates of its coordinates in that frame are zero along ẋ = A ξ, and two points
+//! keep their distance where the rate of its square is: both are found exactly, as expressions that are equal on X are
+//! one node of the graph.
+
+use super::scene::Acts;
+use hamel_codegen::algebra::derivation::Derivation;
+use hamel_codegen::algebra::graph::{Edge, Graph};
+use hamel_codegen::algebra::linear::{Vec3, apply_transposed, sub3, zero3};
+use hamel_codegen::model::elements::Along;
+use hamel_codegen::model::{Model, class};
+
+/// Expressions and what is known of them.
+pub(super) struct Points {
+    /// Of each body its mass, its centre of mass and its inertia about that, 13 expressions; masses of particles.
+    pub masses: Vec<Edge>,
+    /// Vectors of three: four for each frame, one for each particle, two for each line, rod and loop.
+    pub moving: Vec<Edge>,
+    /// Whether the origin of a frame rests in the frame that it was placed on.
+    pub attached: Vec<bool>,
+    /// The frame that each particle is fixed to.
+    pub particles: Vec<Option<usize>>,
+    /// Kinds of the lines, with the frames that their ends are fixed to.
+    pub lines: Vec<(Acts, [Option<usize>; 2])>,
+    /// How many rods there are.
+    pub rods: usize,
+}
+
+impl Points {
+    /// Those of a model.
+    pub fn new(model: &Model, graph: &mut Graph) -> Self {
+        let bodies = model.bodies.iter().flat_map(|body| {
+            let inertia = body.inertia_com.as_flattened().iter().copied();
+            [body.mass].into_iter().chain(body.com).chain(inertia)
+        });
+        let masses = model.particles.iter().map(|particle| particle.mass);
+        let masses = bodies.chain(masses).collect();
+        let frames = model.frames.iter();
+        let attached = frames.map(|frame| is_constant(model, graph, &frame.relative.1));
+        let attached = attached.collect();
+        let poses = model.frames.iter().flat_map(|frame| {
+            let rotation = frame.rotation.as_flattened().iter().copied();
+            rotation.chain(frame.position)
+        });
+        let mut moving: Vec<Edge> = poses.collect();
+        let particles: Vec<Vec3> = model.particles.iter().map(|one| one.position).collect();
+        moving.extend(particles.as_flattened());
+        let mut lines = Vec::new();
+        for (acts, from, to) in along(model) {
+            let frames = [from, to].map(|end| carrier(model, graph, end));
+            lines.push((acts, frames));
+            moving.extend(from.into_iter().chain(to));
+        }
+        let fixed = particles.iter().map(|&at| carrier(model, graph, at));
+        let fixed: Vec<Option<usize>> = fixed.collect();
+        let rods = rods(model, graph, &particles, &fixed);
+        moving.extend(rods.iter().flatten().flatten());
+        let loops = model.closures.iter();
+        moving.extend(loops.flat_map(|(left, right)| left.iter().chain(right)));
+        Points {
+            masses,
+            moving,
+            attached,
+            particles: fixed,
+            lines,
+            rods: rods.len(),
+        }
+    }
+}
+
+/// Springs, dampers and forces between two points.
+fn along(model: &Model) -> impl Iterator<Item = (Acts, Vec3, Vec3)> {
+    let elements = &model.elements;
+    let springs = elements
+        .springs
+        .iter()
+        .map(|one| (Acts::Spring, &one.along));
+    let dampers = elements
+        .dampers
+        .iter()
+        .map(|one| (Acts::Damper, &one.along));
+    let forces = elements.pushes.iter().map(|one| (Acts::Force, &one.along));
+    let all = springs.chain(dampers).chain(forces);
+    all.filter_map(|(acts, along)| match along {
+        Along::Line { from, to, .. } => Some((acts, *from, *to)),
+        Along::Scalar(_) => None,
+    })
+}
+
+/// Rods from particles to one another, and to the origin of the world, where no frame holds both ends.
+fn rods(
+    model: &Model,
+    graph: &mut Graph,
+    particles: &[Vec3],
+    fixed: &[Option<usize>],
+) -> Vec<[Vec3; 2]> {
+    let origin = zero3(graph);
+    let mut rods = Vec::new();
+    for (last, &end) in particles.iter().enumerate() {
+        let others =
+            (0..last).filter(|&other| fixed[other].is_none() || fixed[other] != fixed[last]);
+        let others = others.map(|other| particles[other]);
+        let others: Vec<Vec3> = others
+            .chain(fixed[last].is_none().then_some(origin))
+            .collect();
+        for other in others {
+            let difference = sub3(graph, end, other);
+            let square = graph.dot(&difference, &difference);
+            if is_constant(model, graph, &[square]) && !is_constant(model, graph, &difference) {
+                rods.push([other, end]);
+            }
+        }
+    }
+    rods
+}
+
+/// The first frame that a point is fixed to.
+fn carrier(model: &Model, graph: &mut Graph, point: Vec3) -> Option<usize> {
+    if is_constant(model, graph, &point) {
+        return None;
+    }
+    model.frames.iter().position(|frame| {
+        let arm = sub3(graph, point, frame.position);
+        let arm = apply_transposed(graph, &frame.rotation, arm);
+        is_constant(model, graph, &arm)
+    })
+}
+
+/// Whether it does not change along any motion.
+fn is_constant(model: &Model, graph: &mut Graph, entries: &[Edge]) -> bool {
+    let moves = |entry: &Edge| graph.class(entry.node()) & class::CONFIGURATION != 0;
+    if !entries.iter().any(moves) {
+        return true;
+    }
+    let rates = model
+        .x
+        .iter()
+        .map(|x| x.node())
+        .zip(model.rate.iter().copied());
+    let slopes = Derivation::new(rates).all(graph, entries);
+    slopes.iter().all(|slope| *slope == graph.zero())
+}

@@ -1,0 +1,212 @@
+//! What is drawn of a mechanism is where the mechanism's own functions say that it is.
+
+use hamel_cli::drawing::{Acts, Scene, Vector};
+use hamel_cli::{RobotOptions, Session};
+use std::path::{Path, PathBuf};
+
+fn session(path: &Path) -> Session {
+    let opened = Session::open(path, &RobotOptions::default());
+    let (session, _) = opened.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    session
+}
+
+fn read(text: &str) -> Session {
+    let read = Session::read(text.into(), "text.eom", &RobotOptions::default());
+    let (session, _) = read.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    session
+}
+
+fn models() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models")
+}
+
+/// The scene at the state that a text says.
+fn scene(session: &Session, state: &str) -> (Scene, Vec<f64>) {
+    let start = session.start();
+    let state = session.state(&start.params, state, "state.json");
+    let state = state.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let drawing = session.drawing();
+    let drawing = drawing.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    (drawing.with(&state.params).scene(&state.x), state.x)
+}
+
+/// The value of a function at the start's parameters, u = 0, ξ = 0.
+fn value(session: &Session, name: &str, x: &[f64]) -> Vec<f64> {
+    let function = session.function(name);
+    let function = function.unwrap_or_else(|failure| panic!("{}", failure.text()));
+    let constants = function
+        .constants(&session.start().params)
+        .expect("constants");
+    let mut out = vec![f64::NAN; function.shape.entries()];
+    let none = vec![0.0; session.start().xi.len()];
+    let called = function.call(&constants, [x, &none, &[], &[], &[]], &mut out);
+    called.expect("a value");
+    out
+}
+
+fn close(a: f64, b: f64) {
+    assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{a} is not {b}");
+}
+
+fn distance(a: Vector, b: Vector) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+    squares.sum::<f64>().sqrt()
+}
+
+#[test]
+fn frames_are_where_their_pose_functions_say() {
+    let cases = [
+        (
+            "ship_arm_joints.eom",
+            r#"{"coord": {"pan": 0.4, "lift": -0.8}}"#,
+        ),
+        ("satellite.eom", "{}"),
+        ("bricard.eom", "{}"),
+    ];
+    for (file, state) in cases {
+        let session = session(&models().join(file));
+        let (scene, x) = scene(&session, state);
+        assert!(!scene.frames.is_empty(), "{file}");
+        for frame in &scene.frames {
+            let pose = value(&session, &format!("{}_pose", frame.name), &x);
+            for (k, row) in pose.chunks(4).enumerate() {
+                for i in 0..3 {
+                    close(frame.rotation[k][i], row[i]);
+                }
+                close(frame.position[k], row[3]);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_kinetic_energy_of_the_ellipsoids_is_that_of_the_body() {
+    let session = session(&models().join("free_body.eom"));
+    let (scene, x) = scene(&session, "{}");
+    let body = &scene.bodies[0];
+    // About each axis of the world through the origin of the frame, which does not move.
+    let mass = value(&session, "mass_matrix", &x);
+    let n = session.start().xi.len();
+    let origin = scene.frames[body.frame].position;
+    let arm: Vector = std::array::from_fn(|k| body.centre[k] - origin[k]);
+    let squares: f64 = body.radii.iter().map(|r| r * r).sum();
+    for i in 0..3 {
+        for j in 0..3 {
+            let about_centre: f64 = (0..3)
+                .map(|k| {
+                    let moment = body.mass / 5.0 * (squares - body.radii[k] * body.radii[k]);
+                    moment * body.axes[k][i] * body.axes[k][j]
+                })
+                .sum();
+            let same = if i == j {
+                arm.iter().map(|a| a * a).sum()
+            } else {
+                0.0
+            };
+            let moved = body.mass * (same - arm[i] * arm[j]);
+            // R is the identity at the start, so that body axes are those of the world.
+            close(about_centre + moved, mass[(3 + i) * n + 3 + j]);
+        }
+    }
+}
+
+#[test]
+fn a_spring_is_as_long_as_its_potential_says() {
+    let text = "pub system Sprung {
+        param k = 70, l = 0.4;
+        joint a: revolute [0, 1, 0] moves upper;
+        joint b: spherical on upper at [0, 0, -0.7] moves lower;
+        body on upper { mass 1; com [0, 0, -0.3]; inertia diag(1, 1, 0.1) about com; }
+        body on lower { mass 2; com [0.1, 0, -0.3]; inertia diag(1, 1.1, 0.4) about com; }
+        frame hook = pose(identity(3), [0.8, 0.1, 0]);
+        spring stiffness k length l from hook to [0.2, 0, -0.5] on lower;
+        damper coefficient 2 from [0.1, 0, 0] on upper to [0.5, 1, 0] on world;
+    }";
+    let session = read(text);
+    let (scene, x) = scene(&session, r#"{"coord": {"a": 0.7}}"#);
+    let spring = &scene.lines[0];
+    let length = distance(spring.points[0], spring.points[1]);
+    let potential = value(&session, "potential_energy", &x);
+    close(35.0 * (length - 0.4) * (length - 0.4), potential[0]);
+    let lower = scene.frames.iter().position(|frame| frame.name == "lower");
+    assert_eq!((spring.acts, spring.frames), (Acts::Spring, [None, lower]));
+    let upper = scene.frames.iter().position(|frame| frame.name == "upper");
+    assert_eq!(scene.lines[1].acts, Acts::Damper);
+    assert_eq!(scene.lines[1].frames, [upper, None]);
+    assert!(scene.frames.iter().all(|frame| frame.attached));
+}
+
+#[test]
+fn joints_have_their_axes_and_the_place_from_which_they_slide() {
+    let text = "pub system Joints {
+        joint lift: prismatic [0, 3, 4] at [1, 0, 0] moves carriage;
+        joint cardan: universal [1, 0, 0], [0, 1, 0] on carriage moves wheel;
+        body on carriage { mass 1; inertia identity(3) about com; }
+        body on wheel { mass 1; inertia identity(3) about com; }
+    }";
+    let session = read(text);
+    let (scene, _) = scene(
+        &session,
+        r#"{"coord": {"lift": 0.5, "cardan_1": 0.3, "cardan_2": 1.1}}"#,
+    );
+    let [lift, cardan] = &scene.joints[..] else {
+        panic!("two joints");
+    };
+    assert_eq!((lift.kind, cardan.kind), ("prismatic", "universal"));
+    let expected = [
+        [1.0, 0.0, 0.0],
+        [0.0, 0.6, 0.8],
+        [1.0, 0.0, 0.0],
+        [0.0, 0.3_f64.cos(), 0.3_f64.sin()],
+    ];
+    let found = [lift.place, lift.axes[0], cardan.axes[0], cardan.axes[1]];
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert!(distance(found, expected) < 1e-14, "{found:?}, {expected:?}");
+    }
+    close(distance(scene.frames[lift.frame].position, lift.place), 0.5);
+    assert!(!scene.frames[lift.frame].attached);
+}
+
+#[test]
+fn rods_and_loops_are_found() {
+    let bobs = "pub system Bobs {
+        param m = 1, l = 0.5;
+        coord p: S1, q: S1;
+        velocity v, w;
+        rate p = v, q = w;
+        let first = [l * p.s, 0, -l * p.c];
+        let second = first + [l * q.s, 0, -l * q.c];
+        particle mass m at first;
+        particle mass m at second;
+        gravity [0, 0, -9.81];
+    }";
+    let (drawn, _) = scene(&read(bobs), r#"{"coord": {"p": 0.3, "q": 0.9}}"#);
+    assert_eq!(drawn.rods.len(), 2);
+    for [from, to] in &drawn.rods {
+        close(distance(*from, *to), 0.5);
+    }
+    let (closed, _) = scene(&session(&models().join("bricard.eom")), "{}");
+    assert!(!closed.loops.is_empty());
+    for [one, other] in &closed.loops {
+        assert!(distance(*one, *other) < 1e-10, "{one:?} {other:?}");
+    }
+}
+
+#[test]
+fn scenes_are_plain_data() {
+    let session = session(&models().join("cart_pole.eom"));
+    let (scene, _) = scene(&session, "{}");
+    let json = serde_json::to_value(&scene).expect("json");
+    let names: Vec<&String> = json.as_object().expect("an object").keys().collect();
+    let expected = [
+        "bodies",
+        "centre",
+        "frames",
+        "joints",
+        "lines",
+        "loops",
+        "particles",
+        "rods",
+    ];
+    assert_eq!(names, expected);
+}
