@@ -372,6 +372,47 @@ mod tests {
         }
     }
 
+    /// All steps in one call are the steps one by one, to the bit; where one has no end nothing has moved.
+    #[test]
+    fn steps_at_once_are_the_steps() {
+        let models = ["heavy_top.eom", "kapitza.eom", "lagging_drone.eom"];
+        for model in models {
+            let system = instance(model);
+            let stepper = Stepper::General(General::Rkmk4);
+            let until = 1234.0 * H;
+            let whole = Whole::new(&system, &stepper, H, until);
+            let mut fast = State::<Instance>::start(&system);
+            let mut slow = fast.clone();
+            let held = |t: f64, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+            hamel::integrate(&system, &whole, &mut slow, H, until, held, |_| ()).expect("a run");
+            let between = system.evaluations();
+            assert!(whole.run(&system, &mut fast, until), "{model}");
+            assert_eq!(system.evaluations(), 2 * between, "{model}");
+            let bits = |state: &State<Instance>| -> Vec<u64> {
+                let all = state.x.iter().chain(&*state.xi);
+                all.map(|number| number.to_bits()).collect()
+            };
+            assert_eq!(bits(&fast), bits(&slow), "{model}");
+            assert_eq!(fast.t, slow.t);
+
+            fast.xi.as_mut().fill(f64::MAX);
+            let before = fast.clone();
+            assert!(!whole.run(&system, &mut fast, 2.0 * until), "{model}");
+            assert_eq!((bits(&fast), fast.t), (bits(&before), before.t), "{model}");
+        }
+    }
+
+    /// What is projected after every step is not run at once.
+    #[test]
+    fn loops_are_stepped_one_by_one() {
+        let system = instance("four_bar_loop.eom");
+        let stepper = Stepper::General(General::Rkmk4);
+        let whole = Whole::new(&system, &stepper, H, 1e3);
+        let mut state = State::<Instance>::start(&system);
+        assert!(!whole.run(&system, &mut state, 20.0));
+        assert_eq!(state.t, 0.0);
+    }
+
     /// Iterations are no tapes, and few steps are not worth one.
     #[test]
     fn what_is_no_code() {
