@@ -2,7 +2,7 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `sweep`, `compare`, `import` | one subcommand each |
+//! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
 //! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
 //! | `robot` | robots in URDF as descriptions, and the options for them |
@@ -20,6 +20,7 @@ mod check;
 mod columns;
 mod compare;
 mod constants;
+mod draw;
 pub mod drawing;
 mod eigenvalues;
 mod emit;
@@ -66,6 +67,7 @@ Examples:
   hamel regressor arm.urdf                      which inertias forces depend on
   hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
   hamel simulate heavy_top.eom --until 10       a first run
+  hamel draw heavy_top.eom --out top.svg        a picture of the mechanism
   hamel sweep heavy_top.eom --vary … --out runs  many runs, with parameters and starts that differ
   hamel compare heavy_top.eom --until 10        error of methods against what they cost
   hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
@@ -92,6 +94,7 @@ enum Command {
     Eval(eval::Arguments),
     Linearize(linearize::Arguments),
     Simulate(simulate::Arguments),
+    Draw(draw::Arguments),
     Sweep(sweep::Arguments),
     Compare(compare::Arguments),
     Import(import::Arguments),
@@ -132,6 +135,7 @@ impl Command {
             Command::Eval(arguments) => eval::run(arguments),
             Command::Linearize(arguments) => linearize::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
+            Command::Draw(arguments) => draw::run(arguments),
             Command::Sweep(arguments) => sweep::run(arguments),
             Command::Compare(arguments) => compare::run(arguments),
             Command::Import(arguments) => import::run(arguments),

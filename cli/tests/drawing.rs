@@ -190,6 +190,23 @@ fn rods_and_loops_are_found() {
     for [one, other] in &closed.loops {
         assert!(distance(*one, *other) < 1e-10, "{one:?} {other:?}");
     }
+    // In a plane, component by component.
+    let (planar, _) = scene(&session(&models().join("five_bar.eom")), "{}");
+    let [[one, other]] = planar.loops[..] else {
+        panic!("{:?}", planar.loops);
+    };
+    assert!(distance(one, other) < 1e-10 && distance(one, [0.0; 3]) > 0.1);
+    // A rail closes one component of two points that differ in another one: they do not meet.
+    let rail = "pub system Rail {
+        joint a: revolute [0, 1, 0] moves upper;
+        joint b: revolute [0, 1, 0] on upper at [0, 0, -0.7] moves lower;
+        body on upper { mass 1; inertia diag(1, 1, 0.1) about com; }
+        body on lower { mass 2; inertia diag(1, 1.1, 0.4) about com; }
+        let tip = position(lower, [0, 0, -0.7]), place = [1, 0, -1];
+        loop tip[3] = place[3];
+        start a = 0.3, b ~ 1;
+    }";
+    assert!(scene(&read(rail), "{}").0.loops.is_empty());
 }
 
 #[test]
@@ -202,6 +219,7 @@ fn scenes_are_plain_data() {
         "bodies",
         "centre",
         "frames",
+        "gravity",
         "joints",
         "lines",
         "loops",

@@ -1,4 +1,5 @@
-//! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask book`, `cargo xtask bless`.
+//! What contributors run: `cargo xtask quick`, `cargo xtask ci`, `cargo xtask attack`, `cargo xtask book`, `cargo xtask gallery`,
+//! `cargo xtask bless`.
 //!
 //! Each task is a list of commands, run in order from the root of the repository; the first that fails
 //! ends it.
@@ -84,6 +85,9 @@ const BOOK: Task = &[
     "cargo run --locked -p hamel-book -- check target/book",
 ];
 
+/// The page of the gallery with its pictures, into `target/gallery`.
+const GALLERY: Task = &["cargo run --locked -p hamel-book -- gallery"];
+
 /// Takes the snapshots as they are now; `git diff` shows what to review.
 const BLESS: Task = &[
     "INSTA_UPDATE=always INSTA_FORCE_PASS=1 cargo test --workspace --locked --no-fail-fast",
@@ -92,7 +96,7 @@ const BLESS: Task = &[
     "git --no-pager diff --stat -- *.snap",
 ];
 
-const TASKS: [(&str, Task, &str); 5] = [
+const TASKS: [(&str, Task, &str); 6] = [
     (
         "quick",
         QUICK,
@@ -109,6 +113,11 @@ const TASKS: [(&str, Task, &str); 5] = [
         "the random attacks at full size, and all robots against Pinocchio: some two hours",
     ),
     ("book", BOOK, "the book, into target/book"),
+    (
+        "gallery",
+        GALLERY,
+        "the mechanisms of examples/gallery with their pictures, into target/gallery",
+    ),
     ("bless", BLESS, "takes the snapshots as they are now"),
 ];
 

@@ -61,6 +61,7 @@ struct Named {
     name: String,
     parent: Option<usize>,
     attached: bool,
+    turns: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -105,11 +106,13 @@ impl Drawing {
             place.ok_or_else(|| Failure::failed(format!("{} cannot be drawn", program.name)))
         };
         let places = [place(BODIES)?, place(POINTS)?];
-        let frames = model.frames.iter().zip(points.attached);
-        let frames = frames.map(|(frame, attached)| Named {
+        let moved = points.attached.into_iter().zip(points.turns);
+        let frames = model.frames.iter().zip(moved);
+        let frames = frames.map(|(frame, (attached, turns))| Named {
             name: frame.name.clone(),
             parent: frame.parent,
             attached,
+            turns,
         });
         let joints = model.joints.iter().filter_map(|joint| {
             let named = |name: &str| model.frames.iter().position(|frame| frame.name == name);
@@ -174,6 +177,7 @@ impl Drawn<'_> {
             name: frame.name.clone(),
             parent: frame.parent,
             attached: frame.attached,
+            turns: frame.turns,
             rotation: [next(), next(), next()],
             position: next(),
         });
@@ -193,6 +197,7 @@ impl Drawn<'_> {
         let lines = lines.collect();
         let rods = (0..of.rods).map(|_| [next(), next()]).collect();
         let loops = (0..of.loops).map(|_| [next(), next()]).collect();
+        let gravity = next();
         let bodies = of.bodies.iter().zip(&self.bodies);
         let bodies: Vec<Body> = bodies
             .map(|(&frame, (mass, com, ellipsoid))| Body {
@@ -232,6 +237,7 @@ impl Drawn<'_> {
             lines,
             rods,
             loops,
+            gravity,
         }
     }
 }

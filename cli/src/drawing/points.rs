@@ -15,10 +15,12 @@ use hamel_codegen::model::{Model, class};
 pub(super) struct Points {
     /// Of each body its mass, its centre of mass and its inertia about that, 13 expressions; masses of particles.
     pub masses: Vec<Edge>,
-    /// Vectors of three: four for each frame, one for each particle, two for each line, rod and loop.
+    /// Vectors of three: four for each frame, one for each particle, two for each line, rod and loop, and gravity.
     pub moving: Vec<Edge>,
     /// Whether the origin of a frame rests in the frame that it was placed on.
     pub attached: Vec<bool>,
+    /// Whether its axes turn there.
+    pub turns: Vec<bool>,
     /// The frame that each particle is fixed to.
     pub particles: Vec<Option<usize>>,
     /// Kinds of the lines, with the frames that their ends are fixed to.
@@ -39,6 +41,9 @@ impl Points {
         let frames = model.frames.iter();
         let attached = frames.map(|frame| is_constant(model, graph, &frame.relative.1));
         let attached = attached.collect();
+        let frames = model.frames.iter();
+        let turns = frames.map(|frame| !is_constant(model, graph, frame.relative.0.as_flattened()));
+        let turns = turns.collect();
         let poses = model.frames.iter().flat_map(|frame| {
             let rotation = frame.rotation.as_flattened().iter().copied();
             rotation.chain(frame.position)
@@ -58,10 +63,17 @@ impl Points {
         moving.extend(rods.iter().flatten().flatten());
         let loops = model.closures.iter();
         moving.extend(loops.flat_map(|(left, right)| left.iter().chain(right)));
+        let known =
+            |entry: &Edge| graph.class(entry.node()) & !(class::PARAM | class::CONFIGURATION) == 0;
+        moving.extend(match model.gravity.iter().all(known) {
+            true => model.gravity,
+            false => zero3(graph),
+        });
         Points {
             masses,
             moving,
             attached,
+            turns,
             particles: fixed,
             lines,
             rods: rods.len(),

@@ -24,6 +24,27 @@ pub struct Scene {
     pub loops: Vec<[Vector; 2]>,
     /// The centre of mass of everything; absent where nothing has a mass.
     pub centre: Option<Vector>,
+    /// The acceleration of gravity; zero where there is none, or where it is no function of x and the parameters.
+    pub gravity: Vector,
+}
+
+impl Scene {
+    /// Whether there is nothing in it: a description may have energies alone.
+    pub fn is_empty(&self) -> bool {
+        let Scene {
+            frames,
+            bodies,
+            particles,
+            lines,
+            loops,
+            ..
+        } = self;
+        frames.is_empty()
+            && bodies.is_empty()
+            && particles.is_empty()
+            && lines.is_empty()
+            && loops.is_empty()
+    }
 }
 
 /// A frame.
@@ -35,6 +56,8 @@ pub struct Frame {
     pub parent: Option<usize>,
     /// Whether its origin always stays at the same point of that frame.
     pub attached: bool,
+    /// Whether its axes turn in that frame.
+    pub turns: bool,
     /// R, by rows: the columns are its axes.
     pub rotation: [Vector; 3],
     /// Its origin.

@@ -13,7 +13,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::value::Value;
-use crate::syntax::ast::{Expr, ItemKind, Span, System};
+use crate::syntax::ast::{Expr, ExprKind, ItemKind, Span, System};
 use crate::syntax::written::{equation, written};
 
 /// Reads all rows, in the order of the text, and the points that loops bring together.
@@ -26,7 +26,7 @@ pub fn read(
     report: &mut Report,
 ) -> (Vec<Pfaffian>, Vec<(Vec3, Vec3)>) {
     let mut all = Vec::new();
-    let mut closures = Vec::new();
+    let mut closures: Vec<Sides> = Vec::new();
     let mut reader = Reader {
         evaluator: Evaluator::new(graph, scope, report),
         declared,
@@ -58,21 +58,44 @@ pub fn read(
                 let rows = reader.closed_loop(left, right, stabilized.as_ref());
                 if let Some(rows) = rows {
                     all.extend(rows);
-                    closures.extend(reader.sides);
+                    if let Some(sides) = reader.sides.take() {
+                        let known = closures
+                            .iter_mut()
+                            .find(|other| other.points == sides.points);
+                        match known {
+                            Some(known) => (0..3).for_each(|k| known.closed[k] |= sides.closed[k]),
+                            None => closures.push(sides),
+                        }
+                    }
                 }
             }
             _ => {}
         }
     }
-    (all, closures)
+    let closures = closures.into_iter().filter(Sides::meet);
+    (all, closures.map(|sides| sides.points).collect())
+}
+
+/// Two points of space, of which loops bring together some of the components.
+struct Sides {
+    points: (Vec3, Vec3),
+    closed: [bool; 3],
+}
+
+impl Sides {
+    /// Whether the other components are equal anyway, as in a plane.
+    fn meet(&self) -> bool {
+        let (left, right) = &self.points;
+        (0..3).all(|k| self.closed[k] || left[k] == right[k])
+    }
 }
 
 struct Reader<'a> {
     evaluator: Evaluator<'a>,
     declared: &'a Declared,
     kinematics: Option<&'a Kinematics>,
-    /// Both sides of the equation that was read last, where they are points of space.
-    sides: Option<(Vec3, Vec3)>,
+    /// Both sides of the equation that was read last, where they are points of space or the same component of two.
+    sides: Option<Sides>,
 }
 
 impl Reader<'_> {
@@ -253,7 +276,7 @@ impl Reader<'_> {
     fn difference(&mut self, left: &Expr, right: &Expr) -> Option<Vec<Edge>> {
         let (a, b) = (self.evaluator.value(left), self.evaluator.value(right));
         let (a, b) = (a?, b?);
-        self.sides = None;
+        self.sides = self.component(left, right, (&a, &b));
         let graph = &mut *self.evaluator.graph;
         // `… = 0` is meant entry by entry.
         let is_zero = matches!(b, Value::Scalar(edge) if edge.abs() == graph.zero());
@@ -267,8 +290,30 @@ impl Reader<'_> {
                     .help("both sides need the same shape, or 0 on the right"),
             );
         }
-        self.sides = a.as_vec3().zip(b.as_vec3());
+        if let Some(points) = a.as_vec3().zip(b.as_vec3()) {
+            self.sides = Some(Sides {
+                points,
+                closed: [true; 3],
+            });
+        }
         Some(a.zip(&b, |x, y| graph.sub(x, y)).entries())
+    }
+
+    /// The points of `a[1] = b[1]`, where both have three components.
+    fn component(&mut self, left: &Expr, right: &Expr, of: (&Value, &Value)) -> Option<Sides> {
+        let (ExprKind::Index(left, _), ExprKind::Index(right, _)) = (&left.kind, &right.kind)
+        else {
+            return None;
+        };
+        let (Value::Scalar(a), Value::Scalar(b)) = of else {
+            return None;
+        };
+        let points = (
+            self.evaluator.value(left)?.as_vec3()?,
+            self.evaluator.value(right)?.as_vec3()?,
+        );
+        let closed = std::array::from_fn(|k| points.0[k] == *a && points.1[k] == *b);
+        Some(Sides { points, closed })
     }
 
     /// λ, constant at run time. The outer `None` is an error.

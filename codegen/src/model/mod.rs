@@ -239,7 +239,8 @@ pub struct Model {
     pub frames: Vec<Frame>,
     /// Joints, in the order of the text.
     pub joints: Vec<joints::Joint>,
-    /// Points that loops bring together, world axes (m): both sides of each loop between vectors of three.
+    /// Points that loops bring together, world axes (m): both sides of each loop between vectors of three, or between those of
+    /// their components that differ.
     pub closures: Vec<(Vec3, Vec3)>,
     /// Bodies.
     pub bodies: Vec<Body>,

@@ -6,6 +6,7 @@ use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 
 use crate::errors::{Example, all, of_statement};
+use crate::gallery;
 use crate::lists;
 use crate::page::{blocks, directive, own};
 use crate::shell::Shell;
@@ -95,7 +96,7 @@ impl<'a> Book<'a> {
                 .filter_map(directive)
                 .any(|(found, _)| found == name)
         };
-        let run = wants("output") || wants("picture");
+        let run = wants("output") || wants("picture") || wants("gallery");
         let name = path.with_extension("");
         let shell = match run {
             true => Some(Shell::new(
@@ -112,6 +113,11 @@ impl<'a> Book<'a> {
                 page += &match (name, &shell) {
                     ("output", _) => format!("```text\n{}\n```", printed.trim_end()),
                     ("picture", Some(shell)) => picture(shell, path, rest, to)?,
+                    ("gallery", Some(shell)) => {
+                        let beside = path.parent().unwrap_or(Path::new(""));
+                        let pictures = to.join("src").join(beside).join("gallery");
+                        gallery::sections(self.root, shell, &pictures)?
+                    }
                     _ => self.list(name, rest),
                 };
             } else {

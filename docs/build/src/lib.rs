@@ -9,10 +9,12 @@
 //! | `errors` | the errors of the generator, with descriptions that have them |
 //! | `rare` | the errors that no example has |
 //! | `build` | all pages, into a folder that mdBook reads |
+//! | `gallery` | the mechanisms of `examples/gallery`, each with its picture, counts and a remark |
 //! | `html` | the links of the pages that mdBook has made |
 
 pub mod build;
 pub mod errors;
+pub mod gallery;
 pub mod html;
 pub mod lists;
 pub mod page;

@@ -1,9 +1,13 @@
-//! `hamel-book build` writes the pages for mdBook below `target`; `hamel-book check FOLDER` looks at what mdBook has made.
+//! `hamel-book build` writes the pages for mdBook below `target`; `hamel-book check FOLDER` looks at what mdBook has made;
+//! `hamel-book gallery` writes the page of the gallery alone, with its pictures, below `target/gallery`.
 //! Called by the name `hamel` it is the command line, which the commands of the pages run.
 
 use std::io::Result;
 use std::path::Path;
 use std::process::ExitCode;
+
+use hamel_book::gallery::sections;
+use hamel_book::shell::Shell;
 
 fn main() -> ExitCode {
     let words: Vec<_> = std::env::args_os().collect();
@@ -15,8 +19,9 @@ fn main() -> ExitCode {
     let done = match &*asked.iter().map(String::as_str).collect::<Vec<_>>() {
         ["build"] => build(),
         ["check", folder] => check(Path::new(folder)),
+        ["gallery"] => gallery(),
         _ => {
-            eprintln!("hamel-book build, or hamel-book check FOLDER");
+            eprintln!("hamel-book build, hamel-book gallery, or hamel-book check FOLDER");
             return ExitCode::from(2);
         }
     };
@@ -34,6 +39,17 @@ fn build() -> Result<bool> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let program = std::env::current_exe()?;
     hamel_book::build::build(&root, &root.join("target/book-pages"), &program)?;
+    Ok(true)
+}
+
+fn gallery() -> Result<bool> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let folder = root.join("target/gallery");
+    let program = std::env::current_exe()?;
+    let shell = Shell::new(&root, &folder.join("run"), &program)?;
+    let text = sections(&root, &shell, &folder.join("gallery"))?;
+    std::fs::write(folder.join("gallery.md"), text)?;
+    println!("wrote target/gallery/gallery.md");
     Ok(true)
 }
 

@@ -9,6 +9,7 @@
 //! | `<!-- expressions -->`, `<!-- functions -->`, `<!-- options -->` | the lists of the reference |
 //! | `<!-- errors: param -->` | the errors of a statement |
 //! | `<!-- all errors -->` | all errors, by statement |
+//! | `<!-- gallery -->` | the mechanisms of the gallery |
 
 /// The text of the blocks of a page that begin with a word behind their backticks.
 pub fn blocks<'a>(page: &'a str, info: &str) -> Vec<&'a str> {
@@ -49,6 +50,7 @@ pub fn directive(line: &str) -> Option<(&str, &str)> {
         "options",
         "errors",
         "all errors",
+        "gallery",
     ];
     known.contains(&name).then_some((name, rest))
 }

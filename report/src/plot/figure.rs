@@ -77,6 +77,16 @@ impl Figure {
         })
     }
 
+    /// A drawing of this size by its elements, in units of the drawing.
+    pub fn of(width: f64, height: f64, title: &str, elements: String) -> Self {
+        Figure {
+            width,
+            height,
+            title: plain(title),
+            elements,
+        }
+    }
+
     /// The text of a file of its own.
     pub fn standalone(&self) -> String {
         self.text(&format!("<style>\n{}</style>\n", theme::sheet()))

@@ -1,5 +1,5 @@
 //! Pictures as SVG: lines over time, paths on a sphere, Poinsot's construction, speed against error,
-//! drift.
+//! drift, bodies in space.
 //!
 //! The text is deterministic. Colours follow the reader's light or dark scheme.
 
@@ -8,6 +8,7 @@ mod chart;
 mod figure;
 mod line;
 mod precision;
+pub mod space;
 mod sphere;
 mod theme;
 mod width;

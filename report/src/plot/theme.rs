@@ -67,9 +67,13 @@ pub fn ramp(time: f64) -> RGBColor {
     RGBColor(r, g, b)
 }
 
+/// A colour as SVG has it.
+pub fn code(RGBColor(r, g, b): RGBColor) -> String {
+    format!("#{r:02X}{g:02X}{b:02X}")
+}
+
 /// The style sheet of all pictures: fonts, and the partners on dark ground.
 pub fn sheet() -> String {
-    let code = |RGBColor(r, g, b): RGBColor| format!("#{r:02X}{g:02X}{b:02X}");
     let mut text = String::from(
         "svg text{font-family:system-ui,-apple-system,\"Segoe UI\",\"DejaVu Sans\",sans-serif}\n\
          svg polyline,svg line{stroke-linejoin:round;stroke-linecap:round}\n\

@@ -1,0 +1,244 @@
+//! `hamel draw`: a picture of a mechanism at a state, or of a motion.
+
+mod shapes;
+
+use crate::drawing::{Drawing, Scene};
+use crate::failure::{self, Failure, print};
+use crate::mechanism::Instance;
+use crate::method::AUTO;
+use crate::robot::RobotOptions;
+use crate::simulate::inputs::{Asked, Inputs};
+use crate::simulate::positive;
+use crate::simulate::record::{Run, Spacing};
+use crate::simulate::stepping::Stepping;
+use crate::source::Source;
+use crate::state::State;
+use clap::Args;
+use hamel_codegen::generate::Generated;
+use hamel_report::number::short;
+use hamel_report::plot::space::{ISOMETRIC, Space, Vector, base, space};
+use shapes::Shapes;
+use std::path::PathBuf;
+
+/// Points of a path.
+const POINTS: usize = 600;
+/// What the view is called that is taken by default.
+const NAMED: &str = "isometric";
+
+/// Draws the mechanism at a state, or in motion, as SVG.
+///
+/// Bodies are drawn as the solid ellipsoids that have their masses and inertias; a body without an inertia is a ball, and so is a
+/// particle. Frames show their axes, the first in red, the second in green, the third in blue. Thick short lines are
+/// the axes of joints, rings are joints without an axis and points that a loop brings together. The direction against gravity points up;
+/// where there is gravity, a floor with a grid is drawn below.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  hamel draw arm.urdf --out arm.svg
+  hamel draw heavy_top.eom --at state.json --out top.svg
+  hamel draw furuta.eom --time 0.8 --out furuta.svg
+  hamel draw furuta.eom --motion 2 --poses 8 --trace rod --out furuta.svg
+  hamel draw four_bar.eom --view -80,15 > four_bar.svg")]
+pub struct Arguments {
+    /// Description, or robot in URDF; `-` for standard input.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// State, by coordinates or by joints, in place of the start; see `hamel eval --help`.
+    #[arg(long, value_name = "STATE.json")]
+    at: Option<PathBuf>,
+    /// Draw the state after a run of this length, in the unit of time of the description (s).
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
+    time: Option<f64>,
+    /// Draw a motion of this length (s) from there on: its end, with earlier poses faintly behind it.
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
+    motion: Option<f64>,
+    /// How many earlier poses of a motion there are.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(..=200), requires = "motion")]
+    poses: u16,
+    /// Draw the path that the origin of this frame takes in the motion; once for each frame.
+    #[arg(long, value_name = "FRAME", requires = "motion")]
+    trace: Vec<String>,
+    /// The direction from which the picture is seen: `isometric`, or azimuth and elevation in degrees. The azimuth is counted
+    /// about the vertical from the first axis of the world; -90 looks along the second axis.
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = NAMED, value_parser = view, allow_hyphen_values = true)]
+    view: (f64, f64),
+    /// Where to write the picture; default standard output.
+    #[arg(long, value_name = "F.svg")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    inputs: Asked,
+    #[command(flatten)]
+    robot: RobotOptions,
+}
+
+/// Draws.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
+    let until = arguments.time.unwrap_or(0.0) + arguments.motion.unwrap_or(0.0);
+    let generated = match until > 0.0 {
+        true => source.derive_all()?,
+        false => source.derive_only(&[], &[])?,
+    };
+    let state = State::read(&source, &generated, arguments.at.as_deref())?;
+    let traced = traced(&generated, &arguments.trace)?;
+    let drawing = Drawing::new(&generated)?;
+    let moments = match until > 0.0 {
+        true => moments(arguments, &source, &generated, &state, until)?,
+        false => Moments {
+            poses: vec![state.x.clone()],
+            path: Vec::new(),
+        },
+    };
+    let drawn = drawing.with(&state.params);
+    let scenes: Vec<Scene> = moments.poses.iter().map(|x| drawn.scene(x)).collect();
+    let Some((last, before)) = scenes.split_last() else {
+        return Ok(());
+    };
+    if last.is_empty() {
+        return Err(Failure::failed(format!(
+            "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. A statement such as `frame f = pose(R, r);` says where a part of it is",
+            generated.model.name
+        )));
+    }
+    let path = |frame: usize| -> Vec<Vector> {
+        let scenes = moments.path.iter().map(|x| drawn.scene(x));
+        scenes.map(|scene| scene.frames[frame].position).collect()
+    };
+    let vertical = last.gravity.map(|entry| -entry);
+    let floor = vertical.iter().any(|entry| *entry != 0.0);
+    let shapes = Shapes::new(last);
+    let picture = Space {
+        title: generated.model.name.clone(),
+        subtitle: said(arguments),
+        base: base(vertical),
+        eye: arguments.view,
+        floor,
+        parts: shapes.of(last),
+        poses: before.iter().map(|scene| shapes.faint(scene)).collect(),
+        paths: traced.into_iter().map(path).collect(),
+    };
+    let text = space(&picture).standalone();
+    match &arguments.out {
+        Some(out) => {
+            failure::write(out, &text)?;
+            print(&format!("wrote {}\n", out.display()))
+        }
+        None => print(&text),
+    }
+}
+
+/// Coordinates at the times that are drawn.
+struct Moments {
+    /// Earlier poses, and the one that is drawn strongly.
+    poses: Vec<Vec<f64>>,
+    /// Points of the paths.
+    path: Vec<Vec<f64>>,
+}
+
+/// Runs.
+fn moments(
+    arguments: &Arguments,
+    source: &Source,
+    generated: &Generated,
+    state: &State,
+    until: f64,
+) -> Result<Moments, Failure> {
+    let begin = arguments.time.unwrap_or(0.0);
+    let length = until - begin;
+    let parts = if arguments.motion.is_some() {
+        usize::from(arguments.poses)
+    } else {
+        0
+    };
+    let equal = |parts: usize| -> Vec<f64> {
+        let times = (0..=parts).map(|part| match parts - part {
+            0 => until,
+            _ => begin + length * part as f64 / parts as f64,
+        });
+        times.collect()
+    };
+    let poses = equal(parts);
+    let path = match arguments.trace.is_empty() {
+        true => Vec::new(),
+        false => equal(POINTS),
+    };
+    let mut times: Vec<f64> = poses.iter().chain(&path).copied().collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let stepping = Stepping {
+        until,
+        step: None,
+        method: AUTO.into(),
+        tol: None,
+        lambda: None,
+    };
+    let given = Inputs::new(&arguments.inputs, until, generated, state)?;
+    let system = Instance::new(generated, state, source.shown())?.with(given);
+    system.check_parameters(&state.x)?;
+    let mut plan = stepping.plan(generated, &system, None)?;
+    plan.spacing = Spacing::Times(times);
+    let run = Run::new(generated, &system, plan)?;
+    if let Some(why) = run.failure {
+        return Err(Failure::failed(why));
+    }
+    let at = |time: &f64| {
+        let away = |place: usize| (run.samples[place].t - time).abs();
+        let nearest = (0..run.samples.len()).min_by(|a, b| away(*a).total_cmp(&away(*b)));
+        nearest.map(|place| run.samples[place].x.clone())
+    };
+    Ok(Moments {
+        poses: poses.iter().filter_map(at).collect(),
+        path: path.iter().filter_map(at).collect(),
+    })
+}
+
+/// The places of the frames whose paths are drawn.
+fn traced(generated: &Generated, names: &[String]) -> Result<Vec<usize>, Failure> {
+    let frames = &generated.active.frames;
+    let mut unknown = Vec::new();
+    let mut found = Vec::new();
+    for name in names {
+        match frames.iter().position(|frame| frame.name == *name) {
+            Some(place) => found.push(place),
+            None => unknown.push(name.as_str()),
+        }
+    }
+    if unknown.is_empty() {
+        return Ok(found);
+    }
+    let known: Vec<&str> = frames.iter().map(|frame| frame.name.as_str()).collect();
+    let known = match known.as_slice() {
+        [] => "the description has no frames".into(),
+        known => format!("the frames are {}", known.join(", ")),
+    };
+    Err(Failure::usage(format!(
+        "--trace: no frame is called {}; {known}",
+        unknown.join(", ")
+    )))
+}
+
+/// When it is.
+fn said(arguments: &Arguments) -> String {
+    match (arguments.time, arguments.motion) {
+        (None, None) if arguments.at.is_some() => "at the state given".into(),
+        (None, None) => "at the start".into(),
+        (Some(time), None) => format!("at t = {}", short(time)),
+        (begin, Some(length)) => {
+            let begin = begin.unwrap_or(0.0);
+            format!("from t = {} to {}", short(begin), short(begin + length))
+        }
+    }
+}
+
+fn view(text: &str) -> Result<(f64, f64), String> {
+    if text == NAMED {
+        return Ok(ISOMETRIC);
+    }
+    let number = |text: &str| {
+        let number = text.trim().parse::<f64>().ok();
+        number.filter(|number| number.is_finite() && number.abs() <= 360.0)
+    };
+    let angles = text
+        .split_once(',')
+        .and_then(|(azimuth, elevation)| Some((number(azimuth)?, number(elevation)?)));
+    angles.ok_or_else(|| format!("`{NAMED}`, or two angles in degrees as in -60,20, are needed"))
+}

@@ -1,0 +1,265 @@
+//! What a mechanism looks like: its scene as shapes of a picture.
+
+use crate::drawing::{Acts, Frame, Joint, Scene, Vector};
+use hamel_report::plot::space::{Ink, Part, Shape};
+
+/// Widths of links, axes of joints, rails and axes of frames (pixels).
+const LINK: f64 = 3.4;
+const HINGE: f64 = 6.5;
+const RAIL: f64 = 2.2;
+const AXIS: f64 = 1.5;
+/// Radii of balls and rings (pixels).
+const BALL: f64 = 7.0;
+const RING: f64 = 4.2;
+/// Lengths over the size of the mechanism: half axes of joints, axes of frames where there are few and where there are many, the
+/// least radius of a body.
+const HALF: f64 = 0.022;
+const FEW: f64 = 0.085;
+const MANY: f64 = 0.04;
+const THIN: f64 = 0.011;
+/// So many frames are few.
+const COUNT: usize = 4;
+/// Shorter than this, over the size, is nothing.
+const NOTHING: f64 = 1e-6;
+/// The colours of the axes of a frame: red, green and blue.
+const AXES: [Ink; 3] = [Ink::Series(4), Ink::Series(2), Ink::Series(0)];
+
+/// How large things are that have no size of their own: as in the scene that it is made for.
+pub struct Shapes {
+    size: f64,
+    heaviest: f64,
+}
+
+impl Shapes {
+    /// That of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut least = [f64::INFINITY; 3];
+        let mut most = [f64::NEG_INFINITY; 3];
+        let mut hold = |at: Vector, reach: f64| {
+            for k in 0..3 {
+                least[k] = least[k].min(at[k] - reach);
+                most[k] = most[k].max(at[k] + reach);
+            }
+        };
+        for frame in &scene.frames {
+            hold(frame.position, 0.0);
+        }
+        for body in &scene.bodies {
+            hold(body.centre, body.radii.into_iter().fold(0.0, f64::max));
+        }
+        for particle in &scene.particles {
+            hold(particle.position, 0.0);
+        }
+        let ends = scene.lines.iter().map(|line| line.points);
+        for end in ends.chain(scene.rods.iter().copied()).flatten() {
+            hold(end, 0.0);
+        }
+        let size = distance(least, most);
+        let masses = scene.particles.iter().map(|particle| particle.mass);
+        Shapes {
+            size: if size.is_finite() && size > 0.0 {
+                size
+            } else {
+                1.0
+            },
+            heaviest: masses.fold(0.0, f64::max),
+        }
+    }
+
+    /// What a scene looks like.
+    pub fn of(&self, scene: &Scene) -> Vec<Part> {
+        let mut parts = Vec::new();
+        self.axes(scene, &mut parts);
+        self.links(scene, &mut parts);
+        self.joints(scene, &mut parts);
+        self.masses(scene, &mut parts);
+        self.elements(scene, &mut parts);
+        parts
+    }
+
+    /// The same for a pose that is drawn faintly: what moves, without axes.
+    pub fn faint(&self, scene: &Scene) -> Vec<Part> {
+        let mut parts = Vec::new();
+        self.links(scene, &mut parts);
+        self.masses(scene, &mut parts);
+        parts
+    }
+
+    fn axes(&self, scene: &Scene, parts: &mut Vec<Part>) {
+        let part = if scene.frames.len() > COUNT {
+            MANY
+        } else {
+            FEW
+        };
+        for frame in &scene.frames {
+            for (axis, ink) in AXES.into_iter().enumerate() {
+                let tip = std::array::from_fn(|k| {
+                    frame.position[k] + part * self.size * frame.rotation[k][axis]
+                });
+                let ends = [frame.position, tip];
+                self.bar(ends, AXIS, ink, parts);
+            }
+        }
+    }
+
+    /// From a frame to what is placed on it, and to its bodies.
+    fn links(&self, scene: &Scene, parts: &mut Vec<Part>) {
+        let joint = |frame: usize| scene.joints.iter().find(|joint| joint.frame == frame);
+        for (index, frame) in scene.frames.iter().enumerate() {
+            let joint = joint(index);
+            let place = match joint {
+                Some(joint) if floats(joint) => continue,
+                Some(joint) => joint.place,
+                None if frame.attached => frame.position,
+                None => continue,
+            };
+            if let Some(parent) = frame.parent {
+                let ends = [scene.frames[parent].position, place];
+                self.bar(ends, LINK, ink(scene, parent), parts);
+            }
+            self.bar([place, frame.position], RAIL, Ink::Soft, parts);
+        }
+        for body in &scene.bodies {
+            let ends = [scene.frames[body.frame].position, body.centre];
+            self.bar(ends, LINK, ink(scene, body.frame), parts);
+        }
+        for particle in &scene.particles {
+            if let Some(frame) = particle.frame {
+                let ends = [scene.frames[frame].position, particle.position];
+                self.bar(ends, LINK, ink(scene, frame), parts);
+            }
+        }
+        for rod in &scene.rods {
+            self.bar(*rod, LINK, Ink::Soft, parts);
+        }
+    }
+
+    fn joints(&self, scene: &Scene, parts: &mut Vec<Part>) {
+        for joint in &scene.joints {
+            match joint.kind {
+                "revolute" | "continuous" | "universal" | "cylindrical" => {
+                    for axis in &joint.axes {
+                        let half = HALF * self.size;
+                        self.bar(along(joint.place, *axis, half), HINGE, Ink::Dark, parts);
+                    }
+                }
+                "prismatic" => {
+                    for axis in &joint.axes {
+                        let half = 5.0 * HALF * self.size;
+                        self.bar(along(joint.place, *axis, half), RAIL, Ink::Soft, parts);
+                    }
+                }
+                "spherical" => parts.push(ring(joint.place, Ink::Dark)),
+                _ => {}
+            }
+        }
+        // What turns about a point without a statement `joint`.
+        let jointed = |index: usize| scene.joints.iter().any(|joint| joint.frame == index);
+        let pivots = scene.frames.iter().enumerate();
+        let pivots = pivots.filter(|(index, frame)| pivot(frame) && !jointed(*index));
+        parts.extend(pivots.map(|(_, frame)| ring(frame.position, Ink::Dark)));
+    }
+
+    fn masses(&self, scene: &Scene, parts: &mut Vec<Part>) {
+        for (index, body) in scene.bodies.iter().enumerate() {
+            let radii = body.radii;
+            let shape = if radii.iter().all(|radius| *radius <= NOTHING * self.size) {
+                Shape::Ball {
+                    at: body.centre,
+                    radius: BALL,
+                }
+            } else {
+                let arms =
+                    |i: usize| body.axes[i].map(|axis| axis * radii[i].max(THIN * self.size));
+                Shape::Ellipsoid {
+                    centre: body.centre,
+                    arms: [arms(0), arms(1), arms(2)],
+                }
+            };
+            let ink = Ink::Series(index);
+            parts.push(Part { ink, shape });
+        }
+        for (index, particle) in scene.particles.iter().enumerate() {
+            let share = particle.mass / self.heaviest;
+            let radius = BALL * share.cbrt().clamp(0.5, 1.0);
+            parts.push(Part {
+                ink: Ink::Series(scene.bodies.len() + index),
+                shape: Shape::Ball {
+                    at: particle.position,
+                    radius,
+                },
+            });
+        }
+    }
+
+    /// Springs, dampers, forces and loops.
+    fn elements(&self, scene: &Scene, parts: &mut Vec<Part>) {
+        for line in &scene.lines {
+            let ends = line.points;
+            let (ink, shape) = match line.acts {
+                Acts::Spring => (Ink::Dark, Shape::Spring { ends }),
+                Acts::Damper => (Ink::Soft, Shape::Damper { ends }),
+                Acts::Force => (Ink::Series(4), Shape::Dashes { ends }),
+            };
+            parts.push(Part { ink, shape });
+        }
+        for &ends in &scene.loops {
+            parts.push(ring(ends[0], Ink::Series(4)));
+            if distance(ends[0], ends[1]) > NOTHING * self.size {
+                parts.push(ring(ends[1], Ink::Series(4)));
+                parts.push(Part {
+                    ink: Ink::Series(4),
+                    shape: Shape::Dashes { ends },
+                });
+            }
+        }
+    }
+
+    /// A bar, unless it has no length.
+    fn bar(&self, ends: [Vector; 2], width: f64, ink: Ink, parts: &mut Vec<Part>) {
+        if distance(ends[0], ends[1]) > NOTHING * self.size {
+            let shape = Shape::Bar { ends, width };
+            parts.push(Part { ink, shape });
+        }
+    }
+}
+
+/// Whether a joint holds no point of what it carries.
+fn floats(joint: &Joint) -> bool {
+    ["free", "planar"].contains(&joint.kind)
+}
+
+fn pivot(frame: &Frame) -> bool {
+    frame.attached && frame.turns
+}
+
+/// The colour of the first body of a frame, or of the nearest one below that has any.
+fn ink(scene: &Scene, frame: usize) -> Ink {
+    let mut place = Some(frame);
+    while let Some(frame) = place {
+        if let Some(index) = scene.bodies.iter().position(|body| body.frame == frame) {
+            return Ink::Series(index);
+        }
+        place = scene.frames[frame]
+            .parent
+            .filter(|_| !scene.frames[frame].turns);
+    }
+    Ink::Soft
+}
+
+fn ring(at: Vector, ink: Ink) -> Part {
+    Part {
+        ink,
+        shape: Shape::Ring { at, radius: RING },
+    }
+}
+
+/// Both ends of an axis through a point.
+fn along(at: Vector, axis: Vector, half: f64) -> [Vector; 2] {
+    [-half, half].map(|part| std::array::from_fn(|k| at[k] + part * axis[k]))
+}
+
+fn distance(a: Vector, b: Vector) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+    squares.sum::<f64>().sqrt()
+}

@@ -1,0 +1,244 @@
+//! The gallery: the descriptions of `examples/gallery` with their pictures, what they cost, and what to run.
+//!
+//! Each file begins with two lines about the mechanism, and with what is shown of it:
+//!
+//! ```text
+//! /// Its name: what it is made of.
+//! /// What it does.
+//! // remark: What is interesting about it, for who has read the two lines.
+//! // draw: the options of `hamel draw`
+//! // run: the options of `hamel simulate`
+//! // keeps: what is constant in this run, with the largest relative change, as in `energy 1e-8, place 1e-9`
+//! ```
+
+use std::fmt::Write;
+use std::fs;
+use std::io::{Error, Result};
+use std::num::NonZero;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::shell::Shell;
+
+/// Where the descriptions are.
+pub const FOLDER: &str = "examples/gallery";
+
+/// A description of the gallery.
+#[derive(Clone, Debug)]
+pub struct Exhibit {
+    /// The name of its file, without the end.
+    pub name: String,
+    /// What the mechanism is called.
+    pub title: String,
+    /// What it is made of, and what it does.
+    pub about: String,
+    /// What is interesting about it.
+    pub remark: String,
+    /// The options of `hamel draw`.
+    pub draw: String,
+    /// The options of `hamel simulate`.
+    pub run: String,
+    /// What is constant in this run, and the largest relative change of it.
+    pub keeps: Vec<(String, f64)>,
+    /// The description without what is said above.
+    pub text: String,
+}
+
+/// An exhibit as it is shown.
+pub struct Shown {
+    /// Its picture.
+    pub picture: String,
+    /// Names of functions with their operations and their pairs of sine and cosine.
+    pub counts: Vec<(&'static str, u64, u64)>,
+}
+
+/// The functions whose operations are shown, with what they are called.
+const COUNTED: [(&str, &str); 4] = [
+    ("accel", "accelerations"),
+    ("inverse_dynamics", "forces"),
+    ("mass_matrix", "mass matrix"),
+    ("linearize", "linearisation"),
+];
+
+impl Exhibit {
+    /// Reads what a file says of itself.
+    ///
+    /// # Errors
+    /// What is missing.
+    pub fn of(name: &str, file: &str) -> Result<Self> {
+        let wrong = |what: &str| Error::other(format!("{FOLDER}/{name}.eom: {what}"));
+        let mut lines = file.lines();
+        let mut about = || lines.next().and_then(|line| line.strip_prefix("/// "));
+        let (Some(first), Some(second)) = (about(), about()) else {
+            return Err(wrong(
+                "the first two lines say what it is, each behind `///`",
+            ));
+        };
+        let said = |key: &str| {
+            let begin = format!("// {key}: ");
+            let found = file.lines().find_map(|line| line.strip_prefix(&begin));
+            found.ok_or_else(|| wrong(&format!("a line `{begin}…` is missing")))
+        };
+        let (title, made) = first
+            .split_once(": ")
+            .ok_or_else(|| wrong("the first line is a name, a colon, and what it is made of"))?;
+        let keeps = said("keeps")?.split(", ").map(|word| {
+            let (name, change) = word.split_once(' ')?;
+            Some((name.to_owned(), change.parse().ok()?))
+        });
+        let keeps: Option<Vec<(String, f64)>> = keeps.collect();
+        let head = ["remark", "draw", "run", "keeps"].map(|key| format!("// {key}: "));
+        let rest = file
+            .lines()
+            .filter(|line| !head.iter().any(|head| line.starts_with(head)));
+        Ok(Exhibit {
+            name: name.into(),
+            title: title.into(),
+            about: format!("{} {second}", capital(made)),
+            remark: said("remark")?.into(),
+            draw: said("draw")?.into(),
+            run: said("run")?.into(),
+            keeps: keeps
+                .ok_or_else(|| wrong("`keeps` is a list as in `energy 1e-8, place 1e-9`"))?,
+            text: rest.collect::<Vec<_>>().join("\n"),
+        })
+    }
+
+    /// The path of its file from the root of the repository.
+    pub fn file(&self) -> String {
+        format!("{FOLDER}/{}.eom", self.name)
+    }
+
+    /// Draws it and counts its operations.
+    ///
+    /// # Errors
+    /// What the commands say.
+    pub fn shown(&self, shell: &Shell) -> Result<Shown> {
+        let file = self.file();
+        let picture = shell.run(&format!("hamel draw {file} {}", self.draw))?;
+        let table = shell.run(&format!("hamel ops {file}"))?;
+        let counts = COUNTED.iter().filter_map(|(function, name)| {
+            let mut rows = table
+                .lines()
+                .map(|line| line.split_whitespace().collect::<Vec<_>>());
+            let row = rows.find(|row| row.first() == Some(function))?;
+            // add, mul, div, sqrt, sincos, other, flops, unshared.
+            Some((*name, row.get(7)?.parse().ok()?, row.get(5)?.parse().ok()?))
+        });
+        Ok(Shown {
+            picture,
+            counts: counts.collect(),
+        })
+    }
+
+    /// Its section of the page.
+    pub fn section(&self, shown: &Shown) -> String {
+        let mut text = format!(
+            "## {}\n\n![{}](gallery/{}.svg)\n\n{} {}\n\n",
+            self.title, self.title, self.name, self.about, self.remark
+        );
+        let names = shown.counts.iter().map(|(name, ..)| format!(" {name} |"));
+        let _ = writeln!(text, "| operations of |{}", names.collect::<String>());
+        let _ = writeln!(text, "|---|{}", "---:|".repeat(shown.counts.len()));
+        let flops = shown
+            .counts
+            .iter()
+            .map(|(_, flops, _)| format!(" {flops} |"));
+        let _ = writeln!(
+            text,
+            "| add, multiply, divide |{}",
+            flops.collect::<String>()
+        );
+        let pairs = shown.counts.iter().map(|(.., pairs)| format!(" {pairs} |"));
+        let _ = writeln!(text, "| sine and cosine |{}", pairs.collect::<String>());
+        let file = self.file();
+        let _ = write!(
+            text,
+            "\n```sh\nhamel simulate {file} {} --plot {name}.svg\nhamel draw {file} {} --out {name}.svg\n```\n\n\
+             <details>\n<summary>The description</summary>\n\n```text\n{}\n```\n\n</details>\n\n",
+            self.run,
+            self.draw,
+            self.text,
+            name = self.name,
+        );
+        text
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters
+        .next()
+        .map(|letter| letter.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+/// All exhibits, by the names of their files.
+///
+/// # Errors
+/// Files that cannot be read, or that do not say what is needed.
+pub fn exhibits(root: &Path) -> Result<Vec<Exhibit>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(root.join(FOLDER))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|end| end == "eom") {
+            names.extend(
+                path.file_stem()
+                    .map(|name| name.to_string_lossy().into_owned()),
+            );
+        }
+    }
+    names.sort();
+    let all = names.iter().map(|name| {
+        let path = root.join(FOLDER).join(name).with_extension("eom");
+        Exhibit::of(name, &fs::read_to_string(path)?)
+    });
+    all.collect()
+}
+
+/// Does something for every exhibit, on all cores; in the order of the exhibits.
+pub fn for_all<T: Send>(exhibits: &[Exhibit], act: impl Fn(&Exhibit) -> T + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let done: Mutex<Vec<(usize, T)>> = Mutex::default();
+    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+    std::thread::scope(|scope| {
+        for _ in 0..cores {
+            scope.spawn(|| {
+                while let Some((index, exhibit)) = {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    exhibits.get(index).map(|exhibit| (index, exhibit))
+                } {
+                    let one = act(exhibit);
+                    let mut done = done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                    done.push((index, one));
+                }
+            });
+        }
+    });
+    let mut done = done
+        .into_inner()
+        .unwrap_or_else(|poisoned| poisoned.into_inner());
+    done.sort_by_key(|(index, _)| *index);
+    done.into_iter().map(|(_, one)| one).collect()
+}
+
+/// The sections of the page; pictures go to a folder.
+///
+/// # Errors
+/// What the commands say, and files that cannot be written.
+pub fn sections(root: &Path, shell: &Shell, pictures: &Path) -> Result<String> {
+    let exhibits = exhibits(root)?;
+    fs::create_dir_all(pictures)?;
+    let mut text = String::new();
+    for (exhibit, shown) in exhibits
+        .iter()
+        .zip(for_all(&exhibits, |one| one.shown(shell)))
+    {
+        let shown = shown?;
+        let picture = pictures.join(&exhibit.name).with_extension("svg");
+        fs::write(picture, &shown.picture)?;
+        text += &exhibit.section(&shown);
+    }
+    Ok(text)
+}

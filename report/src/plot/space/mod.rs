@@ -1,0 +1,350 @@
+//! Bodies in space as a drawing: ellipsoids, bars, springs and paths in a parallel projection, those that are farther away
+//! first, on a floor with a grid.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `view` | the projection, outlines of ellipsoids |
+//! | `element` | each shape as SVG |
+//! | `floor` | the floor, its grid, shadows |
+
+mod element;
+mod floor;
+mod view;
+
+pub use view::{Base, ISOMETRIC, View, base};
+
+use super::figure::{Figure, escape, unit};
+use super::line::Point;
+use super::theme;
+use super::width::fitted;
+use crate::code::plain;
+use element::Sheet;
+use floor::Floor;
+use std::fmt::Write;
+use view::dot;
+
+/// A point or a direction.
+pub type Vector = [f64; 3];
+
+/// What something is drawn with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ink {
+    /// The colour of the line with this index.
+    Series(usize),
+    /// That of headings.
+    Dark,
+    /// That of labels.
+    Soft,
+}
+
+/// What there is to be drawn; widths and radii in pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A solid ellipsoid by its half axes.
+    Ellipsoid {
+        /// Its centre.
+        centre: Vector,
+        /// Its half axes, at right angles; none has the length 0.
+        arms: [Vector; 3],
+    },
+    /// A straight bar with round ends.
+    Bar {
+        /// Its ends.
+        ends: [Vector; 2],
+        /// Its width.
+        width: f64,
+    },
+    /// A line of dashes.
+    Dashes {
+        /// Its ends.
+        ends: [Vector; 2],
+    },
+    /// A zigzag between two points.
+    Spring {
+        /// Its ends.
+        ends: [Vector; 2],
+    },
+    /// A piston in a cylinder.
+    Damper {
+        /// Its ends.
+        ends: [Vector; 2],
+    },
+    /// A disk that is as large in every picture.
+    Ball {
+        /// Its centre.
+        at: Vector,
+        /// Its radius.
+        radius: f64,
+    },
+    /// A circle that is as large in every picture.
+    Ring {
+        /// Its centre.
+        at: Vector,
+        /// Its radius.
+        radius: f64,
+    },
+}
+
+/// A shape with its colour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// What it is drawn with.
+    pub ink: Ink,
+    /// What is drawn.
+    pub shape: Shape,
+}
+
+/// A drawing of space.
+#[derive(Clone, Debug)]
+pub struct Space {
+    /// Heading.
+    pub title: String,
+    /// A sentence below it.
+    pub subtitle: String,
+    /// Two horizontal directions, and which one is up.
+    pub base: Base,
+    /// Azimuth and elevation of the eye (degrees).
+    pub eye: (f64, f64),
+    /// Whether there is a floor.
+    pub floor: bool,
+    /// What is there.
+    pub parts: Vec<Part>,
+    /// Where it was, or will be: faint, the faintest first.
+    pub poses: Vec<Vec<Part>>,
+    /// Paths of points, with time as colour.
+    pub paths: Vec<Vec<Vector>>,
+}
+
+/// Width of a drawing, and its least and greatest height (pixels).
+const WIDTH: f64 = 520.0;
+const HEIGHT: (f64, f64) = (240.0, 460.0);
+/// Room above and on the other sides.
+const HEAD: f64 = 58.0;
+const SIDE: f64 = 26.0;
+/// Longest pieces of a bar, each of which has a depth of its own, and how many there are at most; thinner bars are in one piece (pixels).
+const LONGEST: f64 = 40.0;
+const PIECES: f64 = 5.0;
+const THICK: f64 = 3.0;
+/// How much of the faintest and the strongest of the faint poses is seen.
+const FAINT: (f64, f64) = (0.1, 0.24);
+
+impl Shape {
+    /// Points that have to be seen, in pixels around them.
+    fn points(&self) -> Vec<Vector> {
+        match self {
+            Shape::Ellipsoid { centre, .. } => vec![*centre],
+            Shape::Bar { ends, .. }
+            | Shape::Dashes { ends }
+            | Shape::Spring { ends }
+            | Shape::Damper { ends } => ends.to_vec(),
+            Shape::Ball { at, .. } | Shape::Ring { at, .. } => vec![*at],
+        }
+    }
+
+    /// How far it reaches from its points along a direction.
+    fn reach(&self, along: Vector) -> f64 {
+        match self {
+            Shape::Ellipsoid { arms, .. } => {
+                let squares = arms.iter().map(|arm| dot(*arm, along).powi(2));
+                squares.sum::<f64>().sqrt()
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The same in pieces that can be sorted by their depth.
+    fn pieces(&self, sheet: &Sheet) -> Vec<Shape> {
+        let Shape::Bar { ends, width } = self else {
+            return vec![self.clone()];
+        };
+        if *width < THICK {
+            return vec![self.clone()];
+        }
+        let pieces = (sheet.length(ends) / LONGEST).ceil().clamp(1.0, PIECES);
+        let [from, to] = ends;
+        let at = |part: f64| {
+            let part = part / pieces;
+            std::array::from_fn(|k| from[k] + part * (to[k] - from[k]))
+        };
+        let all = (0..pieces as u32).map(|piece| Shape::Bar {
+            ends: [at(f64::from(piece)), at(f64::from(piece) + 1.0)],
+            width: *width,
+        });
+        all.collect()
+    }
+
+    fn is_finite(&self) -> bool {
+        let arms = match self {
+            Shape::Ellipsoid { arms, .. } => arms.to_vec(),
+            _ => Vec::new(),
+        };
+        let mut all = self.points().into_iter().chain(arms);
+        all.all(|point| point.iter().all(|entry| entry.is_finite()))
+    }
+}
+
+/// A drawing of bodies in space. What has no finite place is left out.
+pub fn space(space: &Space) -> Figure {
+    let view = View::new(space.base, space.eye);
+    let seen = |parts: &[Part]| -> Vec<Part> {
+        let finite = parts.iter().filter(|part| part.shape.is_finite());
+        finite.cloned().collect()
+    };
+    let parts = seen(&space.parts);
+    let poses: Vec<Vec<Part>> = space.poses.iter().map(|pose| seen(pose)).collect();
+    let all = || parts.iter().chain(poses.iter().flatten());
+    let paths: Vec<Vec<Vector>> = space.paths.iter().map(|path| finite(path)).collect();
+    let floor = space
+        .floor
+        .then(|| Floor::below(space.base, all().map(|part| &part.shape), &paths))
+        .flatten();
+
+    let mut frame = Bounds::new();
+    for part in all() {
+        let (right, up) = (part.shape.reach(view.right()), part.shape.reach(view.up()));
+        for point in part.shape.points() {
+            let (x, y) = view.place(point);
+            frame.hold((x - right, y - up));
+            frame.hold((x + right, y + up));
+        }
+    }
+    for point in paths.iter().flatten() {
+        frame.hold(view.place(*point));
+    }
+    for point in floor.iter().flat_map(Floor::corners) {
+        frame.hold(view.place(point));
+    }
+    let (sheet, height) = frame.fitted(view);
+
+    let mut text = format!(
+        "<rect width=\"{}\" height=\"{}\" fill=\"{}\"/>\n",
+        unit(WIDTH),
+        unit(height),
+        theme::code(theme::GROUND.0)
+    );
+    text += element::LIGHT;
+    if let Some(floor) = &floor {
+        text += &floor.drawn(&sheet);
+        text += &floor.shadows(&sheet, &parts);
+    }
+    for (index, pose) in poses.iter().enumerate() {
+        let part = (index + 1) as f64 / poses.len() as f64;
+        let opacity = FAINT.0 + part * (FAINT.1 - FAINT.0);
+        let _ = writeln!(text, "<g opacity=\"{opacity:.2}\">");
+        text += &ordered(pose, &sheet, true);
+        text += "</g>\n";
+    }
+    for path in &paths {
+        text += &sheet.path(path);
+    }
+    text += &ordered(&parts, &sheet, false);
+    text += &sheet.compass(height);
+    let title = fitted(&plain(&space.title), 15.0, true, WIDTH - 40.0);
+    text += &written(&title, (20.0, 24.0), 15.0, true);
+    let grid = floor.map_or(String::new(), |floor| floor.said());
+    let said = [plain(&space.subtitle), grid];
+    let said: Vec<&str> = said
+        .iter()
+        .map(String::as_str)
+        .filter(|part| !part.is_empty())
+        .collect();
+    let said = fitted(&said.join(" · "), 12.0, false, WIDTH - 40.0);
+    text += &written(&said, (20.0, 43.0), 12.0, false);
+    Figure::of(WIDTH, height, &space.title, text)
+}
+
+/// The shapes of a pose, from the farthest to the nearest; faint ones are outlines, each in one piece.
+fn ordered(parts: &[Part], sheet: &Sheet, faint: bool) -> String {
+    let mut pieces: Vec<(f64, Ink, Shape)> = Vec::new();
+    for part in parts {
+        let whole = || vec![part.shape.clone()];
+        for shape in if faint {
+            whole()
+        } else {
+            part.shape.pieces(sheet)
+        } {
+            let points = shape.points();
+            let depths = points.iter().map(|point| sheet.view.depth(*point));
+            let depth = depths.sum::<f64>() / points.len() as f64;
+            pieces.push((depth, part.ink, shape));
+        }
+    }
+    // Stable, so that what is as deep keeps its order.
+    pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let drawn = pieces
+        .iter()
+        .map(|(_, ink, shape)| sheet.shape(*ink, shape, faint));
+    element::joined(drawn)
+}
+
+fn finite(path: &[Vector]) -> Vec<Vector> {
+    let finite = path
+        .iter()
+        .filter(|point| point.iter().all(|entry| entry.is_finite()));
+    finite.copied().collect()
+}
+
+fn written(text: &str, (x, y): Point, size: f64, bold: bool) -> String {
+    let (ink, weight) = match bold {
+        true => (theme::INK, " font-weight=\"bold\""),
+        false => (theme::SOFT, ""),
+    };
+    format!(
+        "<text x=\"{}\" y=\"{}\" font-size=\"{}\"{weight} fill=\"{}\">{}</text>\n",
+        unit(x),
+        unit(y),
+        unit(size),
+        theme::code(ink.0),
+        escape(text)
+    )
+}
+
+/// The rectangle around all that is drawn.
+struct Bounds {
+    least: Point,
+    most: Point,
+}
+
+impl Bounds {
+    fn new() -> Self {
+        Bounds {
+            least: (f64::INFINITY, f64::INFINITY),
+            most: (f64::NEG_INFINITY, f64::NEG_INFINITY),
+        }
+    }
+
+    fn hold(&mut self, (x, y): Point) {
+        self.least = (self.least.0.min(x), self.least.1.min(y));
+        self.most = (self.most.0.max(x), self.most.1.max(y));
+    }
+
+    /// The scale and the place at which all of it has room, and the height of the drawing.
+    fn fitted(&self, view: View) -> (Sheet, f64) {
+        let Bounds { least, most } = self;
+        let size = |least: f64, most: f64| {
+            let size = most - least;
+            if size.is_finite() { size } else { 0.0 }
+        };
+        let (wide, high) = (size(least.0, most.0), size(least.1, most.1));
+        let room = (WIDTH - 2.0 * SIDE, HEIGHT.1 - HEAD - SIDE);
+        let scale = (room.0 / wide).min(room.1 / high);
+        let scale = if scale.is_finite() { scale } else { 100.0 };
+        let height = (HEAD + scale * high + SIDE)
+            .clamp(HEIGHT.0, HEIGHT.1)
+            .ceil();
+        let middle = |least: f64, most: f64| match size(least, most) {
+            0.0 if !least.is_finite() => 0.0,
+            _ => 0.5 * (least + most),
+        };
+        let (x, y) = (middle(least.0, most.0), middle(least.1, most.1));
+        let sheet = Sheet {
+            view,
+            scale,
+            origin: (
+                0.5 * WIDTH - scale * x,
+                0.5 * (HEAD + height - SIDE) - scale * y,
+            ),
+        };
+        (sheet, height)
+    }
+}
