@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::errors::{Example, all, of_statement};
 use crate::gallery;
 use crate::lists;
-use crate::page::{blocks, directive, own};
+use crate::page::{CRATES, blocks, directive, own};
 use crate::shell::Shell;
 
 /// What the directives of pages stand for.
@@ -107,6 +107,7 @@ impl<'a> Book<'a> {
             false => None,
         };
         let mut shown = blocks(text, "sh").into_iter();
+        let mut crates = blocks(text, CRATES).into_iter();
         let (mut page, mut printed, mut code) = (String::new(), String::new(), false);
         for line in text.lines() {
             if let (Some((name, rest)), false) = (directive(line), code) {
@@ -130,6 +131,9 @@ impl<'a> Book<'a> {
             if let (true, Some(shell)) = (line == "```sh", &shell) {
                 printed = shell.run(&own(shown.next().unwrap_or_default()))?;
             }
+            if let (Some(CRATES), Some(shell)) = (line.strip_prefix("```"), &shell) {
+                printed = shell.run_beside(crates.next().unwrap_or_default())?;
+            }
         }
         Ok(page)
     }
@@ -149,7 +153,7 @@ impl<'a> Book<'a> {
 fn picture(shell: &Shell, page: &Path, rest: &str, to: &Path) -> Result<String> {
     let (file, description) = rest.split_once(' ').unwrap_or((rest, ""));
     let stem = page.file_stem().unwrap_or_default().to_string_lossy();
-    let name = format!("{stem}-{file}");
+    let name = format!("{stem}-{}", file.replace('/', "-"));
     let folder = to.join("src").join(page.parent().unwrap_or(Path::new("")));
     fs::copy(shell.folder.join(file), folder.join(&name))?;
     Ok(format!("![{description}]({name})"))

@@ -4,7 +4,7 @@
 //!
 //! | directive | what it stands for |
 //! |---|---|
-//! | `<!-- output -->` | what the shell block before it prints |
+//! | `<!-- output -->` | what the block before it prints, one for a shell (`sh`), or one that makes a crate beside a clone (`sh,crates`) |
 //! | `<!-- picture: file.svg A description -->` | a picture that a command of the page has made |
 //! | `<!-- expressions -->`, `<!-- functions -->`, `<!-- options -->` | the lists of the reference |
 //! | `<!-- errors: param -->` | the errors of a statement |
@@ -19,6 +19,9 @@ pub fn blocks<'a>(page: &'a str, info: &str) -> Vec<&'a str> {
         .filter_map(|rest| rest.split_once("```").map(|(block, _)| block))
         .collect()
 }
+
+/// The info of blocks for a shell that make crates beside a clone: all of what they say is run.
+pub const CRATES: &str = "sh,crates";
 
 /// What is run of a block for a shell: the command line, and files that are written for it. Other programs have tests
 /// of their own.

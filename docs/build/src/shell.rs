@@ -6,8 +6,12 @@ use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// What a clone of the repository is called.
+const CLONE: &str = "hamel";
+
 /// The folder of one page.
 pub struct Shell {
+    root: PathBuf,
     /// Where commands run.
     pub folder: PathBuf,
     /// The folders of programs, `hamel` in the first.
@@ -35,6 +39,7 @@ impl Shell {
         }
         let others = std::env::var("PATH").unwrap_or_default();
         Ok(Shell {
+            root: root.canonicalize()?,
             folder: folder.to_owned(),
             path: format!("{}:{others}", programs.display()),
         })
@@ -45,10 +50,50 @@ impl Shell {
     /// # Errors
     /// The script and what it says, where a command fails.
     pub fn run(&self, script: &str) -> Result<String> {
+        self.done(script, &self.folder, &[])
+    }
+
+    /// What a script prints that makes crates beside a clone of the repository, which is called `hamel`; the crates are then in
+    /// the folder of the page as well.
+    ///
+    /// They are made at one place, so that what they depend on is compiled once, and with what `tests/nostd` has compiled. The
+    /// packages are those of this repository's lock file, and nothing is downloaded.
+    ///
+    /// # Errors
+    /// The script and what it says, where a command fails.
+    pub fn run_beside(&self, script: &str) -> Result<String> {
+        let place = self.root.join("target/book-crates");
+        if place.exists() {
+            fs::remove_dir_all(&place)?;
+        }
+        fs::create_dir_all(&place)?;
+        std::os::unix::fs::symlink(&self.root, place.join(CLONE))?;
+        // Otherwise the crates would become members of this repository's workspace.
+        let manifest = format!("[workspace]\nresolver = \"3\"\nexclude = [\"{CLONE}\"]\n");
+        fs::write(place.join("Cargo.toml"), manifest)?;
+        fs::copy(self.root.join("Cargo.lock"), place.join("Cargo.lock"))?;
+        let target = self.root.join("tests/nostd/target").display().to_string();
+        let environment = [
+            ("CARGO_TARGET_DIR", &*target),
+            ("CARGO_NET_OFFLINE", "true"),
+        ];
+        let printed = self.done(script, &place, &environment)?;
+        for entry in fs::read_dir(&place)? {
+            let made = entry?.path();
+            let name = made.file_name().unwrap_or_default();
+            if made.is_dir() && name != CLONE {
+                std::os::unix::fs::symlink(&made, self.folder.join(name))?;
+            }
+        }
+        Ok(printed)
+    }
+
+    fn done(&self, script: &str, folder: &Path, environment: &[(&str, &str)]) -> Result<String> {
         let done = Command::new("sh")
             .args(["-e", "-c", script])
-            .current_dir(&self.folder)
+            .current_dir(folder)
             .env("PATH", &self.path)
+            .envs(environment.iter().copied())
             .output()?;
         if !done.status.success() {
             let said = String::from_utf8_lossy(&done.stderr);

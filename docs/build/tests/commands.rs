@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hamel_book::page::{blocks, own};
+use hamel_book::page::{CRATES, blocks, own};
 use hamel_book::shell::Shell;
 
 /// Lines of a README at most.
@@ -30,7 +30,7 @@ fn pages() -> Vec<(PathBuf, String)> {
 fn commands_run_as_they_stand() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book");
     let program = Path::new(env!("CARGO_BIN_EXE_hamel-book"));
-    let mut commands = 0;
+    let (mut commands, mut made) = (0, 0);
     for (page, text) in pages() {
         let name = page
             .file_stem()
@@ -38,7 +38,8 @@ fn commands_run_as_they_stand() {
             .to_string_lossy()
             .into_owned();
         let script: String = blocks(&text, "sh").into_iter().map(own).collect();
-        if script.is_empty() {
+        let crates = blocks(&text, CRATES).concat();
+        if script.is_empty() && crates.is_empty() {
             continue;
         }
         let shell = Shell::new(
@@ -51,7 +52,18 @@ fn commands_run_as_they_stand() {
         if let Err(error) = shell.run(&script) {
             panic!("{}:\n{error}", page.display());
         }
+        if !crates.is_empty() {
+            made += 1;
+            let printed = shell.run_beside(&crates);
+            let printed = printed.unwrap_or_else(|error| panic!("{}:\n{error}", page.display()));
+            assert!(
+                !printed.is_empty(),
+                "{}: the crate says nothing",
+                page.display()
+            );
+        }
     }
+    assert!(made > 0, "no page makes a crate");
     assert!(commands > 25, "{commands}");
 }
 
