@@ -125,7 +125,7 @@ fn change(motion: &Motion, name: &str) -> Option<f64> {
     Some(largest / scale)
 }
 
-/// What is wrong with a picture: it is well-formed, has parts, and its ellipses are within its view box.
+/// What is wrong with a picture: it is well-formed, has parts, and its ellipses and texts are within its view box.
 fn picture(text: &str) -> Vec<String> {
     let document = match roxmltree::Document::parse(text) {
         Ok(document) => document,
@@ -172,6 +172,15 @@ fn picture(text: &str) -> Vec<String> {
         let inside = x - right >= 0.0 && x + right <= width && y - up >= 0.0 && y + up <= height;
         if !inside {
             wrong.push(format!("an ellipse at {x}, {y} is not within its picture"));
+        }
+    }
+    for node in document
+        .descendants()
+        .filter(|node| node.has_tag_name("text"))
+    {
+        let (x, y) = (number(node, "x"), number(node, "y"));
+        if !(x >= 0.0 && x < width && y >= 0.0 && y < height) {
+            wrong.push(format!("a text at {x}, {y} is not within its picture"));
         }
     }
     if parts == 0 || text.contains("NaN") || text.contains("inf") {

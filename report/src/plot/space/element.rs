@@ -189,7 +189,12 @@ impl Sheet {
     /// The directions of the axes of the world, below on the left.
     pub fn compass(&self, height: f64) -> String {
         const LENGTH: f64 = 22.0;
-        let origin = (38.0, height - 34.0);
+        const NAMED: f64 = LENGTH + 9.0;
+        // The farthest name to the left, and the lowest, have room.
+        let ends = [0, 1, 2].map(|axis| self.view.place(along(axis)));
+        let left = ends.iter().fold(0.0, |least: f64, end| least.min(end.0));
+        let low = ends.iter().fold(0.0, |most: f64, end| most.max(end.1));
+        let origin = (18.0 - NAMED * left, height - 16.0 - NAMED * low);
         let mut text = String::new();
         let mut axes: Vec<(f64, usize)> = (0..3)
             .map(|axis| (self.view.depth(along(axis)), axis))
@@ -199,10 +204,7 @@ impl Sheet {
             let (x, y) = self.view.place(along(axis));
             let end = (origin.0 + LENGTH * x, origin.1 + LENGTH * y);
             text += &polyline(&[origin, end], axis_colour(axis), 1.6, "");
-            let name = (
-                origin.0 + (LENGTH + 9.0) * x - 3.0,
-                origin.1 + (LENGTH + 9.0) * y + 4.0,
-            );
+            let name = (origin.0 + NAMED * x - 3.0, origin.1 + NAMED * y + 4.0);
             // An axis towards the eye has no room for a name.
             if x.hypot(y) > 0.3 {
                 let _ = writeln!(

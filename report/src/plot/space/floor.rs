@@ -5,6 +5,7 @@ use super::view::{Base, dot};
 use super::{Part, Shape, THICK, Vector};
 use crate::number::short;
 use crate::plot::theme;
+use plotters::style::RGBColor;
 use std::fmt::Write;
 
 /// Room around what stands on it, and below what hangs above it, over the size of all.
@@ -14,6 +15,9 @@ const BELOW: f64 = 0.06;
 const NEAR: f64 = 0.8;
 /// Squares of its grid along its longer side, about.
 const SQUARES: f64 = 7.0;
+
+/// As dark on dark ground.
+const SHADOW: RGBColor = RGBColor(0, 0, 0);
 
 /// A rectangle of a grid.
 pub struct Floor {
@@ -123,16 +127,16 @@ impl Floor {
             match &part.shape {
                 Shape::Ellipsoid { centre, arms } => {
                     let arms = arms.map(|arm| self.dropped(arm, 0.0));
-                    elements.push(sheet.shade(point(*centre), &arms, theme::INK.0));
+                    elements.push(sheet.shade(point(*centre), &arms, SHADOW));
                 }
                 Shape::Bar { ends, width } if *width >= THICK => {
-                    elements.push(sheet.stroke(&ends.map(point), theme::INK.0, *width, ""));
+                    elements.push(sheet.stroke(&ends.map(point), SHADOW, *width, ""));
                 }
                 _ => {}
             }
         }
         format!(
-            "<g opacity=\"0.13\">\n{}</g>\n",
+            "<g opacity=\"0.16\">\n{}</g>\n",
             element::joined(elements.into_iter())
         )
     }
