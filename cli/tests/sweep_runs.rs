@@ -2,6 +2,8 @@
 //! that fail.
 
 mod common;
+#[path = "common/shards.rs"]
+mod shards;
 #[path = "common/swept.rs"]
 mod swept;
 #[path = "common/table.rs"]
@@ -9,9 +11,10 @@ mod table;
 
 use common::{hamel, text};
 use hamel::so3;
+use shards::bytes;
 use std::fs;
-use swept::{BALL, swept};
-use table::fresh;
+use swept::{BALL, run, swept, swept_into};
+use table::{Table, fresh};
 
 fn model(name: &str) -> String {
     format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"))
@@ -323,4 +326,33 @@ fn members_that_fail_are_rows_with_their_reasons() {
         error.starts_with("start: coord: violates constraint 1"),
         "{error}"
     );
+}
+
+/// Members run side by side or alone as threads take them: one thread takes three of these at a time, two take one. Files
+/// have the same bytes however that was, also where parts were computed apart, or again.
+#[test]
+fn files_do_not_tell_which_members_ran_side_by_side() {
+    let plate = format!("{}/../examples/dzhanibekov.eom", env!("CARGO_MANIFEST_DIR"));
+    let sizes = ["--members", "40", "--shard-size", "13"];
+    let steps = ["--until", "1", "--step", "1e-3", "--method", "rkmk4"];
+    // The last ones go beyond all numbers.
+    let vary = ["--vary", "J1 = latin(1, 2); start w[1] = grid(0, 1e200, 2)"];
+    let options = [&vary[..], &sizes, &steps].concat();
+    let with = |more: &[&'static str]| [&options[..], more].concat();
+    let three = swept_into("side-by-side", &plate, &with(&["--threads", "1"]));
+    let one = swept_into("side-by-side-one", &plate, &with(&["--threads", "2"]));
+    let all = bytes(&three);
+    assert_eq!(all.len(), 4);
+    assert!(all == bytes(&one));
+    let failed = Table::read(&three).errors;
+    assert_eq!(failed.iter().flatten().count(), 20);
+
+    let parts = fresh("side-by-side-parts");
+    for part in ["2/3", "1/3", "3/3"] {
+        run(&parts, &plate, &with(&["--threads", "1", "--shard", part]));
+    }
+    assert!(all == bytes(&parts));
+    fs::remove_file(&table::shards(&parts)[1]).expect("a shard");
+    run(&parts, &plate, &with(&["--threads", "1"]));
+    assert!(all == bytes(&parts));
 }

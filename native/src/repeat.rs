@@ -112,12 +112,22 @@ fn repeated(
     times: u64,
     mut call: impl FnMut(&[f64], &mut [f64]) -> bool,
 ) -> u64 {
-    let mut here = state.to_vec();
-    let mut next = vec![f64::NAN; state.len()];
+    let [mut last, mut here, mut next] = [(); 3].map(|()| state.to_vec());
     let mut done = 0;
-    while done < times && call(&here, &mut next) && are_finite(&next) {
+    while done < times {
+        let ended = call(&here, &mut next);
+        // A result is looked at when the next call is over: reading numbers that have just been written has to wait for
+        // them.
+        if !are_finite(&here) || !ended {
+            break;
+        }
+        std::mem::swap(&mut last, &mut here);
         std::mem::swap(&mut here, &mut next);
         done += 1;
+    }
+    if done > 0 && !are_finite(&here) {
+        here = last;
+        done -= 1;
     }
     state.copy_from_slice(&here);
     done
@@ -126,11 +136,57 @@ fn repeated(
 /// Whether all numbers are finite. Zero times one that is not is NaN, and four sums at a time take less than a branch for
 /// each number.
 fn are_finite(numbers: &[f64]) -> bool {
+    let mut fours = numbers.chunks_exact(4);
     let mut sums = [0.0; 4];
-    for four in numbers.chunks(4) {
+    for four in &mut fours {
         for (sum, number) in sums.iter_mut().zip(four) {
             *sum += 0.0 * number;
         }
     }
-    sums == [0.0; 4]
+    let rest: f64 = fours.remainder().iter().map(|number| 0.0 * number).sum();
+    sums.iter().sum::<f64>() + rest == 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{are_finite, repeated};
+
+    /// A state that doubles with every step ends where the next one would be no number, or where there is none.
+    #[test]
+    fn the_last_state_that_is_a_number_stays() {
+        for (start, last) in [(1.0, 1023), (f64::MAX / 4.0, 2), (-f64::MAX, 0)] {
+            for times in [0, 1, 2, last, last + 1, last + 2, last + 100] {
+                let mut state = [0.5, 1.0, 1.0, 1.0, start];
+                let done = repeated(&mut state, times, |here, next| {
+                    next.copy_from_slice(here);
+                    next[4] *= 2.0;
+                    true
+                });
+                assert_eq!(done, times.min(last), "{start} {times}");
+                let doubled = (0..done).fold(start, |number, _| 2.0 * number);
+                assert_eq!(state, [0.5, 1.0, 1.0, 1.0, doubled]);
+            }
+        }
+        assert_eq!(repeated(&mut [f64::NAN], 3, |_, _| true), 0);
+        let mut state = [1.0];
+        let done = repeated(&mut state, 9, |here, next| {
+            next[0] = here[0] + 1.0;
+            here[0] < 5.0
+        });
+        assert_eq!((done, state), (4, [5.0]));
+    }
+
+    #[test]
+    fn every_place_is_looked_at() {
+        for length in 0..10 {
+            assert!(are_finite(&vec![-f64::MAX; length]));
+            for place in 0..length {
+                for odd in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+                    let mut numbers = vec![1.0; length];
+                    numbers[place] = odd;
+                    assert!(!are_finite(&numbers));
+                }
+            }
+        }
+    }
 }

@@ -3,6 +3,7 @@
 mod functions;
 mod momenta;
 mod numbers;
+mod steps;
 mod taped;
 mod varied;
 mod whole;
@@ -31,7 +32,7 @@ pub use whole::Whole;
 pub struct Mechanism {
     compiled: Compiled,
     /// Steps of methods that were compiled.
-    steps: whole::Steps,
+    steps: steps::Steps,
     blocks: Vec<Block>,
     chart: usize,
     rate: Place,
@@ -112,7 +113,7 @@ impl Mechanism {
             names.iter().map(output).collect()
         };
         Ok(Mechanism {
-            steps: whole::Steps::default(),
+            steps: steps::Steps::default(),
             blocks: program.blocks.iter().copied().map(block).collect(),
             chart: program.blocks.iter().map(|block| block.dimension()).sum(),
             rate: function("rate")?,

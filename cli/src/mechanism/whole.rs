@@ -1,38 +1,29 @@
-//! Whole steps as machine code: a method is run once on numbers that write down what it does with them.
+//! Runs by whole steps as machine code: step by step, many in one call, or those of two systems side by side.
 
-use super::taped::{Places, Taped, Tapes};
-use super::{Instance, Mechanism};
+use super::Instance;
+use super::steps::Code;
 use crate::method::Stepper;
-use hamel::methods::{General, Method};
+use hamel::methods::Method;
 use hamel::{Grid, State, StepError, System};
-use hamel_codegen::program::tape::{Source, Tape};
-use hamel_codegen::program::{Argument, Cause};
-use hamel_native::{Compiled, Constants, Traced, inlined, traced};
-use std::cell::{Cell, OnceCell, RefCell};
-use std::sync::{Mutex, PoisonError};
+use hamel_native::{Compiled, Constants};
+use std::cell::{OnceCell, RefCell};
+use std::sync::Arc;
 
-/// Steps of so many statements and more are not worth a compilation.
-const MOST: usize = 20_000;
-/// Nor are fewer steps of one length.
+/// Fewer steps of one length are not worth a compilation.
 const FEWEST: f64 = 1000.0;
-/// Lengths of steps that are kept.
-const KEPT: usize = 64;
 
-/// A method's step of one length as machine code; none where there can be none.
-#[derive(Clone)]
-pub struct Code {
-    method: String,
-    h: f64,
-    compiled: Option<Compiled>,
-    /// How often ξ̇ is evaluated in it.
-    evaluations: u64,
+/// Code with the parameters of one system.
+struct Ready {
+    code: Arc<Code>,
+    compiled: Compiled,
+    constants: Constants,
 }
 
 /// A method whose steps are machine code where all of them are of one length and inputs are constant.
 pub struct Whole<'a> {
     stepper: &'a Stepper,
     /// The code for steps of the length of the first.
-    code: OnceCell<Option<(Compiled, Constants, f64, u64)>>,
+    code: OnceCell<Option<Ready>>,
     /// Room for x and ξ at its end.
     end: RefCell<Vec<f64>>,
     worthwhile: bool,
@@ -51,41 +42,102 @@ impl<'a> Whole<'a> {
         }
     }
 
-    fn code(&self, system: &Instance, h: f64) -> Option<&(Compiled, Constants, f64, u64)> {
+    fn code(&self, system: &Instance, h: f64) -> Option<&Ready> {
         if !self.worthwhile {
             return None;
         }
-        let code = self.code.get_or_init(|| {
+        let ready = self.code.get_or_init(|| {
             let Stepper::General(method) = self.stepper else {
                 return None;
             };
-            let code = system.of.step(method, h);
-            let compiled = code.compiled?;
+            let code = system.of.step(*method, h);
+            let compiled = code.compiled.clone()?;
             let constants = compiled.constants(system.functions.params());
-            Some((compiled, constants, h, code.evaluations))
+            Some(Ready {
+                code,
+                compiled,
+                constants,
+            })
         });
-        code.as_ref().filter(|(_, _, length, _)| *length == h)
+        ready.as_ref().filter(|ready| ready.code.h == h)
+    }
+
+    /// The code of all steps to a time, and how many there are, where they can be taken at once.
+    fn at_once(&self, system: &Instance, from: f64, until: f64) -> Option<(&Ready, u64)> {
+        // What a projection moves after a step, or an input that changes, is not in the code.
+        if system.of.project_position.is_some() || system.of.project_velocity.is_some() {
+            return None;
+        }
+        let grid = Grid::new(from, until, self.length).ok()?;
+        Some((self.code(system, grid.step())?, grid.count()))
     }
 
     /// Takes all steps to a time at once, where nobody looks at what is between and all of them are machine code; whether
     /// it did. Where one of them fails the state stays as it was, and steps one by one say why.
     pub fn run(&self, system: &Instance, state: &mut State<Instance>, until: f64) -> bool {
-        // What a projection moves after a step, or an input that changes, is not in the code.
-        if system.of.project_position.is_some() || system.of.project_velocity.is_some() {
-            return false;
-        }
-        let Ok(grid) = Grid::new(state.t, until, self.length) else {
-            return false;
-        };
-        let Some((compiled, constants, _, evaluations)) = self.code(system, grid.step()) else {
+        let Some((ready, count)) = self.at_once(system, state.t, until) else {
             return false;
         };
         let u = system.inputs(state.t, &state.x, &state.xi);
         let mut all = [&*state.x, &*state.xi].concat();
-        if compiled.repeat(0, constants, &mut all, &u, grid.count()) < grid.count() {
+        let Ready {
+            compiled,
+            constants,
+            ..
+        } = ready;
+        if compiled.repeat(0, constants, &mut all, &u, count) < count {
             return false;
         }
-        let evaluated = system.evaluations.get() + evaluations * grid.count();
+        ready.end(system, state, &all, (until, count));
+        true
+    }
+
+    /// The same for two systems of one mechanism, by code that takes both of their steps at once. Where a step of either
+    /// fails, both states stay as they were.
+    pub fn run_both(
+        of: &[Whole; 2],
+        systems: [&Instance; 2],
+        states: [&mut State<Instance>; 2],
+        until: f64,
+    ) -> bool {
+        let at_once = |lane: usize| of[lane].at_once(systems[lane], states[lane].t, until);
+        let (Some((first, count)), Some((second, others))) = (at_once(0), at_once(1)) else {
+            return false;
+        };
+        if count != others || !Arc::ptr_eq(&first.code, &second.code) {
+            return false;
+        }
+        let Some(paired) = first.code.paired() else {
+            return false;
+        };
+        let constants = paired.constants([&first.constants, &second.constants]);
+        let u = [0, 1].map(|lane| {
+            let state = &states[lane];
+            systems[lane].inputs(state.t, &state.x, &state.xi)
+        });
+        let [mut one, mut other] =
+            [0, 1].map(|lane| [&*states[lane].x, &*states[lane].xi].concat());
+        let both = [one.as_mut_slice(), other.as_mut_slice()];
+        if paired.repeat(0, &constants, both, [&u[0], &u[1]], count) < count {
+            return false;
+        }
+        let [state, another] = states;
+        first.end(systems[0], state, &one, (until, count));
+        second.end(systems[1], another, &other, (until, count));
+        true
+    }
+}
+
+impl Ready {
+    /// Where a state is after so many steps.
+    fn end(
+        &self,
+        system: &Instance,
+        state: &mut State<Instance>,
+        all: &[f64],
+        (until, count): (f64, u64),
+    ) {
+        let evaluated = system.evaluations.get() + self.code.evaluations * count;
         system.evaluations.set(evaluated);
         let (x, xi) = all.split_at(state.x.len());
         *state = State {
@@ -93,7 +145,6 @@ impl<'a> Whole<'a> {
             x: x.into(),
             xi: xi.into(),
         };
-        true
     }
 }
 
@@ -134,7 +185,12 @@ impl Method<Instance> for Whole<'_> {
             &<Instance as System>::Velocities,
         ) -> <Instance as System>::Inputs,
     {
-        if let Some((compiled, constants, _, evaluations)) = self.code(system, h) {
+        if let Some(Ready {
+            code,
+            compiled,
+            constants,
+        }) = self.code(system, h)
+        {
             let u = inputs(state.t, &state.x, &state.xi);
             let arguments: [&[f64]; 5] = [&state.x, &state.xi, &u, &[], &[]];
             let mut end = self.end.borrow_mut();
@@ -142,7 +198,7 @@ impl Method<Instance> for Whole<'_> {
             let ended = compiled.call(0, constants, arguments, &mut end);
             // Where it has no end, the method says why.
             if ended.is_ok() && end.iter().all(|number| number.is_finite()) {
-                let evaluated = system.evaluations.get() + evaluations;
+                let evaluated = system.evaluations.get() + code.evaluations;
                 system.evaluations.set(evaluated);
                 let (x, xi) = end.split_at(state.x.len());
                 return Ok(State {
@@ -156,131 +212,14 @@ impl Method<Instance> for Whole<'_> {
     }
 }
 
-impl Mechanism {
-    /// A step of a method as machine code, made when it is first asked for.
-    fn step(&self, method: &General, h: f64) -> Code {
-        let name = format!("{method:?}");
-        let mut known = self.steps.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = |code: &&Code| code.method == name && code.h == h;
-        if let Some(code) = known.iter().find(same) {
-            return code.clone();
-        }
-        let tape = self.tape(method, h);
-        let code = Code {
-            method: name,
-            h,
-            evaluations: tape.as_ref().map_or(0, |(_, evaluations)| *evaluations),
-            compiled: tape.and_then(|(tape, _)| {
-                let tapes = hamel_native::Tapes {
-                    functions: vec![tape],
-                    ..self.compiled.tapes().clone()
-                };
-                let compiled = Compiled::of(tapes);
-                // Step by step the method itself is as fast.
-                compiled.interpreted_because().is_none().then_some(compiled)
-            }),
-        };
-        if known.len() >= KEPT {
-            known.clear();
-        }
-        known.push(code.clone());
-        code
-    }
-
-    /// What a step does, and how often it evaluates ξ̇.
-    fn tape(&self, method: &General, h: f64) -> Option<(Tape, u64)> {
-        let explicit = matches!(
-            method,
-            General::Rkmk4
-                | General::Cf4
-                | General::Rkmk54
-                | General::Rkmk8
-                | General::SemiImplicitEuler
-                | General::Rk4 { .. }
-        );
-        let accel = self.accel.filter(|_| explicit)?;
-        let tapes = self.compiled.tapes();
-        // Before it is written: a step has a few evaluations.
-        if tapes.functions.get(accel.index())?.steps.len() > MOST {
-            return None;
-        }
-        let [x, xi, u, ..] = tapes.lengths;
-        let entries = |argument: Argument, count: usize| -> Vec<Traced> {
-            let entries = (0..count).map(|index| Source::Argument(argument, index));
-            entries.map(Traced::argument).collect()
-        };
-        let written = Taped(Written {
-            of: self,
-            places: Places {
-                blocks: self.blocks.clone(),
-                chart: self.chart,
-                lengths: [x, xi, u],
-                rate: self.rate.index(),
-                chart_rate: self.chart_rate.index(),
-                accel: accel.index(),
-                correction: self.correction.index(),
-                constraint: self.constraint.index(),
-                kinetic: self.kinetic.index(),
-                potential: self.potential.index(),
-                // A step of a method projects nothing: that is done behind it.
-                project_position: None,
-                project_velocity: None,
-            },
-            evaluations: Cell::new(0),
-        });
-        let state = State::<Taped<Written>> {
-            t: 0.0,
-            x: entries(Argument::Coordinates, x),
-            xi: entries(Argument::Velocities, xi),
-        };
-        let held = entries(Argument::Inputs, u);
-        let inputs = |_, _: &Vec<Traced>, _: &Vec<Traced>| held.clone();
-        let mut failed = false;
-        let tape = traced("step", || match method.step(&written, &state, h, &inputs) {
-            Ok(end) => [end.x, end.xi].concat(),
-            Err(_) => {
-                failed = true;
-                Vec::new()
-            }
-        });
-        let tape = tape.filter(|tape| !failed && tape.steps.len() <= MOST)?;
-        Some((tape, written.0.evaluations.get()))
-    }
-}
-
-/// A mechanism whose numbers write down what is done with them.
-struct Written<'a> {
-    of: &'a Mechanism,
-    places: Places,
-    evaluations: Cell<u64>,
-}
-
-impl Tapes for Written<'_> {
-    type Number = Traced;
-
-    fn places(&self) -> &Places {
-        &self.places
-    }
-
-    fn call(&self, function: usize, [x, xi, u]: [&[Traced]; 3]) -> Result<Vec<Traced>, Cause> {
-        if function == self.places.accel {
-            self.evaluations.set(self.evaluations.get() + 1);
-        }
-        let tape = self.of.compiled.tapes().functions.get(function);
-        Ok(tape.map_or_else(Vec::new, |tape| inlined(tape, [x, xi, u, &[], &[]])))
-    }
-}
-
-/// Steps that were made of a mechanism.
-pub type Steps = Mutex<Vec<Code>>;
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::Numbers;
+    use crate::mechanism::{Mechanism, Numbers};
     use crate::robot::RobotOptions;
     use crate::source::Source;
     use crate::state::State as Start;
+    use hamel::methods::General;
     use std::path::Path;
     use std::sync::Arc;
 
@@ -372,6 +311,11 @@ mod tests {
         }
     }
 
+    fn bits(state: &State<Instance>) -> Vec<u64> {
+        let all = state.x.iter().chain(&*state.xi);
+        all.map(|number| number.to_bits()).collect()
+    }
+
     /// All steps in one call are the steps one by one, to the bit; where one has no end nothing has moved.
     #[test]
     fn steps_at_once_are_the_steps() {
@@ -388,10 +332,6 @@ mod tests {
             let between = system.evaluations();
             assert!(whole.run(&system, &mut fast, until), "{model}");
             assert_eq!(system.evaluations(), 2 * between, "{model}");
-            let bits = |state: &State<Instance>| -> Vec<u64> {
-                let all = state.x.iter().chain(&*state.xi);
-                all.map(|number| number.to_bits()).collect()
-            };
             assert_eq!(bits(&fast), bits(&slow), "{model}");
             assert_eq!(fast.t, slow.t);
 
@@ -399,6 +339,68 @@ mod tests {
             let before = fast.clone();
             assert!(!whole.run(&system, &mut fast, 2.0 * until), "{model}");
             assert_eq!((bits(&fast), fast.t), (bits(&before), before.t), "{model}");
+        }
+    }
+
+    /// Two systems side by side end, to the bit, where each of them ends alone; where one has no end neither has moved.
+    #[test]
+    fn two_at_once_are_each_alone() {
+        let models = [
+            "heavy_top.eom",
+            "kapitza.eom",
+            "lagging_drone.eom",
+            "heavy_top_quaternion.eom",
+            "rolling_disk.eom",
+            "double_pendulum_angles.eom",
+        ];
+        let until = 1100.0 * H;
+        for model in models {
+            let first = instance(model);
+            let mut other = Start {
+                params: first.functions.params().to_vec(),
+                x: first.start.0.to_vec(),
+                xi: first.start.1.to_vec(),
+                u: first.inputs.to_vec(),
+            };
+            other.params[0] *= 1.25;
+            for u in &mut other.u {
+                *u += 0.01;
+            }
+            let second = Instance::of(&first.of, &other).expect("an instance");
+            let systems = [&first, &second];
+            for method in METHODS {
+                let stepper = Stepper::General(method);
+                let wholes = systems.map(|system| Whole::new(system, &stepper, H, until));
+                let starts = systems.map(State::<Instance>::start);
+                let [mut one, mut two] = starts.clone();
+                let both = [&mut one, &mut two];
+                assert!(
+                    Whole::run_both(&wholes, systems, both, until),
+                    "{model} {method:?}"
+                );
+                for ((system, mut alone), found) in
+                    systems.into_iter().zip(starts.clone()).zip([&one, &two])
+                {
+                    let whole = Whole::new(system, &stepper, H, until);
+                    let evaluations = system.evaluations();
+                    assert!(whole.run(system, &mut alone, until));
+                    assert_eq!(system.evaluations(), 2 * evaluations);
+                    assert_eq!(bits(&alone), bits(found), "{model} {method:?}");
+                    assert_eq!(alone.t, found.t);
+                    system.evaluations.set(0);
+                }
+                assert_ne!(bits(&one), bits(&two), "{model} {method:?}");
+                for broken in 0..2 {
+                    let mut states = starts.clone();
+                    states[broken].xi.as_mut().fill(f64::MAX);
+                    let before = states.clone();
+                    let [one, two] = &mut states;
+                    assert!(!Whole::run_both(&wholes, systems, [one, two], until));
+                    for (before, after) in before.iter().zip(&states) {
+                        assert_eq!((bits(before), before.t), (bits(after), after.t));
+                    }
+                }
+            }
         }
     }
 

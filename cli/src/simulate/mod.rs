@@ -6,6 +6,7 @@ mod panels;
 mod picture;
 pub mod record;
 mod rotor;
+pub mod steady;
 pub mod stepping;
 mod summary;
 mod write;

@@ -1,15 +1,16 @@
 //! The run itself, and what is kept of it.
 
 use super::balance::Balance;
+use super::steady::Steady;
 use crate::failure::Failure;
-use crate::mechanism::{Instance, Numbers, Output, Whole};
+use crate::mechanism::{Instance, Numbers, Output};
 use crate::method::{Chosen, Stepper};
 use crate::names;
 use crate::number::short;
 use crate::progress;
 use hamel::adaptive::{Adaptive, Event, Report};
 use hamel::methods::General;
-use hamel::{Monitor, State, StepError, System, integrate};
+use hamel::{Monitor, State, StepError, System};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
 use indicatif::ProgressBar;
@@ -410,37 +411,13 @@ pub fn advance(
     let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
-        let times = match &plan.spacing {
-            Spacing::Times(times) => times.as_slice(),
-            _ => &[],
+        let steady = Steady {
+            system,
+            plan,
+            state,
+            observe,
         };
-        // Equal steps from each of the times, and from each jump of inputs, to the next.
-        observe(state, Place::End);
-        let mut ends = [times, system.jumps(), &[plan.until]].concat();
-        ends.retain(|end| *end <= plan.until);
-        ends.sort_by(f64::total_cmp);
-        ends.dedup();
-        for end in ends {
-            let from = state.t;
-            if end > from {
-                system.go_from(from);
-                let mut observe = |state: &State<Instance>| {
-                    if state.t > from {
-                        observe(state, Place::End);
-                    }
-                };
-                let whole = Whole::new(system, &plan.method.stepper, plan.step, end - from);
-                if plan.quiet && whole.run(system, state, end) {
-                    observe(state);
-                } else {
-                    integrate(system, &whole, state, plan.step, end, &inputs, observe)?;
-                }
-            }
-            if times.contains(&end) {
-                observe(state, Place::Sample);
-            }
-        }
-        return Ok(());
+        return steady.alone();
     };
     observe(state, Place::End);
     if let Spacing::Times(times) = &plan.spacing

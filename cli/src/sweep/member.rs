@@ -6,11 +6,14 @@ use crate::failure::Failure;
 use crate::mechanism::{Instance, Mechanism};
 use crate::simulate::balance::Balance;
 use crate::simulate::inputs::Inputs;
-use crate::simulate::record::{Early, Plan, advance, ended};
-use crate::state::State;
+use crate::simulate::record::{Early, Place, Plan, advance, ended};
+use crate::simulate::steady::Steady;
+use crate::state;
+use hamel::{State, StepError};
 use hamel_codegen::generate::Generated;
 use serde_json::{Map, Value};
 use std::cell::Cell;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What systems of all members are made of.
@@ -52,12 +55,126 @@ pub struct Row {
     pub error: Option<String>,
 }
 
+/// A member at its start.
+struct Member {
+    index: u64,
+    varied: Vec<f64>,
+    system: Instance,
+    plan: Plan,
+}
+
+/// A member that runs.
+struct Running<'a> {
+    member: &'a Member,
+    state: State<Instance>,
+    balance: Cell<Balance>,
+    watch: Watch<'a>,
+}
+
 impl Sweep {
-    /// Runs a member.
-    pub fn row(&self, index: u64) -> Row {
+    /// Runs members, two side by side where nobody looks at single steps; their rows in any order.
+    pub fn rows(&self, members: Range<u64>) -> Vec<Row> {
+        let side_by_side = self.plan.quiet && self.plan.tolerance.is_none();
+        let mut rows = Vec::new();
+        let mut waiting: Option<Member> = None;
+        for index in members {
+            match (self.begin(index), waiting.take()) {
+                (Err(row), other) => {
+                    rows.push(row);
+                    waiting = other;
+                }
+                (Ok(member), Some(other)) => rows.extend(self.both(&other, &member)),
+                (Ok(member), None) if side_by_side => waiting = Some(member),
+                (Ok(member), None) => rows.push(self.alone(&member)),
+            }
+        }
+        rows.extend(waiting.map(|member| self.alone(&member)));
+        rows
+    }
+
+    /// A member at its start, or the row of one that has none.
+    fn begin(&self, index: u64) -> Result<Member, Row> {
         let varied = self.vary.values(index);
-        let run = self.run(&varied);
-        let (kept, error) = match run {
+        match self.family.member(&self.vary.state(&varied, &self.base)) {
+            Ok(system) => Ok(Member {
+                plan: Plan {
+                    method: self.plan.method.of_another(&system),
+                    ..self.plan.clone()
+                },
+                index,
+                varied,
+                system,
+            }),
+            Err(early) => Err(Row::new(index, varied, Err(early))),
+        }
+    }
+
+    fn alone(&self, member: &Member) -> Row {
+        let mut running = Running::new(member, &self.keeping);
+        let outcome = running.advance();
+        running.row(outcome)
+    }
+
+    fn both(&self, first: &Member, second: &Member) -> [Row; 2] {
+        let mut first = Running::new(first, &self.keeping);
+        let mut second = Running::new(second, &self.keeping);
+        let [one, other] = Steady::both([first.steady(), second.steady()]);
+        [first.row(one), second.row(other)]
+    }
+}
+
+impl<'a> Running<'a> {
+    fn new(member: &'a Member, keeping: &'a Keeping) -> Self {
+        let Member { system, plan, .. } = member;
+        let state = State::start(system);
+        Running {
+            balance: Cell::new(Balance::new(system, &state)),
+            watch: Watch::new(keeping, system, &plan.method.stepper),
+            state,
+            member,
+        }
+    }
+
+    fn advance(&mut self) -> Result<(), StepError> {
+        let Member { system, plan, .. } = self.member;
+        let balance = &self.balance;
+        advance(system, plan, &mut self.state, balance, |state, place| {
+            if plan.tolerance.is_some() {
+                balance.set(balance.get().after(system, state));
+            }
+            self.watch.see(state, place);
+        })
+    }
+
+    fn steady(&mut self) -> Steady<'_, impl FnMut(&State<Instance>, Place)> {
+        Steady {
+            system: &self.member.system,
+            plan: &self.member.plan,
+            state: &mut self.state,
+            observe: |state: &State<Instance>, place| self.watch.see(state, place),
+        }
+    }
+
+    fn row(self, outcome: Result<(), StepError>) -> Row {
+        let Member {
+            index,
+            varied,
+            system,
+            plan,
+        } = self.member;
+        let early = ended(system, plan, outcome, &self.state, self.balance.get());
+        let kept = match early {
+            Ok(None) => Ok(self.watch.finish(&self.state)),
+            Ok(Some(early)) => Err(early),
+            Err(failure) => Err(of_start(&failure)),
+        };
+        Row::new(*index, varied.clone(), kept)
+    }
+}
+
+impl Row {
+    fn new(index: u64, varied: Vec<f64>, kept: Result<Vec<Option<f64>>, Early>) -> Self {
+        let (kept, error) = match kept {
             Ok(kept) => (kept, None),
             Err(Early { kind, why }) => (Vec::new(), Some(format!("{kind}: {why}"))),
         };
@@ -68,37 +185,16 @@ impl Sweep {
             error,
         }
     }
-
-    fn run(&self, varied: &[f64]) -> Result<Vec<Option<f64>>, Early> {
-        let system = self.family.member(&self.vary.state(varied, &self.base))?;
-        let plan = Plan {
-            method: self.plan.method.of_another(&system),
-            ..self.plan.clone()
-        };
-        let mut state = hamel::State::start(&system);
-        let balance = Cell::new(Balance::new(&system, &state));
-        let mut watch = Watch::new(&self.keeping, &system, &plan.method.stepper);
-        let outcome = advance(&system, &plan, &mut state, &balance, |state, place| {
-            if plan.tolerance.is_some() {
-                balance.set(balance.get().after(&system, state));
-            }
-            watch.see(state, place);
-        });
-        let early = ended(&system, &plan, outcome, &state, balance.get());
-        match early.map_err(|failure| of_start(&failure))? {
-            Some(early) => Err(early),
-            None => Ok(watch.finish(&state)),
-        }
-    }
 }
 
 impl Family {
     /// The system of a member whose state is this: the only place where one is made.
     pub fn member(&self, state: &Value) -> Result<Instance, Early> {
-        let state = State::of(&self.generated, &self.text, state).map_err(|errors| Early {
-            kind: "start",
-            why: errors.join("; "),
-        })?;
+        let state =
+            state::State::of(&self.generated, &self.text, state).map_err(|errors| Early {
+                kind: "start",
+                why: errors.join("; "),
+            })?;
         let system = Instance::of(&self.mechanism, &state);
         let system = system.map_err(|failure| of_start(&failure))?;
         let given = self.given.clone();
@@ -128,4 +224,152 @@ fn said(failure: &Failure) -> String {
     let plain = anstream::adapter::strip_str(text).to_string();
     let line = plain.trim().trim_start_matches("error: ");
     line.split_whitespace().collect::<Vec<&str>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Arguments, prepared};
+    use super::{Row, Sweep};
+    use crate::source::Source;
+    use clap::Parser;
+    use std::path::{Path, PathBuf};
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    fn sweep(path: &Path, options: &[&str]) -> Sweep {
+        let file = path.display().to_string();
+        let words = ["sweep", &file, "--out", "nowhere"].into_iter();
+        let words = words.chain(options.iter().copied());
+        let arguments = Line::try_parse_from(words).expect("options").arguments;
+        let source = Source::open(path, &arguments.robot).expect("a description");
+        let (Some(vary), Some(stepping)) = (&arguments.vary, &arguments.stepping) else {
+            panic!("--vary and --until are needed");
+        };
+        let sweep = prepared(&arguments, &source.in_numbers(), vary, stepping);
+        sweep.expect("a sweep").0
+    }
+
+    fn model(name: &str) -> PathBuf {
+        Path::new("../tests/models").join(format!("{name}.eom"))
+    }
+
+    /// A description that no file has.
+    fn written(name: &str, text: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("hamel-{name}-{}.eom", std::process::id()));
+        std::fs::write(&path, text).expect("a description");
+        path
+    }
+
+    fn bits(row: &Row) -> (u64, Vec<u64>, Vec<Option<u64>>, Option<String>) {
+        let varied = row.varied.iter().map(|number| number.to_bits());
+        let kept = row.kept.iter().map(|number| number.map(f64::to_bits));
+        (
+            row.index,
+            varied.collect(),
+            kept.collect(),
+            row.error.clone(),
+        )
+    }
+
+    /// The rows of members who share lanes, which have to be those of members alone, to the bit.
+    fn rows(path: &Path, options: &[&str]) -> Vec<Row> {
+        let sweep = sweep(path, options);
+        let members = sweep.vary.members();
+        let mut together = sweep.rows(0..members);
+        together.sort_by_key(|row| row.index);
+        // Other neighbours, and none.
+        let mut others = sweep.rows(1..members);
+        others.extend(sweep.rows(0..1));
+        others.sort_by_key(|row| row.index);
+        let alone = (0..members).flat_map(|index| sweep.rows(index..index + 1));
+        for ((a, b), c) in together.iter().zip(&others).zip(alone) {
+            assert_eq!(bits(a), bits(&c), "{path:?} {options:?}");
+            assert_eq!(bits(b), bits(&c), "{path:?} {options:?}");
+        }
+        together
+    }
+
+    #[test]
+    fn members_do_not_feel_their_neighbours() {
+        let cases = [
+            ("heavy_top", "m = uniform(1, 2); start R = uniform(-1, 1)"),
+            ("heavy_top_quaternion", "start q = uniform(-1, 1)"),
+            (
+                "kapitza",
+                "Omega = uniform(30, 60); start q = uniform(-3, 3)",
+            ),
+            (
+                "lagging_drone",
+                "input wind = normal(0, 1); T = uniform(0.05, 0.1)",
+            ),
+            ("rolling_disk", "a = uniform(0.4, 0.6)"),
+            ("four_bar_loop", "start q1 = uniform(1, 1.2)"),
+            // Beyond a million turns a sine is not computed in line.
+            ("double_pendulum_angles", "start th1 = grid(0, 2e6, 7)"),
+        ];
+        for (name, vary) in cases {
+            let count = ["--members", "7"];
+            let options = ["--vary", vary, "--until", "2", "--step", "1e-3"];
+            for method in ["rkmk4", "rk4", "auto"] {
+                let options = [&options[..], &count, &["--method", method]].concat();
+                let rows = rows(&model(name), &options);
+                assert_eq!(rows.len(), 7);
+                let failed = rows.iter().find_map(|row| row.error.as_ref());
+                assert_eq!(failed, None, "{name} {method}");
+            }
+        }
+    }
+
+    /// Samples in between, one of them at the start, and stretches that are too short for code of their own.
+    #[test]
+    fn samples_are_those_of_members_alone() {
+        let options = "--members 5 --until 3 --step 1e-3 --method rkmk4".split(' ');
+        let vary = "m = uniform(1, 2); start w[3] = latin(-5, 5)";
+        let keep = "at(0, w); at(1.3, w); at(1.301, R[1,2]); end; at(3, w)";
+        let mut options: Vec<&str> = options.collect();
+        options.extend(["--vary", vary, "--keep", keep]);
+        for row in rows(&model("heavy_top"), &options) {
+            assert!(row.error.is_none() && row.kept.iter().all(Option::is_some));
+            let [at, end] = [
+                &row.kept[10 + 9 + 1..][..3],
+                &row.kept[row.kept.len() - 3..],
+            ];
+            assert_eq!(at, end);
+        }
+    }
+
+    /// Members that cannot start, that come to where M is singular, or to numbers that are not finite, beside those that
+    /// do not.
+    #[test]
+    fn members_that_fail_do_so_alone() {
+        let text = "system Bead {
+            param m = 1;
+            coord q;
+            velocity w;
+            rate q = w;
+            kinetic m * (1 - q) * w^2 / 2;
+            start w = 0;
+        }";
+        let path = written("bead", text);
+        let mut kinds = Vec::new();
+        for vary in [
+            "m = grid(0, 1, 2); start w = grid(-1, 1, 3)",
+            "start w = grid(-1, 1e200, 2)",
+        ] {
+            let options = "--until 2 --step 1e-3 --method rkmk4 --vary".split(' ');
+            let options: Vec<&str> = options.chain([vary]).collect();
+            for row in rows(&path, &options) {
+                let kind = row.error.as_ref().and_then(|error| error.split(':').next());
+                kinds.push(kind.unwrap_or("none").to_string());
+            }
+        }
+        std::fs::remove_file(&path).expect("it was written");
+        let singular = ["singular"; 3];
+        let others = ["none", "none", "singular", "none", "not finite"];
+        assert_eq!(kinds, [&singular[..], &others].concat());
+    }
 }

@@ -6,7 +6,7 @@
 //! | `vary`, `target`, `distribution` | what is varied, and how |
 //! | `draws`, `permutation` | random numbers that depend on the seed and the member alone |
 //! | `keep`, `added`, `watch` | what is kept of a member, compiled as outputs of the description |
-//! | `member`, `work` | one run, and all of them on threads |
+//! | `member`, `work` | one run, or two side by side, and all of them on threads |
 //! | `shard`, `manifest`, `folder` | what is written, and what is there |
 //! | `status`, `submit` | `--status` and `--submit` |
 

@@ -77,7 +77,7 @@ impl Work<'_> {
                         let Some((shard, members)) = next else {
                             break;
                         };
-                        let rows: Vec<Row> = members.map(|index| self.sweep.row(index)).collect();
+                        let rows = self.sweep.rows(members);
                         bar.inc(rows.len() as u64);
                         self.hand_in(&desk, shard, rows);
                     }

@@ -30,6 +30,13 @@ fn seconds(act: impl FnOnce()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
+/// Seconds by the clock, and of all processors together.
+fn timed(act: impl FnOnce()) -> [f64; 2] {
+    let start = Instant::now();
+    let processors = seconds(act);
+    [start.elapsed().as_secs_f64(), processors]
+}
+
 fn median(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);
     times[times.len() / 2]
@@ -108,11 +115,11 @@ fn sweeps() {
             word => word.into(),
         });
         let words = words.chain([out.into_os_string()]);
-        let start = Instant::now();
-        hamel_cli::asked(words)
-            .map_err(|why| why.text())
-            .expect("a sweep");
-        start.elapsed().as_secs_f64()
+        timed(|| {
+            hamel_cli::asked(words)
+                .map_err(|why| why.text())
+                .expect("a sweep");
+        })
     };
     let wide = code::Dzhanibekov::<f64x8>::default();
     let narrow = code::Dzhanibekov::<f64>::default();
@@ -132,30 +139,14 @@ fn sweeps() {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let by_ensemble = |lanes: bool| {
         let mut states = states();
-        let start = Instant::now();
         let quietly = ensemble::quietly;
-        let outcome = match lanes {
-            true => ensemble::integrate(
-                &wide,
-                &Rkmk4,
-                &mut states,
-                H,
-                until,
-                |_, _, _, _| [],
-                quietly,
-            ),
-            false => ensemble::integrate(
-                &narrow,
-                &Rkmk4,
-                &mut states,
-                H,
-                until,
-                |_, _, _, _| [],
-                quietly,
-            ),
+        let all = |states: &mut Vec<_>| match lanes {
+            true => ensemble::integrate(&wide, &Rkmk4, states, H, until, |_, _, _, _| [], quietly),
+            false => {
+                ensemble::integrate(&narrow, &Rkmk4, states, H, until, |_, _, _, _| [], quietly)
+            }
         };
-        assert!(outcome.failures.is_empty());
-        start.elapsed().as_secs_f64()
+        timed(|| assert!(all(&mut states).failures.is_empty()))
     };
     let [mut eight, mut one, mut ours, mut alone] = [(); 4].map(|()| Vec::new());
     for turn in 0..TURNS {
@@ -166,22 +157,24 @@ fn sweeps() {
     }
     let _ = std::fs::remove_dir_all(&folder);
     let steps = MEMBERS as f64 * f64::from(MEMBER_STEPS);
-    let ns = |times: Vec<f64>| median(times) / steps * 1e9;
+    let ns = |times: Vec<[f64; 2]>| {
+        [0, 1].map(|of| median(times.iter().map(|both| both[of]).collect()) / steps * 1e9)
+    };
     let (eight, one, ours, alone) = (ns(eight), ns(one), ns(ours), ns(alone));
     println!(
-        "\n{MEMBERS} members of {MEMBER_STEPS} steps of order 4, bodies that are free; ns of a step by the clock\n"
+        "\n{MEMBERS} members of {MEMBER_STEPS} steps of order 4, bodies that are free; ns of a step by the clock, and of all processors together, which other programs on the machine change least\n"
     );
-    println!("| | threads | ns | speed beside it |\n|---|---|---|---|");
-    println!("| `sweep` | {threads} | {ours:.1} | 1 |");
-    println!("| `sweep` | 1 | {alone:.1} | {:.2} |", ours / alone);
-    println!(
-        "| `ensemble`, generated Rust, one lane | {threads} | {one:.1} | {:.2} |",
-        ours / one
-    );
-    println!(
-        "| `ensemble`, generated Rust, eight lanes | {threads} | {eight:.1} | {:.2} |",
-        ours / eight
-    );
+    println!("| | threads | by the clock | of processors | speed of `sweep` beside it |");
+    println!("|---|---|---|---|---|");
+    for (name, threads, [clock, processors]) in [
+        ("`sweep`", threads, ours),
+        ("`sweep`", 1, alone),
+        ("`ensemble`, generated Rust, one lane", threads, one),
+        ("`ensemble`, generated Rust, eight lanes", threads, eight),
+    ] {
+        let beside = processors / ours[1];
+        println!("| {name} | {threads} | {clock:.1} | {processors:.1} | {beside:.2} |");
+    }
 }
 
 fn main() {
