@@ -356,3 +356,107 @@ fn files_do_not_tell_which_members_ran_side_by_side() {
     run(&parts, &plate, &with(&["--threads", "1"]));
     assert!(all == bytes(&parts));
 }
+
+/// R₀ exp(ŵ) by the formula of Rodrigues.
+fn turned(start: [[f64; 3]; 3], [x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
+    let angle = (x * x + y * y + z * z).sqrt();
+    let hat = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+    let product = |a: [[f64; 3]; 3], b: [[f64; 3]; 3]| {
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+    };
+    let square: [[f64; 3]; 3] = product(hat, hat);
+    let (a, b) = (angle.sin() / angle, (1.0 - angle.cos()) / (angle * angle));
+    let entry = |i: usize, j: usize| f64::from(i == j) + a * hat[i][j] + b * square[i][j];
+    product(start, [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))))
+}
+
+/// A pose is varied by its position, and by a turn from the rotation that it has where nothing is varied, whole or by
+/// entries; it stays one.
+#[test]
+fn poses_are_varied_on_their_group() {
+    let folder = fresh("posed");
+    fs::create_dir_all(&folder).expect("a folder");
+    let at = folder.join("state.json");
+    let quarter = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+    let state = r#"{"coord": {"X": {"p": [1, 2, 3], "R": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}}}"#;
+    fs::write(&at, state).expect("a state");
+    let at = at.display().to_string();
+    let run = "--members 5 --seed 4 --until 0.01 --keep".split(' ');
+    let mut fixed: Vec<&str> = run.collect();
+    fixed.push("at(0, X.R); at(0, X.p)");
+    for (name, vary, start, place) in [
+        (
+            "whole",
+            &[
+                "--vary",
+                "start X.p = normal(0, 2); start X.R = uniform(-3, 3)",
+            ][..],
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            [None; 3],
+        ),
+        (
+            "entries",
+            &[
+                "--vary",
+                "start X.R[2] = latin(-1, 1); start X.p[3] = grid(7, 9, 5)",
+                "--at",
+                &at,
+            ],
+            quarter,
+            [Some(1.0), Some(2.0), None],
+        ),
+    ] {
+        let body = model("body_with_rotor");
+        let table = swept(
+            &format!("posed-{name}"),
+            &body,
+            &[&fixed[..], vary].concat(),
+        );
+        for row in 0..5 {
+            let known = |name: &str| {
+                let place = table.names.iter().position(|known| known == name)?;
+                table.rows[row][place]
+            };
+            let turn = [1, 2, 3].map(|i| known(&format!("start X.R[{i}]")).unwrap_or(0.0));
+            let wanted = turned(start, turn);
+            for (i, wanted) in wanted.iter().enumerate() {
+                let name = format!("at(0, X.p)[{}]", i + 1);
+                let p = known(&format!("start X.p[{}]", i + 1)).or(place[i]);
+                assert_eq!(known(&name), p);
+                for (j, wanted) in wanted.iter().enumerate() {
+                    let name = format!("at(0, X.R)[{},{}]", i + 1, j + 1);
+                    let found = known(&name).unwrap_or_else(|| panic!("{name}: {:?}", table.names));
+                    assert!((found - wanted).abs() < 1e-14, "{name}: {found} {wanted}");
+                }
+            }
+        }
+    }
+    let body = model("body_with_rotor");
+    let out = folder.join("none").display().to_string();
+    let fixed = [
+        "sweep",
+        &body,
+        "--until",
+        "1",
+        "--members",
+        "2",
+        "--out",
+        &out,
+        "--vary",
+    ];
+    let output = hamel(
+        &[
+            &fixed[..],
+            &["start X = normal(0, 1); start X.q = normal(0, 1)"],
+        ]
+        .concat(),
+        "",
+    );
+    let said = text(&output.stderr);
+    for message in [
+        "`X` is a pose: vary its position `start X.p`, its rotation `start X.R`, or both",
+        "no coordinate, velocity or state is called `X.q`: did you mean `X.",
+    ] {
+        assert!(said.contains(message), "{said}");
+    }
+}

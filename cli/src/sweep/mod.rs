@@ -144,9 +144,10 @@ const LONG: &str = "\
   start w[2] = latin(-1, 1)                      a Latin hypercube: [-1, 1] in as many equal parts as there are
                                                  members, with one member in each
   input F = grid(0, 10, 11)                      11 numbers from 0 to 10; several grids make all combinations
-A single number stands for all entries. Arguments may be expressions of parameters that are not varied. A rotation
-is varied by three numbers, the vector of a turn from its start, about axes of the body (rad). Coordinates and velocities
-that are not varied follow where loops and other constraints ask for it.
+  start R = normal(0, 0.1)                       a rotation, by the vector of a turn from its start, about axes of the
+                                                 body (rad); of a pose X so X.R, and its position as X.p
+A single number stands for all entries. Arguments may be expressions of parameters that are not varied. Coordinates and
+velocities that are not varied follow where loops and other constraints ask for it.
 
 --keep takes items, `;` between them:
   end                      the time at which the run ended, coordinates and velocities

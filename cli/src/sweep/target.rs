@@ -8,7 +8,7 @@ use hamel_codegen::model::{Coordinate, Group, Model};
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::path::plain;
 use hamel_codegen::syntax::suggest::closest;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// What a name is looked for among.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +39,8 @@ pub struct Target {
     pub part: &'static str,
     /// Its plain name.
     pub name: String,
+    /// Which part of a pose it is.
+    pub of_pose: Option<&'static str>,
     /// Names of its entries, as columns are called.
     pub entries: Vec<String>,
     /// Its numbers.
@@ -70,7 +72,8 @@ impl Target {
         state: &State,
     ) -> Result<(Self, Vec<usize>), String> {
         let all = Target::all(part, model, state);
-        if let Some(target) = all.iter().find(|target| target.name == plain(name)) {
+        let called = |target: &&Target| plain(&target.written()) == plain(name);
+        if let Some(target) = all.iter().find(called) {
             if let Form::Matrix(_) | Form::Symmetric(_) = target.form {
                 return Err(format!(
                     "a matrix is varied by its entries, as in `{}{}`",
@@ -90,7 +93,7 @@ impl Target {
             part == Part::Start && known.kind == CoordKind::SE3 && known.name == plain(name)
         }) {
             return Err(format!(
-                "`{}` is a pose, which cannot be varied: describe it as a position of kind R3 and a rotation of kind SO3",
+                "`{0}` is a pose: vary its position `start {0}.p`, its rotation `start {0}.R`, or both",
                 pose.name
             ));
         }
@@ -100,9 +103,12 @@ impl Target {
             Part::Input => "input",
         };
         let message = format!("no {what} is called `{name}`");
-        let names: Vec<&str> = all.iter().map(|target| target.name.as_str()).collect();
+        let names: Vec<String> = all.iter().map(Target::written).collect();
         Err(
-            match (closest(name, names.iter().copied()), names.as_slice()) {
+            match (
+                closest(name, names.iter().map(String::as_str)),
+                names.as_slice(),
+            ) {
                 (Some(close), _) => format!("{message}: did you mean `{close}`?"),
                 (None, []) => format!("{message}: the description has none"),
                 (None, names) => format!("{message}: there are {}", names.join(", ")),
@@ -116,6 +122,7 @@ impl Target {
             let target = |group: &Group| Target {
                 part,
                 name: group.name.clone(),
+                of_pose: None,
                 entries: names::group(group),
                 base: numbers[group.offset..group.offset + group.len].to_vec(),
                 form: match group.shape {
@@ -132,7 +139,7 @@ impl Target {
             Part::Input => groups("input", &model.inputs, &state.u),
             Part::Start => {
                 let coordinates = model.coordinates.iter();
-                let coordinates = coordinates.filter_map(|one| coordinate(one, &state.x));
+                let coordinates = coordinates.flat_map(|one| coordinate(one, &state.x));
                 let velocities = groups("velocity", &model.velocities, &state.xi);
                 let states = groups("state", &model.states_behind(), &state.xi);
                 coordinates.chain(velocities).chain(states).collect()
@@ -140,8 +147,46 @@ impl Target {
         }
     }
 
+    /// Its name as descriptions have it.
+    fn written(&self) -> String {
+        match self.of_pose {
+            Some(part) => format!("{}.{part}", self.name),
+            None => self.name.clone(),
+        }
+    }
+
+    /// Whether another one is the same.
+    pub fn is(&self, other: &Target) -> bool {
+        let key = |target: &'_ Target| (target.part, target.name.clone(), target.of_pose);
+        key(self) == key(other)
+    }
+
+    /// Puts these numbers into a state in JSON.
+    pub fn put(&self, state: &mut Map<String, Value>, numbers: &[f64]) {
+        fn within<'a>(
+            map: &'a mut Map<String, Value>,
+            name: &str,
+        ) -> Option<&'a mut Map<String, Value>> {
+            let inner = map.entry(name).or_insert_with(|| Map::new().into());
+            inner.as_object_mut()
+        }
+        let Some(part) = within(state, self.part) else {
+            return;
+        };
+        match self.of_pose {
+            None => {
+                part.insert(self.name.clone(), self.json(numbers));
+            }
+            Some(of_pose) => {
+                if let Some(pose) = within(part, &self.name) {
+                    pose.insert(of_pose.into(), self.json(numbers));
+                }
+            }
+        }
+    }
+
     /// These numbers as a state gives them.
-    pub fn json(&self, numbers: &[f64]) -> Value {
+    fn json(&self, numbers: &[f64]) -> Value {
         let list = |numbers: &[f64]| Value::from(numbers.to_vec());
         match &self.form {
             Form::Scalar => numbers.first().copied().unwrap_or(f64::NAN).into(),
@@ -169,37 +214,41 @@ fn vector(numbers: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0))
 }
 
-/// A coordinate; none where it is a pose.
-fn coordinate(coordinate: &Coordinate, x: &[f64]) -> Option<Target> {
+/// A coordinate; of a pose its position and its rotation.
+fn coordinate(coordinate: &Coordinate, x: &[f64]) -> Vec<Target> {
     let (name, at) = (&coordinate.name, coordinate.offset);
-    let turns = || (1..=3).map(|i| format!("{name}[{i}]")).collect();
-    let (entries, base, form) = match coordinate.kind {
-        CoordKind::Real => (vec![name.clone()], vec![x[at]], Form::Scalar),
-        CoordKind::Euclidean(n) => (
-            entry_names(name, coordinate.kind),
-            x[at..at + n].to_vec(),
-            Form::Vector,
-        ),
-        CoordKind::S1 => (
-            vec![name.clone()],
-            vec![libm::atan2(x[at + 1], x[at])],
-            Form::Scalar,
-        ),
-        CoordKind::S3 => {
-            let start = std::array::from_fn(|i| x[at + i]);
-            (turns(), vec![0.0; 3], Form::Quaternion(start))
-        }
-        CoordKind::SO3 => {
-            let start = std::array::from_fn(|i| x[at + i]);
-            (turns(), vec![0.0; 3], Form::Rotation(start))
-        }
-        CoordKind::SE3 => return None,
-    };
-    Some(Target {
+    let target = |of_pose, entries, base, form| Target {
         part: "coord",
         name: name.clone(),
+        of_pose,
         entries,
         base,
         form,
-    })
+    };
+    let three = |name: &str| (1..=3).map(|i| format!("{name}[{i}]")).collect();
+    let rotation = |at: usize| Form::Rotation(std::array::from_fn(|i| x[at + i]));
+    let one = match coordinate.kind {
+        CoordKind::Real => target(None, vec![name.clone()], vec![x[at]], Form::Scalar),
+        CoordKind::Euclidean(n) => {
+            let entries = entry_names(name, coordinate.kind);
+            target(None, entries, x[at..at + n].to_vec(), Form::Vector)
+        }
+        CoordKind::S1 => {
+            let angle = libm::atan2(x[at + 1], x[at]);
+            target(None, vec![name.clone()], vec![angle], Form::Scalar)
+        }
+        CoordKind::S3 => {
+            let start = std::array::from_fn(|i| x[at + i]);
+            target(None, three(name), vec![0.0; 3], Form::Quaternion(start))
+        }
+        CoordKind::SO3 => target(None, three(name), vec![0.0; 3], rotation(at)),
+        CoordKind::SE3 => {
+            let [p, turn] = ["p", "R"].map(|part| three(&format!("{name}.{part}")));
+            return vec![
+                target(Some("p"), p, x[at..at + 3].to_vec(), Form::Vector),
+                target(Some("R"), turn, vec![0.0; 3], rotation(at + 3)),
+            ];
+        }
+    };
+    vec![one]
 }

@@ -99,10 +99,7 @@ impl Vary {
         };
         let (target, places) = Target::find(part, name, &generated.active, state)
             .map_err(|why| vec![left.wrong(why)])?;
-        let known = self
-            .targets
-            .iter()
-            .position(|known| (known.part, &known.name) == (target.part, &target.name));
+        let known = self.targets.iter().position(|known| known.is(&target));
         let number = known.unwrap_or(self.targets.len());
         let taken = |entry: &Entry| entry.target == number && places.contains(&entry.place);
         if self.entries.iter().any(taken) {
@@ -201,12 +198,7 @@ impl Vary {
         }
         let mut state = base.clone();
         for (target, numbers) in self.targets.iter().zip(&numbers) {
-            let part = state
-                .entry(target.part)
-                .or_insert_with(|| Map::new().into());
-            if let Value::Object(part) = part {
-                part.insert(target.name.clone(), target.json(numbers));
-            }
+            target.put(&mut state, numbers);
         }
         state.into()
     }
