@@ -26,14 +26,18 @@ impl State {
             true => Ok(()),
             false => Err(errors),
         };
-        let violations = self.violations(active);
-        if !violations.is_empty() && !given_x.iter().all(|given| *given) {
+        let mut residuals = self.residuals(active);
+        let violations = self.violations(active, &residuals);
+        let mut moved = !violations.is_empty();
+        if moved && !given_x.iter().all(|given| *given) {
             self.x = self.satisfied(full, given_x).ok_or(violations)?;
+            residuals = self.residuals(active);
         } else {
             none(violations)?;
         }
-        if self.residuals(active).iter().any(|size| size.abs() > EXACT) {
+        if residuals.iter().any(|size| size.abs() > EXACT) {
             normalise(&active.blocks, &mut self.x);
+            moved = true;
         }
         let mut x = self.x.clone();
         let closure = Closure::of(full, &self.params).with_inputs(&self.u);
@@ -54,9 +58,12 @@ impl State {
                 open.residual
             )]
         })?;
+        moved |= self.x != x;
         self.x = x;
-        // Steps along the loops may leave constraints that are no loops.
-        none(self.violations(active))?;
+        // Steps along the loops may leave constraints that are no loops; what has not moved was looked at.
+        if moved {
+            none(self.violations(active, &self.residuals(active)))?;
+        }
         let mut xi = self.xi[..active.n()].to_vec();
         let settled = Closure::of(active, &self.params)
             .with_inputs(&self.u)

@@ -76,9 +76,8 @@ impl State {
         Ok(state)
     }
 
-    /// Where x leaves the configuration manifold.
-    fn violations(&self, model: &Model) -> Vec<String> {
-        let residuals = self.residuals(model);
+    /// Where x leaves the configuration manifold, which it does by these residuals.
+    fn violations(&self, model: &Model, residuals: &[f64]) -> Vec<String> {
         let mut errors: Vec<String> = Vec::new();
         for ((_, text), residual) in model.phi.iter().zip(residuals) {
             // A NaN is off, too.
