@@ -364,6 +364,22 @@ def test_errors_show_their_place(models, tmp_path):
         hamel.System.from_text(PENDULUM, constants={"n": 3})
 
 
+def test_descriptions_made_by_programs():
+    """The train of the book: three masses with springs between them have the frequencies of K v = omega^2 M v."""
+    masses = [1.0, 0.5, 2.0]
+    parts = [
+        f"coord y_{i}; velocity v_{i}; rate y_{i} = v_{i}; particle mass {mass} at [y_{i}, 0, 0];"
+        for i, mass in enumerate(masses)
+    ]
+    springs = [f"spring stiffness 100 on y_{i + 1} - y_{i};" for i in range(len(masses) - 1)]
+    train = hamel.System.from_text("\n".join(["system Train {", *parts, *springs, "}"]))
+    stiffness = 100 * np.array([[1, -1, 0], [-1, 2, -1], [0, -1, 1]])
+    wanted = np.linalg.eigvals(np.diag(1 / np.array(masses)) @ stiffness).real
+    found = train.linearize().eigenvalues
+    np.testing.assert_allclose(found.real, 0, atol=1e-6)
+    np.testing.assert_allclose(np.sort(found.imag**2)[::2], np.sort(wanted), atol=1e-9)
+
+
 def test_sweep(tmp_path, pendulum):
     description = tmp_path / "pendulum.eom"
     description.write_text(PENDULUM)
