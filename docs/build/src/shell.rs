@@ -6,8 +6,8 @@ use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a clone of the repository is called.
-const CLONE: &str = "hamel";
+/// Where a clone of the repository is, from a crate beside it.
+const CLONE: &str = "../hamel/";
 
 /// The folder of one page.
 pub struct Shell {
@@ -53,10 +53,10 @@ impl Shell {
         self.done(script, &self.folder, &[])
     }
 
-    /// What a script prints that makes crates beside a clone of the repository, which is called `hamel`; the crates are then in
-    /// the folder of the page as well.
+    /// What a script prints that makes crates beside a clone of the repository, `../hamel`; the crates are then in the folder of the
+    /// page as well.
     ///
-    /// They are made at one place, so that what they depend on is compiled once, and with what `tests/nostd` has compiled. The
+    /// The clone is this repository, by its own path, so that what `tests/nostd` has compiled is not compiled again. The
     /// packages are those of this repository's lock file, and nothing is downloaded.
     ///
     /// # Errors
@@ -67,21 +67,20 @@ impl Shell {
             fs::remove_dir_all(&place)?;
         }
         fs::create_dir_all(&place)?;
-        std::os::unix::fs::symlink(&self.root, place.join(CLONE))?;
         // Otherwise the crates would become members of this repository's workspace.
-        let manifest = format!("[workspace]\nresolver = \"3\"\nexclude = [\"{CLONE}\"]\n");
-        fs::write(place.join("Cargo.toml"), manifest)?;
+        fs::write(place.join("Cargo.toml"), "[workspace]\nresolver = \"3\"\n")?;
         fs::copy(self.root.join("Cargo.lock"), place.join("Cargo.lock"))?;
         let target = self.root.join("tests/nostd/target").display().to_string();
         let environment = [
             ("CARGO_TARGET_DIR", &*target),
             ("CARGO_NET_OFFLINE", "true"),
         ];
-        let printed = self.done(script, &place, &environment)?;
+        let script = script.replace(CLONE, &format!("{}/", self.root.display()));
+        let printed = self.done(&script, &place, &environment)?;
         for entry in fs::read_dir(&place)? {
             let made = entry?.path();
             let name = made.file_name().unwrap_or_default();
-            if made.is_dir() && name != CLONE {
+            if made.is_dir() {
                 std::os::unix::fs::symlink(&made, self.folder.join(name))?;
             }
         }
