@@ -53,11 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let generated = source.derive_available(&[])?;
             let identities = check(&generated.model, &generated.program);
             print(&table(&identities))?;
-            print(&rounding(&generated))?;
-            print(&merging(&generated))?;
-            print(&constrained(&generated, &source.text))?;
-            print(&geometry(&generated))?;
-            print(&methods(&generated))?;
+            print(&remarks(&generated, &source.text))?;
             let failed = identities
                 .iter()
                 .filter(|identity| matches!(identity.verdict, Verdict::Failed(_)))
@@ -86,6 +82,51 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     worst.map_or(Ok(()), Err)
+}
+
+/// An identity with its verdict in words.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// What it is about.
+    pub label: &'static str,
+    /// The identity.
+    pub equation: String,
+    /// `proved`, `checked` or `failed`.
+    pub verdict: &'static str,
+    /// What there is to say of it.
+    pub told: String,
+}
+
+/// The identities behind the equations, with their verdicts.
+pub fn checked(generated: &Generated) -> Vec<Checked> {
+    let identities = check(&generated.model, &generated.program).into_iter();
+    identities
+        .map(|identity| {
+            let (verdict, told) = match identity.verdict {
+                Verdict::Proved => ("proved", String::new()),
+                Verdict::Checked(confidence) => ("checked", confidence.to_string()),
+                Verdict::Failed(why) => ("failed", why),
+            };
+            Checked {
+                label: identity.label,
+                equation: identity.equation,
+                verdict,
+                told,
+            }
+        })
+        .collect()
+}
+
+/// What stands below the identities: rounding, merging, constraints, geometry, methods.
+pub fn remarks(generated: &Generated, text: &str) -> String {
+    [
+        rounding(generated),
+        merging(generated),
+        constrained(generated, text),
+        geometry(generated),
+        methods(generated),
+    ]
+    .concat()
 }
 
 fn table(identities: &[Identity]) -> String {

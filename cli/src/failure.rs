@@ -1,5 +1,6 @@
 //! What ends a command early, and the exit status that it ends with.
 
+use hamel_codegen::diagnostics::Diagnostic;
 use std::cell::RefCell;
 use std::io::{ErrorKind, Write};
 
@@ -104,16 +105,45 @@ pub fn said(answer: &clap::Error) -> u8 {
     }
 }
 
+/// What is said besides a result: warnings as a text without colours, and where errors and warnings are about.
+#[derive(Clone, Debug, Default)]
+pub struct Said {
+    /// The warnings, each with its source underlined.
+    pub warnings: String,
+    /// Errors and warnings with their places in the description.
+    pub marks: Vec<Mark>,
+}
+
+/// An error or a warning with its place in the description, for who underlines it there.
+#[derive(Clone, Debug)]
+pub struct Mark {
+    /// Whether it is an error.
+    pub is_error: bool,
+    /// Where it is, what it says, and what to do about it.
+    pub diagnostic: Diagnostic,
+}
+
 thread_local! {
-    /// Warnings, while somebody collects those of this thread.
-    static WARNINGS: RefCell<Option<String>> = const { RefCell::new(None) };
+    /// What is said, while somebody collects it in this thread.
+    static SAID: RefCell<Option<Said>> = const { RefCell::new(None) };
+}
+
+/// Notes the places of errors or warnings, where somebody collects them.
+pub fn mark(diagnostics: &[Diagnostic], is_error: bool) {
+    SAID.with_borrow_mut(|said| {
+        let Some(said) = said else { return };
+        said.marks.extend(diagnostics.iter().map(|diagnostic| Mark {
+            is_error,
+            diagnostic: diagnostic.clone(),
+        }));
+    });
 }
 
 /// Writes what does not end the command to standard error, or where warnings are collected.
 pub fn warn(text: &str) {
-    let collected = WARNINGS.with_borrow_mut(|warnings| match warnings {
-        Some(all) => {
-            all.push_str(text);
+    let collected = SAID.with_borrow_mut(|said| match said {
+        Some(said) => {
+            said.warnings.push_str(&plain(text));
             true
         }
         None => false,
@@ -124,12 +154,12 @@ pub fn warn(text: &str) {
     }
 }
 
-/// Does something, with its warnings as a text without colours.
-pub fn collected<T>(act: impl FnOnce() -> T) -> (T, String) {
-    let outer = WARNINGS.replace(Some(String::new()));
+/// Does something, and collects what is said besides its result.
+pub fn collected<T>(act: impl FnOnce() -> T) -> (T, Said) {
+    let outer = SAID.replace(Some(Said::default()));
     let done = act();
-    let warnings = WARNINGS.replace(outer).unwrap_or_default();
-    (done, plain(&warnings))
+    let said = SAID.replace(outer).unwrap_or_default();
+    (done, said)
 }
 
 /// A text without colours.

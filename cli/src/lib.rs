@@ -11,15 +11,22 @@
 //! | `singular` | which velocity has no inertia where a run or an evaluation fails |
 //! | `method` | the methods by their names, and which systems they are for |
 //! | `json`, `names`, `columns` | how results are written; pictures and numbers are those of `hamel-report` |
-//! | `progress` | what long work shows |
+//! | `progress` | what long work shows; `silent` without the feature `command` |
 //! | `drawing` | what of a mechanism can be drawn at a state, as plain numbers |
+//! | `command` | the command line, with the feature of that name |
 //! | `session` | the same for other front ends: numbers in place of texts |
 //! | `failure` | errors, warnings and exit statuses |
 
+// What the command line alone calls stays where it is when the crate is built without it.
+#![cfg_attr(not(feature = "command"), allow(dead_code, unused_imports))]
+
 mod check;
 mod columns;
+#[cfg(feature = "command")]
+mod command;
 mod compare;
 mod constants;
+#[cfg(feature = "command")]
 mod draw;
 pub mod drawing;
 mod eigenvalues;
@@ -33,6 +40,7 @@ mod mechanism;
 mod method;
 mod names;
 mod ops;
+#[cfg_attr(not(feature = "command"), path = "silent.rs")]
 mod progress;
 mod regressor;
 mod robot;
@@ -41,104 +49,27 @@ mod simulate;
 mod singular;
 mod source;
 mod state;
+#[cfg(feature = "command")]
 mod sweep;
 mod tables;
 
+pub use check::Checked;
+#[cfg(feature = "command")]
+pub use command::{asked, command, described};
+pub use compare::Comparison;
 pub use drawing::{Drawing, Drawn, Scene};
-pub use failure::Failure;
+pub use failure::{Failure, Mark, Said};
 pub use linearize::Linear;
 pub use mechanism::{End, Varied};
 pub use robot::{Mimic, RobotOptions};
-pub use session::{Function, Motion, Names, Session, Stepped};
+pub use session::{Function, Motion, Names, Session, Stepped, imported};
 pub use simulate::inputs::{Asked, Control, Law};
 pub use simulate::record::Every;
 pub use simulate::stepping::Stepping;
 pub use state::State;
 pub use tables::Format;
 
-use clap::{Parser, Subcommand};
+/// The shape of a value, matrices by rows.
+pub use hamel_codegen::program::Shape;
+
 use hamel_report::number;
-use std::ffi::OsString;
-
-const EXAMPLES: &str = "\
-Examples:
-  hamel check heavy_top.eom                     prove the identities behind the equations
-  hamel tables heavy_top.eom --of gamma,M       what stands in the paper
-  hamel regressor arm.urdf                      which inertias forces depend on
-  hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
-  hamel simulate heavy_top.eom --until 10       a first run
-  hamel draw heavy_top.eom --out top.svg        a picture of the mechanism
-  hamel sweep heavy_top.eom --vary … --out runs  many runs, with parameters and starts that differ
-  hamel compare heavy_top.eom --until 10        error of methods against what they cost
-  hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
-  hamel import arm.urdf -o arm.eom              a robot in URDF as a description
-
-FILE is a description (.eom) or a robot (.urdf); `-` reads standard input.
-Exit status: 0 done, 1 a description or a check failed, 2 wrong usage or unreadable files.";
-
-/// Generates equations of motion in redundant coordinates and quasi-velocities.
-#[derive(Parser)]
-#[command(name = "hamel", version, about, after_help = EXAMPLES)]
-struct Line {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    Tables(tables::Arguments),
-    Regressor(regressor::Arguments),
-    Check(check::Arguments),
-    Ops(ops::Arguments),
-    Emit(emit::Arguments),
-    Eval(eval::Arguments),
-    Linearize(linearize::Arguments),
-    Simulate(simulate::Arguments),
-    Draw(draw::Arguments),
-    Sweep(sweep::Arguments),
-    Compare(compare::Arguments),
-    Import(import::Arguments),
-}
-
-/// The subcommands and options of the command line, for its reference.
-pub fn described() -> clap::Command {
-    <Line as clap::CommandFactory>::command()
-}
-
-/// Runs a command, whose words begin with the name of the program, and shows what it says; its exit status.
-pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let line = match Line::try_parse_from(words) {
-        Ok(line) => line,
-        Err(said) => return failure::said(&said),
-    };
-    line.command.run().map_or_else(Failure::report, |()| 0)
-}
-
-/// Runs a command for a program, which gets what is wrong in place of its user.
-///
-/// # Errors
-/// What is wrong with the words, or with what they ask for.
-pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    let line = Line::try_parse_from(words);
-    let line = line.map_err(|said| Failure::Usage(said.render().to_string()))?;
-    line.command.run()
-}
-
-impl Command {
-    fn run(&self) -> Result<(), Failure> {
-        match self {
-            Command::Tables(arguments) => tables::run(arguments),
-            Command::Regressor(arguments) => regressor::run(arguments),
-            Command::Check(arguments) => check::run(arguments),
-            Command::Ops(arguments) => ops::run(arguments),
-            Command::Emit(arguments) => emit::run(arguments),
-            Command::Eval(arguments) => eval::run(arguments),
-            Command::Linearize(arguments) => linearize::run(arguments),
-            Command::Simulate(arguments) => simulate::run(arguments),
-            Command::Draw(arguments) => draw::run(arguments),
-            Command::Sweep(arguments) => sweep::run(arguments),
-            Command::Compare(arguments) => compare::run(arguments),
-            Command::Import(arguments) => import::run(arguments),
-        }
-    }
-}

@@ -1,5 +1,6 @@
 //! What long work shows on standard error, where that is a terminal.
 
+pub use indicatif::ProgressBar as Bar;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
@@ -7,22 +8,36 @@ use std::time::Duration;
 const TICK: Duration = Duration::from_millis(200);
 
 /// A bar of so many steps, with the time that is left.
-pub fn bar(steps: u64) -> ProgressBar {
+pub fn bar(steps: u64) -> Bar {
     styled(steps, "{percent}%  {eta} left")
 }
 
 /// A bar of so many of many things, with how many of them a second are done.
-pub fn rated(count: u64) -> ProgressBar {
+pub fn rated(count: u64) -> Bar {
     let bar = styled(count, "{percent}%  {pos} of {len}, {per_sec}, {eta} left");
     bar.enable_steady_tick(TICK);
     bar
 }
 
-fn styled(steps: u64, told: &str) -> ProgressBar {
+fn styled(steps: u64, told: &str) -> Bar {
     let colour = anstream::AutoStream::choice(&std::io::stderr()) != anstream::ColorChoice::Never;
     let bar = ProgressBar::new(steps);
     let drawn = if colour { "{bar:40.cyan}" } else { "{bar:40}" };
     match ProgressStyle::with_template(&format!("{drawn} {told}")) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// A bar that is not shown.
+pub fn hidden() -> Bar {
+    ProgressBar::hidden()
+}
+
+/// A bar with a name and the time that has gone by, whose length is given later.
+pub fn named(name: &str) -> Bar {
+    let bar = ProgressBar::new(1).with_message(name.to_string());
+    match ProgressStyle::with_template("{msg} {bar:40} {elapsed}") {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }

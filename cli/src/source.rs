@@ -342,12 +342,14 @@ impl Source {
     /// Shows the warnings on standard error, once. The text of a robot is the importer's, not the user's.
     fn warn(&self, model: &Model) {
         if self.robot.is_none() && !self.warned.swap(true, Ordering::Relaxed) {
+            failure::mark(&model.warnings, false);
             failure::warn(&warnings(&model.warnings, &self.path, &self.text, true));
         }
     }
 
     /// The errors with their source underlined.
     pub fn refused(&self, errors: &[Diagnostic]) -> Failure {
+        failure::mark(errors, true);
         Failure::Failed(match &self.robot {
             Some(robot) => urdf::refused(errors, &robot.imported, &self.path, &robot.urdf, true),
             None => render(errors, &self.path, &self.text, true),

@@ -15,6 +15,7 @@ pub enum Stream {
     /// A device such as `/dev/null`.
     Device(PathBuf),
     /// A pipe, by its name or by a descriptor.
+    #[cfg_attr(not(unix), allow(dead_code))]
     Pipe(PathBuf),
 }
 

@@ -11,5 +11,6 @@ use proc_macro::TokenStream;
 /// `hamel check` and the build script show them.
 #[proc_macro]
 pub fn rigid_eom(input: TokenStream) -> TokenStream {
-    hamel_codegen::expand(input.into()).into()
+    let description = proc_macro2::TokenStream::from(input);
+    hamel_codegen::expand(description).into()
 }

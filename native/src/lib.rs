@@ -13,16 +13,23 @@
 //! | `spill` | which values are in registers, and where the others are |
 //! | `target` | what code is written for, one set of numbers or two; the numbers that it reads |
 //! | `lower` | a tape as Cranelift's intermediate code |
-//! | `code` | memory that can be executed, and calls: all that is `unsafe` |
+//! | `code` | executable memory and calls into it: everything that is `unsafe` |
+//! | `absent` | the same without the feature `machine`: no code can be made |
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |
 //! | `evaluate` | tapes step by step |
 //! | `traced` | algorithms in Rust as tapes |
 
+#[cfg(not(feature = "machine"))]
+mod absent;
+#[cfg(feature = "machine")]
 mod code;
 mod evaluate;
+#[cfg(feature = "machine")]
 mod lower;
 mod repeat;
+#[cfg(feature = "machine")]
 mod spill;
+#[cfg(feature = "machine")]
 mod target;
 mod traced;
 
@@ -31,10 +38,16 @@ pub use hamel_codegen::program::tape::{ARGUMENTS, Foreign, Tape, Tapes};
 pub use repeat::Paired;
 pub use traced::{Traced, inlined, traced};
 
+#[cfg(not(feature = "machine"))]
+use absent as code;
+#[cfg(not(feature = "machine"))]
+use absent::{Code, Ended, Fixed, Target};
+#[cfg(feature = "machine")]
 use code::{Code, Ended, Fixed};
 use hamel::Scalar;
 use hamel_codegen::program::{Cause, Function, Program};
 use std::sync::Arc;
+#[cfg(feature = "machine")]
 use target::Target;
 
 /// Functions of a program that can be called: by machine code where there can be any.

@@ -1,9 +1,7 @@
 //! Functions whose result is the next (x, ξ), as a step of a method is, called again and again: for one state, or for two
 //! of them in the lanes of one code.
 
-use crate::code::{Code, Ended};
-use crate::target::Target;
-use crate::{Compiled, Constants};
+use crate::{Code, Compiled, Constants, Ended, Target};
 
 impl Compiled {
     /// Calls a function as often as is asked for, or until it has no result or one that is not finite. `state` holds x and

@@ -27,6 +27,7 @@
 
 pub mod auto;
 pub mod baselines;
+#[cfg(feature = "pictures")]
 mod code;
 mod controlled;
 pub mod counted;
@@ -38,7 +39,9 @@ pub mod json;
 pub mod markdown;
 pub mod measure;
 pub mod number;
+#[cfg(feature = "pictures")]
 pub mod page;
+#[cfg(feature = "pictures")]
 pub mod plot;
 pub mod problem;
 pub mod solution;

@@ -50,6 +50,8 @@ const CI: Task = &[
     "target/debug/hamel-book build",
     "target/tools/bin/mdbook build target/book-pages --dest-dir ../book",
     "target/debug/hamel-book check target/book",
+    // The page, built for browsers, in Chromium.
+    "HAMEL_BUILT=1 bash tests/page/run.sh",
     // A controller on microcontrollers, in QEMU.
     "bash tests/cortex/run.sh",
 ];

@@ -1,11 +1,13 @@
 //! `hamel compare`: speed against error.
 
 mod reference;
+#[cfg(feature = "command")]
 mod write;
 
 use crate::failure::{Failure, print};
 use crate::mechanism::{Instance, Numbers};
 use crate::method::{self, Named, Stepper};
+use crate::progress;
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
@@ -14,6 +16,7 @@ use hamel::Method;
 use hamel::adaptive::Adaptive;
 use hamel::methods::General;
 use hamel_codegen::derive::structure::choice::choose;
+use hamel_codegen::generate::Generated;
 use hamel_codegen::program::structure::Structure;
 use hamel_report::auto;
 use hamel_report::counted::Counted;
@@ -22,7 +25,6 @@ use hamel_report::entry::Entry;
 use hamel_report::measure::{Plan, measure};
 use hamel_report::problem::Problem;
 use hamel_report::solution::{Solution, relative};
-use indicatif::{ProgressBar, ProgressStyle};
 use reference::Fields;
 use std::path::{Path, PathBuf};
 
@@ -94,6 +96,7 @@ enum Format {
 }
 
 /// Runs and reports.
+#[cfg(feature = "command")]
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     method::known(&arguments.methods)?;
     let solution = arguments.reference.as_deref().map(read).transpose()?;
@@ -130,6 +133,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
+/// What is compared.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Methods by their names; all that fit, where none is named.
+    pub methods: Vec<String>,
+    /// Length of the run.
+    pub until: f64,
+    /// Numbers of steps; the usual ones, where there are none.
+    pub steps: Vec<u64>,
+    /// How often each run is timed; 0 for no times.
+    pub repeats: u32,
+}
+
 /// One description by all methods.
 fn compare(
     file: &Path,
@@ -146,10 +162,28 @@ fn compare(
     if let Some(fields) = &fields {
         fields.start(&mut state)?;
     }
-    let system = Instance::new(&generated, &state, source.shown())?;
+    let asked = Comparison {
+        methods: arguments.methods.clone(),
+        until,
+        steps: arguments.steps.clone(),
+        repeats: REPEATS,
+    };
+    case(&generated, source.shown(), &state, &asked, fields.as_ref())
+}
+
+/// A derived description by the methods that are asked for, from a state; `shown` is the text for messages.
+pub fn case(
+    generated: &Generated,
+    shown: &str,
+    state: &State,
+    asked: &Comparison,
+    fields: Option<&Fields>,
+) -> Result<Case, Failure> {
+    let until = asked.until;
+    let system = Instance::new(generated, state, shown)?;
     system.check_parameters(&state.x)?;
     let structure = &generated.program.structure;
-    let (methods, missing) = method::fitting(&arguments.methods, &system, structure);
+    let (methods, missing) = method::fitting(&asked.methods, &system, structure);
     let inputs = |t: f64, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let momenta = |x: &[f64], xi: &[f64]| -> Vec<f64> {
         let claims = system.invariants().iter();
@@ -167,7 +201,7 @@ fn compare(
         said: Box::new(|error| system.said(error)),
         conservative: true,
     };
-    let mut steps = arguments.steps.clone();
+    let mut steps = asked.steps.clone();
     if steps.is_empty() {
         steps.extend(STEPS);
     }
@@ -186,7 +220,7 @@ fn compare(
     if methods.is_empty() {
         return Ok(case);
     }
-    match &fields {
+    match fields {
         Some(fields) => {
             case.reference = format!("the solution given: {}", fields.names());
             let end = fields.end(until)?;
@@ -235,17 +269,22 @@ fn compare(
     let plan = Plan {
         steps,
         tolerances: TOLERANCES.to_vec(),
-        repeats: REPEATS,
+        repeats: asked.repeats,
         least: LEAST,
         floor: FLOOR,
     };
-    let bar = progress(&name);
+    let bar = progress::named(&name);
     measure(&mut case, &entries, &plan, &mut |done, all| {
         bar.set_length(all);
         bar.set_position(done);
     });
     bar.finish_and_clear();
     Ok(case)
+}
+
+/// One case as JSON.
+pub fn one(case: &Case) -> Result<String, Failure> {
+    serde_json::to_string(case).map_err(|error| Failure::failed(error.to_string()))
 }
 
 /// The method of the highest order, baselines last; the first of them in the table.
@@ -337,13 +376,4 @@ fn command(arguments: &Arguments) -> String {
         }
     }
     text
-}
-
-/// A bar on standard error, where that is a terminal.
-fn progress(name: &str) -> ProgressBar {
-    let bar = ProgressBar::new(1).with_message(name.to_string());
-    match ProgressStyle::with_template("{msg} {bar:40} {elapsed}") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

@@ -44,7 +44,10 @@ impl Mechanism {
         if let Some(code) = known.iter().find(same) {
             return Arc::clone(code);
         }
-        let tape = self.tape(&method, h);
+        // What follows is for machine code alone, which some builds never have.
+        let tape = cfg!(feature = "machine")
+            .then(|| self.tape(&method, h))
+            .flatten();
         let code = Arc::new(Code {
             method,
             h,

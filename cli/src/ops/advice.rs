@@ -1,25 +1,24 @@
 //! `hamel ops --advise`: what ξ̇ costs in other velocity coordinates.
 
 use crate::columns;
-use crate::failure::{Failure, print};
+use crate::failure::Failure;
 use crate::json::Json;
 use crate::source::Source;
 use hamel_codegen::derive::adviser::{Choice, advise};
 use hamel_codegen::model::Model;
 use hamel_codegen::program::count::Count;
 
-/// Compares and prints.
-pub fn run(source: &Source, model: &Model, as_json: bool) -> Result<(), Failure> {
+/// Compares; the choices as a table or as JSON.
+pub fn written(source: &Source, model: &Model, as_json: bool) -> Result<String, Failure> {
     let choices = advise(model).map_err(|why| {
         Failure::failed(format!(
             "{}: there is nothing to compare: {why}",
             source.path
         ))
     })?;
-    print(&if as_json {
-        json(model, &choices).pretty()
-    } else {
-        text(&choices)
+    Ok(match as_json {
+        true => json(model, &choices).pretty(),
+        false => text(&choices),
     })
 }
 

@@ -11,6 +11,7 @@ use clap::{Args, ValueEnum};
 use hamel_codegen::algebra::function::Cost;
 use hamel_codegen::algebra::graph::{Edge, Graph, Node};
 use hamel_codegen::functions::Asked;
+use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
 use hamel_codegen::program::count::{Count, count_nodes};
 use hamel_codegen::program::schedule::Schedule;
@@ -60,25 +61,60 @@ struct Row {
     unshared: Written,
 }
 
+/// The counts as JSON.
+pub fn counted(source: &Source) -> Result<String, Failure> {
+    Ok(Counts::of(source)?.json())
+}
+
+/// The counts of other velocity coordinates as JSON.
+pub fn advised(source: &Source) -> Result<String, Failure> {
+    let model = source.derive()?.model;
+    advice::written(source, &model, true)
+}
+
+/// What the functions of a description cost.
+struct Counts {
+    generated: Generated,
+    rows: Vec<Row>,
+    /// What is done when parameters are set, and how many constants are kept.
+    hoisted: Operations,
+    kept: usize,
+}
+
+impl Counts {
+    fn of(source: &Source) -> Result<Self, Failure> {
+        // What is generated on demand alone is counted as well, unless functions were chosen.
+        let generated = match source.model()?.asked == Asked::everything() {
+            true => source.derive_counted()?,
+            false => source.derive()?,
+        };
+        let program = &generated.program;
+        let schedule = Schedule::of(program);
+        Ok(Counts {
+            rows: rows(program, &schedule),
+            hoisted: operations(count_nodes(&program.graph, &schedule.hoisted)),
+            kept: schedule.kept.len(),
+            generated,
+        })
+    }
+
+    fn json(&self) -> String {
+        json(&self.generated.program, &self.rows, self.hoisted, self.kept).pretty()
+    }
+}
+
 /// Counts and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::open(&arguments.file, &arguments.robot)?;
     if arguments.advise {
         let model = source.derive()?.model;
-        return advice::run(&source, &model, matches!(arguments.format, Format::Json));
+        let as_json = matches!(arguments.format, Format::Json);
+        return print(&advice::written(&source, &model, as_json)?);
     }
-    // What is generated on demand alone is counted as well, unless functions were chosen.
-    let generated = match source.model()?.asked == Asked::everything() {
-        true => source.derive_counted()?,
-        false => source.derive()?,
-    };
-    let program = &generated.program;
-    let schedule = Schedule::of(program);
-    let rows = rows(program, &schedule);
-    let hoisted = operations(count_nodes(&program.graph, &schedule.hoisted));
+    let counts = Counts::of(&source)?;
     print(&match arguments.format {
-        Format::Text => text(&rows, hoisted, schedule.kept.len()),
-        Format::Json => json(program, &rows, hoisted, schedule.kept.len()).pretty(),
+        Format::Text => text(&counts.rows, counts.hoisted, counts.kept),
+        Format::Json => counts.json(),
     })
 }
 

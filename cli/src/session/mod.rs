@@ -2,13 +2,15 @@
 
 mod function;
 mod motion;
+mod reports;
 
 pub use function::Function;
 pub use motion::Motion;
+pub use reports::imported;
 
 use crate::drawing::Drawing;
 use crate::eval::numbers;
-use crate::failure::{Failure, collected};
+use crate::failure::{Failure, Said, collected};
 use crate::linearize::{self, Linear};
 use crate::mechanism::{Instance, Mechanism, Varied};
 use crate::method::{self, AUTO, Chosen, Stepper};
@@ -91,7 +93,8 @@ impl Session {
     /// # Errors
     /// What is wrong with it, with its source underlined.
     pub fn open(path: &Path, options: &RobotOptions) -> Result<(Self, String), Failure> {
-        Session::of(|| Source::open(path, options))
+        let (read, said) = Session::of(|| Source::open(path, options));
+        Ok((read?, said.warnings))
     }
 
     /// A description or a robot in URDF from its text, which messages call `name`, with warnings.
@@ -103,11 +106,21 @@ impl Session {
         name: &str,
         options: &RobotOptions,
     ) -> Result<(Self, String), Failure> {
+        let (read, said) = Session::marked(text, name, options);
+        Ok((read?, said.warnings))
+    }
+
+    /// As [`read`](Self::read), with the places of errors and warnings.
+    pub fn marked(
+        text: String,
+        name: &str,
+        options: &RobotOptions,
+    ) -> (Result<Self, Failure>, Said) {
         Session::of(|| Source::new(name.into(), text).given(options))
     }
 
-    fn of(source: impl FnOnce() -> Result<Source, Failure>) -> Result<(Self, String), Failure> {
-        let (derived, warnings) = collected(|| {
+    fn of(source: impl FnOnce() -> Result<Source, Failure>) -> (Result<Self, Failure>, Said) {
+        collected(|| {
             let source = source()?.in_numbers();
             let generated = source.derive_available(&[])?;
             Ok(Session {
@@ -118,8 +131,7 @@ impl Session {
                 varied: Mutex::default(),
                 functions: Mutex::default(),
             })
-        });
-        Ok((derived?, warnings))
+        })
     }
 
     /// The name of the system.

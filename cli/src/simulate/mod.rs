@@ -2,9 +2,12 @@
 
 pub mod balance;
 pub mod inputs;
+#[cfg(feature = "command")]
 mod panels;
+#[cfg(feature = "command")]
 mod picture;
 pub mod record;
+#[cfg(feature = "command")]
 mod rotor;
 pub mod steady;
 pub mod stepping;
@@ -20,7 +23,6 @@ use crate::state::State;
 use clap::Args;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
-use hamel_report::plot;
 use record::{Every, Run, Spacing};
 use std::path::PathBuf;
 use stepping::Stepping;
@@ -75,6 +77,7 @@ pub struct Arguments {
 }
 
 /// Runs and reports.
+#[cfg(feature = "command")]
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.stepping.check()?;
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
@@ -124,8 +127,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The SVG text of a picture.
-fn drawn(picture: &plot::Picture) -> Result<String, Failure> {
-    let figure = plot::run(picture).map_err(|error| Failure::failed(error.to_string()))?;
+#[cfg(feature = "command")]
+fn drawn(picture: &hamel_report::plot::Picture) -> Result<String, Failure> {
+    let figure =
+        hamel_report::plot::run(picture).map_err(|error| Failure::failed(error.to_string()))?;
     Ok(figure.standalone())
 }
 

@@ -13,7 +13,6 @@ use hamel::methods::General;
 use hamel::{Monitor, State, StepError, System};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
-use indicatif::ProgressBar;
 use std::cell::Cell;
 
 /// Samples where nothing else is asked for.
@@ -201,7 +200,7 @@ impl<'a> Run<'a> {
         let long = plan.tolerance.is_none() && plan.steps >= LONG;
         let mut bar = match long {
             true => progress::bar(plan.steps),
-            false => ProgressBar::hidden(),
+            false => progress::hidden(),
         };
         let mut steps = 0;
         let observe = |state: &State<Instance>, place: Place| {

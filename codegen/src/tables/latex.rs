@@ -117,12 +117,18 @@ fn groups(listing: &Listing) -> Vec<String> {
 
 fn single(listing: &Listing, entry: &Entry) -> String {
     let value = Notation::Latex.term(&entry.value);
-    let subscript = index(&entry.index, &listing.shape);
-    let name = match listing.table {
-        _ if !entry.label.is_empty() => latex_name(&entry.label),
+    let name = left(listing, &entry.index, &entry.label);
+    format!("{name} & = & {value}")
+}
+
+/// What an entry of a table is called: its label, or its symbol with its indices.
+pub(super) fn left(listing: &Listing, indices: &[usize], label: &str) -> String {
+    let subscript = index(indices, &listing.shape);
+    match listing.table {
+        _ if !label.is_empty() => latex_name(label),
         Table::PotentialForce => format!(r"\partial_{{{subscript}}} V"),
         // The third index of γ stands above.
-        Table::Gamma => match entry.index.split_last() {
+        Table::Gamma => match indices.split_last() {
             Some((above, below)) => format!(
                 r"\gamma_{{{}}}{{}}^{{{above}}}",
                 index(below, &listing.shape)
@@ -130,6 +136,5 @@ fn single(listing: &Listing, entry: &Entry) -> String {
             None => r"\gamma".into(),
         },
         table => format!("{}_{{{subscript}}}", table.latex()),
-    };
-    format!("{name} & = & {value}")
+    }
 }

@@ -13,7 +13,7 @@
 //! | `geometry` | the report on integrable velocities, Lie algebras, symmetries |
 //! | `regressor` | base parameters, in all four forms |
 //! | `notation`, `print` | names and expressions as text or LaTeX |
-//! | `text`, `markdown`, `latex`, `json` | a whole set of tables |
+//! | `text`, `markdown`, `latex`, `json`, `typeset` | a whole set of tables |
 
 mod circles;
 mod collect;
@@ -36,6 +36,7 @@ mod style;
 #[cfg(test)]
 mod tests;
 mod text;
+mod typeset;
 mod write;
 
 pub use entries::{Definition, Entry, Group};
@@ -45,6 +46,7 @@ pub use latex::latex;
 pub use listing::Listing;
 pub use markdown::markdown;
 pub use text::text;
+pub use typeset::typeset;
 
 use crate::derive::geometry::Inspection;
 use crate::generate::Generated;

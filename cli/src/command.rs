@@ -1,0 +1,91 @@
+//! The command line: its subcommands, and what runs them.
+
+use crate::failure::{self, Failure};
+use crate::{
+    check, compare, draw, emit, eval, import, linearize, ops, regressor, simulate, sweep, tables,
+};
+use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+
+const EXAMPLES: &str = "\
+Examples:
+  hamel check heavy_top.eom                     prove the identities behind the equations
+  hamel tables heavy_top.eom --of gamma,M       what stands in the paper
+  hamel regressor arm.urdf                      which inertias forces depend on
+  hamel linearize heavy_top.eom                 the linearisation, with eigenvalues
+  hamel simulate heavy_top.eom --until 10       a first run
+  hamel draw heavy_top.eom --out top.svg        a picture of the mechanism
+  hamel sweep heavy_top.eom --vary … --out runs  many runs, with parameters and starts that differ
+  hamel compare heavy_top.eom --until 10        error of methods against what they cost
+  hamel emit heavy_top.eom -o heavy_top.rs      Rust without interpretation
+  hamel import arm.urdf -o arm.eom              a robot in URDF as a description
+
+FILE is a description (.eom) or a robot (.urdf); `-` reads standard input.
+Exit status: 0 done, 1 a description or a check failed, 2 wrong usage or unreadable files.";
+
+/// Generates equations of motion in redundant coordinates and quasi-velocities.
+#[derive(Parser)]
+#[command(name = "hamel", version, about, after_help = EXAMPLES)]
+struct Line {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Tables(tables::Arguments),
+    Regressor(regressor::Arguments),
+    Check(check::Arguments),
+    Ops(ops::Arguments),
+    Emit(emit::Arguments),
+    Eval(eval::Arguments),
+    Linearize(linearize::Arguments),
+    Simulate(simulate::Arguments),
+    Draw(draw::Arguments),
+    Sweep(sweep::Arguments),
+    Compare(compare::Arguments),
+    Import(import::Arguments),
+}
+
+/// The subcommands and options of the command line, for its reference.
+pub fn described() -> clap::Command {
+    <Line as clap::CommandFactory>::command()
+}
+
+/// Runs a command, whose words begin with the name of the program, and shows what it says; its exit status.
+pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let line = match Line::try_parse_from(words) {
+        Ok(line) => line,
+        Err(said) => return failure::said(&said),
+    };
+    line.command.run().map_or_else(Failure::report, |()| 0)
+}
+
+/// Runs a command for a program, which gets what is wrong in place of its user.
+///
+/// # Errors
+/// What is wrong with the words, or with what they ask for.
+pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let line = Line::try_parse_from(words);
+    let line = line.map_err(|said| Failure::Usage(said.render().to_string()))?;
+    line.command.run()
+}
+
+impl Command {
+    fn run(&self) -> Result<(), Failure> {
+        match self {
+            Command::Tables(arguments) => tables::run(arguments),
+            Command::Regressor(arguments) => regressor::run(arguments),
+            Command::Check(arguments) => check::run(arguments),
+            Command::Ops(arguments) => ops::run(arguments),
+            Command::Emit(arguments) => emit::run(arguments),
+            Command::Eval(arguments) => eval::run(arguments),
+            Command::Linearize(arguments) => linearize::run(arguments),
+            Command::Simulate(arguments) => simulate::run(arguments),
+            Command::Draw(arguments) => draw::run(arguments),
+            Command::Sweep(arguments) => sweep::run(arguments),
+            Command::Compare(arguments) => compare::run(arguments),
+            Command::Import(arguments) => import::run(arguments),
+        }
+    }
+}

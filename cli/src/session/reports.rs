@@ -1,0 +1,104 @@
+//! What commands report of a description: identities, costs, generated code, comparisons; and robots as descriptions.
+
+use super::Session;
+use crate::check::{self, Checked};
+use crate::compare::{self, Comparison};
+use crate::failure::{Failure, Said, collected};
+use crate::ops;
+use crate::robot::RobotOptions;
+use crate::source::Source;
+use crate::state::State;
+use hamel_codegen::builder;
+use hamel_codegen::emit::c::{Files, Precision};
+use hamel_codegen::syntax::ast::CoordKind;
+use hamel_codegen::tables::{self, Table};
+
+impl Session {
+    /// What `hamel check` says: the identities with their verdicts, and the lines below them.
+    pub fn check(&self) -> (Vec<Checked>, String) {
+        let remarks = check::remarks(&self.generated, self.source.shown());
+        (check::checked(&self.generated), remarks)
+    }
+
+    /// What `hamel ops --format json` prints.
+    ///
+    /// # Errors
+    /// What cannot be derived.
+    pub fn operations(&self) -> Result<String, Failure> {
+        ops::counted(&self.source)
+    }
+
+    /// What `hamel ops --advise --format json` prints.
+    ///
+    /// # Errors
+    /// Where there are no velocities to compare.
+    pub fn advice(&self) -> Result<String, Failure> {
+        ops::advised(&self.source)
+    }
+
+    /// The generated Rust, as of a description in a file of this name.
+    ///
+    /// # Errors
+    /// What cannot be derived or written.
+    pub fn rust(&self, name: &str) -> Result<String, Failure> {
+        let generated = self.source.derive()?;
+        builder::written(&generated, name).map_err(|errors| self.source.refused(&errors))
+    }
+
+    /// The generated C99, as of a description in a file of this name.
+    ///
+    /// # Errors
+    /// What cannot be derived or written.
+    pub fn c(&self, name: &str, stem: &str) -> Result<Files, Failure> {
+        let generated = self.source.derive()?;
+        builder::written_in_c(&generated, name, Some(stem), Precision::default())
+            .map_err(|errors| self.source.refused(&errors))
+    }
+
+    /// Methods compared on a run from a state, as `hamel compare --format json` has them for one description.
+    ///
+    /// # Errors
+    /// Methods that do not exist, and runs that cannot begin.
+    pub fn compare(&self, state: &State, asked: &Comparison) -> Result<String, Failure> {
+        crate::method::known(&asked.methods)?;
+        let case = compare::case(&self.generated, self.source.shown(), state, asked, None)?;
+        compare::one(&case)
+    }
+
+    /// What each coordinate is, as the language writes it: `real`, `R3`, `S1`, `S3`, `SO3` or `SE3`.
+    pub fn kinds(&self) -> Vec<String> {
+        let coordinates = self.generated.model.coordinates.iter();
+        let named = coordinates.map(|coordinate| match coordinate.kind {
+            CoordKind::Real => "real".into(),
+            CoordKind::Euclidean(n) => format!("R{n}"),
+            CoordKind::S1 => "S1".into(),
+            CoordKind::S3 => "S3".into(),
+            CoordKind::SO3 => "SO3".into(),
+            CoordKind::SE3 => "SE3".into(),
+        });
+        named.collect()
+    }
+
+    /// Tables by their names as JSON whose formulas are LaTeX.
+    ///
+    /// # Errors
+    /// Where a table is not known, or cannot be had.
+    pub fn typeset(&self, of: &[String]) -> Result<String, Failure> {
+        let named: Result<Vec<Table>, String> = of.iter().map(|name| Table::parse(name)).collect();
+        let tables = named.and_then(|of| tables::tables(&self.generated, &of));
+        let tables = tables.map_err(Failure::usage)?;
+        Ok(tables::typeset(&tables).to_string())
+    }
+}
+
+/// A robot in URDF as a description, which messages call `name`.
+pub fn imported(
+    text: String,
+    name: &str,
+    options: &RobotOptions,
+) -> (Result<String, Failure>, Said) {
+    collected(|| {
+        let source = Source::new(name.into(), text).robot(options)?;
+        Ok(source.text)
+    })
+}

@@ -1,0 +1,109 @@
+// Puts the page together: one file, page/dist/index.html, which needs nothing beside it and no server.
+
+import { build } from "esbuild";
+import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+import { compress } from "lzma1";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const root = join(here, "..");
+const target = process.env.CARGO_TARGET_DIR ?? join(root, "target");
+
+// The page unpacks, and never packs.
+const unpacking = {
+  name: "unpacking",
+  setup(build) {
+    build.onLoad({ filter: /lzma1.lib.encoder\.js$/ }, () => ({ contents: "export class Encoder {}" }));
+  },
+};
+
+async function bundled(entry) {
+  const result = await build({
+    entryPoints: [join(here, "src", entry)],
+    bundle: true,
+    minify: true,
+    format: "iife",
+    target: "es2022",
+    write: false,
+    legalComments: "none",
+    plugins: [unpacking],
+  });
+  return result.outputFiles[0].text;
+}
+
+// The style sheet of KaTeX with the fonts that formulas of the generator need, and the page's own.
+async function style() {
+  const katex = dirname(createRequire(import.meta.url).resolve("katex/dist/katex.min.css"));
+  let css = await readFile(join(katex, "katex.min.css"), "utf8");
+  const needed = /KaTeX_(Main-Regular|Math-Italic|Size[1-4]-Regular)/;
+  const faces = [...css.matchAll(/@font-face\{[^}]*\}/g)].map((match) => match[0]);
+  for (const face of faces) {
+    const file = /url\((fonts\/[^)]*\.woff2)\)/.exec(face)[1];
+    const font = needed.test(file) ? await readFile(join(katex, file)) : null;
+    const inline = font && face.replace(/src:[^}]*/, `src:url(data:font/woff2;base64,${font.toString("base64")}) format("woff2")`);
+    css = css.replace(face, inline ?? "");
+  }
+  const own = await readFile(join(here, "src", "style.css"), "utf8");
+  const { code } = await (await import("esbuild")).transform(css + own, { loader: "css", minify: true });
+  return code;
+}
+
+// A remark as lines of comments that an editor beside other things has room for.
+function commented(remark) {
+  return remark.replace(/(.{1,76})(\s+|$)/g, "// $1\n").trimEnd();
+}
+
+// The examples by their names: their texts without the options that the gallery is drawn and run with, and how long they run.
+async function examples() {
+  const folders = [join(root, "examples"), join(root, "examples", "gallery")];
+  const all = [];
+  for (const folder of folders) {
+    for (const file of (await readdir(folder)).filter((file) => file.endsWith(".eom"))) {
+      const written = await readFile(join(folder, file), "utf8");
+      const text = written.replace(/^\/\/ (draw|run|keeps): .*\n/gm, "").replace(/^\/\/ remark: (.*)$/gm, (_, remark) => commented(remark));
+      const until = Number(/^\/\/ run: .*--until (\S+)/m.exec(written)?.[1] ?? 10);
+      all.push({ name: file.replace(/\.eom$/, ""), text, until });
+    }
+  }
+  return all.sort((a, b) => (a.name < b.name ? -1 : 1));
+}
+
+// LZMA makes them a quarter smaller than what hosts compress by.
+const packed = (bytes) => Buffer.from(compress(bytes, 9)).toString("base64");
+const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+
+const [wasm, page, loader, worker, css, list, html] = await Promise.all([
+  readFile(join(target, "page", "hamel_page.wasm")),
+  bundled("main.ts"),
+  bundled("loader.ts"),
+  bundled("worker.ts"),
+  style(),
+  examples(),
+  readFile(join(here, "src", "index.html"), "utf8"),
+]);
+const put = (text, place, part) => {
+  if (!text.includes(place)) {
+    throw new Error(`index.html has no place for ${place}`);
+  }
+  return text.replace(place, () => part);
+};
+let whole = html;
+const generator = packed(wasm);
+const script = packed(Buffer.from(page));
+whole = put(whole, "/* style */", css);
+whole = put(whole, 'id="module">', `id="module">${generator}`);
+whole = put(whole, 'id="worker">', `id="worker">${inScript(worker)}`);
+whole = put(whole, 'id="examples-packed">', `id="examples-packed">${packed(Buffer.from(JSON.stringify(list)))}`);
+whole = put(whole, 'id="page">', `id="page">${script}`);
+whole = put(whole, "/* loader */", inScript(loader));
+
+await mkdir(join(here, "dist"), { recursive: true });
+await writeFile(join(here, "dist", "index.html"), whole);
+const size = (text) => gzipSync(text, { level: 9 }).length;
+console.log(
+  `page/dist/index.html: ${size(whole).toLocaleString("en")} bytes gzipped; module ${size(generator).toLocaleString("en")}, ` +
+    `script ${size(script).toLocaleString("en")}, style ${size(css).toLocaleString("en")}, ${list.length} examples`,
+);

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Builds the generator for browsers: target/page/hamel_page.wasm. The target of Rust comes by rustup; where that cannot
+# fetch it, Debian's sources of the standard library are built with the compiler that is there.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+target=wasm32-unknown-unknown
+folder="${CARGO_TARGET_DIR:-target}"
+# The stack of a program: derivations of large robots go deep.
+flags="-C link-arg=-zstack-size=8388608"
+arguments=(build --quiet --locked --package hamel-page --profile page --target "$target")
+
+has_target() {
+    [ -d "$(rustc --print sysroot)/lib/rustlib/$target/lib" ]
+}
+
+if has_target || { rustup target add "$target" && has_target; }; then
+    RUSTFLAGS="$flags" cargo "${arguments[@]}"
+else
+    echo "rustup has no $target: taking Debian's sources of the standard library"
+    apt-get install -y --no-install-recommends rustc-web rust-web-src lld-19
+    RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 \
+        RUSTFLAGS="$flags -C linker=wasm-ld-19 -C linker-flavor=wasm-ld" \
+        cargo "${arguments[@]}" -Z build-std=std,panic_abort
+fi
+mkdir -p "$folder/page"
+cp "$folder/$target/page/hamel_page.wasm" "$folder/page/hamel_page.wasm"

@@ -1,0 +1,269 @@
+// The motion: a run from a start that can be changed, in space and over time, and what the methods cost on it.
+
+import type { Case, Run, System } from "./answers";
+import { element } from "./dom";
+import { Dropped, type Generator } from "./generator";
+import { overTime, precision, type Line } from "./plots";
+import { Stage } from "./scene";
+import { Start } from "./start";
+
+// How long numbers rest before a run is made again, in ms.
+const REST = 120;
+// Lines of one plot.
+const MOST = 8;
+// Numbers of steps of a comparison, and its length at most.
+const STEPS = [50, 100, 200, 400, 800];
+const LONGEST = 5;
+
+export class Motion {
+  private stage: Stage | undefined;
+  private run: Run | undefined;
+  // Where everything is at each sample, and at the moment that is shown.
+  private scenes: Float32Array[] = [];
+  private between = new Float32Array();
+  private start: Start | undefined;
+  private moments: ((t: number) => void)[] = [];
+  private playing = false;
+  private time = 0;
+  private last = 0;
+  // Entries of ξ.
+  private names: string[] = [];
+  private resting: number | undefined;
+
+  private readonly method = element("select", { id: "method" });
+  private readonly until = element("input", { type: "number", min: "0", step: "any", value: "10", id: "until" });
+  private readonly step = element("input", { type: "number", min: "0", step: "any", placeholder: "auto", id: "step" });
+  private readonly speed = element("input", { type: "number", min: "0", step: "any", value: "1", id: "speed" });
+  private readonly play = element("button", { type: "button", id: "play" }, "Play");
+  private readonly scrub = element("input", { type: "range", min: "0", max: "1", step: "any", value: "0", "aria-label": "Time" });
+  private readonly clock = element("output", { class: "clock" }, "0 s");
+  private readonly view = element("div", { class: "stage" });
+  private readonly plots = element("div", { class: "plots" });
+  private readonly summary = element("p", { class: "note", role: "status", id: "summary" });
+  private readonly fields = element("div", {});
+  private readonly comparison = element("div", {});
+
+  constructor(
+    panel: HTMLElement,
+    private readonly generator: Generator,
+  ) {
+    const field = (text: string, input: HTMLElement) => element("label", { class: "field" }, text, input);
+    const compare = element("button", { type: "button", id: "compare" }, "Compare methods");
+    panel.replaceChildren(
+      element("div", { class: "controls" }, field("method", this.method), field("until (s)", this.until), field("step (s)", this.step)),
+      this.summary,
+      this.view,
+      element("div", { class: "controls" }, this.play, this.scrub, this.clock, field("speed", this.speed)),
+      this.plots,
+      element("details", { open: "" }, element("summary", {}, "Start"), this.fields),
+      element("h3", {}, "Error against work", compare),
+      this.comparison,
+    );
+    for (const input of [this.method, this.until, this.step]) {
+      input.onchange = () => this.again();
+    }
+    this.play.onclick = () => this.toggle();
+    this.scrub.oninput = () => {
+      this.pause();
+      this.show(this.scrub.valueAsNumber);
+    };
+    compare.onclick = () => void this.compare();
+  }
+
+  // Runs a system that is new.
+  async of(system: System): Promise<void> {
+    const before = this.method.value;
+    this.method.replaceChildren(...system.methods.map((name) => element("option", {}, name)));
+    this.method.value = system.methods.includes(before) ? before : "auto";
+    this.names = system.velocities.entries;
+    this.start = new Start(system, () => this.again());
+    this.fields.replaceChildren(this.start.element);
+    this.comparison.replaceChildren();
+    await this.integrate(true);
+  }
+
+  // How long runs are from now on (s).
+  lasts(until: number): void {
+    this.until.value = String(until);
+  }
+
+  // Draws the moment that is shown.
+  draw(): void {
+    this.show(this.time);
+  }
+
+  // What a frame takes in ms when the motion is played, the median of so many, and how often it calls the graphics card.
+  measure(frames: number): { frame: number; calls: number } {
+    const times = Array.from({ length: frames }, (_, at) => {
+      const begin = performance.now();
+      this.show((Number(this.scrub.max) * at) / frames);
+      return performance.now() - begin;
+    });
+    times.sort((a, b) => a - b);
+    return { frame: times[frames >> 1] ?? NaN, calls: this.stage?.calls ?? 0 };
+  }
+
+  private again(): void {
+    clearTimeout(this.resting);
+    this.resting = window.setTimeout(() => {
+      this.integrate(false).catch((error: unknown) => this.refused(error));
+    }, REST);
+  }
+
+  private refused(error: unknown): void {
+    if (!(error instanceof Dropped)) {
+      this.summary.classList.add("bad");
+      this.summary.textContent = error instanceof Error ? error.message : String(error);
+    }
+  }
+
+  private asked(): object {
+    const step = this.step.valueAsNumber;
+    return {
+      until: this.until.valueAsNumber > 0 ? this.until.valueAsNumber : 10,
+      ...(step > 0 ? { step } : {}),
+      method: this.method.value,
+      scenes: true,
+      state: this.start?.state() ?? null,
+    };
+  }
+
+  private async integrate(fresh: boolean): Promise<void> {
+    let run: Run;
+    try {
+      run = await this.generator.ask<Run>("simulate", this.asked());
+    } catch (error) {
+      this.refused(error);
+      if (error instanceof Dropped) {
+        throw error;
+      }
+      return;
+    }
+    this.run = run;
+    const reason = run.reason === null ? "" : `, chosen because ${run.reason}`;
+    this.summary.classList.toggle("bad", run.failure !== null);
+    this.summary.textContent =
+      run.failure ?? `${run.method}${reason}; ${run.steps.toLocaleString("en")} steps, energy changes by ${run.drift.toExponential(1)} of its size at most`;
+    this.summary.dataset["drift"] = String(run.drift);
+    const { scene, width, numbers } = run;
+    this.view.hidden = scene === null || numbers === undefined;
+    if (scene !== null && numbers !== undefined) {
+      this.stage ??= new Stage(this.view);
+      const scenes = Array.from({ length: numbers.length / width }, (_, at) => numbers.subarray(at * width, (at + 1) * width));
+      this.stage.show(scene, scenes, fresh);
+      this.scenes = scenes;
+      this.between = new Float32Array(width);
+    }
+    this.plot(run);
+    this.scrub.max = String(run.t[run.t.length - 1] ?? 0);
+    this.show(fresh ? 0 : Math.min(this.time, run.t[run.t.length - 1] ?? 0));
+  }
+
+  private plot(run: Run): void {
+    const names = this.names;
+    const count = run.t.length;
+    const wide = run.xi.length / count;
+    const velocities: Line[] = names.slice(0, MOST).map((name, index) => ({ name, y: run.t.map((_, at) => run.xi[at * wide + index] ?? null) }));
+    const first = run.energy[0] ?? 0;
+    const energy: Line[] = [{ name: "energy", y: run.energy.map((value) => (value === null ? null : value - first)) }];
+    const pictures = [overTime(names.length > MOST ? `velocities, the first ${MOST}` : "velocities", run.t, velocities), overTime(`energy less its start, ${first.toPrecision(4)}`, run.t, energy)];
+    const tracks = [
+      ...run.invariants.map((track) => ({ ...track, title: `invariant ${track.name}` })),
+      ...run.outputs.map((track) => ({ ...track, title: `output ${track.name}` })),
+    ];
+    for (const track of tracks.slice(0, MOST)) {
+      const lines = Array.from({ length: Math.min(track.width, MOST) }, (_, entry): Line => ({
+        name: track.width === 1 ? track.name : `${track.name}[${entry + 1}]`,
+        y: run.t.map((_, at) => track.values[at * track.width + entry] ?? null),
+      }));
+      pictures.push(overTime(track.title, run.t, lines));
+    }
+    this.plots.replaceChildren(...pictures.map((picture) => picture.element));
+    this.moments = pictures.map((picture) => picture.moment);
+  }
+
+  private toggle(): void {
+    if (this.playing) {
+      this.pause();
+      return;
+    }
+    this.playing = true;
+    this.play.textContent = "Pause";
+    if (this.time >= Number(this.scrub.max)) {
+      this.time = 0;
+    }
+    this.last = performance.now();
+    requestAnimationFrame((now) => this.tick(now));
+  }
+
+  private pause(): void {
+    this.playing = false;
+    this.play.textContent = "Play";
+  }
+
+  private tick(now: number): void {
+    if (!this.playing) {
+      return;
+    }
+    const speed = this.speed.valueAsNumber > 0 ? this.speed.valueAsNumber : 1;
+    this.show(this.time + (speed * Math.max(0, now - this.last)) / 1000);
+    this.last = now;
+    if (this.time >= Number(this.scrub.max)) {
+      this.pause();
+      return;
+    }
+    requestAnimationFrame((later) => this.tick(later));
+  }
+
+  // The moment t: the scene between two samples is on the straight line between theirs.
+  private show(t: number): void {
+    const run = this.run;
+    const end = Number(this.scrub.max);
+    this.time = Math.max(0, Math.min(t, end));
+    this.scrub.value = String(this.time);
+    this.clock.textContent = `${this.time.toFixed(2)} s`;
+    this.moments.forEach((moment) => moment(this.time));
+    if (run === undefined || run.scene === null || this.stage === undefined) {
+      return;
+    }
+    let [low, high] = [0, run.t.length - 1];
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      [low, high] = (run.t[middle] ?? 0) <= this.time ? [middle, high] : [low, middle];
+    }
+    const [from, to] = [run.t[low] ?? 0, run.t[high] ?? 0];
+    const share = to > from ? Math.min(1, Math.max(0, (this.time - from) / (to - from))) : 0;
+    const [a, b] = [this.scenes[low], this.scenes[high]];
+    if (a === undefined || b === undefined) {
+      return;
+    }
+    for (let index = 0; index < this.between.length; index += 1) {
+      const value = a[index] ?? 0;
+      this.between[index] = value + share * ((b[index] ?? 0) - value);
+    }
+    this.stage.move(this.between);
+  }
+
+  private async compare(): Promise<void> {
+    this.comparison.replaceChildren(element("p", { class: "note" }, "running all methods…"));
+    const asked = this.asked() as { until: number };
+    try {
+      const until = Math.min(asked.until, LONGEST);
+      const compared = await this.generator.ask<Case>("compare", { ...asked, until, steps: STEPS, methods: [] });
+      const curves = compared.methods
+        .filter((method) => method.kind === "method" && !method.method.endsWith("adaptive"))
+        .map((method) => ({
+          name: method.method,
+          points: method.runs.flatMap((run): [number, number][] => (run.evaluations === null || run.error === null ? [] : [[run.evaluations, run.error]])),
+        }));
+      this.comparison.replaceChildren(
+        precision(`error at t = ${until} against evaluations`, curves),
+        element("p", { class: "note" }, `Errors are differences from ${compared.reference}; further down and to the left is better.`),
+      );
+    } catch (error) {
+      if (!(error instanceof Dropped)) {
+        this.comparison.replaceChildren(element("pre", {}, error instanceof Error ? error.message : String(error)));
+      }
+    }
+  }
+}

@@ -1,0 +1,296 @@
+// The mechanism in space: bodies as the ellipsoids of their inertia, frames, joints, springs, as three.js draws them.
+
+import {
+  AmbientLight,
+  Box3,
+  BufferGeometry,
+  Color,
+  CylinderGeometry,
+  DirectionalLight,
+  Float32BufferAttribute,
+  GridHelper,
+  Group,
+  Line,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  MeshStandardMaterial,
+  PerspectiveCamera,
+  Scene as Space,
+  SphereGeometry,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Scene } from "./answers";
+
+const COLOURS = [0x4f8fd9, 0xe08a4c, 0x5fae78, 0xb877b8, 0xcf6a5f, 0x9aa653, 0x45a5ab, 0x8f83cf];
+// The thinnest that a body is drawn, beside the size of the mechanism.
+const THIN = 0.012;
+// How many times its own size a mechanism may move without being followed.
+const FAR = 8;
+
+// What is drawn as one list of numbers, in the order in which `page/wasm/src/scenes.rs` writes it.
+class Reader {
+  private at = 0;
+  constructor(private readonly numbers: ArrayLike<number>) {}
+
+  vector(): Vector3 {
+    const [x, y, z] = [this.numbers[this.at], this.numbers[this.at + 1], this.numbers[this.at + 2]];
+    this.at += 3;
+    return new Vector3(x, y, z);
+  }
+
+  skip(vectors: number): void {
+    this.at += 3 * vectors;
+  }
+}
+
+export class Stage {
+  private readonly space = new Space();
+  private readonly camera = new PerspectiveCamera(38, 1, 0.001, 1e5);
+  private readonly renderer: WebGLRenderer;
+  private readonly controls: OrbitControls;
+  private mechanism = new Group();
+  private scene: Scene | undefined;
+  // Whether the camera goes where the mechanism goes, and where that was last.
+  private followed = false;
+  private readonly centre = new Vector3();
+  private update: (numbers: ArrayLike<number>) => void = () => {};
+
+  constructor(private readonly holder: HTMLElement) {
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.holder.append(this.renderer.domElement);
+    this.renderer.domElement.setAttribute("role", "img");
+    this.renderer.domElement.setAttribute("aria-label", "The mechanism; drag to turn it, scroll to come closer");
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.render());
+    const sun = new DirectionalLight(0xffffff, 2.2);
+    sun.position.set(2, -3, 5);
+    this.space.add(new AmbientLight(0xffffff, 1.3), sun, this.mechanism);
+    new ResizeObserver(() => this.resize()).observe(this.holder);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.render());
+  }
+
+  // Shows a mechanism whose scenes along the run are these; one that is new is looked at from a distance that shows all of
+  // the run.
+  show(scene: Scene, scenes: ArrayLike<number>[], fresh: boolean): void {
+    this.space.remove(this.mechanism);
+    dispose(this.mechanism);
+    this.mechanism = new Group();
+    this.scene = scene;
+    this.space.add(this.mechanism);
+    const box = extent(scene, scenes);
+    const own = extent(scene, scenes.slice(0, 1));
+    const reach = scene.bodies.reduce((most, body) => Math.max(most, ...body.radii), 0);
+    const size = Math.max(own.getSize(new Vector3()).length(), 2 * reach, 1e-6);
+    this.update = this.built(scene, size);
+    const whole = Math.max(box.getSize(new Vector3()).length() + 2 * reach, size);
+    // What goes further than this is followed: it would be a dot in the distance.
+    this.followed = whole > FAR * size;
+    const shown = this.followed ? 2 * size : whole;
+    const centre = (this.followed ? own : box).getCenter(new Vector3());
+    this.centre.copy(centre);
+    const distance = (0.62 * shown) / Math.tan((this.camera.fov * Math.PI) / 360);
+    if (fresh) {
+      this.camera.position.copy(centre).add(new Vector3(0.62, -0.95, 0.42).normalize().multiplyScalar(distance));
+      this.camera.near = distance / 200;
+      this.camera.far = distance * 50;
+      this.controls.target.copy(centre);
+    }
+    if (!this.followed) {
+      const ground = new GridHelper(2 * whole, 20, 0x8a8f99, 0x8a8f99);
+      ground.material.transparent = true;
+      ground.material.opacity = 0.22;
+      ground.rotation.x = Math.PI / 2;
+      ground.position.set(centre.x, centre.y, Math.min(0, box.min.z));
+      this.mechanism.add(ground);
+    }
+    this.resize();
+    this.controls.update();
+  }
+
+  // Moves to a scene.
+  move(numbers: ArrayLike<number>): void {
+    this.update(numbers);
+    if (this.followed && this.scene !== undefined) {
+      const centre = extent(this.scene, [numbers]).getCenter(new Vector3());
+      const by = centre.clone().sub(this.centre);
+      this.centre.copy(centre);
+      this.camera.position.add(by);
+      this.controls.target.add(by);
+    }
+    this.render();
+  }
+
+  private render(): void {
+    this.renderer.render(this.space, this.camera);
+  }
+
+  // How often the last frame called the graphics card.
+  get calls(): number {
+    return this.renderer.info.render.calls;
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.holder;
+    if (width > 0 && height > 0) {
+      this.renderer.setSize(width, height, false);
+      this.camera.aspect = width / height;
+      this.camera.updateProjectionMatrix();
+      this.render();
+    }
+  }
+
+  // The parts of a mechanism, and what moves them.
+  private built(scene: Scene, size: number): (numbers: ArrayLike<number>) => void {
+    const add = <T extends Mesh | Line>(part: T): T => {
+      part.frustumCulled = false;
+      part.matrixAutoUpdate = false;
+      this.mechanism.add(part);
+      return part;
+    };
+    const ball = new SphereGeometry(1, 32, 20);
+    const frames = scene.frames.map(() => add(triad(0.13 * size)));
+    const links = scene.frames.map((frame) => (frame.attached ? add(segment(0x8a8f99)) : null));
+    const bodies = scene.bodies.map((_, index) =>
+      add(new Mesh(ball, new MeshStandardMaterial({ color: colour(index), roughness: 0.55, transparent: true, opacity: 0.88 }))),
+    );
+    const particles = scene.particles.map((_, index) => add(new Mesh(ball, new MeshStandardMaterial({ color: colour(index), roughness: 0.5 }))));
+    const pin = new CylinderGeometry(0.022 * size, 0.022 * size, 0.11 * size, 20).rotateX(Math.PI / 2);
+    const joints = scene.joints.map((joint) => joint.axes.map(() => add(new Mesh(pin, new MeshStandardMaterial({ color: 0x7a808c, roughness: 0.4 })))));
+    const lines = scene.lines.map((line) => add(line.acts === "spring" ? coil() : segment(line.acts === "damper" ? 0x9aa653 : 0xcf6a5f)));
+    const rods = scene.rods.map(() => add(segment(0x8a8f99)));
+    const centre = scene.centre === null ? null : add(new Mesh(ball, new MeshStandardMaterial({ color: 0xd9b13a })));
+    const mass = scene.particles.reduce((most, particle) => Math.max(most, particle.mass), 0);
+    return (numbers) => {
+      const reader = new Reader(numbers);
+      const places: Vector3[] = [];
+      scene.frames.forEach((frame, index) => {
+        // Between two samples they are a little shorter than 1.
+        const rows = [reader.vector().normalize(), reader.vector().normalize(), reader.vector().normalize()] as const;
+        const place = reader.vector();
+        places.push(place);
+        const [a, b, c] = rows;
+        frames[index]?.matrix.set(a.x, a.y, a.z, place.x, b.x, b.y, b.z, place.y, c.x, c.y, c.z, place.z, 0, 0, 0, 1);
+        const from = frame.parent === null ? new Vector3() : (places[frame.parent] ?? new Vector3());
+        stretch(links[index] ?? null, from, place, 1);
+      });
+      scene.bodies.forEach((body, index) => {
+        const at = reader.vector();
+        const [a, b, c] = [reader.vector(), reader.vector(), reader.vector()];
+        const [i = 0, j = 0, k = 0] = body.radii.map((radius) => Math.max(radius, THIN * size));
+        bodies[index]?.matrix.makeBasis(a.setLength(i), b.setLength(j), c.setLength(k)).setPosition(at);
+      });
+      scene.particles.forEach((particle, index) => {
+        const radius = 0.05 * size * Math.cbrt(mass > 0 ? Math.max(particle.mass / mass, 0.05) : 1);
+        particles[index]?.matrix.makeScale(radius, radius, radius).setPosition(reader.vector());
+      });
+      scene.joints.forEach((joint, index) => {
+        const at = reader.vector();
+        joint.axes.forEach((_, axis) => joints[index]?.[axis]?.matrix.copy(along(reader.vector())).setPosition(at));
+      });
+      scene.lines.forEach((_, index) => stretch(lines[index] ?? null, reader.vector(), reader.vector(), 0.035 * size));
+      scene.rods.forEach((_, index) => stretch(rods[index] ?? null, reader.vector(), reader.vector(), 1));
+      reader.skip(2 * scene.loops.length);
+      if (centre !== null) {
+        const radius = 0.012 * size;
+        centre.matrix.makeScale(radius, radius, radius).setPosition(reader.vector());
+      }
+    };
+  }
+}
+
+// Gives back what the graphics card keeps of parts that are not shown any more.
+function dispose(parts: Group): void {
+  parts.traverse((part) => {
+    if (part instanceof Mesh || part instanceof Line) {
+      part.geometry.dispose();
+      part.material.dispose();
+    }
+  });
+}
+
+function colour(index: number): number {
+  return COLOURS[index % COLOURS.length] ?? 0x888888;
+}
+
+// All that the frames, bodies, particles and lines of these scenes touch.
+function extent(scene: Scene, scenes: ArrayLike<number>[]): Box3 {
+  const box = new Box3();
+  const add = (point: Vector3) => {
+    if (Number.isFinite(point.x + point.y + point.z)) {
+      box.expandByPoint(point);
+    }
+  };
+  for (const numbers of scenes) {
+    const reader = new Reader(numbers);
+    for (const _ of scene.frames) {
+      reader.skip(3);
+      add(reader.vector());
+    }
+    for (const _ of scene.bodies) {
+      add(reader.vector());
+      reader.skip(3);
+    }
+    for (const _ of scene.particles) {
+      add(reader.vector());
+    }
+    for (const joint of scene.joints) {
+      reader.skip(1 + joint.axes.length);
+    }
+    for (const _ of [...scene.lines, ...scene.rods]) {
+      add(reader.vector());
+      add(reader.vector());
+    }
+  }
+  return box.isEmpty() ? new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1)) : box;
+}
+
+function triad(length: number): LineSegments {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new Float32BufferAttribute([0, 0, 0, length, 0, 0, 0, 0, 0, 0, length, 0, 0, 0, 0, 0, 0, length], 3));
+  const [r, g, b] = [new Color(0xd04a3c), new Color(0x3f9c5f), new Color(0x3b72d6)].map((c) => [c.r, c.g, c.b]) as [number[], number[], number[]];
+  geometry.setAttribute("color", new Float32BufferAttribute([...r, ...r, ...g, ...g, ...b, ...b], 3));
+  return new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, depthTest: false }));
+}
+
+// A line along z from 0 to 1.
+function segment(color: number): Line {
+  const geometry = new BufferGeometry().setFromPoints([new Vector3(), new Vector3(0, 0, 1)]);
+  return new Line(geometry, new LineBasicMaterial({ color }));
+}
+
+// A coil of radius 1 along z from 0 to 1.
+function coil(): Line {
+  const turns = 9;
+  const points = [new Vector3()];
+  for (let step = 0; step <= 24 * turns; step += 1) {
+    const angle = (step * Math.PI) / 12;
+    points.push(new Vector3(Math.cos(angle), Math.sin(angle), 0.08 + (0.84 * step) / (24 * turns)));
+  }
+  points.push(new Vector3(0, 0, 1));
+  return new Line(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({ color: 0x5fae78 }));
+}
+
+// A rotation that takes z along a direction.
+function along(direction: Vector3): Matrix4 {
+  const z = direction.clone().normalize();
+  const helper = Math.abs(z.x) < 0.8 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
+  const x = helper.cross(z).normalize();
+  return new Matrix4().makeBasis(x, new Vector3().crossVectors(z, x), z);
+}
+
+// Puts what reaches along z from 0 to 1 between two points.
+function stretch(part: Line | null, from: Vector3, to: Vector3, width: number): void {
+  if (part === null) {
+    return;
+  }
+  const direction = to.clone().sub(from);
+  const length = direction.length();
+  const turn = length > 0 ? along(direction) : new Matrix4();
+  part.matrix.copy(turn.multiply(new Matrix4().makeScale(width, width, Math.max(length, 1e-9)))).setPosition(from);
+}

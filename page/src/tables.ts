@@ -1,0 +1,141 @@
+// Tables of φ, A, Y, γ, M, Γ: entries of one value share a row, as in the paper; those that are not shown are zero.
+
+import type { Definition, Indexed, Table, Tables } from "./answers";
+import { element } from "./dom";
+import { formula } from "./formulas";
+
+// Rows that are set at once; the rest is set when it is asked for.
+const ROWS = 40;
+
+// What the tables are called for, in the order in which they are asked for: cheap ones first.
+export const ALL = ["phi", "A", "Y", "gamma", "M", "Gamma"];
+
+// Whether a table waits until somebody asks for it: of systems with so many velocities its entries fill pages.
+export function waits(name: string, velocities: number): boolean {
+  return velocities > ({ M: 8, Gamma: 5 }[name] ?? Infinity);
+}
+
+// What stands for such a table until somebody asks for it.
+export function asked(name: string, velocities: number, derive: () => void): HTMLElement {
+  const symbol = formula(name === "M" ? "M" : "\\Gamma");
+  const entries = name === "M" ? velocities ** 2 : velocities ** 3;
+  const button = element("button", { type: "button" }, `derive ${entries.toLocaleString("en")} entries, which takes a while`);
+  button.onclick = () => {
+    button.disabled = true;
+    button.textContent = "deriving…";
+    derive();
+  };
+  return element("section", { class: "table", "data-asked": name }, element("h3", {}, symbol, button));
+}
+
+export function heading(tables: Tables): HTMLElement {
+  const list = (names: string[]) => `(${names.join(",\\,")})`;
+  return element(
+    "p",
+    { class: "symbols" },
+    formula(`x = ${list(tables.coordinates)}`),
+    element("br"),
+    formula(`\\xi = ${list(tables.velocities)}`),
+  );
+}
+
+export function section(table: Table): HTMLElement {
+  const count = `${table.nonzero} of ${table.size} entries ${table.nonzero === 1 ? "is" : "are"} not zero`;
+  const body = element("section", { class: "table", "data-table": table.name });
+  body.append(
+    element("h3", {}, formula(table.symbol), ` ${table.title}`, element("small", {}, count)),
+    ...definitions(table.before),
+  );
+  if (table.groups.length > 0) {
+    const head = element(
+      "tr",
+      {},
+      element("th", { scope: "col" }, "value of ", formula(table.symbol)),
+      element("th", { scope: "col" }, "entries with it"),
+      element("th", { scope: "col" }, "with its negative"),
+    );
+    body.append(
+      rows(
+        "grouped",
+        head,
+        table.groups.map((group) => () =>
+          element(
+            "tr",
+            {},
+            element("td", {}, formula(group.value)),
+            element("td", {}, ...indices(group.plus, group.value, "")),
+            element("td", {}, ...indices(group.minus, group.value, "-")),
+          ),
+        ),
+      ),
+    );
+  }
+  if (table.entries.length > 0) {
+    body.append(
+      rows(
+        "listed",
+        null,
+        table.entries.map((entry) => () =>
+          element("tr", {}, element("td", {}, formula(`${entry.left} = ${entry.value}`)), element("td", {}, entry.reads)),
+        ),
+      ),
+    );
+  }
+  body.append(...definitions(table.after));
+  return body;
+}
+
+// The indices of entries; each shows its equation where it is pointed at or focused.
+function indices(list: Indexed[], value: string, sign: string): Node[] {
+  return list.map((entry) => {
+    const equation = sign === "" ? `${entry.left} = ${value}` : `${entry.left} = -\\left(${value}\\right)`;
+    const chip = element("button", { class: "index", type: "button", "aria-label": `entry ${entry.index}` }, entry.index);
+    const tip = element("span", { class: "tip", role: "tooltip" });
+    const show = () => {
+      if (tip.childNodes.length === 0) {
+        tip.append(formula(equation));
+      }
+      chip.append(tip);
+      const over = tip.getBoundingClientRect().right - document.documentElement.clientWidth + 12;
+      tip.style.translate = over > 0 ? `${-over}px` : "";
+    };
+    chip.onpointerenter = show;
+    chip.onfocus = show;
+    chip.onpointerleave = () => tip.remove();
+    chip.onblur = () => tip.remove();
+    return chip;
+  });
+}
+
+function definitions(list: Definition[]): Node[] {
+  if (list.length === 0) {
+    return [];
+  }
+  const one = (definition: Definition) => () =>
+    element("tr", {}, element("td", {}, formula(`${definition.left} = ${definition.value}`)));
+  return [rows("listed", null, list.map(one))];
+}
+
+// A table whose later rows come when they are asked for.
+function rows(kind: string, head: HTMLElement | null, make: (() => HTMLElement)[]): HTMLElement {
+  const body = element("tbody", {}, ...make.slice(0, ROWS).map((row) => row()));
+  const table = element("table", { class: kind }, head === null ? null : element("thead", {}, head), body);
+  const scroll = element("div", { class: "scroll" }, table);
+  let shown = ROWS;
+  if (make.length > shown) {
+    const more = element("button", { type: "button", class: "more" });
+    const label = () => (more.textContent = `show ${Math.min(make.length - shown, 10 * ROWS)} of ${make.length - shown} more rows`);
+    more.onclick = () => {
+      body.append(...make.slice(shown, shown + 10 * ROWS).map((row) => row()));
+      shown += 10 * ROWS;
+      if (shown >= make.length) {
+        more.remove();
+      } else {
+        label();
+      }
+    };
+    label();
+    scroll.append(more);
+  }
+  return scroll;
+}
