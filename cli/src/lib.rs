@@ -1,5 +1,9 @@
 //! What the commands of `hamel` do, for the command line and for other front ends.
 //!
+#![doc = include_str!("../README.md")]
+//!
+//! # Files
+//!
 //! | file | owns |
 //! |---|---|
 //! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |

@@ -1,25 +1,39 @@
-//! Symbolic generator of equations of motion in redundant coordinates and quasi-velocities, after
-//! M. Konz and J. Rudolph, *Redundant configuration coordinates and nonholonomic velocity
-//! coordinates in analytical mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414 (KR18).
+//! Symbolic derivation of equations of motion in redundant coordinates and quasi-velocities, with proofs.
 //!
-//! `text/tokens → ast → model → derivation → program → proof → Rust | tables | interpreter`, one module a
-//! stage. Dependencies point one way:
+#![doc = include_str!("../README.md")]
 //!
-//! | module | owns |
+//! # The stages
+//!
+//! `text or tokens → ast → model → derivation → program → proof → Rust, C | tables | machine code | interpreter`,
+//! one module for each stage. Dependencies point one way:
+//!
+//! | module | what it owns |
 //! |---|---|
-//! | [`syntax`] | grammar and spans |
-//! | [`reuse`] | components, parts and repetition, written out |
-//! | [`algebra`] | expression graph, polynomials, normal forms; no mechanics |
-//! | [`mod@lower`] | from a description to a model: names, shapes, every semantic error |
+//! | [`syntax`] | grammar and source positions |
+//! | [`reuse`] | components, parts and repetition, which are written out here |
+//! | [`algebra`] | expression graph, polynomials and normal forms, without mechanics |
+//! | [`mod@lower`] | from a description to a model: names, shapes, and every semantic error |
 //! | [`model`] | a mechanical system as expressions of a graph |
-//! | [`mod@derive`] | the symbols of the formalism, ξ̇ by the cheapest route |
-//! | [`proof`] | everything once more, on other routes, and compared |
-//! | [`program`] | binding times, operation counts, interpretation |
-//! | [`emit`] | Rust text; no algebra |
-//! | [`tables`] | what people read |
+//! | [`mod@derive`] | the symbols of the formalism, and ξ̇ by the cheapest route |
+//! | [`proof`] | everything derived once more by other routes, and compared |
+//! | [`program`] | binding times, operation counts, tapes, interpretation |
+//! | [`emit`] | Rust and C99 as text, without any algebra |
+//! | [`tables`] | the tables of coefficients that people read |
 //! | [`vocabulary`] | the words of the language, for references and editors |
 //! | `scene` | descriptions as data, built in Rust or read from text |
-//! | [`generate`], [`expand()`], [`Builder`] | the front ends; `urdf` with the feature of that name |
+//! | [`generate`], [`expand()`], [`Builder`] | the front ends |
+//!
+//! # Features
+//!
+//! | feature | default | what it adds |
+//! |---|---|---|
+//! | `files` | yes | `.eom` files in and formatted `.rs` files out: source positions, underlined errors, the [`Builder`] for build scripts, and `scene` |
+//! | `urdf` | no | robots in URDF, wherever a description can stand |
+//!
+//! The formalism is that of M. Konz and J. Rudolph, *Redundant configuration coordinates and nonholonomic velocity
+//! coordinates in analytical mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414, which the documentation quotes as KR18.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub use hamel_algebra as algebra;
 #[cfg(feature = "files")]

@@ -1,12 +1,16 @@
-//! Files that are written whole, or not at all.
+//! Files that are written whole or not at all.
 //!
-//! [`write()`] writes a temporary file beside the target, brings it to the disk, and gives it the target's
-//! name: at no moment does the name stand for half a text, and a full disk or a kill leaves the old file
-//! as it was. The file keeps its permissions and, where that is allowed, its owner; symbolic links stay, and
-//! what they lead to is replaced. Other hard links to the old file keep the old text.
+#![doc = include_str!("../README.md")]
 //!
-//! What is no file is never replaced: devices, descriptors such as `/dev/stdout`, and pipes that somebody
-//! reads from are written to, folders and the rest are refused.
+//! # What is guaranteed
+//!
+//! [`write()`] writes a temporary file next to the target, brings it to the disk, and gives it the target's name: at no
+//! moment does the name stand for half a text, and a full disk or a kill leaves the old file as it was. The file keeps
+//! its permissions and, where that is allowed, its owner. A symbolic link stays, and the file that it leads to is
+//! replaced. Other hard links to the old file keep the old text.
+//!
+//! Only regular files are replaced. Devices, descriptors such as `/dev/stdout`, and pipes that somebody reads from are
+//! written to; folders and everything else are refused.
 
 mod replace;
 mod stream;

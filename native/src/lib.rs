@@ -1,14 +1,17 @@
-//! Machine code from tapes, at once: what a generated function costs when Rust compiles it, without a compiler.
+//! Machine code from the tapes of generated functions, made at once and without a compiler.
 //!
-//! [`Compiled`] takes the [tapes](Tapes) of a program and lowers each function by itself with Cranelift. Values are
-//! kept in registers and brought back from memory by a plan that is made before (`spill`): so the time that it
-//! takes is linear in the steps, and the code nearly as fast as that of an optimising compiler. On machines with a
-//! fused multiply-add, numbers are those of generated Rust that was compiled for this machine, to the bit.
+#![doc = include_str!("../README.md")]
 //!
-//! Where no code can be made (other processors, systems that refuse memory which can be executed), tapes are run
-//! step by step: the same numbers but for rounding, more slowly.
+//! # How it works
 //!
-//! | file | owns |
+//! [`Compiled`] takes the [tapes](Tapes) of a program and lowers each function by itself with Cranelift. A plan that is
+//! made beforehand (`spill`) says which values stay in registers and when the others come back from memory: so the time
+//! for making code is linear in the number of steps, and the code nearly as fast as that of an optimising compiler.
+//!
+//! Where no code can be made (on other processors, or on systems that refuse executable memory), tapes are interpreted
+//! step by step: more slowly, with the same numbers up to rounding.
+//!
+//! | file | what it owns |
 //! |---|---|
 //! | `spill` | which values are in registers, and where the others are |
 //! | `target` | what code is written for, one set of numbers or two; the numbers that it reads |
@@ -16,7 +19,7 @@
 //! | `code` | executable memory and calls into it: everything that is `unsafe` |
 //! | `absent` | the same without the feature `machine`: no code can be made |
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |
-//! | `evaluate` | tapes step by step |
+//! | `evaluate` | tapes, interpreted step by step |
 //! | `traced` | algorithms in Rust as tapes |
 
 #[cfg(not(feature = "machine"))]

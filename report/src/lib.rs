@@ -1,5 +1,9 @@
 //! Speed against error: what a method costs on a system, and how far it ends from the truth.
 //!
+#![doc = include_str!("../README.md")]
+//!
+//! # Modules
+//!
 //! | module | owns |
 //! |---|---|
 //! | [`auto`] | how good the chosen method is |

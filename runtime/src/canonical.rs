@@ -1,11 +1,11 @@
-//! Systems in momenta.
+//! Systems whose motion is also given in generalised momenta.
 
 use crate::error::Singular;
 use crate::system::System;
 
 /// A system that also gives its motion in generalised momenta p = M(x) ξ, KR18 (30a).
 ///
-/// Methods for long runs step (x, p): where M depends on x, it is p that has the conserved structure.
+/// Methods for long runs step (x, p): if M depends on x, it is in p that the motion is symplectic.
 #[diagnostic::on_unimplemented(
     message = "the momenta of `{Self}` are not generated",
     label = "this method steps generalised momenta",
@@ -26,7 +26,7 @@ pub trait Canonical: System {
     /// ξ = M(x)⁻¹ p.
     ///
     /// # Errors
-    /// [`Singular`] when M is not positive definite at x.
+    /// [`Singular`] if M is not positive definite at x.
     fn velocity_from_momentum(
         &self,
         x: &Self::Coordinates,

@@ -1,7 +1,6 @@
-//! Views of states as types of nalgebra; the rest of the crate works on plain arrays.
+//! States as types of nalgebra; the rest of the crate works on plain arrays.
 //!
-//! The crate's nalgebra is re-exported as [`hamel::nalgebra`](crate::nalgebra); another version
-//! beside it does no harm.
+//! nalgebra is re-exported as [`hamel::nalgebra`](crate::nalgebra), so that a program can use another version as well.
 
 use nalgebra::{Matrix3, Quaternion, SVectorView, Vector3};
 
@@ -10,7 +9,7 @@ use crate::scalar::Scalar;
 use crate::so3::{self, Matrix};
 use crate::system::Block;
 
-/// The entries of block `index` in x, or `None` when there is no such block or x is too short.
+/// The entries of block `index` in x; `None` if there is no such block or x is too short.
 pub fn block<'x, S>(blocks: &[Block], x: &'x [S], index: usize) -> Option<&'x [S]> {
     let kind = blocks.get(index)?;
     let start: usize = blocks.iter().take(index).map(|b| b.coordinates()).sum();
@@ -43,7 +42,7 @@ where
     }
 }
 
-/// A view of the N entries of `list` from `start` on, or `None` when it is too short.
+/// A view of the N entries of `list` from `start` on; `None` if the list is too short.
 pub fn vector<S: nalgebra::Scalar, const N: usize>(
     list: &[S],
     start: usize,
@@ -52,7 +51,7 @@ pub fn vector<S: nalgebra::Scalar, const N: usize>(
     Some(SVectorView::from_slice(entries))
 }
 
-/// Rows of nine entries as a matrix of nalgebra, which stores columns.
+/// Nine entries, row by row, as a matrix of nalgebra, which stores columns.
 pub fn matrix<S: nalgebra::Scalar + Copy>(rows: Matrix<S>) -> Matrix3<S> {
     Matrix3::from_row_slice(&rows)
 }

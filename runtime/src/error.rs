@@ -1,4 +1,4 @@
-//! What can go wrong in a run.
+//! Errors of evaluations and of steps.
 
 use core::error::Error;
 use core::fmt;
@@ -9,44 +9,44 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Singular {
-    /// The mass matrix M is not positive definite: one velocity has no inertia where some of the others follow freely
-    /// and the rest is held.
+    /// The mass matrix M is not positive definite: a velocity has no inertia when some of the others are free to follow
+    /// and the rest are held.
     Inertia {
-        /// The velocity by its name in the description: `q_dot`, `w[2]`.
+        /// The name of the velocity in the description, such as `q_dot` or `w[2]`.
         velocity: &'static str,
     },
-    /// The mass matrix M is not positive definite, or an inertia that parameters give is not.
+    /// The mass matrix M, or an inertia that follows from the parameters, is not positive definite.
     Mass,
-    /// The constraints B ξ = 0 that multipliers keep depend on one another: S = B M⁻¹ Bᵀ is singular.
+    /// The constraints B ξ = 0 that multipliers enforce are linearly dependent: S = B M⁻¹ Bᵀ is singular.
     Constraints {
-        /// The row of B that depends on others.
+        /// The row of B that depends on the others.
         row: usize,
     },
     /// The mechanism is at a kinematic singularity (a linkage is locked, a lever has no length): the definitions
     /// of the velocities and the constraints, [Y; Φ] of KR18 (5), do not determine ẋ.
     Kinematics {
-        /// The pivot of [Y; Φ] that has lost the sign that it has at the start.
+        /// The pivot of [Y; Φ] that no longer has the sign that it had at the start.
         pivot: usize,
     },
 }
 
 impl Singular {
-    /// [`Inertia`](Self::Inertia), as generated code writes it.
+    /// Makes [`Inertia`](Self::Inertia); for generated code.
     pub const fn inertia(velocity: &'static str) -> Self {
         Self::Inertia { velocity }
     }
 
-    /// [`Mass`](Self::Mass), as generated code writes it.
+    /// Makes [`Mass`](Self::Mass); for generated code.
     pub const fn mass() -> Self {
         Self::Mass
     }
 
-    /// [`Constraints`](Self::Constraints), as generated code writes it.
+    /// Makes [`Constraints`](Self::Constraints); for generated code.
     pub const fn constraints(row: usize) -> Self {
         Self::Constraints { row }
     }
 
-    /// [`Kinematics`](Self::Kinematics), as generated code writes it.
+    /// Makes [`Kinematics`](Self::Kinematics); for generated code.
     pub const fn kinematics(pivot: usize) -> Self {
         Self::Kinematics { pivot }
     }
@@ -74,8 +74,8 @@ impl fmt::Display for Singular {
 
 impl Error for Singular {}
 
-/// Why a step was not taken. Times are those of the state from which the step started, which is the
-/// last valid one.
+/// Why a step could not be taken. All times are those of the state at the start of the step, which is the last valid
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {
@@ -91,18 +91,18 @@ pub enum StepError {
         /// Time at the start of the step.
         time: f64,
     },
-    /// A list has another length than the blocks of the system or its zero lists say.
+    /// A list does not have the length that the blocks of the system, or its lists of zeros, require.
     Shape {
         /// Which list: `coordinates`, `velocities` or `chart`.
         part: &'static str,
-        /// The length that the system asks for.
+        /// The length that the system requires.
         expected: usize,
         /// The length of the list.
         found: usize,
     },
-    /// The step is zero or not finite, or so small that the time would not advance.
+    /// The step is zero, not finite, or so small that time would not advance.
     InvalidStep {
-        /// The step asked for.
+        /// The step that was asked for.
         step: f64,
         /// The time to be covered by such steps.
         span: f64,
@@ -111,7 +111,7 @@ pub enum StepError {
     NotConverged {
         /// Time at the start of the step.
         time: f64,
-        /// How many iterations were made.
+        /// The number of iterations.
         iterations: u32,
     },
     /// The tolerance asks for steps below the resolution of time: it is finer than rounding allows,
@@ -122,22 +122,22 @@ pub enum StepError {
         /// The step that was refused.
         step: f64,
     },
-    /// A tolerance is not a number that errors can be compared with: less than rounding, or infinite.
+    /// A tolerance is unusable: finer than rounding, infinite or NaN.
     InvalidTolerance {
-        /// The least that it can be.
+        /// The smallest tolerance that is possible.
         least: f64,
     },
-    /// The motion is stiff: it has a rate so fast that the steps of an explicit method stay short for it
-    /// alone, and more of them are ahead than [`Adaptive::stiff`](crate::adaptive::Adaptive) allows.
+    /// The motion is stiff: one rate is so fast that it alone keeps the steps of an explicit method short, and more steps
+    /// are still ahead than [`Adaptive::stiff`](crate::adaptive::Adaptive) allows.
     Stiff {
         /// Time at the start of the step.
         time: f64,
-        /// The step that the method can take.
+        /// The longest step that the method can take.
         step: f64,
         /// The rate ρ, an estimate of the spectral radius of the equations.
         rate: f64,
     },
-    /// The method is for motion without forces, and forces may act on this system.
+    /// The method is for force-free motion, but forces may act on this system.
     Forces {
         /// Time at the start of the step.
         time: f64,

@@ -1,4 +1,4 @@
-//! The run from one time to another.
+//! Single steps, and runs from one time to another in equal steps.
 
 use crate::error::StepError;
 use crate::manifold;
@@ -7,11 +7,11 @@ use crate::state::State;
 use crate::store::is_finite;
 use crate::system::System;
 
-/// Moves `state` by one step of length `h`, of either sign or zero, and back onto the constraints
-/// that multipliers keep. `inputs(t, x, ξ)` gives u.
+/// Moves `state` by one step of length `h`, which may be negative or zero, and projects it onto the constraints that
+/// multipliers enforce. `inputs(t, x, ξ)` returns u.
 ///
 /// # Errors
-/// [`StepError`]; `state` then keeps its value.
+/// [`StepError`]; `state` is then unchanged.
 #[inline]
 pub fn step<Sys, M, U>(
     system: &Sys,
@@ -68,14 +68,14 @@ where
 
 /// Moves `state` to the time `until`, forwards or backwards, in equal steps no longer than `length`.
 ///
-/// The count of steps is |until − t| / |length| rounded up (a ratio within 1e-9 of a whole number is
-/// taken as that number), so that all steps are equal, the method keeps its order, and the last state
-/// is at `until` exactly. `inputs(t, x, ξ)` gives u and is called at the points that the method
-/// visits; `observe` is called with the first state and after every step. What a method evaluates at the end
-/// of a step and at the start of the next is evaluated once ([`Method::follow`]).
+/// The number of steps is |until − t| / |length| rounded up, where a ratio within 1e-9 of a whole number counts as that
+/// number. So all steps are equal, the method keeps its order, and the last state is at `until` exactly.
+/// `inputs(t, x, ξ)` returns u and is called at every point that the method visits; `observe` is called with the first
+/// state and after every step. What would be evaluated both at the end of a step and at the start of the next is
+/// evaluated once ([`Method::follow`]).
 ///
 /// # Errors
-/// [`StepError`]; `state` is then the last valid one, at which `observe` was called last.
+/// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
 #[inline]
 pub fn integrate<Sys, M, U, O>(
     system: &Sys,

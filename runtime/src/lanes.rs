@@ -1,13 +1,13 @@
-//! Several numbers in one: lanes.
+//! Scalars that hold several independent numbers, one in each SIMD lane.
 
 use crate::scalar::Scalar;
 
 /// A scalar of [`COUNT`](Self::COUNT) independent numbers; `f64` and `f32` are lanes of one.
 ///
-/// With the feature `wide` the vectors `f64x4`, `f64x8`, `f32x8` and `f32x16` of the crate of that
-/// name are lanes of as many numbers, see [`wide`](crate::wide). What a lane computes does not
-/// depend on the others, but where a method takes the decision of the worst lane: steps of
-/// [`Adaptive`](crate::adaptive::Adaptive), iterations of implicit methods.
+/// With the feature `wide`, the vectors `f64x4`, `f64x8`, `f32x8` and `f32x16` of the crate `wide` are scalars of that
+/// many lanes; see [`wide`](crate::wide). What a lane computes does not depend on the others, except where a method has
+/// to decide for all of them by the worst: the step sizes of [`Adaptive`](crate::adaptive::Adaptive) and the iterations of
+/// implicit methods.
 ///
 /// ```
 /// use hamel::Lanes;
@@ -20,15 +20,15 @@ use crate::scalar::Scalar;
 /// assert_eq!(lengths::<hamel::wide::f64x4>(), [0.5, 1.5, 2.5, 3.5]);
 /// ```
 pub trait Lanes: Scalar {
-    /// One of the numbers.
+    /// The type of the number in one lane.
     type Element: Scalar;
-    /// All of them.
+    /// The numbers of all lanes.
     type Array: AsRef<[Self::Element]> + Copy;
 
-    /// How many there are.
+    /// The number of lanes.
     const COUNT: usize;
 
-    /// The value of each lane, by its index from 0.
+    /// Sets every lane to the value for its index, from 0.
     fn from_lanes(value: impl FnMut(usize) -> Self::Element) -> Self;
 
     /// The values, lane by lane.

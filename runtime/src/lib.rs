@@ -1,22 +1,43 @@
-//! Runtime of generated equations of motion.
+//! Equations of motion as specialised code, and their integration on manifolds.
 //!
-//! A generated type implements [`System`]: coordinates x, possibly redundant and of the kinds of
-//! [`Block`], velocity coordinates ξ, and the equations ẋ = A(x) ξ, ξ̇ = M⁻¹(f − c). This crate moves
-//! such systems in time on their manifold ([`integrate`](integrate()), [`methods`]) and watches what
-//! they conserve ([`Monitor`]). It knows nothing of descriptions, does not allocate, and never panics;
-//! what fails is a [`StepError`].
+#![cfg_attr(feature = "macros", doc = include_str!("../README.md"))]
 //!
-//! Two modules carry the mathematics of rotations, [`so3`] and [`s3`]; numbers are any [`Scalar`].
+//! # What this crate contains
+//!
+//! A generated type implements [`System`]: coordinates x, possibly redundant and of the kinds of [`Block`],
+//! quasi-velocities ξ, and the equations of motion
+//!
+//! ẋ = A(x) ξ,  ξ̇ = M(x)⁻¹ (f(x, ξ, u) − Γ(x) ξ ξ − ∂V(x)).
+//!
+//! | | |
+//! |---|---|
+//! | [`integrate`](integrate()), [`step`], [`Sampled`] | runs in equal steps, single steps, and runs with a controller that has a period of its own |
+//! | [`methods`] | the integrators: explicit and implicit Runge-Kutta methods on Lie groups, variational and splitting methods |
+//! | [`adaptive`] | error control, events and dense output |
+//! | [`Monitor`] | how well a run keeps energy, momentum and constraints |
+//! | [`step_slopes`], [`step_nearby`], [`Dual`] | the derivatives of a step with respect to state and inputs |
+//! | [`flows`], [`Split`] | exact flows of free bodies, for systems that split into free motion and kicks |
+//! | `ensemble`, `wide` | many states at once, in SIMD lanes and on all cores |
+//! | [`adapter`] | any generated system as y′ = f(t, y), for the solvers of other crates |
+//! | [`so3`], [`s3`], [`s1`] | rotations as matrices, unit quaternions and angles |
+//!
+//! Nothing here allocates (but for `ensemble` and what you store yourself), and nothing panics: whatever fails is a
+//! [`StepError`] or a [`Singular`] that says what to do. Numbers can be of any [`Scalar`] type: `f64`, `f32`, dual
+//! numbers, SIMD lanes.
 //!
 //! # Features
-//! - `std` (default): mathematical functions of the standard library, in nalgebra, too, `Vec` as a [`Store`]. Without
-//!   it the crate is `no_std` and takes them from `libm`.
-//! - `macros` (default): `rigid_eom!`, which expands a description to a `System`.
-//! - `wide`: SIMD lanes as scalars, in `wide`.
-//! - `ensemble`: many states on lanes and threads, in `ensemble`.
-//! - `nalgebra` (default): views of states as nalgebra types, in `edge`.
 //!
-//! # Example
+//! | feature | default | what it adds |
+//! |---|---|---|
+//! | `std` | yes | mathematical functions of the standard library, and `Vec` as a [`Store`]. Without it the crate is `no_std` and takes them from `libm` |
+//! | `macros` | yes | [`rigid_eom!`] |
+//! | `nalgebra` | yes | states as types of nalgebra, in `edge` |
+//! | `wide` | no | SIMD lanes as scalars, in `wide` |
+//! | `ensemble` | no | many states on lanes and threads, in `ensemble`; implies `std` and `wide` |
+//!
+//! # A system written by hand
+//!
+//! The integrators work for any [`System`], whether it was generated or not.
 //! A pendulum of length l, x = (cos θ, sin θ), ξ = θ̇, l θ̈ = −g sin θ, as written by hand:
 //!
 //! ```
@@ -65,6 +86,7 @@
 //! # }
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub mod adapter;

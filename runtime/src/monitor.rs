@@ -1,12 +1,13 @@
-//! How far a run strays from what is conserved.
+//! How well a run keeps energy and constraints.
 
 use crate::scalar::Scalar;
 use crate::state::State;
 use crate::system::System;
 
-/// Largest drift of the energy T + V and largest constraint defect over the states observed.
+/// The largest deviation of the energy T + V and the largest violation of the constraints, over all observed states.
 ///
-/// T + V is conserved only without dissipation, inputs and other loads that do work. A NaN stays.
+/// T + V is conserved only if there is no dissipation and neither inputs nor other loads do work. Once a value is NaN it
+/// remains NaN, so that a run that went wrong cannot look well.
 #[derive(Clone, Copy, Debug)]
 pub struct Monitor<S> {
     initial: S,
@@ -16,7 +17,7 @@ pub struct Monitor<S> {
 }
 
 impl<S: Scalar> Monitor<S> {
-    /// Starts at `state`.
+    /// Starts with the energy at `state`.
     pub fn new<Sys>(system: &Sys, state: &State<Sys>) -> Self
     where
         Sys: System<Scalar = S> + ?Sized,
@@ -31,7 +32,7 @@ impl<S: Scalar> Monitor<S> {
         }
     }
 
-    /// Takes a further state into account.
+    /// Takes one more state into account.
     #[inline]
     pub fn observe<Sys>(&mut self, system: &Sys, state: &State<Sys>)
     where
@@ -46,19 +47,19 @@ impl<S: Scalar> Monitor<S> {
         self.constraint = Scalar::max(self.constraint, system.constraint_norm(&state.x));
     }
 
-    /// T + V of the first state.
+    /// E₀, the energy T + V of the first state.
     pub fn initial_energy(&self) -> S {
         self.initial
     }
 
-    /// max |T + V − E₀|
+    /// max |T + V − E₀|, in units of energy.
     pub fn energy_deviation(&self) -> S {
         self.deviation
     }
 
-    /// max |T + V − E₀| over the larger of |E₀| and the largest kinetic energy seen, without what T + V
-    /// has gained by then: V has a free constant, so that E₀ alone may be zero. Zero for a system that
-    /// never moves.
+    /// max |T + V − E₀| divided by the larger of |E₀| and the largest kinetic energy seen, less what T + V has gained by
+    /// then. E₀ alone would not do as a scale, since V has a free constant and E₀ may be zero. Zero for a system that never
+    /// moves.
     pub fn relative_energy_deviation(&self) -> S {
         let zero = S::default();
         // The second selection is for a scale of NaN, which must not become zero.
@@ -70,7 +71,7 @@ impl<S: Scalar> Monitor<S> {
         )
     }
 
-    /// max |φ(x)|
+    /// max |φ(x)| over all constraints and states.
     pub fn constraint(&self) -> S {
         self.constraint
     }

@@ -1,16 +1,16 @@
-//! The inertia of a torque-free rotor, and what its symmetry lets a method do.
+//! The inertia of a torque-free rotor, and the symmetry that decides how its flow is computed.
 
 use core::array::from_fn;
 
 use crate::scalar::{Scalar, epsilon};
 use crate::so3::{self, Matrix, Vector};
 
-/// How the principal moments are equal, which decides how the torque-free flow is computed.
+/// Which principal moments are equal. This decides how the torque-free flow is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
     /// Three equal moments: the rotor turns about a fixed axis.
     Spherical,
-    /// The two moments beside this principal axis (0, 1, 2) are equal: two turns are exact.
+    /// The two moments other than that of this principal axis (0, 1, 2) are equal: two turns are exact.
     Axial(usize),
     /// Three different moments: Jacobi's elliptic functions.
     None,
@@ -19,11 +19,11 @@ pub enum Symmetry {
 /// One torque-free rotor.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor<S> {
-    /// J₁, J₂, J₃.
+    /// The principal moments J₁, J₂, J₃.
     pub moments: Vector<S>,
-    /// Principal axes as columns, in body axes; `None` where they are the body axes.
+    /// The principal axes as columns, in body axes; `None` if they are the body axes.
     pub axes: Option<Matrix<S>>,
-    /// What is known to be equal.
+    /// Which moments are known to be equal.
     pub symmetry: Symmetry,
 }
 
@@ -45,14 +45,13 @@ impl<S: Scalar> Rotor<S> {
         }
     }
 
-    /// A rotor whose body axes are principal; moments that are equal to rounding in all lanes are
-    /// taken as equal.
+    /// A rotor whose body axes are principal. Moments that agree to rounding in all lanes are taken as equal.
     pub fn of_moments(moments: Vector<S>) -> Self {
         Self::principal(moments, symmetry(moments, ULPS_GIVEN))
     }
 
-    /// A rotor of any inertia, of which the symmetric part counts: principal moments and axes by
-    /// Jacobi's rotations, equal moments found to rounding.
+    /// A rotor of any inertia, of which only the symmetric part counts. Jacobi's rotations give the principal moments and
+    /// axes; moments that agree to rounding are taken as equal.
     ///
     /// C. G. J. Jacobi 1846; W. H. Press et al., *Numerical Recipes*, 11.1.
     pub fn general(inertia: Matrix<S>) -> Self {
@@ -79,14 +78,14 @@ impl<S: Scalar> Rotor<S> {
         }
     }
 
-    /// A vector of body axes in principal axes.
+    /// Takes a vector from body axes to principal axes.
     #[inline]
     pub fn to_principal(&self, body: Vector<S>) -> Vector<S> {
         self.axes
             .map_or(body, |axes| so3::apply_transpose(axes, body))
     }
 
-    /// A vector of principal axes in body axes.
+    /// Takes a vector from principal axes to body axes.
     #[inline]
     pub fn to_body(&self, principal: Vector<S>) -> Vector<S> {
         self.axes

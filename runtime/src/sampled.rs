@@ -1,4 +1,4 @@
-//! Controllers that are asked at a period of their own, and whose inputs are held in between.
+//! Digital controllers, which run at a period of their own and hold their output in between.
 
 use crate::adaptive::{Adaptive, Statistics};
 use crate::error::StepError;
@@ -7,10 +7,10 @@ use crate::methods::Method;
 use crate::state::State;
 use crate::system::System;
 
-/// A digital controller: asked for u at multiples of a period from the start of a run on, in order of time, it may
-/// keep a state of its own; u is constant in between (zero-order hold).
+/// A digital controller with zero-order hold: it is called for u at the start of a run and at every multiple of a period
+/// after it, and u is constant in between. Calls come in the order of time, so that a controller can have a state.
 ///
-/// Steps end where u jumps, so that every method keeps its order, and error control meets no jump within a step.
+/// Steps end where u jumps. So every method keeps its order, and error control never meets a jump within a step.
 ///
 /// ```
 /// # use hamel::{Block, Singular, State, System};
@@ -34,7 +34,7 @@ use crate::system::System;
 /// #     fn potential_energy(&self, _: &[f64; 1]) -> f64 { 0.0 }
 /// # }
 /// # fn main() -> Result<(), hamel::StepError> {
-/// // A cart of mass 1 is held at 1 by a controller with an integral, asked every 10 ms.
+/// // A controller with integral action, called every 10 ms, holds a cart of mass 1 at the position 1.
 /// let cart = Cart;
 /// let mut state = State::start(&cart);
 /// let mut integral = 0.0;
@@ -54,7 +54,7 @@ pub struct Sampled<C> {
 }
 
 impl<C> Sampled<C> {
-    /// A controller that is asked every `period`, in the unit of time of the description.
+    /// A controller that is called once in every `period`, in the unit of time of the description.
     pub const fn new(period: f64, controller: C) -> Self {
         Self { period, controller }
     }
@@ -63,8 +63,8 @@ impl<C> Sampled<C> {
     /// of a period are equal. `observe` is called with the first state and after every step.
     ///
     /// # Errors
-    /// [`StepError`]; `state` is then the last valid one. A period that is not positive and finite is
-    /// [`StepError::InvalidStep`], as is a time that lies before.
+    /// [`StepError`]; `state` is then the last valid one. [`StepError::InvalidStep`] if the period is not positive and
+    /// finite, or if `until` lies in the past.
     pub fn integrate<Sys, M, O>(
         &mut self,
         system: &Sys,
@@ -94,11 +94,11 @@ impl<C> Sampled<C> {
         })
     }
 
-    /// The same with steps that are chosen by their error; `observe` is called with the first state and at the end of
-    /// every period.
+    /// As [`integrate`](Self::integrate), but with error control; `observe` is called with the first state and at the end
+    /// of every period.
     ///
     /// # Errors
-    /// As those of [`integrate`](Self::integrate).
+    /// Those of [`integrate`](Self::integrate).
     pub fn adapt<Sys, O, const M: usize, const D: usize>(
         &mut self,
         system: &Sys,

@@ -21,7 +21,7 @@ pub struct State<Sys: System + ?Sized> {
 }
 
 impl<Sys: System + ?Sized> State<Sys> {
-    /// The start of the description, at t = 0.
+    /// The initial state of the description, at t = 0.
     pub fn start(system: &Sys) -> Self {
         let (x, xi) = system.start();
         Self { t: 0.0, x, xi }
@@ -33,10 +33,10 @@ impl<Sys: System + ?Sized> State<Sys> {
         self.t.is_finite() && is_finite(self.x.as_ref()) && is_finite(self.xi.as_ref())
     }
 
-    /// Compares the lengths of x and ξ with those of the system, as every [`Method`](crate::Method) has to.
+    /// Checks that x and ξ have the lengths that the system expects, as every [`Method`](crate::Method) does before a step.
     ///
     /// # Errors
-    /// [`StepError::Shape`], for the first list of another length.
+    /// [`StepError::Shape`] for the first of the two that has another length.
     #[inline]
     pub fn check_shape(&self, system: &Sys) -> Result<(), StepError> {
         let blocks = system.blocks();

@@ -1,16 +1,16 @@
-//! What a mechanical system offers: the traits that generated code implements.
+//! The interface of a mechanical system, which generated code implements.
 
 use crate::error::Singular;
 use crate::scalar::Scalar;
 use crate::store::Store;
 
-/// The kind of one run of coordinates in x, which decides how x is moved along its manifold.
+/// The kind of a block of consecutive coordinates in x, which decides how x moves along its manifold.
 ///
-/// The *chart* of a kind are the coordinates u in which one step of an integrator is computed; the
-/// step starts at u = 0 and ends by moving x along u, see [`manifold`](crate::manifold).
+/// Each kind has a *chart*: local coordinates u in which an integrator computes one step. A step starts at u = 0 and
+/// ends with a retraction, which moves x along u; see [`manifold`](crate::manifold).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Block {
-    /// This many bare coordinates; the chart is the change of them.
+    /// This many plain coordinates; the chart is their change.
     Flat(usize),
     /// A point (c, s) = (cos θ, sin θ) of the circle; the chart is the change of θ in rad.
     Circle,
@@ -46,23 +46,23 @@ impl Block {
 
 /// Equations of motion ẋ = A(x) ξ, M(x) ξ̇ + c(x, ξ) = f(x, ξ, u) of a mechanical system.
 ///
-/// x holds ν coordinates, possibly redundant (φ(x) = 0), in the order of [`blocks`](Self::blocks);
-/// ξ holds n velocity coordinates, u the inputs. Behind the velocities stand states of first order z, where there are
-/// any: methods of integration move both alike. Notation and equation numbers: M. Konz, J. Rudolph,
+/// x holds ν coordinates, possibly redundant (φ(x) = 0), in the order of [`blocks`](Self::blocks); ξ holds n
+/// quasi-velocities, and u the inputs. First-order states z, if there are any, follow the velocities in ξ, and
+/// integrators treat both alike. Notation and equation numbers: M. Konz, J. Rudolph,
 /// *Redundant configuration coordinates and nonholonomic velocity coordinates in analytical
 /// mechanics*, IFAC-PapersOnLine 51-2 (2018) 409-414 (KR18). Units are those of the description.
 ///
-/// An implementation is pure: equal arguments give equal results, and no argument makes it panic.
-/// Time is no argument: where a description declares it, it is a coordinate of x whose rate is 1, so that every method
-/// evaluates its stages at their own times; what else depends on time enters through u.
+/// Implementations are pure functions: equal arguments give equal results, and no argument causes a panic. Time is not
+/// an argument. A description that declares it has it as a coordinate of x with the rate 1, so that every method
+/// evaluates each stage at its own time; anything else that depends on time enters through u.
 pub trait System {
-    /// The numbers computed with.
+    /// The type of all numbers.
     type Scalar: Scalar;
     /// Storage of x, ν entries.
     type Coordinates: Store<Self::Scalar>;
-    /// Storage of ξ, n entries, and behind them those of z.
+    /// Storage of ξ: n entries, followed by those of z.
     type Velocities: Store<Self::Scalar>;
-    /// Storage of a chart vector, as many entries as the blocks' charts have.
+    /// Storage of a chart vector, with as many entries as the charts of all blocks together.
     type Chart: Store<Self::Scalar>;
     /// Storage of u.
     type Inputs: Store<Self::Scalar>;
@@ -80,23 +80,23 @@ pub trait System {
     /// A chart vector of zeros.
     fn zero_chart(&self) -> Self::Chart;
 
-    /// No input: zeros.
+    /// Inputs that are all zero.
     fn zero_inputs(&self) -> Self::Inputs;
 
     /// The initial (x, ξ) of the description, with φ(x) = 0.
     fn start(&self) -> (Self::Coordinates, Self::Velocities);
 
-    /// ẋ = A(x) ξ, KR18 (5); with the time among the coordinates ẋ = A(x) ξ + a(x).
+    /// ẋ = A(x) ξ, KR18 (5), ν entries; ẋ = A(x) ξ + a(x) if time is among the coordinates.
     fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates;
 
-    /// The same motion in the chart, per block: ẋ (flat), θ̇ (circle), angular velocity in body axes
-    /// (quaternion, rotation).
+    /// The same motion in the chart, block by block: ẋ for plain coordinates, θ̇ for a circle, the angular velocity in
+    /// body axes for a quaternion or a rotation matrix.
     fn chart_rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Chart;
 
-    /// ξ̇ = M⁻¹ (f − c), KR18 (30), and behind it ż.
+    /// ξ̇ = M⁻¹ (f − c), KR18 (30), n entries, followed by ż.
     ///
     /// # Errors
-    /// [`Singular`] when M is not positive definite, or the kinematics are singular, at x.
+    /// [`Singular`] if M is not positive definite at x, or the kinematics are singular there.
     fn accel(
         &self,
         x: &Self::Coordinates,
@@ -104,15 +104,15 @@ pub trait System {
         u: &Self::Inputs,
     ) -> Result<Self::Velocities, Singular>;
 
-    /// −Ψ(x) φ(x): leads back to φ = 0 and vanishes there. ẋ = A ξ + λ · correction is KR18 (8)
-    /// with Λ = λ I, along which φ decays like exp(−λ t).
+    /// −Ψ(x) φ(x), ν entries, which points back to φ = 0 and vanishes there. Along ẋ = A ξ + λ · correction, which is
+    /// KR18 (8) with Λ = λ I, φ decays like exp(−λ t).
     fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates;
 
-    /// The step along A, in velocities times time, that closes the loops which multipliers keep, to
-    /// first order; `None` where there are none.
+    /// The displacement along A, in units of velocity times time, that closes to first order the loops which multipliers
+    /// enforce; `None` if there are no such loops.
     ///
     /// # Errors
-    /// [`Singular`] where the loops' rows depend on one another.
+    /// [`Singular`] if the rows of the loops are linearly dependent.
     #[inline]
     fn project_position(
         &self,
@@ -122,11 +122,11 @@ pub trait System {
         Ok(None)
     }
 
-    /// The velocities nearest to ξ in kinetic energy that satisfy B(x) ξ = 0 for the constraints that
-    /// multipliers keep; `None` where there are none.
+    /// The velocities with B(x) ξ = 0 that are nearest to ξ in the metric of kinetic energy, for the constraints that
+    /// multipliers enforce; `None` if there are no such constraints.
     ///
     /// # Errors
-    /// [`Singular`] where the rows of B depend on one another.
+    /// [`Singular`] if the rows of B are linearly dependent.
     #[inline]
     fn project_velocity(
         &self,
@@ -140,9 +140,9 @@ pub trait System {
     /// max |φ(x)| over the constraints.
     fn constraint_norm(&self, x: &Self::Coordinates) -> Self::Scalar;
 
-    /// T = ½ ξᵀ M(x) ξ, and T₂ + T₁ + T₀ where ẋ has terms without ξ.
+    /// The kinetic energy T = ½ ξᵀ M(x) ξ, or T₂ + T₁ + T₀ if ẋ has terms without ξ.
     fn kinetic_energy(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Scalar;
 
-    /// V(x), up to a constant.
+    /// The potential energy V(x), up to a constant.
     fn potential_energy(&self, x: &Self::Coordinates) -> Self::Scalar;
 }

@@ -1,30 +1,15 @@
-//! Robots in URDF (Unified Robot Description Format) as descriptions of `hamel`.
+//! Robots in URDF (Unified Robot Description Format) as descriptions for `hamel`.
 //!
-//! [`import`] reads the tree of links and joints and writes an `.eom` text: one `joint` statement
-//! for each joint, one `body` for each link with mass, in the order of the tree. Numbers keep the
-//! decimals that were written, save those that are roundings of multiples of π/2 or of 0; what
-//! was changed is said in the text. What the equations of motion do not need (shapes, meshes,
-//! transmissions, simulators' own elements) is left out.
+#![doc = include_str!("../README.md")]
 //!
-//! XML is read by `roxmltree`, which keeps the place of every attribute: errors name it, and no
-//! number that is missing or unreadable becomes a silent zero.
+//! # What is imported
 //!
-//! ```
-//! let urdf = r#"<robot name="pendulum">
-//!   <link name="base"/>
-//!   <joint name="hinge" type="revolute">
-//!     <parent link="base"/> <child link="rod"/> <axis xyz="0 1 0"/>
-//!   </joint>
-//!   <link name="rod">
-//!     <inertial>
-//!       <origin xyz="0 0 -0.5"/> <mass value="2"/>
-//!       <inertia ixx="0.2" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.01"/>
-//!     </inertial>
-//!   </link>
-//! </robot>"#;
-//! let imported = hamel_urdf::import(urdf, &hamel_urdf::Options::default()).unwrap();
-//! assert!(imported.text.contains("joint hinge: revolute [0, 1, 0] moves rod"));
-//! ```
+//! [`import`] reads the tree of links and joints and writes an `.eom` text: one `joint` statement for each joint, one
+//! `body` for each link with mass, in the order of the tree. Numbers keep their decimals, except for those that are
+//! roundings of multiples of π/2 or of 0; the text says what was changed. Shapes, meshes, transmissions and the
+//! elements of particular simulators do not enter the equations of motion and are ignored.
+//!
+//! XML is read by `roxmltree`, which keeps the position of every attribute, so that every error names its place.
 
 mod angle;
 mod decimal;

