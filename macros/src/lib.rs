@@ -33,9 +33,9 @@ use proc_macro::TokenStream;
 /// }
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let cart = CartPole::new(CartPoleParameters { mp: 0.2, ..Default::default() })?;
+/// let cart = CartPole::<f64>::new(CartPoleParameters { mp: 0.2, ..Default::default() })?;
 /// let mut state = State::from(CartPoleState { th: 0.3, ..Default::default() });
-/// let push = CartPoleInputs { F: 1.5 }.to_array();
+/// let push = CartPoleInputs { f: 1.5 }.to_array();
 /// integrate(&cart, Rkmk4, &mut state, 1e-3, 1.0, |_, _, _| push, |_| {})?;
 /// println!("{:?} rad, tip at {:?} m", CartPoleState::from(&state).th, cart.tip(&state.x));
 /// # let tip = cart.tip(&state.x);
