@@ -1,9 +1,9 @@
 //! Slopes of the dynamics in what `linearize` holds: of the force of inverse dynamics by displacements and velocities,
 //! and of ξ̇ by parameters.
 
+use super::accel::branches::Branches;
 use super::accel::recursions;
 use super::accel::setting::Setting;
-use super::accel::solve::solve_columns;
 use super::candidates::Candidates;
 use super::linearize::Displacements;
 use super::program::{Builder, MOST_LITERAL};
@@ -32,8 +32,7 @@ impl Builder<'_> {
         let mut recursive = false;
         if reduction.is_none() {
             for recursion in recursions(&Setting::given(model), &self.care) {
-                let mut graph = model.graph.clone();
-                if let Some(rows) = recursion.inverse_slopes(&mut graph) {
+                if let Some((graph, rows)) = recursion.inverse_slopes() {
                     columns = rows.first().map_or(0, Vec::len);
                     candidates.offer_polished(graph, rows.concat(), &model.graph);
                     recursive = true;
@@ -147,19 +146,22 @@ impl Builder<'_> {
         let (mut graph, parts) = (self.shared.graph.clone(), &self.shared.parts);
         let right = parts.right(&mut graph);
         let mut along = derivations(&graph, symbols);
-        let changes: Vec<Vec<Edge>> = (parts.mass.iter().zip(&right))
-            .map(|(row, &force)| {
-                let entries = along.iter_mut().map(|along| {
+        let branches = Branches::of(&mut graph, &parts.mass)?;
+        let columns: Vec<Vec<Edge>> = (along.iter_mut())
+            .map(|along| {
+                let changes = parts.mass.iter().zip(&right).map(|(row, &force)| {
                     let change = along.of(&mut graph, force);
                     let masses = along.all(&mut graph, row);
                     let held = graph.dot(&masses, &self.chosen.xi_dot);
                     graph.sub(change, held)
                 });
-                entries.collect()
+                let changes: Vec<Edge> = changes.collect();
+                branches.solve(&mut graph, &changes)
             })
             .collect();
-        let solved = solve_columns(&mut graph, &parts.mass, &changes)?;
-        Some((graph, solved.concat()))
+        let rows = (0..model.n()).flat_map(|i| columns.iter().map(move |column| column[i]));
+        let solved = rows.collect();
+        Some((graph, solved))
     }
 }
 

@@ -14,7 +14,6 @@ use super::tree::Placement;
 use super::{momentum, quantity};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::matrix;
 use crate::algebra::transplant::graft;
 use crate::functions::SLOPES;
 use crate::model::invariants::Quantity;
@@ -113,7 +112,7 @@ impl Builder<'_> {
             motions.push((chosen, apart(chosen)));
         }
         motions.extend(chosen.other.as_deref().map(|other| (other, apart(other))));
-        let mut best: Option<((usize, usize), Linear, Vec<Cause>)> = None;
+        let mut best: Option<((usize, usize), Linear)> = None;
         for (motion, Computation { mut graph, parts }) in motions {
             let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
                 return;
@@ -122,8 +121,7 @@ impl Builder<'_> {
             let varying = |edge: &Edge| !graph.is_free(edge.node());
             let causes = self.causes_of(motion).into_iter();
             let known = motion.pivots.iter().copied().zip(causes);
-            let (guards, causes): (Vec<Edge>, Vec<Cause>) =
-                known.filter(|(pivot, _)| varying(pivot)).unzip();
+            let guards: Vec<(Edge, Cause)> = known.filter(|(pivot, _)| varying(pivot)).collect();
             let nearby = ForwardDynamics {
                 graph: &graph,
                 xi_dot: &motion.xi_dot,
@@ -136,17 +134,17 @@ impl Builder<'_> {
             let linear = linearize(self.model, &nearby, &self.care);
             let cost = linear.cost();
             if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
-                best = Some((cost, linear, causes));
+                best = Some((cost, linear));
             }
         }
-        let Some((_, linear, causes)) = best else {
+        let Some((_, linear)) = best else {
             return;
         };
-        let mut outputs = graft(&linear.graph, &mut self.graph, &linear.roots());
-        let guards = outputs.split_off(outputs.len() - linear.guards.len());
-        self.causes.extend(guards.iter().copied().zip(causes));
-        let columns = linear.rows.first().map_or(1, Vec::len);
-        let mut rows: Vec<Vec<Edge>> = matrix(&outputs, columns);
+        let roots = graft(&linear.graph, &mut self.graph, &linear.roots());
+        let (mut rows, guards, rates) = linear.apart(roots);
+        let columns = rows.first().map_or(1, Vec::len);
+        self.causes.extend(guards.iter().copied());
+        let guards = guards.into_iter().map(|(guard, _)| guard).collect();
         if !self.model.states.is_empty() {
             let Some(nearby) = Displacements::new(full, reduction, &mut self.graph) else {
                 return;
@@ -157,6 +155,7 @@ impl Builder<'_> {
         self.push_guarded(FunctionId::Linearize, rows.concat(), guards);
         if let Some(linearize) = self.functions.last_mut() {
             linearize.shape = Shape::Matrix(rows.len(), columns);
+            linearize.rates = rates;
             if !self.model.states.is_empty() {
                 linearize.docs.push(
                     "With states the rows are those of (h, δξ, δz), the columns those of (h, δξ, δz, δu).".into(),

@@ -6,9 +6,9 @@
 //! matrices have n + nₐ rows: ḣᵏ = Cᵏₐ δξᵃ + (∂ⱼCᵏₐ ξᵃ − γᵢⱼᵏ ξⁱ) hʲ. States of first order add rows and columns.
 
 use super::accel::best::NEAR;
-use super::accel::recursive::Recursion;
+use super::accel::recursions;
+use super::accel::recursive::{RatesAndSlopes, Recursion};
 use super::accel::setting::Setting;
-use super::accel::solve::solve_columns;
 use super::calculus::Calculus;
 use super::care::Care;
 use super::multipliers::with_accelerations;
@@ -21,6 +21,7 @@ use crate::algebra::resubstitute::resubstitute;
 use crate::algebra::transplant::{map_symbols, rebuild};
 use crate::derive::normal::{NormalForms, build};
 use crate::model::Model;
+use crate::program::Cause;
 use crate::program::count::count;
 
 /// Systems with more velocities are not expanded.
@@ -36,8 +37,8 @@ pub struct ForwardDynamics<'a> {
     pub graph: &'a Graph,
     /// F, one entry for each active velocity.
     pub xi_dot: &'a [Edge],
-    /// Pivots that have to be positive where there is F, those that vary.
-    pub guards: &'a [Edge],
+    /// Pivots that have to be positive where there is F, those that vary, and what they are of.
+    pub guards: &'a [(Edge, Cause)],
     /// The displacements.
     pub nearby: Displacements,
     /// M and f − Γ ξ ξ − ∂V of the active velocities, where M F = right-hand side holds.
@@ -50,22 +51,53 @@ pub struct Linear {
     pub graph: Graph,
     /// The rows.
     pub rows: Vec<Vec<Edge>>,
-    /// The pivots of F in this graph.
-    pub guards: Vec<Edge>,
+    /// The pivots of F in this graph, and what they are of.
+    pub guards: Vec<(Edge, Cause)>,
+    /// F, where it comes out on the way.
+    pub rates: Vec<Edge>,
 }
 
 impl Linear {
-    /// All that is computed.
-    pub fn roots(&self) -> Vec<Edge> {
-        [self.rows.concat(), self.guards.clone()].concat()
+    /// Rows made from F as it is.
+    fn of(motion: &ForwardDynamics, graph: Graph, rows: Vec<Vec<Edge>>) -> Self {
+        Linear {
+            graph,
+            rows,
+            guards: motion.guards.to_vec(),
+            rates: Vec::new(),
+        }
+    }
+
+    /// The rows and the guards.
+    fn results(&self) -> Vec<Edge> {
+        let guards = self.guards.iter().map(|(guard, _)| *guard);
+        self.rows.iter().flatten().copied().chain(guards).collect()
     }
 
     /// Its operations: weight and number.
     pub fn cost(&self) -> (usize, usize) {
-        let count = count(&self.graph, &self.roots());
+        let count = count(&self.graph, &self.results());
         (count.weight(), count.flops())
     }
+
+    /// All that is computed: rows, guards, F.
+    pub fn roots(&self) -> Vec<Edge> {
+        [self.results(), self.rates.clone()].concat()
+    }
+
+    /// Edges of another graph that stand for the roots there, apart.
+    pub fn apart(&self, mut roots: Vec<Edge>) -> Apart {
+        let columns = self.rows.first().map_or(1, |row| row.len().max(1));
+        let rates = roots.split_off(roots.len() - self.rates.len());
+        let guards = roots.split_off(roots.len() - self.guards.len());
+        let causes = self.guards.iter().map(|&(_, cause)| cause);
+        let rows = roots.chunks(columns).map(<[Edge]>::to_vec).collect();
+        (rows, guards.into_iter().zip(causes).collect(), rates)
+    }
 }
+
+/// Rows, guards and F of a linearisation.
+type Apart = (Vec<Vec<Edge>>, Vec<(Edge, Cause)>, Vec<Edge>);
 
 /// The frame that displacements are measured in, as edges of the graph of F.
 pub struct Displacements {
@@ -169,20 +201,18 @@ pub fn slopes(
         .collect()
 }
 
-/// Linearises; `model` is that of the active velocities. The cheapest of three ways is taken: F itself
-/// differentiated; M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all columns; the
-/// entries expanded, their coefficients computed when parameters are set.
+/// Linearises; `model` is that of the active velocities. The cheapest of four ways is taken: of a tree of links, by recursion,
+/// where F comes out on the way; F itself differentiated; M⁻¹ (∂(f − Γ ξ ξ − ∂V) − (∂M) F) with one factorisation for all
+/// columns; the entries expanded, their coefficients computed when parameters are set.
 pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear {
     let upper = upper(model, motion);
-    let placements = care.placements().iter();
-    let recursions: Vec<Recursion> = placements
-        .filter_map(|&placement| Recursion::of(&Setting::given(model), placement))
-        .collect();
+    let recursions = recursions(&Setting::given(model), care);
     // Beyond a few links nothing comes near the recursion.
     let long = recursions.first().is_some_and(Recursion::is_long);
-    let mut candidates: Vec<Linear> = recursions
-        .iter()
-        .filter_map(|recursion| recursive(model, motion, recursion, &upper))
+    let plain = motion.nearby.n() == model.n() && motion.implicit.is_some();
+    let traced = recursions.iter().filter(|_| plain);
+    let mut candidates: Vec<Linear> = traced
+        .filter_map(|recursion| recursive(recursion, &upper))
         .collect();
     if candidates.is_empty() || !(long || model.n() > MOST_EXPANDED) {
         let explicit = explicit(model, motion, &upper);
@@ -203,7 +233,7 @@ pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear
     let most = (loss, weight * NEAR.0 / NEAR.1, usize::MAX);
     let near = candidates.into_iter().zip(costs);
     let near = near.filter(|(_, cost)| *cost <= most);
-    let polished = near.map(|(linear, before)| match polished(&linear, motion) {
+    let polished = near.map(|(linear, before)| match polished(&linear, model, motion) {
         Some(linear) if cost(&linear) < before => (cost(&linear), linear),
         _ => (before, linear),
     });
@@ -212,16 +242,20 @@ pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear
     best.map_or_else(|| explicit(model, motion, &upper), |(_, linear)| linear)
 }
 
-/// After resubstitution, where that finds something.
-fn polished(linear: &Linear, motion: &ForwardDynamics) -> Option<Linear> {
-    let (graph, mut edges) = resubstitute(&linear.graph, &linear.roots(), motion.graph)?;
-    let columns = linear.rows.first().map_or(1, |row| row.len().max(1));
-    let guards = edges.split_off(edges.len() - linear.guards.len());
-    let rows = edges.chunks(columns).map(<[Edge]>::to_vec).collect();
+/// After resubstitution, where that finds something: above what F is made from, or what the model is, where F comes out on
+/// the way.
+fn polished(linear: &Linear, model: &Model, motion: &ForwardDynamics) -> Option<Linear> {
+    let base = match linear.rates.is_empty() {
+        true => motion.graph,
+        false => &model.graph,
+    };
+    let (graph, roots) = resubstitute(&linear.graph, &linear.roots(), base)?;
+    let (rows, guards, rates) = linear.apart(roots);
     Some(Linear {
         graph,
         rows,
         guards,
+        rates,
     })
 }
 
@@ -245,12 +279,7 @@ fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
             row
         })
         .collect();
-    let guards = motion.guards.to_vec();
-    Linear {
-        graph,
-        rows,
-        guards,
-    }
+    Linear::of(motion, graph, rows)
 }
 
 /// The derivations of all columns: ∂ⱼ, ∂/∂ξₐ, ∂/∂u.
@@ -277,12 +306,7 @@ fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
         let entries = columns.iter_mut().map(|column| column.of(&mut graph, rate));
         entries.collect::<Vec<Edge>>()
     }));
-    let guards = motion.guards.to_vec();
-    Linear {
-        graph,
-        rows,
-        guards,
-    }
+    Linear::of(motion, graph, rows)
 }
 
 /// M δξ̇ = ∂(M F) − (∂M) F, all columns with one factorisation.
@@ -308,35 +332,28 @@ fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<L
     let solved = solve_symmetric(&mut graph, mass, &changes)?;
     let mut rows = carried(upper, &mut graph);
     rows.extend(solved);
-    let guards = motion.guards.to_vec();
-    Some(Linear {
-        graph,
-        rows,
-        guards,
-    })
+    Some(Linear::of(motion, graph, rows))
 }
 
 /// The same for a tree of links, by recursion; M factored from the leaves to the root.
-fn recursive(
-    model: &Model,
-    motion: &ForwardDynamics,
-    recursion: &Recursion,
-    upper: &Linear,
-) -> Option<Linear> {
-    let (mass, _) = motion.implicit?;
-    if motion.nearby.n() != model.n() {
-        return None;
-    }
-    let mut graph = motion.graph.clone();
-    let changes = recursion.slopes(&mut graph, motion.xi_dot)?;
-    let solved = solve_columns(&mut graph, mass, &changes)?;
+fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
+    let RatesAndSlopes {
+        mut graph,
+        xi_dot,
+        pivots,
+        rows: below,
+    } = recursion.rates_and_slopes()?;
     let mut rows = carried(upper, &mut graph);
-    rows.extend(solved);
-    let guards = motion.guards.to_vec();
+    rows.extend(below);
+    let guards = pivots.into_iter().enumerate();
+    let guards = guards.filter(|(_, pivot)| !graph.is_free(pivot.node()));
     Some(Linear {
+        guards: guards
+            .map(|(i, pivot)| (pivot, Cause::Velocity(i)))
+            .collect(),
         graph,
         rows,
-        guards,
+        rates: xi_dot,
     })
 }
 
@@ -365,11 +382,8 @@ fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Optio
     let mut graph = motion.graph.clone();
     let entries = rebuild(&source, &mut graph, &built);
     let columns = explicit.rows.first().map_or(1, |row| row.len().max(1));
-    Some(Linear {
-        graph,
-        rows: entries.chunks(columns).map(<[Edge]>::to_vec).collect(),
-        guards: motion.guards.to_vec(),
-    })
+    let rows = entries.chunks(columns).map(<[Edge]>::to_vec).collect();
+    Some(Linear::of(motion, graph, rows))
 }
 
 /// The rows of ḣ in another graph.

@@ -74,6 +74,8 @@ pub struct Function {
     pub guards: Vec<Edge>,
     /// Whether it returns a `Result`.
     pub fallible: bool,
+    /// ξ̇ as it comes out on the way to [A B]; empty where it is that of `accel`.
+    pub rates: Vec<Edge>,
 }
 
 impl Function {
@@ -97,6 +99,7 @@ impl Function {
             outputs,
             guards: Vec::new(),
             fallible: false,
+            rates: Vec::new(),
         }
     }
 
@@ -117,6 +120,7 @@ impl Function {
             outputs,
             guards: Vec::new(),
             fallible: false,
+            rates: Vec::new(),
         }
     }
 }

@@ -34,8 +34,11 @@ impl Schedule {
             .collect();
         let mut kept: Vec<NodeId> = Vec::new();
         for (function, nodes) in program.functions.iter().zip(&bodies) {
-            let children = nodes.iter().flat_map(|&id| graph.node(id).children());
-            let roots = function.outputs.iter().chain(&function.guards).copied();
+            let on_the_way = body(graph, &function.rates);
+            let nodes = nodes.iter().chain(&on_the_way);
+            let children = nodes.flat_map(|&id| graph.node(id).children());
+            let roots = function.outputs.iter().chain(&function.guards);
+            let roots = roots.chain(&function.rates).copied();
             kept.extend(
                 children
                     .chain(roots)

@@ -32,14 +32,14 @@ pub fn together(program: &Program) -> Option<Together> {
         return None;
     }
     let mut guards = slopes.guards.clone();
-    guards.extend(
-        rates
-            .guards
-            .iter()
-            .filter(|&guard| !slopes.guards.contains(guard)),
-    );
+    let mut xi_dot = &slopes.rates;
+    if xi_dot.is_empty() {
+        xi_dot = &rates.outputs;
+        let more = rates.guards.iter();
+        guards.extend(more.filter(|&guard| !slopes.guards.contains(guard)));
+    }
     let roots = |lists: &[&[Edge]]| body(&program.graph, &lists.concat());
-    let nodes = roots(&[&rates.outputs, &slopes.outputs, &guards]);
+    let nodes = roots(&[xi_dot, &slopes.outputs, &guards]);
     let alone = roots(&[&slopes.outputs, &slopes.guards]);
     let [both, alone] = [&nodes, &alone].map(|nodes| count_nodes(&program.graph, nodes).weight());
     if (both - alone) * LITTLE > alone {
@@ -48,7 +48,7 @@ pub fn together(program: &Program) -> Option<Together> {
     Some(Together {
         accel,
         linearize,
-        outputs: [&rates.outputs[..], &slopes.outputs].concat(),
+        outputs: [&xi_dot[..], &slopes.outputs].concat(),
         guards,
         nodes,
     })

@@ -19,6 +19,17 @@ use crate::derive::{energy, quantity};
 use crate::model::Model;
 use crate::program::{FunctionId, Program};
 
+/// Whether ξ̇ as it comes out on the way to [A B] is that of `accel`.
+fn rates_at(program: &Program, lane: &Lane) -> Option<bool> {
+    let linearize = program.function(FunctionId::Linearize);
+    let Some(linearize) = linearize.filter(|function| !function.rates.is_empty()) else {
+        return Some(true);
+    };
+    let accel = program.function(FunctionId::Accel)?;
+    let value = |edges: &[Edge]| evaluate_at(&program.graph, edges, &mut lane.clone());
+    Some(value(&linearize.rates)? == value(&accel.outputs)?)
+}
+
 /// What is compared at every point.
 pub struct Slopes {
     /// Names of the invariants with their entries in the graph of a model.
@@ -135,6 +146,9 @@ impl Slopes {
         }
         if !centroidal::holds(&self.model, program, lane)? {
             return Some(Err(centroidal::WHAT.into()));
+        }
+        if !rates_at(program, lane)? {
+            return Some(Err("ξ̇ beside its slopes".into()));
         }
         match &self.source {
             None => Some(Ok(())),

@@ -5,6 +5,7 @@
 //! exactly; the cheapest is kept.
 
 pub(super) mod best;
+pub mod branches;
 pub mod cheapest;
 mod hybrid;
 pub mod parts;

@@ -1,12 +1,13 @@
 //! Trees: ξ̇, M and forces by recursion over links.
 
 use super::best::{Acceleration, Best, Family};
+use super::branches::Branches;
 use super::cheapest::Computation;
 use super::parts::Parts;
 use super::setting::Setting;
 use super::solve::{Plan, Solution, solve};
 use crate::algebra::derivation::Derivation;
-use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, matrix, zero3};
 use crate::algebra::transplant::map_symbols;
 use crate::derive::calculus::Calculus;
@@ -332,72 +333,103 @@ impl Recursion {
         Some((graph, solution))
     }
 
-    /// ∂(f − M ξ̇ − Γ ξ ξ − ∂V) along displacements, velocities and inputs at constant ξ̇: n rows of
-    /// 2 n + m, in `into`, where ξ̇ is F. `None` where a joint varies with x.
-    pub fn slopes(&self, into: &mut Graph, rates: &[Edge]) -> Option<Vec<Vec<Edge>>> {
+    /// ∂(M ξ̇ + Γ ξ ξ + ∂V) along displacements and velocities at constant ξ̇, in a graph of its own: n rows of 2 n.
+    /// `None` where a joint varies with x.
+    pub fn inverse_slopes(&self) -> Option<(Graph, Vec<Vec<Edge>>)> {
         let mut graph = self.model.graph.clone();
-        let load = self.load(&mut graph);
-        self.slopes_under(&load, graph, into, rates)
+        let rates = &self.model.xi_dot;
+        let mut columns = self.changes(&self.tree, &self.elastic, &mut graph, rates)?;
+        columns.truncate(2 * self.model.n());
+        let row = |i: usize| columns.iter().map(|column| -column[i]).collect();
+        Some((graph, (0..self.model.n()).map(row).collect()))
     }
 
-    /// ∂(M ξ̇ + Γ ξ ξ + ∂V) along displacements and velocities at constant ξ̇: n rows of 2 n, in `into`. `None` where a
-    /// joint varies with x.
-    pub fn inverse_slopes(&self, into: &mut Graph) -> Option<Vec<Vec<Edge>>> {
-        let rates = self.model.xi_dot.clone();
-        let graph = self.model.graph.clone();
-        let mut rows = self.slopes_under(&self.elastic, graph, into, &rates)?;
-        for row in &mut rows {
-            row.truncate(2 * self.model.n());
-            row.iter_mut().for_each(|entry| *entry = -*entry);
+    /// ξ̇ with its slopes, from one factorisation of M: δξ̇ = M⁻¹ δ(f − M ξ̇ − Γ ξ ξ − ∂V) with ξ̇ held. `None` where a
+    /// joint varies with x, or M is singular everywhere.
+    pub fn rates_and_slopes(&self) -> Option<RatesAndSlopes> {
+        let model = &self.model;
+        let n = model.n();
+        if !model.accelerated.is_empty() {
+            return None;
         }
-        Some(rows)
+        let mut graph = model.graph.clone();
+        let load = self.load(&mut graph);
+        let bias = inverse(
+            &mut graph,
+            &self.tree,
+            &model.xi,
+            &self.rest(),
+            model.gravity,
+        );
+        let mass = composite::mass_matrix(&mut graph, &self.tree, n);
+        let branches = Branches::of(&mut graph, &mass)?;
+        let right: Vec<Edge> = (0..n).map(|i| graph.sub(load[i], bias[i])).collect();
+        let xi_dot = branches.solve(&mut graph, &right);
+        let changes = self.changes(&self.tree, &load, &mut graph, &xi_dot)?;
+        // The inputs first: much of the others' work is theirs.
+        let mut columns: Vec<Vec<Edge>> = (changes[2 * n..].iter())
+            .map(|column| branches.solve(&mut graph, column))
+            .collect();
+        let moved = changes[..2 * n].iter();
+        let moved = moved.map(|column| branches.solve(&mut graph, column));
+        columns.splice(..0, moved.collect::<Vec<_>>());
+        let row = |i: usize| columns.iter().map(|column| column[i]).collect();
+        Some(RatesAndSlopes {
+            rows: (0..n).map(row).collect(),
+            graph,
+            xi_dot,
+            pivots: branches.pivots,
+        })
     }
 
-    /// ∂(load − M ξ̇ − Γ ξ ξ) with what weighs, ξ̇ held and given in `into`.
-    fn slopes_under(
+    /// ∂(load − M ξ̇ − Γ ξ ξ) with what weighs along displacements, velocities and inputs, ξ̇ held: 2 n + m columns.
+    fn changes(
         &self,
+        tree: &Tree,
         load: &[Edge],
-        mut graph: Graph,
-        into: &mut Graph,
-        rates: &[Edge],
+        graph: &mut Graph,
+        xi_dot: &[Edge],
     ) -> Option<Vec<Vec<Edge>>> {
         if self.free.is_some() {
             return None;
         }
         let model = &self.model;
-        let (xi, xi_dot) = (&model.xi, &model.xi_dot);
-        let found = slopes(&mut graph, &self.tree, xi, xi_dot, model.gravity)?;
+        let n = model.n();
+        let found = slopes(graph, tree, &model.xi, xi_dot, model.gravity)?;
         let one = graph.one();
-        let mut along: Vec<Derivation> = (0..xi.len())
-            .map(|j| {
-                Derivation::new(
-                    model
-                        .x
-                        .iter()
-                        .zip(&model.a)
-                        .map(|(x, row)| (x.node(), row[j])),
-                )
-            })
-            .collect();
-        let symbols = xi.iter().chain(&model.u);
-        along.extend(symbols.map(|symbol| Derivation::new([(symbol.node(), one)])));
-        let mut images: Vec<Edge> = into.symbols().iter().map(|s| Edge::of(s.node)).collect();
-        for (symbol, &rate) in xi_dot.iter().zip(rates) {
-            if let Node::Symbol(index) = graph.node(symbol.node()) {
-                images[index as usize] = rate;
+        let along = (0..n).map(|j| {
+            let seeds = model.x.iter().zip(&model.a);
+            Derivation::new(seeds.map(|(x, row)| (x.node(), row[j])))
+        });
+        let symbols = model.xi.iter().chain(&model.u);
+        let by = symbols.map(|symbol| Derivation::new([(symbol.node(), one)]));
+        let columns = along.chain(by).enumerate().map(|(j, mut derivation)| {
+            let mut column = derivation.all(graph, load);
+            let table = match j.checked_sub(n) {
+                None => Some((&found.displacement, j)),
+                Some(velocity) => (velocity < n).then_some((&found.velocity, velocity)),
+            };
+            if let Some((table, j)) = table {
+                for (entry, row) in column.iter_mut().zip(table) {
+                    *entry = graph.sub(*entry, row[j]);
+                }
             }
-        }
-        let mut rows = Vec::new();
-        for (i, &force) in load.iter().enumerate() {
-            let mut row: Vec<Edge> = along.iter_mut().map(|d| d.of(&mut graph, force)).collect();
-            let both = found.displacement[i].iter().chain(&found.velocity[i]);
-            for (entry, &slope) in row.iter_mut().zip(both) {
-                *entry = graph.sub(*entry, slope);
-            }
-            rows.push(map_symbols(&graph, into, &row, &images));
-        }
-        Some(rows)
+            column
+        });
+        Some(columns.collect())
     }
+}
+
+/// ξ̇ with its slopes.
+pub struct RatesAndSlopes {
+    /// The graph of all.
+    pub graph: Graph,
+    /// ξ̇.
+    pub xi_dot: Vec<Edge>,
+    /// Pivots that have to be positive, one for each velocity.
+    pub pivots: Vec<Edge>,
+    /// n rows of 2 n + m.
+    pub rows: Vec<Vec<Edge>>,
 }
 
 /// A candidate, counted.

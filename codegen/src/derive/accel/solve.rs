@@ -123,49 +123,6 @@ pub fn solve(graph: &mut Graph, parts: &Parts, plan: &Plan) -> Option<Solution> 
     Some(solution)
 }
 
-/// M⁻¹ B for n rows of B, M factored once from the last velocity to the first: what is zero in M
-/// and B by the tree stays zero. `None` where a pivot vanishes identically.
-pub fn solve_columns(
-    graph: &mut Graph,
-    mass: &[Vec<Edge>],
-    right: &[Vec<Edge>],
-) -> Option<Vec<Vec<Edge>>> {
-    let n = mass.len();
-    let (mut a, mut b) = (mass.to_vec(), right.to_vec());
-    let mut l = vec![vec![graph.zero(); n]; n];
-    let mut inverses = vec![graph.zero(); n];
-    for c in (0..n).rev() {
-        inverses[c] = graph.div(graph.one(), a[c][c])?;
-        for r in 0..c {
-            l[r][c] = absorb(graph, a[r][c], inverses[c]);
-        }
-        for r in 0..c {
-            for s in 0..=r {
-                let product = graph.mul(l[r][c], a[s][c]);
-                a[r][s] = graph.sub(a[r][s], product);
-                a[s][r] = a[r][s];
-            }
-        }
-    }
-    for column in 0..b.first().map_or(0, Vec::len) {
-        for c in (0..n).rev() {
-            for r in 0..c {
-                let product = graph.mul(l[r][c], b[c][column]);
-                b[r][column] = graph.sub(b[r][column], product);
-            }
-        }
-        for c in 0..n {
-            let mut value = graph.mul(inverses[c], b[c][column]);
-            for r in 0..c {
-                let product = graph.mul(l[r][c], b[r][column]);
-                value = graph.sub(value, product);
-            }
-            b[c][column] = value;
-        }
-    }
-    Some(b)
-}
-
 /// S⁻¹ b for a constant S; scaled, the entry [1,1] of the inverse goes into constants of b.
 fn multiply_inverse(
     graph: &mut Graph,

@@ -12,6 +12,7 @@ pub mod inverse;
 pub mod mass;
 pub mod momentum;
 pub mod nearby;
+mod proximal;
 mod reframe;
 mod regroup;
 mod revolute;
@@ -105,6 +106,8 @@ pub struct Tree {
 pub enum Placement {
     /// Where the recursions are cheapest, inertias regrouped.
     Chosen,
+    /// The same origins and inertias, in axes that do not turn with their hinges.
+    Proximal,
     /// Where the description has them, inertias with the links that they are of.
     Described,
 }
@@ -116,16 +119,20 @@ impl Tree {
         let mut draft = draft::draft(model, calculus)?;
         let safe = safe::Safe::of(model, &draft);
         match placement {
-            Placement::Chosen => {
+            Placement::Chosen | Placement::Proximal => {
                 reframe::reframe(&mut model.graph, &mut draft, &safe);
                 regroup::regroup(&mut model.graph, &mut draft);
             }
             Placement::Described => reframe::keep(&mut model.graph, &mut draft, &safe),
         }
         let links = draft.into_iter().map(|link| link.finish(&mut model.graph));
-        Some(Tree {
+        let tree = Tree {
             links: links.collect(),
             armature: model.armature.clone(),
+        };
+        Some(match placement {
+            Placement::Proximal => tree.proximal(&mut model.graph),
+            Placement::Chosen | Placement::Described => tree,
         })
     }
 

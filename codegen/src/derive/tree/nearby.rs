@@ -10,10 +10,7 @@ use super::inverse::{LinkMotion, Wrench, carried, motions, wrench};
 use super::mass::Mass;
 use super::{Freedom, Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{
-    Mat3, Vec3, add3, apply_transposed, apply3, cross, multiply3, scale3, zero3,
-};
-use crate::model::rotations::hat;
+use crate::algebra::linear::{Mat3, Vec3, add3, apply_transposed, apply3, cross, scale3, zero3};
 
 /// ∂f/∂h and ∂f/∂ξ of the force f that ξ̇ needs.
 pub struct Slopes {
@@ -23,11 +20,12 @@ pub struct Slopes {
     pub velocity: Vec<Vec<Edge>>,
 }
 
-/// How a wrench answers δω, besides δα and δa.
+/// How all that hangs on a joint moves against its link: ∫ v dm and ∫ r vᵀ dm, v the velocity that the link sees. What varies
+/// by δω then is 2 δω × v at every point.
 #[derive(Clone, Copy)]
-struct Response {
-    torque: Mat3,
-    force: Mat3,
+struct Stream {
+    first: Vec3,
+    second: Mat3,
 }
 
 /// A variation of a link's motion.
@@ -60,17 +58,14 @@ pub fn slopes(
     let motions = motions(graph, tree, xi, xi_dot, gravity);
     let mut masses: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
     let mut totals = Vec::new();
-    let mut answers = Vec::new();
+    let mut streams = vec![Stream::none(graph); tree.links.len()];
     for (link, motion) in tree.links.iter().zip(&motions) {
         totals.push(wrench(graph, &link.mass, motion));
-        answers.push(Response::own(graph, &link.mass, motion.omega));
     }
     for (index, link) in tree.links.iter().enumerate().rev() {
         if let Some(parent) = link.parent {
-            let before = motions[parent].omega;
-            let moved =
-                answers[index].carried(graph, link, &masses[index], &motions[index], before);
-            answers[parent] = answers[parent].plus(graph, &moved);
+            let moved = streams[index].carried(graph, link, &masses[index], &motions[index]);
+            streams[parent] = streams[parent].plus(graph, &moved);
             let mass = masses[index].carried(graph, link);
             masses[parent] = masses[parent].plus(graph, &mass);
             let total = carried(graph, link, &totals[index]);
@@ -93,18 +88,15 @@ pub fn slopes(
         })
         .collect();
     for (index, link) in tree.links.iter().enumerate() {
-        let (mass, answer) = (masses[index], answers[index]);
+        let composite = Composite {
+            mass: masses[index],
+            stream: streams[index],
+            omega: motions[index].omega,
+        };
         for (place, freedom) in link.freedoms.iter().enumerate() {
             let (i, _) = *freedom.rate.first()?;
             // The force of this joint, by variations of its link and of those before.
-            let (force, torque) = mass.wrench(graph, freedom.angular, freedom.linear);
-            let turned = apply_transposed(graph, &answer.torque, freedom.angular);
-            let pushed = apply_transposed(graph, &answer.force, freedom.linear);
-            let mut covector = Variation {
-                omega: add3(graph, turned, pushed),
-                alpha: torque,
-                a: force,
-            };
+            let mut covector = composite.force(graph, freedom);
             let mut here = index;
             loop {
                 for (other, (by_place, by_rate)) in
@@ -124,7 +116,7 @@ pub fn slopes(
             }
             // The wrench that a variation of this joint passes on to those before.
             let (by_place, by_rate) = varied[index][place];
-            let mut wrenches = [by_place, by_rate].map(|v| answer.wrench(graph, &mass, &v));
+            let mut wrenches = [by_place, by_rate].map(|v| composite.wrench(graph, &v));
             let total = totals[index];
             wrenches[0] = follow(graph, &wrenches[0], freedom, &total);
             let mut here = index;
@@ -215,11 +207,8 @@ impl Variation {
         let a = link.out(graph, self.a);
         let alpha = link.out(graph, self.alpha);
         let lever = cross(graph, link.position, a);
-        let speed = cross(graph, before, link.position);
-        let first = cross(graph, speed, a);
-        let inner = cross(graph, a, before);
-        let second = cross(graph, link.position, inner);
-        let centripetal = add3(graph, first, second);
+        let centripetal = centripetal(graph, before, link.position);
+        let centripetal = apply3(graph, &centripetal, a);
         Variation {
             omega: add3(graph, omega, centripetal),
             alpha: add3(graph, alpha, lever),
@@ -228,112 +217,148 @@ impl Variation {
     }
 }
 
-fn plus(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Mat3 {
-    std::array::from_fn(|i| add3(graph, a[i], b[i]))
+/// K of a · (δω × (ω × p) + ω × (δω × p)) = δω · K a: p ωᵀ − 2 ω pᵀ + (p·ω) I.
+fn centripetal(graph: &mut Graph, omega: Vec3, p: Vec3) -> Mat3 {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|k| {
+            if i == k {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let (a, b) = (graph.mul(p[j], omega[j]), graph.mul(p[k], omega[k]));
+                return graph.add(a, b);
+            }
+            let (a, b) = (graph.mul(p[i], omega[k]), graph.mul(omega[i], p[k]));
+            let twice = graph.add(b, b);
+            graph.sub(a, twice)
+        })
+    })
 }
 
-impl Response {
-    /// Of a link alone: C = ω hᵀ + (ω·h) I − 2 h ωᵀ, B δω = δω × Θ ω + ω × Θ δω.
-    fn own(graph: &mut Graph, mass: &Mass, omega: Vec3) -> Self {
-        let h = mass.first;
-        let along = graph.dot(&omega, &h);
-        let force = std::array::from_fn(|i| {
-            std::array::from_fn(|k| {
-                let (a, b) = (graph.mul(omega[i], h[k]), graph.mul(h[i], omega[k]));
-                let twice = graph.add(b, b);
-                let entry = graph.sub(a, twice);
-                if i == k {
-                    graph.add(entry, along)
-                } else {
-                    entry
-                }
-            })
-        });
-        let momentum = mass.spun(graph, omega);
-        let spin = hat(graph, omega);
-        let theta = mass.inertia(graph);
-        let turned = multiply3(graph, &spin, &theta);
-        let back = hat(graph, momentum);
-        let torque =
-            std::array::from_fn(|i| std::array::from_fn(|k| graph.sub(turned[i][k], back[i][k])));
-        Response { torque, force }
-    }
+/// All that hangs on a joint, as one body but for what streams in it.
+struct Composite {
+    mass: Mass,
+    stream: Stream,
+    omega: Vec3,
+}
 
-    fn plus(&self, graph: &mut Graph, other: &Response) -> Self {
-        Response {
-            torque: plus(graph, &self.torque, &other.torque),
-            force: plus(graph, &self.force, &other.force),
+impl Composite {
+    /// The force of a joint, as a covector on variations of its link.
+    fn force(&self, graph: &mut Graph, freedom: &Freedom) -> Variation {
+        let (e, l, omega) = (freedom.angular, freedom.linear, self.omega);
+        let (force, torque) = self.mass.wrench(graph, e, l);
+        // e × S ω + S (ω × e) + 2 (tr D e − D e).
+        let spun = apply3(graph, &self.mass.second, omega);
+        let first = cross(graph, e, spun);
+        let across = cross(graph, omega, e);
+        let second = apply3(graph, &self.mass.second, across);
+        let streamed = self.stream.turned(graph, e, apply3);
+        let turned = [second, streamed, streamed];
+        let turned = turned
+            .into_iter()
+            .fold(first, |sum, term| add3(graph, sum, term));
+        // (ω·l) h + (ω·h) l − 2 (h·l) ω + 2 P × l.
+        let h = self.mass.first;
+        let swept = cross(graph, self.stream.first, l);
+        let coriolis = add3(graph, swept, swept);
+        let pushed = centripetal_force(graph, h, omega, l);
+        let pushed = add3(graph, pushed, coriolis);
+        Variation {
+            omega: add3(graph, turned, pushed),
+            alpha: torque,
+            a: force,
         }
     }
 
     /// The wrench that answers a variation.
-    fn wrench(&self, graph: &mut Graph, mass: &Mass, by: &Variation) -> Wrench {
+    fn wrench(&self, graph: &mut Graph, by: &Variation) -> Wrench {
+        let (mass, omega) = (&self.mass, self.omega);
         let (force, torque) = mass.wrench(graph, by.alpha, by.a);
-        let (push, turn) = (
-            apply3(graph, &self.force, by.omega),
-            apply3(graph, &self.torque, by.omega),
-        );
-        let whole = Wrench { force, torque };
-        let own = Wrench {
-            force: push,
-            torque: turn,
-        };
-        whole.plus(graph, &own)
+        // ω (h·δω) + (ω·h) δω − 2 h (ω·δω) + 2 δω × P.
+        let swept = cross(graph, by.omega, self.stream.first);
+        let coriolis = add3(graph, swept, swept);
+        let centripetal = centripetal_force(graph, omega, mass.first, by.omega);
+        let push = add3(graph, centripetal, coriolis);
+        // S ω × δω − ω × S δω + 2 (tr D δω − Dᵀ δω).
+        let spun = apply3(graph, &mass.second, omega);
+        let first = cross(graph, spun, by.omega);
+        let varied = apply3(graph, &mass.second, by.omega);
+        let second = cross(graph, varied, omega);
+        let streamed = self.stream.turned(graph, by.omega, apply_transposed);
+        let turn = [second, streamed, streamed];
+        let turn = turn
+            .into_iter()
+            .fold(first, |sum, term| add3(graph, sum, term));
+        Wrench {
+            force: add3(graph, force, push),
+            torque: add3(graph, torque, turn),
+        }
+    }
+}
+
+/// a (b·c) + (a·b) c − 2 b (a·c).
+fn centripetal_force(graph: &mut Graph, a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
+    let (bc, ab, ac) = (graph.dot(&b, &c), graph.dot(&a, &b), graph.dot(&a, &c));
+    let twice = -graph.add(ac, ac);
+    let terms = [
+        scale3(graph, bc, a),
+        scale3(graph, ab, c),
+        scale3(graph, twice, b),
+    ];
+    let [first, rest @ ..] = terms;
+    rest.into_iter()
+        .fold(first, |sum, term| add3(graph, sum, term))
+}
+
+impl Stream {
+    fn none(graph: &Graph) -> Self {
+        Stream {
+            first: zero3(graph),
+            second: [zero3(graph); 3],
+        }
     }
 
-    /// Of the link before, whose δω is also a δα and δa of this one.
-    fn carried(
+    fn plus(&self, graph: &mut Graph, other: &Stream) -> Self {
+        Stream {
+            first: add3(graph, self.first, other.first),
+            second: std::array::from_fn(|i| add3(graph, self.second[i], other.second[i])),
+        }
+    }
+
+    /// tr D v − D v, or the same of Dᵀ.
+    fn turned(
         &self,
         graph: &mut Graph,
-        link: &Link,
-        mass: &Mass,
-        motion: &LinkMotion,
-        before: Vec3,
-    ) -> Self {
-        // δα = δω × ω_rel, δa = 2 δω × v_rel.
+        v: Vec3,
+        apply: fn(&mut Graph, &Mat3, Vec3) -> Vec3,
+    ) -> Vec3 {
+        let mut rest = self.second;
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            rest[i][i] = -graph.add(self.second[j][j], self.second[k][k]);
+        }
+        apply(graph, &rest, v).map(|entry| -entry)
+    }
+
+    /// As the link before sees it: the link itself moves against that one, too.
+    fn carried(&self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
         let (spin, speed) = motion.relative;
-        let mut columns = [Wrench {
-            force: zero3(graph),
-            torque: zero3(graph),
-        }; 3];
-        for (k, column) in columns.iter_mut().enumerate() {
-            let mut unit = zero3(graph);
-            unit[k] = graph.one();
-            let alpha = cross(graph, unit, spin);
-            let coriolis = cross(graph, unit, speed);
-            let a = add3(graph, coriolis, coriolis);
-            (column.force, column.torque) = mass.wrench(graph, alpha, a);
-        }
-        let grown = |graph: &mut Graph, own: &Mat3, pick: fn(&Wrench) -> Vec3| -> Mat3 {
-            std::array::from_fn(|i| {
-                std::array::from_fn(|k| graph.add(own[i][k], pick(&columns[k])[i]))
-            })
-        };
-        let mut force = grown(graph, &self.force, |column| column.force);
-        let mut torque = grown(graph, &self.torque, |column| column.torque);
-        let mut first = mass.first;
-        for turn in link.turns.iter().rev() {
-            force = turn.general(graph, &force);
-            torque = turn.general(graph, &torque);
-            first = turn.out(graph, first);
-        }
-        // δa = (δω × (ω × p) + ω × (δω × p)) at the joint, p its place.
-        let p = link.position;
-        let speed = cross(graph, before, p);
-        let (whirl, arm) = (hat(graph, speed), hat(graph, p));
-        let spin = hat(graph, before);
-        let product = multiply3(graph, &spin, &arm);
-        let swing: Mat3 = std::array::from_fn(|i| {
-            std::array::from_fn(|k| -graph.add(whirl[i][k], product[i][k]))
+        let whirl = cross(graph, spin, mass.first);
+        let drift = scale3(graph, mass.mass, speed);
+        let own = add3(graph, whirl, drift);
+        let mut first = add3(graph, self.first, own);
+        let mut second: Mat3 = std::array::from_fn(|i| {
+            let whirl = cross(graph, spin, mass.second[i]);
+            let drift = scale3(graph, mass.first[i], speed);
+            let own = add3(graph, whirl, drift);
+            add3(graph, self.second[i], own)
         });
-        let push = swing.map(|row| scale3(graph, mass.mass, row));
-        let lever = multiply3(graph, &hat(graph, first), &swing);
-        let force = plus(graph, &force, &push);
-        let torque = plus(graph, &torque, &lever);
-        let levered = multiply3(graph, &arm, &force);
-        Response {
-            torque: plus(graph, &torque, &levered),
-            force,
+        for turn in link.turns.iter().rev() {
+            first = turn.out(graph, first);
+            second = turn.general(graph, &second);
         }
+        for (row, &p) in second.iter_mut().zip(&link.position) {
+            let far = scale3(graph, p, first);
+            *row = add3(graph, *row, far);
+        }
+        Stream { first, second }
     }
 }

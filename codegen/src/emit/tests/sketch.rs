@@ -137,5 +137,6 @@ pub fn function(name: &str, arguments: &[Argument], shape: Shape, outputs: Vec<E
         outputs,
         guards: Vec::new(),
         fallible: false,
+        rates: Vec::new(),
     }
 }
