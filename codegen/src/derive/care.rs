@@ -45,8 +45,8 @@ impl Care {
     /// Where links of candidates have their frames.
     pub fn placements(&self) -> &'static [Placement] {
         match self.is_taken() {
-            true => &[Placement::Chosen, Placement::Proximal, Placement::Described],
-            false => &[Placement::Chosen, Placement::Proximal],
+            true => &[Placement::Chosen, Placement::Parallel, Placement::Described],
+            false => &[Placement::Chosen, Placement::Parallel],
         }
     }
 

@@ -146,7 +146,7 @@ impl Builder<'_> {
         let (mut graph, parts) = (self.shared.graph.clone(), &self.shared.parts);
         let right = parts.right(&mut graph);
         let mut along = derivations(&graph, symbols);
-        let branches = Branches::of(&mut graph, &parts.mass)?;
+        let branches = Branches::of(&mut graph, &parts.mass, &[])?;
         let columns: Vec<Vec<Edge>> = (along.iter_mut())
             .map(|along| {
                 let changes = parts.mass.iter().zip(&right).map(|(row, &force)| {

@@ -14,7 +14,8 @@ use crate::derive::calculus::Calculus;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
 use crate::derive::tree::momentum::{columns, swing, total};
-use crate::derive::tree::nearby::slopes;
+use crate::derive::tree::nearby::{Slopes, slopes};
+use crate::derive::tree::uniform::Uniform;
 use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;
 use crate::program::count::{count, depth};
@@ -336,9 +337,18 @@ impl Recursion {
     /// ∂(M ξ̇ + Γ ξ ξ + ∂V) along displacements and velocities at constant ξ̇, in a graph of its own: n rows of 2 n.
     /// `None` where a joint varies with x.
     pub fn inverse_slopes(&self) -> Option<(Graph, Vec<Vec<Edge>>)> {
+        if self.free.is_some() {
+            return None;
+        }
         let mut graph = self.model.graph.clone();
-        let rates = &self.model.xi_dot;
-        let mut columns = self.changes(&self.tree, &self.elastic, &mut graph, rates)?;
+        let Model {
+            xi,
+            xi_dot,
+            gravity,
+            ..
+        } = &self.model;
+        let found = slopes(&mut graph, &self.tree, xi, xi_dot, *gravity)?;
+        let mut columns = self.changes(&self.elastic, &mut graph, &found);
         columns.truncate(2 * self.model.n());
         let row = |i: usize| columns.iter().map(|column| -column[i]).collect();
         Some((graph, (0..self.model.n()).map(row).collect()))
@@ -349,23 +359,31 @@ impl Recursion {
     pub fn rates_and_slopes(&self) -> Option<RatesAndSlopes> {
         let model = &self.model;
         let n = model.n();
-        if !model.accelerated.is_empty() {
+        if self.free.is_some() || !model.accelerated.is_empty() {
             return None;
         }
         let mut graph = model.graph.clone();
         let load = self.load(&mut graph);
-        let bias = inverse(
-            &mut graph,
-            &self.tree,
-            &model.xi,
-            &self.rest(),
-            model.gravity,
-        );
-        let mass = composite::mass_matrix(&mut graph, &self.tree, n);
-        let branches = Branches::of(&mut graph, &mass)?;
+        let tree = &self.tree;
+        let free = tree.uniform(&mut graph, &model.xi, model.gravity);
+        let (proper, gravity) = match &free {
+            Some(uniform) => (&uniform.xi, zero3(&graph)),
+            None => (&model.xi, model.gravity),
+        };
+        let bias = inverse(&mut graph, tree, proper, &self.rest(), gravity);
+        let mass = composite::mass_matrix(&mut graph, tree, n);
+        let twins = tree.twins(&mut graph);
+        let branches = Branches::of(&mut graph, &mass, &twins)?;
         let right: Vec<Edge> = (0..n).map(|i| graph.sub(load[i], bias[i])).collect();
-        let xi_dot = branches.solve(&mut graph, &right);
-        let changes = self.changes(&self.tree, &load, &mut graph, &xi_dot)?;
+        let mut xi_dot = branches.solve(&mut graph, &right);
+        let found = slopes(&mut graph, tree, proper, &xi_dot, gravity)?;
+        let mut changes = self.changes(&load, &mut graph, &found);
+        if let Some(uniform) = &free {
+            // The velocities that are left out act by what they add to ξ̇ alone.
+            for &i in &uniform.common {
+                changes[n + i] = self.along(&graph, n + i).all(&mut graph, &load);
+            }
+        }
         // The inputs first: much of the others' work is theirs.
         let mut columns: Vec<Vec<Edge>> = (changes[2 * n..].iter())
             .map(|column| branches.solve(&mut graph, column))
@@ -373,6 +391,17 @@ impl Recursion {
         let moved = changes[..2 * n].iter();
         let moved = moved.map(|column| branches.solve(&mut graph, column));
         columns.splice(..0, moved.collect::<Vec<_>>());
+        if let Some(Uniform { rates, .. }) = &free {
+            for (j, column) in columns.iter_mut().enumerate() {
+                let more = self.along(&graph, j).all(&mut graph, rates);
+                for (entry, more) in column.iter_mut().zip(more) {
+                    *entry = graph.add(*entry, more);
+                }
+            }
+            for (rate, &more) in xi_dot.iter_mut().zip(rates) {
+                *rate = graph.add(*rate, more);
+            }
+        }
         let row = |i: usize| columns.iter().map(|column| column[i]).collect();
         Some(RatesAndSlopes {
             rows: (0..n).map(row).collect(),
@@ -382,29 +411,27 @@ impl Recursion {
         })
     }
 
-    /// ∂(load − M ξ̇ − Γ ξ ξ) with what weighs along displacements, velocities and inputs, ξ̇ held: 2 n + m columns.
-    fn changes(
-        &self,
-        tree: &Tree,
-        load: &[Edge],
-        graph: &mut Graph,
-        xi_dot: &[Edge],
-    ) -> Option<Vec<Vec<Edge>>> {
-        if self.free.is_some() {
-            return None;
-        }
+    /// The derivation along a displacement, a velocity or an input, by their order.
+    fn along(&self, graph: &Graph, j: usize) -> Derivation {
         let model = &self.model;
-        let n = model.n();
-        let found = slopes(graph, tree, &model.xi, xi_dot, model.gravity)?;
         let one = graph.one();
-        let along = (0..n).map(|j| {
-            let seeds = model.x.iter().zip(&model.a);
-            Derivation::new(seeds.map(|(x, row)| (x.node(), row[j])))
-        });
-        let symbols = model.xi.iter().chain(&model.u);
-        let by = symbols.map(|symbol| Derivation::new([(symbol.node(), one)]));
-        let columns = along.chain(by).enumerate().map(|(j, mut derivation)| {
-            let mut column = derivation.all(graph, load);
+        match j.checked_sub(model.n()) {
+            None => {
+                let seeds = model.x.iter().zip(&model.a);
+                Derivation::new(seeds.map(|(x, row)| (x.node(), row[j])))
+            }
+            Some(i) => {
+                let symbol = model.xi.iter().chain(&model.u).nth(i);
+                Derivation::new(symbol.map(|symbol| (symbol.node(), one)))
+            }
+        }
+    }
+
+    /// ∂(load − M ξ̇ − Γ ξ ξ) with what weighs along displacements, velocities and inputs, ξ̇ held: 2 n + m columns.
+    fn changes(&self, load: &[Edge], graph: &mut Graph, found: &Slopes) -> Vec<Vec<Edge>> {
+        let n = self.model.n();
+        let columns = (0..2 * n + self.model.u.len()).map(|j| {
+            let mut column = self.along(graph, j).all(graph, load);
             let table = match j.checked_sub(n) {
                 None => Some((&found.displacement, j)),
                 Some(velocity) => (velocity < n).then_some((&found.velocity, velocity)),
@@ -416,7 +443,7 @@ impl Recursion {
             }
             column
         });
-        Some(columns.collect())
+        columns.collect()
     }
 }
 

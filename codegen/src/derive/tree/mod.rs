@@ -12,7 +12,7 @@ pub mod inverse;
 pub mod mass;
 pub mod momentum;
 pub mod nearby;
-mod proximal;
+mod parallel;
 mod reframe;
 mod regroup;
 mod revolute;
@@ -20,6 +20,8 @@ mod safe;
 #[cfg(test)]
 mod tests;
 pub mod turn;
+pub mod twin;
+pub mod uniform;
 
 use super::calculus::Calculus;
 use crate::algebra::graph::{Edge, Graph};
@@ -106,8 +108,8 @@ pub struct Tree {
 pub enum Placement {
     /// Where the recursions are cheapest, inertias regrouped.
     Chosen,
-    /// The same origins and inertias, in axes that do not turn with their hinges.
-    Proximal,
+    /// The same, in axes that parallel hinges share.
+    Parallel,
     /// Where the description has them, inertias with the links that they are of.
     Described,
 }
@@ -119,7 +121,7 @@ impl Tree {
         let mut draft = draft::draft(model, calculus)?;
         let safe = safe::Safe::of(model, &draft);
         match placement {
-            Placement::Chosen | Placement::Proximal => {
+            Placement::Chosen | Placement::Parallel => {
                 reframe::reframe(&mut model.graph, &mut draft, &safe);
                 regroup::regroup(&mut model.graph, &mut draft);
             }
@@ -131,7 +133,7 @@ impl Tree {
             armature: model.armature.clone(),
         };
         Some(match placement {
-            Placement::Proximal => tree.proximal(&mut model.graph),
+            Placement::Parallel => tree.sharing_axes(&mut model.graph),
             Placement::Chosen | Placement::Described => tree,
         })
     }

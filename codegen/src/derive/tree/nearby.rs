@@ -2,7 +2,7 @@
 //!
 //! A link whose motion varies by (δω, δα, δa), inner joints going on as they do, passes on the
 //! torque Θ δα + h × δa + B δω and the force δα × h + m δa + C δω about its origin: Θ, h, m are those of
-//! all that hangs on it, and so are B and C, which gather what varies with angular velocity alone.
+//! all that hangs on it, and B and C follow from them, as of one body, and from how it moves inside, P and D below.
 //! Forces of a joint are covectors on such variations, carried towards the root as wrenches are.
 //! After Carpentier and Mansard (2018) and Singh, Russell and Wensing (2022), in axes of links.
 
@@ -20,8 +20,8 @@ pub struct Slopes {
     pub velocity: Vec<Vec<Edge>>,
 }
 
-/// How all that hangs on a joint moves against its link: ∫ v dm and ∫ r vᵀ dm, v the velocity that the link sees. What varies
-/// by δω then is 2 δω × v at every point.
+/// How all that hangs on a joint moves against its link: 2 ∫ v dm and 2 ∫ r vᵀ dm, v the velocity that the link sees.
+/// By a variation δω the acceleration of every point varies by 2 δω × v.
 #[derive(Clone, Copy)]
 struct Stream {
     first: Vec3,
@@ -245,20 +245,19 @@ impl Composite {
     fn force(&self, graph: &mut Graph, freedom: &Freedom) -> Variation {
         let (e, l, omega) = (freedom.angular, freedom.linear, self.omega);
         let (force, torque) = self.mass.wrench(graph, e, l);
-        // e × S ω + S (ω × e) + 2 (tr D e − D e).
+        // e × S ω + S (ω × e) + tr D e − D e.
         let spun = apply3(graph, &self.mass.second, omega);
         let first = cross(graph, e, spun);
         let across = cross(graph, omega, e);
         let second = apply3(graph, &self.mass.second, across);
         let streamed = self.stream.turned(graph, e, apply3);
-        let turned = [second, streamed, streamed];
+        let turned = [second, streamed];
         let turned = turned
             .into_iter()
             .fold(first, |sum, term| add3(graph, sum, term));
-        // (ω·l) h + (ω·h) l − 2 (h·l) ω + 2 P × l.
+        // (ω·l) h + (ω·h) l − 2 (h·l) ω + P × l.
         let h = self.mass.first;
-        let swept = cross(graph, self.stream.first, l);
-        let coriolis = add3(graph, swept, swept);
+        let coriolis = cross(graph, self.stream.first, l);
         let pushed = centripetal_force(graph, h, omega, l);
         let pushed = add3(graph, pushed, coriolis);
         Variation {
@@ -272,18 +271,17 @@ impl Composite {
     fn wrench(&self, graph: &mut Graph, by: &Variation) -> Wrench {
         let (mass, omega) = (&self.mass, self.omega);
         let (force, torque) = mass.wrench(graph, by.alpha, by.a);
-        // ω (h·δω) + (ω·h) δω − 2 h (ω·δω) + 2 δω × P.
-        let swept = cross(graph, by.omega, self.stream.first);
-        let coriolis = add3(graph, swept, swept);
+        // ω (h·δω) + (ω·h) δω − 2 h (ω·δω) + δω × P.
+        let coriolis = cross(graph, by.omega, self.stream.first);
         let centripetal = centripetal_force(graph, omega, mass.first, by.omega);
         let push = add3(graph, centripetal, coriolis);
-        // S ω × δω − ω × S δω + 2 (tr D δω − Dᵀ δω).
+        // S ω × δω − ω × S δω + tr D δω − Dᵀ δω.
         let spun = apply3(graph, &mass.second, omega);
         let first = cross(graph, spun, by.omega);
         let varied = apply3(graph, &mass.second, by.omega);
         let second = cross(graph, varied, omega);
         let streamed = self.stream.turned(graph, by.omega, apply_transposed);
-        let turn = [second, streamed, streamed];
+        let turn = [second, streamed];
         let turn = turn
             .into_iter()
             .fold(first, |sum, term| add3(graph, sum, term));
@@ -341,6 +339,7 @@ impl Stream {
     /// As the link before sees it: the link itself moves against that one, too.
     fn carried(&self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
         let (spin, speed) = motion.relative;
+        let (spin, speed) = (add3(graph, spin, spin), add3(graph, speed, speed));
         let whirl = cross(graph, spin, mass.first);
         let drift = scale3(graph, mass.mass, speed);
         let own = add3(graph, whirl, drift);

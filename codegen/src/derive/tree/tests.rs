@@ -3,6 +3,8 @@
 use super::inverse::{inverse, wrenches};
 use super::{Placement, Tree, articulated, composite, nearby};
 use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::{Edge, Graph};
+use crate::derive::accel::branches::Branches;
 use crate::derive::accel::parts::{Reference, Variant, parts};
 use crate::derive::calculus::Calculus;
 use crate::model::Model;
@@ -58,9 +60,37 @@ fn built(text: &str) -> Model {
     crate::lower::build(&system).expect("is a model")
 }
 
-/// Inverse dynamics, M, forward dynamics and slopes by recursion against the derivation that traces every
-/// body by itself.
-fn agree(mut model: Model, steady: bool) {
+/// Legs of three hinges on a free hull, of which two are parallel; one leg hangs at awkward angles, and an arm slides.
+const LEGGED: &str = "system Legged {
+    gravity [1, -2, -9.81];
+    input push: vec3, twist: vec3, knee;
+    joint base: free moves hull;
+    wrench (push, twist) on hull in body;
+    body on hull { mass 7; com [0.1, 0.2, 0.3]; inertia [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 2.5]] about com; }
+    joint hip1: continuous [1, 0, 0] on hull at pose(identity(3), [0.3, 0.2, 0.1]) moves a1;
+    body on a1 { mass 1; com [0.1, 0.2, 0.3]; inertia [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 2.5]] about com; }
+    joint thigh1: continuous [0, 1, 0] on a1 at pose(identity(3), [0.1, 0.05, 0]) moves b1 { armature 0.1; };
+    body on b1 { mass 2; com [0.1, 0.2, -0.3]; inertia [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 2.5]] about com; }
+    joint knee1: continuous [0, 1, 0] on b1 at pose(roty(0.4), [0.1, 0.05, -0.6]) moves c1 { force knee; };
+    body on c1 { mass 0.5; com [0.1, 0.2, -0.2]; inertia [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 2.5]] about com; }
+    joint hip2: continuous [0, 1, 0] on hull at pose(rpy(0.3, 0.2, 0.1), [-0.3, 0.2, 0.1]) moves a2;
+    body on a2 { mass 1; com [0.1, 0.2, 0.3]; inertia [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 2.5]] about com; }
+    joint knee2: continuous [0, -1, 0] on a2 at pose(identity(3), [0.1, 0.05, -0.6]) moves b2;
+    body on b2 { mass 0.5; com [0.1, 0.2, -0.2]; inertia [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 2.5]] about com; }
+    joint arm: prismatic [0, 0, 1] on hull at pose(identity(3), [0, 0.1, 0.2]) moves hand;
+    body on hand { mass 0.5; com [0.1, 0.2, -0.2]; inertia diag(1, 2, 2.5) about com; }
+}";
+
+/// Inverse dynamics, M, forward dynamics and slopes by recursion, wherever the frames are, against the derivation that traces
+/// every body by itself.
+fn agree(model: Model, steady: bool) {
+    let placements = [Placement::Chosen, Placement::Parallel, Placement::Described];
+    for placement in placements {
+        agree_placed(model.clone(), placement, steady);
+    }
+}
+
+fn agree_placed(mut model: Model, placement: Placement, steady: bool) {
     let mut calculus = Calculus::new(&model);
     let variant = Variant {
         axes: Axes::Body,
@@ -69,7 +99,7 @@ fn agree(mut model: Model, steady: bool) {
     };
     let mut plain = model.clone();
     let parts = parts(&mut plain, &mut calculus.clone(), variant);
-    let tree = Tree::of(&mut model, &mut calculus, Placement::Chosen).expect("is a tree");
+    let tree = Tree::of(&mut model, &mut calculus, placement).expect("is a tree");
     let n = model.n();
     let zero = model.graph.zero();
     let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
@@ -130,6 +160,65 @@ fn chains_have_the_values_of_the_plain_derivation() {
 fn joints_of_all_kinds_have_the_values_of_the_plain_derivation() {
     agree(built(MIXED), true);
     agree(built(FLAT), false);
+    agree(built(LEGGED), true);
+}
+
+/// M e = M s on what hangs on a joint, M⁻¹ by branches is that of M, and ξ̇ is proper acceleration and what all links have in
+/// common.
+#[test]
+fn branches_answer_as_the_mass_matrix_does() {
+    // What slides on the other hull has an armature, which only its own velocity moves.
+    for (text, expected) in [(LEGGED, 3), (MIXED, 0)] {
+        for placement in [Placement::Chosen, Placement::Parallel] {
+            let mut model = built(text);
+            let mut calculus = Calculus::new(&model);
+            let tree = Tree::of(&mut model, &mut calculus, placement).expect("is a tree");
+            let (n, gravity, xi) = (model.n(), model.gravity, model.xi.clone());
+            let graph = &mut model.graph;
+            let (zero, still) = (graph.zero(), vec![graph.zero(); n]);
+            let mass = composite::mass_matrix(graph, &tree, n);
+            let twins = tree.twins(graph);
+            assert_eq!(twins.len(), expected, "twins");
+            for twin in &twins {
+                let terms = twin.by.iter();
+                let terms = terms.map(|&(i, s)| graph.mul(mass[twin.of][i], s));
+                let terms: Vec<_> = terms.collect();
+                assert_eq!(
+                    graph.sum(&terms),
+                    mass[twin.of][twin.of],
+                    "twin of {}",
+                    twin.of
+                );
+            }
+            let branches = Branches::of(graph, &mass, &twins).expect("M is regular");
+            let unit = |graph: &Graph, i: usize| -> Vec<Edge> {
+                let entry = |j| if i == j { graph.one() } else { zero };
+                (0..n).map(entry).collect()
+            };
+            let mut columns: Vec<Vec<Edge>> = (0..n).map(|i| unit(graph, i)).collect();
+            columns.push(xi.clone());
+            // Of a wrench on what hangs on the first hip: one branch, and what is before it.
+            columns.push((0..n).map(|i| if i < 9 { xi[i] } else { zero }).collect());
+            for column in columns {
+                let solved = branches.solve(graph, &column);
+                for (i, row) in mass.iter().enumerate() {
+                    assert_eq!(graph.dot(row, &solved), column[i], "row {i}");
+                }
+            }
+            let bias = inverse(graph, &tree, &xi, &still, gravity);
+            let Some(uniform) = tree.uniform(graph, &xi, gravity) else {
+                assert_eq!(text, MIXED, "all roots of the other are free");
+                continue;
+            };
+            let none = [zero; 3];
+            let proper = inverse(graph, &tree, &uniform.xi, &still, none);
+            for (i, row) in mass.iter().enumerate() {
+                let common = graph.dot(row, &uniform.rates);
+                let force = graph.add(bias[i], common);
+                assert_eq!(force, proper[i], "row {i} of what is proper");
+            }
+        }
+    }
 }
 
 /// Spin in world axes: the freedoms of the joint vary with x, and drift.

@@ -1,27 +1,27 @@
-//! Links in axes before their hinges turn: the third axis along the hinge still, the other two as the link before has
-//! them.
+//! Axes that parallel hinges share.
 //!
-//! All equations of the recursions hold between vectors and tensors, in any axes that they have at an instant. In axes of the
-//! link before, nothing of a hinge's own has to be turned: the turn goes on to what hangs on the link, and only what the link
-//! itself weighs is turned by it. Hinges that are parallel share one pair of axes, so that nothing is turned between them at
-//! all, and masses are turned by sums of angles.
+//! The equations of the recursions hold between vectors and tensors, in whatever axes these have at an instant. Links whose hinges
+//! are parallel take the axes of the first of them before it turns: then nothing has to be turned between them, and only
+//! what a link itself weighs is turned, by the sum of the angles. So does the last link of a chain, whose inertia is all
+//! that there is to turn.
 
 use super::turn::Turn;
 use super::{Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
 
 impl Tree {
-    /// The same links, those of hinges in axes that do not turn with them.
-    pub fn proximal(&self, graph: &mut Graph) -> Tree {
+    /// The same links, in shared axes.
+    pub fn sharing_axes(&self, graph: &mut Graph) -> Tree {
+        let shares = self.shares(graph);
         let mut lags: Vec<Option<Plane>> = Vec::with_capacity(self.links.len());
         let mut links = Vec::with_capacity(self.links.len());
-        for link in &self.links {
+        for (link, shares) in self.links.iter().zip(shares) {
             let before = link.parent.and_then(|parent| lags[parent]);
             let mut moved = link.clone();
             if let Some(lag) = before {
                 moved.position = lag.turn().out(graph, link.position);
             }
-            let (fixed, angle) = match hinge(graph, link) {
+            let (fixed, angle) = match hinge(graph, link).filter(|_| shares) {
                 Some((fixed, angle)) => (fixed, Some(angle)),
                 None => (&link.turns[..], None),
             };
@@ -49,6 +49,29 @@ impl Tree {
             links,
             armature: self.armature.clone(),
         }
+    }
+}
+
+impl Tree {
+    /// Which links give up axes of their own: those whose hinge is parallel to the one before or to one behind, and the
+    /// last of each chain.
+    fn shares(&self, graph: &Graph) -> Vec<bool> {
+        let parallel = |link: &Link| {
+            let parent = link.parent.map(|parent| &self.links[parent]);
+            let before = parent.is_some_and(|parent| hinge(graph, parent).is_some());
+            let fixed = hinge(graph, link).map(|(fixed, _)| fixed);
+            before && fixed.is_some_and(|fixed| fixed.iter().all(|turn| is_level(graph, turn)))
+        };
+        let mut shares: Vec<bool> = (0..self.links.len())
+            .map(|i| !self.links.iter().any(|link| link.parent == Some(i)))
+            .collect();
+        for (i, link) in self.links.iter().enumerate() {
+            if let Some(parent) = link.parent.filter(|_| parallel(link)) {
+                shares[i] = true;
+                shares[parent] = true;
+            }
+        }
+        shares
     }
 }
 
