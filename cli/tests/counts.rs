@@ -32,7 +32,7 @@ const ROBOTS: [Bars; 4] = [
         name: "UR5",
         urdf: "ur_description/urdf/ur5_robot.urdf",
         options: &[],
-        flops: [Some(300), Some(165), Some(550), Some(4000)],
+        flops: [Some(270), Some(131), Some(465), Some(2264)],
         divisions: 6,
     },
     Bars {
@@ -44,14 +44,14 @@ const ROBOTS: [Bars; 4] = [
             "--lock",
             "panda_finger_joint2=0",
         ],
-        flops: [Some(600), Some(360), Some(1150), None],
+        flops: [Some(576), Some(317), Some(1119), Some(5184)],
         divisions: 7,
     },
     Bars {
         name: "Solo12",
         urdf: "solo_description/robots/solo12.urdf",
         options: &["--floating"],
-        flops: [Some(1200), Some(620), Some(2950), Some(22000)],
+        flops: [Some(1108), Some(516), Some(2419), Some(14000)],
         divisions: 18,
     },
     Bars {
