@@ -1,7 +1,8 @@
 //! Shapes as elements of SVG, in tenths of pixels.
 
+use super::shape::{Ink, Shape, Vector};
 use super::view::{Ellipse, View};
-use super::{Ink, Shape, Vector};
+
 use crate::plot::figure::unit;
 use crate::plot::line::{Point, simplify};
 use crate::plot::theme::{self, code, ramp};

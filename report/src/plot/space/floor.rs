@@ -1,8 +1,9 @@
 //! The floor below what is drawn: its height, its grid, and the shadows on it.
 
 use super::element::{self, Sheet};
+use super::shape::{Part, Shape, THICK, Vector};
 use super::view::{Base, dot};
-use super::{Part, Shape, THICK, Vector};
+
 use crate::number::short;
 use crate::plot::theme;
 use plotters::style::RGBColor;

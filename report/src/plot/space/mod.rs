@@ -3,14 +3,17 @@
 //!
 //! | file | owns |
 //! |---|---|
+//! | `shape` | what there is to be drawn |
 //! | `view` | the projection, outlines of ellipsoids |
 //! | `element` | each shape as SVG |
 //! | `floor` | the floor, its grid, shadows |
 
 mod element;
 mod floor;
+mod shape;
 mod view;
 
+pub use shape::{Ink, Part, Shape, Vector};
 pub use view::{Base, ISOMETRIC, View, base};
 
 use super::figure::{Figure, escape, unit};
@@ -20,79 +23,9 @@ use super::width::fitted;
 use crate::code::plain;
 use element::Sheet;
 use floor::Floor;
+use shape::THICK;
 use std::fmt::Write;
 use view::dot;
-
-/// A point or a direction.
-pub type Vector = [f64; 3];
-
-/// What something is drawn with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ink {
-    /// The colour of the line with this index.
-    Series(usize),
-    /// That of headings.
-    Dark,
-    /// That of labels.
-    Soft,
-}
-
-/// What there is to be drawn; widths and radii in pixels.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// A solid ellipsoid by its half axes.
-    Ellipsoid {
-        /// Its centre.
-        centre: Vector,
-        /// Its half axes, at right angles; none has the length 0.
-        arms: [Vector; 3],
-    },
-    /// A straight bar with round ends.
-    Bar {
-        /// Its ends.
-        ends: [Vector; 2],
-        /// Its width.
-        width: f64,
-    },
-    /// A line of dashes.
-    Dashes {
-        /// Its ends.
-        ends: [Vector; 2],
-    },
-    /// A zigzag between two points.
-    Spring {
-        /// Its ends.
-        ends: [Vector; 2],
-    },
-    /// A piston in a cylinder.
-    Damper {
-        /// Its ends.
-        ends: [Vector; 2],
-    },
-    /// A disk that is as large in every picture.
-    Ball {
-        /// Its centre.
-        at: Vector,
-        /// Its radius.
-        radius: f64,
-    },
-    /// A circle that is as large in every picture.
-    Ring {
-        /// Its centre.
-        at: Vector,
-        /// Its radius.
-        radius: f64,
-    },
-}
-
-/// A shape with its colour.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// What it is drawn with.
-    pub ink: Ink,
-    /// What is drawn.
-    pub shape: Shape,
-}
 
 /// A drawing of space.
 #[derive(Clone, Debug)]
@@ -121,10 +54,9 @@ const HEIGHT: (f64, f64) = (240.0, 460.0);
 /// Room above and on the other sides.
 const HEAD: f64 = 58.0;
 const SIDE: f64 = 26.0;
-/// Longest pieces of a bar, each of which has a depth of its own, and how many there are at most; thinner bars are in one piece (pixels).
+/// Longest pieces of a bar, each of which has a depth of its own, and how many there are at most; bars thinner than `THICK` are in one piece (pixels).
 const LONGEST: f64 = 40.0;
 const PIECES: f64 = 5.0;
-const THICK: f64 = 3.0;
 /// How much of the faintest and the strongest of the faint poses is seen.
 const FAINT: (f64, f64) = (0.1, 0.24);
 

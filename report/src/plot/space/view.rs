@@ -1,6 +1,6 @@
 //! A parallel projection of space, and what ellipsoids and their sections look like in it.
 
-use super::Vector;
+use super::shape::Vector;
 use crate::plot::line::Point;
 
 /// Azimuth and elevation of the isometric view (degrees): all three axes are shortened alike.
