@@ -43,7 +43,7 @@ def submit(arguments):
     client = Client(pathlib.Path(os.environ["SERVER"], "server").read_text())
     job = Job()
     # Tasks are numbered from 0.
-    job.program(["true"])
+    job.program(["true"], stdout=os.devnull, stderr=os.devnull)
     for task in range(1, count + 1):
         place = lambda option: options[option].replace("%{TASK_ID}", str(task))
         job.program(["sh", named[8]], cwd=options["--cwd"], stdout=place("--stdout"), stderr=place("--stderr"))
