@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the generator for browsers: target/page/hamel_page.wasm. The target of Rust comes by rustup; where that cannot
-# fetch it, Debian's sources of the standard library are built with the compiler that is there.
+# fetch it, Debian's sources of the standard library are built with Debian's compiler, unpacked below `target`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -18,9 +18,11 @@ if has_target || { rustup target add "$target" && has_target; }; then
     RUSTFLAGS="$flags" cargo "${arguments[@]}"
 else
     echo "rustup has no $target: taking Debian's sources of the standard library"
-    apt-get install -y --no-install-recommends rustc-web rust-web-src lld-19
-    RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 \
-        RUSTFLAGS="$flags -C linker=wasm-ld-19 -C linker-flavor=wasm-ld" \
+    source xtask/debian.sh
+    unpack_rust ||
+        { echo "no library for $target, and no packages of Debian to build one with" >&2; exit 1; }
+    LD_LIBRARY_PATH="$debian_libraries" RUSTC="$debian/usr/bin/rustc" RUSTC_BOOTSTRAP=1 \
+        RUSTFLAGS="$flags -C linker=$debian/usr/bin/wasm-ld-19 -C linker-flavor=wasm-ld" \
         cargo "${arguments[@]}" -Z build-std=std,panic_abort
 fi
 mkdir -p "$folder/page"

@@ -3,8 +3,8 @@
 # the programs, runs them in QEMU, and holds instructions, stack and costs against bounds.
 #
 # The compiler is the one at hand where it has the target (`rustup target add thumbv7em-none-eabihf`). Elsewhere, and for
-# QEMU, Debian's packages are unpacked below `target`, and nothing of the machine changes: Debian's older compiler comes
-# with the sources of its `core`, which is then built for the board, too. Where neither can be had the script says so and
+# QEMU, Debian's packages are unpacked below `target`, and nothing of the machine changes: Debian's compiler comes with
+# the sources of its `core`, which is then built for the board, too. Where neither can be had the script says so and
 # ends well; what is wrong ends it with an error.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -12,28 +12,11 @@ cd "$(dirname "$0")"
 unset RUSTFLAGS CARGO_ENCODED_RUSTFLAGS
 
 target=thumbv7em-none-eabihf
-debian=$PWD/target/debian
-libraries=$debian/usr/lib/x86_64-linux-gnu:$debian/lib/x86_64-linux-gnu
+source ../../xtask/debian.sh
 
 cannot() {
     echo "not run on a board: $1"
     exit 0
-}
-
-# Packages with all that they need and that is not installed, unpacked below $debian.
-unpack() {
-    command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null && [ "$(id -u)" = 0 ] || return 1
-    local archives=$debian/archives
-    mkdir -p "$archives/partial"
-    local download=(apt-get install -y -qq --no-install-recommends --download-only
-        -o "Dir::Cache::archives=$archives" "$@")
-    "${download[@]}" >/dev/null 2>&1 ||
-        { apt-get update -qq >/dev/null 2>&1 && "${download[@]}" >/dev/null 2>&1; } || return 1
-    local archive
-    for archive in "$archives"/*.deb; do
-        dpkg-deb -x "$archive" "$debian" || return 1
-        rm "$archive"
-    done
 }
 
 if command -v qemu-system-arm >/dev/null; then
@@ -41,7 +24,7 @@ if command -v qemu-system-arm >/dev/null; then
 else
     [ -x "$debian/usr/bin/qemu-system-arm" ] || unpack qemu-system-arm ||
         cannot "no qemu-system-arm, and no packages of Debian to take it from"
-    qemu=(env "LD_LIBRARY_PATH=$libraries" "$debian/usr/bin/qemu-system-arm")
+    qemu=(env "LD_LIBRARY_PATH=$debian_libraries" "$debian/usr/bin/qemu-system-arm")
 fi
 command -v nm >/dev/null || cannot "no nm, which lists what a program consists of"
 
@@ -49,15 +32,10 @@ command -v nm >/dev/null || cannot "no nm, which lists what a program consists o
 build=(cargo build)
 library=$(rustc --print target-libdir --target "$target" 2>/dev/null || true)
 if [ -z "$library" ] || ! compgen -G "$library/libcore-*.rlib" >/dev/null; then
-    [ -x "$debian/usr/bin/rustc" ] && [ -x "$debian/usr/bin/ld.lld-19" ] ||
-        unpack rustc-web cargo-web rust-web-src lld-19 ||
-        cannot "no library for $target, and no packages of Debian to build one with"
-    build=(env -u RUSTUP_TOOLCHAIN "LD_LIBRARY_PATH=$libraries" "RUSTC=$debian/usr/bin/rustc"
+    unpack_rust || cannot "no library for $target, and no packages of Debian to build one with"
+    build=(env -u RUSTUP_TOOLCHAIN "LD_LIBRARY_PATH=$debian_libraries" "RUSTC=$debian/usr/bin/rustc"
         RUSTC_BOOTSTRAP=1 "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER=$debian/usr/bin/ld.lld-19"
-        "$debian/usr/bin/cargo" build -Z build-std=core --ignore-rust-version
-        # The one thing that the runtime uses and this compiler does not have yet.
-        -Z profile-rustflags
-        --config 'profile.release.package.hamel.rustflags=["-Zcrate-attr=feature(let_chains)"]')
+        "$debian/usr/bin/cargo" build -Z build-std=core)
 fi
 
 # The model, by the generator of this repository. One that was built with the tests will do: alone, its dependencies have
