@@ -9,6 +9,8 @@
 //! | `tables`, `regressor`, `check`, `ops`, `emit`, `eval`, `linearize`, `simulate`, `draw`, `sweep`, `compare`, `import` | one subcommand each |
 //! | `eigenvalues` | eigenvalues of a general matrix |
 //! | `source` | reading and deriving a description |
+//! | `added` | a description with more outputs: what a sweep keeps, what a run watches |
+//! | `text` | options that are lists, and where they are wrong |
 //! | `robot` | robots in URDF as descriptions, and the options for them |
 //! | `state` | reading the numbers of a state |
 //! | `mechanism` | a described system that the integrators can run |
@@ -24,6 +26,7 @@
 // What the command line alone calls stays where it is when the crate is built without it.
 #![cfg_attr(not(feature = "command"), allow(dead_code, unused_imports))]
 
+mod added;
 mod check;
 mod columns;
 #[cfg(feature = "command")]
@@ -56,6 +59,7 @@ mod state;
 #[cfg(feature = "command")]
 mod sweep;
 mod tables;
+mod text;
 
 pub use check::Checked;
 #[cfg(feature = "command")]
@@ -66,13 +70,16 @@ pub use failure::{Failure, Mark, Said};
 pub use linearize::Linear;
 pub use mechanism::{End, Varied};
 pub use robot::{Mimic, RobotOptions};
-pub use session::{Function, Motion, Names, Session, Stepped, imported};
+pub use session::{Function, Happened, Motion, Names, Session, Stepped, imported};
+pub use simulate::events::{Event, Gauge, Watched};
 pub use simulate::inputs::{Asked, Control, Law};
 pub use simulate::record::Every;
 pub use simulate::stepping::Stepping;
 pub use state::State;
 pub use tables::Format;
 
+/// Which changes of sign are events.
+pub use hamel::adaptive::Direction;
 /// The shape of a value, matrices by rows.
 pub use hamel_codegen::program::Shape;
 

@@ -1,11 +1,13 @@
-//! Generated functions over arrays: the last axis has the entries of an argument, those before it are looped over.
+//! Generated functions as Python calls them, with arrays.
 
 use crate::failure::{SingularError, raised};
+use crate::rows::{Given, Rows, common, entries_last};
+use crate::states::States;
 use hamel_cli::{Function as Compiled, Session};
 use hamel_codegen::program::{Argument, Cause, Shape};
-use hamel_native::{ARGUMENTS, Constants};
-use numpy::ndarray::{ArrayViewD, Axis, IxDyn};
-use numpy::{AllowTypeChange, PyArray1, PyArrayLikeDyn, PyArrayMethods};
+use hamel_native::Constants;
+use numpy::ndarray::{ArrayViewD, IxDyn};
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -41,90 +43,6 @@ pub fn axes(shape: Shape) -> Vec<usize> {
     }
 }
 
-/// Numbers as they were given: an array, or what NumPy makes one of.
-pub type Given<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
-
-/// An array whose last axis has the entries: a number alone is a list of one.
-pub fn entries_last(array: ArrayViewD<'_, f64>) -> ArrayViewD<'_, f64> {
-    match array.ndim() {
-        0 => array.insert_axis(Axis(0)),
-        _ => array,
-    }
-}
-
-/// An array over the axes that are looped over.
-pub struct Rows<'a> {
-    array: ArrayViewD<'a, f64>,
-    /// Room for entries that are not one behind the other.
-    room: Vec<f64>,
-}
-
-impl<'a> Rows<'a> {
-    /// An array, repeated along axes that it does not have.
-    pub fn new(array: &'a ArrayViewD<'_, f64>, axes: &[usize]) -> PyResult<Self> {
-        let last = array.shape().last().copied().unwrap_or(1);
-        let shape = [axes, &[last]].concat();
-        let array = array.broadcast(IxDyn(&shape));
-        let array = array.ok_or_else(|| PyValueError::new_err("arrays do not fit together"))?;
-        Ok(Rows {
-            array,
-            room: Vec::new(),
-        })
-    }
-
-    /// The entries at one place.
-    pub fn at(&mut self, place: &[usize]) -> &[f64] {
-        let mut row = self.array.clone();
-        for &index in place {
-            row.index_axis_inplace(Axis(0), index);
-        }
-        match row.to_slice() {
-            Some(slice) => slice,
-            None => {
-                self.room.clear();
-                self.room.extend(row.iter());
-                &self.room
-            }
-        }
-    }
-}
-
-/// The axes before the last of all arrays, which are repeated where they have the length 1.
-pub fn common<'a>(shapes: impl Iterator<Item = &'a [usize]>) -> PyResult<Vec<usize>> {
-    let mut all: Vec<usize> = Vec::new();
-    for shape in shapes {
-        let own = shape.split_last().map_or(&[][..], |(_, own)| own);
-        while all.len() < own.len() {
-            all.insert(0, 1);
-        }
-        let shift = all.len() - own.len();
-        for (length, own) in all.iter_mut().skip(shift).zip(own) {
-            match (*length, *own) {
-                (_, 1) => {}
-                (1, own) => *length = own,
-                (length, own) if length == own => {}
-                (length, own) => {
-                    return Err(PyValueError::new_err(format!(
-                        "arrays of {length} and of {own} states cannot be taken together"
-                    )));
-                }
-            }
-        }
-    }
-    Ok(all)
-}
-
-/// The place behind a place, in the order of rows.
-pub fn next(place: &mut [usize], axes: &[usize]) {
-    for (index, length) in place.iter_mut().zip(axes).rev() {
-        *index += 1;
-        if *index < *length {
-            return;
-        }
-        *index = 0;
-    }
-}
-
 impl Function {
     /// A function by its name, with these parameters.
     pub fn new(session: &Arc<Session>, name: &str, params: &[f64]) -> PyResult<Self> {
@@ -134,35 +52,6 @@ impl Function {
             session: Arc::clone(session),
             compiled,
         })
-    }
-
-    /// The result at one place; behind the arguments that are taken may be parameters.
-    fn row(
-        &self,
-        taken: &[Argument],
-        rows: &mut [Rows<'_>],
-        place: &[usize],
-        out: &mut [f64],
-    ) -> Result<(), Cause> {
-        let (own, params) = rows.split_at_mut(taken.len());
-        let mut arguments: [&[f64]; 5] = [&[]; 5];
-        for (argument, rows) in taken.iter().zip(own) {
-            let slots = ARGUMENTS.iter().zip(&mut arguments);
-            let slot = slots.into_iter().find(|(of, _)| *of == argument);
-            if let Some((_, slot)) = slot {
-                *slot = rows.at(place);
-            }
-        }
-        match params.first_mut() {
-            Some(params) => {
-                let constants = self.compiled.constants(params.at(place))?;
-                self.compiled.call(&constants, arguments, out)
-            }
-            None => {
-                let constants = self.constants.as_ref().map_err(|cause| *cause)?;
-                self.compiled.call(constants, arguments, out)
-            }
-        }
     }
 
     fn singular(&self, cause: Cause, place: &[usize]) -> PyErr {
@@ -339,21 +228,9 @@ impl Function {
         let entries = self.compiled.shape.entries();
         let states: usize = lead.iter().product();
         let mut out = vec![f64::NAN; states * entries];
-        let failed = py.detach(|| {
-            let mut place = vec![0; lead.len()];
-            let mut results = out.chunks_mut(entries.max(1));
-            for _ in 0..states {
-                let result = results.next().unwrap_or_default();
-                if let Err(cause) = self.row(&taken, &mut rows, &place, result) {
-                    if raise {
-                        return Some((cause, place));
-                    }
-                    result.fill(f64::NAN);
-                }
-                next(&mut place, &lead);
-            }
-            None
-        });
+        let constants = &self.constants;
+        let mut all = States::new(&self.compiled, constants, taken, rows, &lead);
+        let failed = py.detach(|| all.evaluate(&mut out, raise));
         if let Some((cause, place)) = failed {
             return Err(self.singular(cause, &place));
         }

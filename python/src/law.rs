@@ -1,12 +1,12 @@
-//! Inputs that a function in Python gives: u = f(t, x, ξ).
+//! Functions of (t, x, ξ) in Python: those that give inputs, and those that are watched for events.
 
-use hamel_cli::{Control, Law};
+use hamel_cli::{Control, Gauge, Law};
 use numpy::{AllowTypeChange, PyArray1, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The first exception of a law.
+/// The first exception of a function.
 #[derive(Clone, Default)]
 pub struct Raised(Arc<Mutex<Option<PyErr>>>);
 
@@ -49,6 +49,28 @@ pub fn law(function: Py<PyAny>, raised: &Raised) -> Law {
     };
     let control: Arc<Control> = Arc::new(control);
     Law(control)
+}
+
+/// A function in Python that gives a number. Where it raises an exception, it has no value from then on, which ends the run,
+/// and the exception is kept.
+pub fn gauge(function: Py<PyAny>, raised: &Raised) -> Arc<Gauge> {
+    let raised = raised.clone();
+    Arc::new(move |t: f64, x: &[f64], xi: &[f64]| {
+        if raised.is_set() {
+            return f64::NAN;
+        }
+        Python::attach(|py| {
+            let number = |x, xi| -> PyResult<f64> {
+                py.check_signals()?;
+                let (x, xi) = (PyArray1::from_slice(py, x), PyArray1::from_slice(py, xi));
+                function.bind(py).call1((t, x, xi))?.extract()
+            };
+            number(x, xi).unwrap_or_else(|error| {
+                raised.set(error);
+                f64::NAN
+            })
+        })
+    })
 }
 
 fn called(

@@ -3,14 +3,18 @@
 //! | file | owns |
 //! |---|---|
 //! | `session` | a description, and everything that is asked of it |
-//! | `function` | generated functions over arrays |
-//! | `law` | inputs that a function in Python gives |
+//! | `run` | runs, with their options and what becomes of them |
+//! | `function`, `states`, `rows` | generated functions over arrays: calls, evaluation, arrays of states |
+//! | `law` | functions in Python that give inputs, or are watched for events |
 //! | `failure` | exceptions |
 
 mod failure;
 mod function;
 mod law;
+mod rows;
+mod run;
 mod session;
+mod states;
 
 use pyo3::prelude::*;
 

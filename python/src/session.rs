@@ -1,10 +1,10 @@
 //! A description, and everything that is asked of it.
 
 use crate::failure::{HamelError, SingularError, raised};
-use crate::function::{Function, Given, Rows, axes, common, entries_last, next};
-use crate::law::{Raised, law};
-use hamel_cli::{Asked, Every, Format, Mimic, Names, RobotOptions, State, Stepping};
-use hamel_codegen::program::Shape;
+use crate::function::Function;
+use crate::rows::{Given, Rows, common, entries_last, next};
+use crate::run;
+use hamel_cli::{Format, Mimic, Names, RobotOptions, State};
 use numpy::ndarray::{ArrayViewD, IxDyn};
 use numpy::{Complex64, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -251,91 +251,14 @@ impl Session {
         py.detach(|| self.0.evaluate(&state)).map_err(raised)
     }
 
+    /// A run.
     fn simulate<'py>(
         &self,
         py: Python<'py>,
         state: Numbers<'py>,
         options: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let state = self.of(state)?;
-        let get = |name: &str| -> PyResult<Option<Bound<'py, PyAny>>> {
-            Ok(options.get_item(name)?.filter(|value| !value.is_none()))
-        };
-        let number = |name: &str| -> PyResult<Option<f64>> {
-            get(name)?.map(|value| value.extract()).transpose()
-        };
-        let stepping = Stepping {
-            until: number("until")?.unwrap_or(f64::NAN),
-            step: number("step")?,
-            tol: number("tol")?,
-            lambda: number("rate")?,
-            method: match get("method")? {
-                Some(name) => name.extract()?,
-                None => "auto".into(),
-            },
-        };
-        let every = match get("every")? {
-            Some(steps) => match steps.extract::<i64>()? {
-                steps @ 1.. => Some(Every::Steps(steps.unsigned_abs())),
-                _ => {
-                    return Err(HamelError::new_err(
-                        "`every` is a number of steps, 1 or greater",
-                    ));
-                }
-            },
-            None => match number("spacing")? {
-                Some(time) if !(time.is_finite() && time > 0.0) => {
-                    return Err(HamelError::new_err("`spacing` is a time greater than zero"));
-                }
-                spacing => spacing.map(Every::Time),
-            },
-        };
-        let times: Option<Vec<f64>> = get("times")?.map(|times| times.extract()).transpose()?;
-        let asked = Asked {
-            inputs: get("file")?.map(|path| path.extract()).transpose()?,
-            hold: get("hold")?.is_some(),
-            input: match get("expressions")? {
-                Some(all) => all.extract()?,
-                None => Vec::new(),
-            },
-        };
-        let thrown = Raised::default();
-        let own = get("law")?.map(|function| law(function.unbind(), &thrown));
-        let run = py.detach(|| {
-            self.0
-                .simulate(&state, &stepping, (every, times), (&asked, own))
-        });
-        if let Some(error) = thrown.take() {
-            return Err(error);
-        }
-        let run = run.map_err(raised)?;
-        let all = PyDict::new(py);
-        let samples = run.t.len();
-        let list = |numbers: Vec<f64>, own: &[usize]| {
-            let shape = [&[samples], own].concat();
-            PyArray1::from_vec(py, numbers).reshape(IxDyn(&shape))
-        };
-        let parts = |parts: Vec<(String, Shape, Vec<f64>)>| -> PyResult<Bound<'py, PyDict>> {
-            let all = PyDict::new(py);
-            for (name, shape, numbers) in parts {
-                all.set_item(name, list(numbers, &axes(shape))?)?;
-            }
-            Ok(all)
-        };
-        all.set_item("t", list(run.t, &[])?)?;
-        all.set_item("x", list(run.x, &[state.x.len()])?)?;
-        all.set_item("xi", list(run.xi, &[state.xi.len()])?)?;
-        all.set_item("energy", list(run.energy, &[])?)?;
-        all.set_item("outputs", parts(run.outputs)?)?;
-        all.set_item("invariants", parts(run.invariants)?)?;
-        all.set_item("method", run.method)?;
-        all.set_item("reason", run.reason)?;
-        all.set_item("steps", run.steps)?;
-        all.set_item("evaluations", run.evaluations)?;
-        all.set_item("energy_deviation", run.energy_deviation)?;
-        all.set_item("constraint", run.constraint)?;
-        all.set_item("failure", run.failure)?;
-        Ok(all)
+        run::simulate(py, &self.0, &self.of(state)?, options)
     }
 
     /// x and ξ after a step of each of many states.
@@ -378,10 +301,10 @@ impl Session {
         let stepped = py.detach(|| -> PyResult<()> {
             let stepped = self.0.stepped(&state, method).map_err(raised)?;
             let mut place = vec![0; lead.len()];
-            for _ in 0..states {
-                let mut x = x_rows.at(&place).to_vec();
-                let mut xi = xi_rows.at(&place).to_vec();
-                let ended = stepped.step(&mut x, &mut xi, u_rows.at(&place), h);
+            for number in 0..states {
+                let mut x = x_rows.at(number, &place).to_vec();
+                let mut xi = xi_rows.at(number, &place).to_vec();
+                let ended = stepped.step(&mut x, &mut xi, u_rows.at(number, &place), h);
                 ended.map_err(|why| match place.as_slice() {
                     [] => SingularError::new_err(why),
                     place => SingularError::new_err(format!("{why}, at the index {place:?}")),

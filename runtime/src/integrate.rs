@@ -6,6 +6,7 @@ use crate::methods::Method;
 use crate::state::State;
 use crate::store::is_finite;
 use crate::system::System;
+use core::ops::ControlFlow;
 
 /// Moves `state` by one step of length `h`, which may be negative or zero, and projects it onto the constraints that
 /// multipliers enforce. `inputs(t, x, ξ)` returns u.
@@ -92,12 +93,41 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     O: FnMut(&State<Sys>),
 {
+    let observe = |state: &State<Sys>| {
+        observe(state);
+        ControlFlow::Continue(())
+    };
+    integrate_while(system, method, state, length, until, inputs, observe)
+}
+
+/// As [`integrate`], as long as `observe` says so: a run that it breaks off ends in the state that it was shown last.
+///
+/// # Errors
+/// [`StepError`]; `state` is then the last valid one, with which `observe` was called last.
+#[inline]
+pub fn integrate_while<Sys, M, U, O>(
+    system: &Sys,
+    method: M,
+    state: &mut State<Sys>,
+    length: f64,
+    until: f64,
+    inputs: U,
+    mut observe: O,
+) -> Result<(), StepError>
+where
+    Sys: System + ?Sized,
+    M: Method<Sys>,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    O: FnMut(&State<Sys>) -> ControlFlow<()>,
+{
     state.check_shape(system)?;
     if !state.is_finite() {
         return Err(StepError::NonFinite { time: state.t });
     }
     let grid = Grid::new(state.t, until, length)?;
-    observe(state);
+    if observe(state).is_break() {
+        return Ok(());
+    }
     let mut force = None;
     for index in 1..=grid.count {
         let mut next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
@@ -106,7 +136,9 @@ where
         }
         *state = next;
         state.t = grid.time(index);
-        observe(state);
+        if observe(state).is_break() {
+            break;
+        }
     }
     Ok(())
 }

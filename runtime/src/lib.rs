@@ -11,7 +11,7 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`integrate`](integrate()), [`step`], [`Sampled`] | runs in equal steps, single steps, and runs with a controller that has a period of its own |
+//! | [`integrate`](integrate()), [`integrate_while`], [`step`], [`Sampled`] | runs in equal steps, single steps, and runs with a controller that has a period of its own |
 //! | [`methods`] | the integrators: explicit and implicit Runge-Kutta methods on Lie groups, variational and splitting methods |
 //! | [`adaptive`] | error control, events and dense output |
 //! | [`Monitor`] | how well a run keeps energy, momentum and constraints |
@@ -124,7 +124,7 @@ pub use dual::Dual;
 pub use error::{Singular, StepError};
 #[cfg(feature = "macros")]
 pub use hamel_macros::rigid_eom;
-pub use integrate::{Grid, integrate, step};
+pub use integrate::{Grid, integrate, integrate_while, step};
 pub use lanes::Lanes;
 pub use methods::Method;
 pub use monitor::Monitor;

@@ -7,7 +7,9 @@ mod common;
 use common::Pendulum;
 use common::points::Points;
 use hamel::adaptive::{Adaptive, Event, Report};
-use hamel::{State, StepError};
+use hamel::methods::Rkmk4;
+use hamel::{State, StepError, integrate, integrate_while};
+use std::ops::ControlFlow;
 
 /// T = 4 K(sin(θ₀/2)) √(l/g) = 2π √(l/g) / M(1, cos(θ₀/2)), M the arithmetic-geometric mean.
 fn period(g: f64, l: f64, amplitude: f64) -> f64 {
@@ -249,4 +251,34 @@ fn an_event_that_is_not_a_number_is_a_typed_error() {
     );
     assert!(matches!(end, Err(StepError::NonFinite { .. })));
     assert_eq!(state.t, 0.0);
+}
+
+/// A run that its observer breaks off is the beginning of the whole one, to the bit; also where it ends at its start.
+#[test]
+fn equal_steps_end_where_their_observer_says_so() {
+    let system = pendulum();
+    let held = |_, _: &_, _: &_| vec![0.0];
+    let mut all = Vec::new();
+    let mut whole = State::start(&system);
+    integrate(&system, Rkmk4, &mut whole, 0.01, 1.0, held, |state| {
+        all.push(state.clone());
+    })
+    .expect("a run");
+    for last in [0, 1, 57, 100] {
+        let mut state = State::start(&system);
+        let mut seen = 0;
+        let observe = |_: &State<Pendulum>| {
+            seen += 1;
+            match seen > last {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        };
+        integrate_while(&system, Rkmk4, &mut state, 0.01, 1.0, held, observe).expect("a run");
+        assert_eq!(seen, last + 1);
+        assert_eq!((&state.t, &state.x, &state.xi), {
+            let wanted = &all[last];
+            (&wanted.t, &wanted.x, &wanted.xi)
+        });
+    }
 }

@@ -4,7 +4,12 @@ use crate::failure::Failure;
 use crate::mechanism;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::{Argument, Cause, Shape};
-use hamel_native::{Compiled, Constants};
+use hamel_native::{Compiled, Constants, Paired};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+
+/// Code for two states at once takes about as long to make as so many states take without it.
+const MANY: u64 = 1 << 15;
 
 /// A function of the description as machine code.
 #[derive(Clone, Debug)]
@@ -18,6 +23,14 @@ pub struct Function {
     /// The shape of its result.
     pub shape: Shape,
     compiled: Compiled,
+    lanes: Arc<Lanes>,
+}
+
+/// Code for two states at once, and how many states were asked for before there was any.
+#[derive(Debug, Default)]
+struct Lanes {
+    states: AtomicU64,
+    code: OnceLock<Option<Paired>>,
 }
 
 impl Function {
@@ -55,6 +68,30 @@ impl Function {
     ) -> Result<(), Cause> {
         self.compiled.call(0, constants, arguments, out)
     }
+
+    /// The results for two states at once: all lists hold pairs, constants are those of [`Paired::constants`]. Whether both
+    /// have one; else `out` has no meaning.
+    pub fn both(
+        &self,
+        paired: &Paired,
+        constants: &[f64],
+        arguments: [&[f64]; 5],
+        out: &mut [f64],
+    ) -> bool {
+        paired.call(0, constants, arguments, out)
+    }
+
+    /// Code for two states at once, where so many states more are worth it and this machine has such code.
+    pub fn paired(&self, states: u64) -> Option<&Paired> {
+        if self.lanes.code.get().is_none() {
+            let before = self.lanes.states.fetch_add(states, Ordering::Relaxed);
+            if before.saturating_add(states) < MANY {
+                return None;
+            }
+        }
+        let make = || Paired::new(&self.compiled);
+        self.lanes.code.get_or_init(make).as_ref()
+    }
 }
 
 /// A function of a program by its name.
@@ -73,5 +110,6 @@ pub(super) fn compiled(generated: &Generated, name: &str) -> Result<Function, Fa
         arguments: function.arguments.clone(),
         shape: function.shape,
         compiled,
+        lanes: Arc::default(),
     })
 }

@@ -2,12 +2,14 @@
 
 mod function;
 mod motion;
+mod observed;
 mod reports;
 
 pub use function::Function;
-pub use motion::Motion;
+pub use motion::{Happened, Motion};
 pub use reports::imported;
 
+use crate::added;
 use crate::drawing::Drawing;
 use crate::eval::numbers;
 use crate::failure::{Failure, Said, collected};
@@ -17,6 +19,7 @@ use crate::method::{self, AUTO, Chosen, Stepper};
 use crate::names;
 use crate::regressor::base;
 use crate::robot::RobotOptions;
+use crate::simulate::events::{Event, Events};
 use crate::simulate::inputs::{Asked, Inputs, Law};
 use crate::simulate::record::{Every, Run, Spacing};
 use crate::simulate::stepping::Stepping;
@@ -35,9 +38,13 @@ use hamel_codegen::model::Model;
 use hamel_codegen::program::Cause;
 use hamel_codegen::tables::regressor::BaseParameters;
 use hamel_codegen::tables::{self, Table};
+use observed::Observed;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// Sets of expressions that are kept.
+const KEPT: usize = 8;
 
 /// A description, derived, with what was compiled of it.
 pub struct Session {
@@ -49,6 +56,8 @@ pub struct Session {
     /// Steps with slopes, for the parameters that were asked for last.
     varied: Mutex<Option<Arc<Varied>>>,
     functions: Mutex<BTreeMap<String, Function>>,
+    /// With the expressions of events that were asked for last.
+    observed: Mutex<Vec<(String, Arc<Observed>)>>,
 }
 
 /// Names of entries, and groups of them: name, place of the first, number.
@@ -130,6 +139,7 @@ impl Session {
                 mechanism: OnceLock::new(),
                 varied: Mutex::default(),
                 functions: Mutex::default(),
+                observed: Mutex::default(),
             })
         })
     }
@@ -323,7 +333,7 @@ impl Session {
         Ok(instance)
     }
 
-    /// A run from a state; inputs are those of the state, of what is asked for, or of a law.
+    /// A run from a state; inputs are those of the state, of what is asked for, or of a law; it may end at an event.
     ///
     /// # Errors
     /// What cannot be run; a run that ends early has its reason in [`Motion::failure`].
@@ -333,6 +343,7 @@ impl Session {
         stepping: &Stepping,
         (every, times): (Option<Every>, Option<Vec<f64>>),
         (asked, law): (&Asked, Option<Law>),
+        events: &[Event],
     ) -> Result<Motion, Failure> {
         stepping.check()?;
         let until = stepping.until;
@@ -340,15 +351,41 @@ impl Session {
             Some(law) => Some(law.into()),
             None => Inputs::new(asked, until, &self.generated, state)?,
         };
-        let system = self.instance(state)?.with(given);
-        let mut plan = stepping.plan(&self.generated, &system, every)?;
+        let observed = self.observed(events)?;
+        let (generated, system) = match &observed {
+            None => (&self.generated, self.instance(state)?),
+            Some(observed) => (&observed.generated, observed.instance(state)?),
+        };
+        let system = system.with(given);
+        let mut plan = stepping.plan(generated, &system, every)?;
         // All samples that are asked for are kept.
         if let Some(times) = times {
             ordered(&times, until)?;
             plan.spacing = Spacing::Times(times);
         }
-        let run = Run::new(&self.generated, &system, plan)?;
+        let events = Events::new(events.to_vec(), &system, added::name);
+        let run = Run::watched(generated, &system, plan, events)?;
         Ok(Motion::of(&run, &system))
+    }
+
+    /// The description with the expressions of events as outputs; none where no event is an expression.
+    fn observed(&self, events: &[Event]) -> Result<Option<Arc<Observed>>, Failure> {
+        let texts: Vec<&str> = events.iter().filter_map(Event::expression).collect();
+        if texts.is_empty() {
+            return Ok(None);
+        }
+        let said = texts.join("; ");
+        let known = || self.observed.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = known().iter().find(|(of, _)| *of == said) {
+            return Ok(Some(Arc::clone(found)));
+        }
+        let made = Arc::new(Observed::new(&self.source, &said, &texts)?);
+        let mut all = known();
+        if all.len() >= KEPT {
+            all.remove(0);
+        }
+        all.push((said, Arc::clone(&made)));
+        Ok(Some(made))
     }
 
     /// Steps of a method, by its name or `auto`, with the parameters of a state.

@@ -1,5 +1,6 @@
 //! What a run has been, as lists of numbers.
 
+use crate::added;
 use crate::mechanism::{Instance, Output};
 use crate::simulate::record::{Run, Sample};
 use hamel_codegen::program::Shape;
@@ -33,6 +34,23 @@ pub struct Motion {
     pub constraint: f64,
     /// Why it ended early.
     pub failure: Option<String>,
+    /// Events by their names, in the order in which they were asked for: times, and x and ξ at them.
+    pub events: Vec<Happened>,
+    /// The event at which it ended.
+    pub stopped_by: Option<String>,
+}
+
+/// What became of an event.
+#[derive(Clone, Debug)]
+pub struct Happened {
+    /// Its name.
+    pub name: String,
+    /// Times, in order.
+    pub t: Vec<f64>,
+    /// x at each of them.
+    pub x: Vec<f64>,
+    /// ξ and z at each of them.
+    pub xi: Vec<f64>,
 }
 
 impl Motion {
@@ -48,6 +66,10 @@ impl Motion {
             for output in list {
                 let place = first..first + output.shape.entries();
                 first = place.end;
+                // What events watch is no output of the description.
+                if added::is_added(&output.name) {
+                    continue;
+                }
                 let entries = run
                     .samples
                     .iter()
@@ -60,6 +82,22 @@ impl Motion {
             }
             parts
         };
+        let named = |event: usize| run.events.list()[event].name.clone();
+        let happened = run.events.happened.iter().enumerate();
+        let happened = happened.map(|(event, samples)| Happened {
+            name: named(event),
+            t: samples.iter().map(|sample| sample.t).collect(),
+            x: samples
+                .iter()
+                .flat_map(|sample| &sample.x)
+                .copied()
+                .collect(),
+            xi: samples
+                .iter()
+                .flat_map(|sample| &sample.xi)
+                .copied()
+                .collect(),
+        });
         Motion {
             t: run.samples.iter().map(|sample| sample.t).collect(),
             x: all(|sample| &sample.x),
@@ -74,6 +112,8 @@ impl Motion {
             energy_deviation: run.monitor.relative_energy_deviation(),
             constraint: run.monitor.constraint(),
             failure: run.failure.clone(),
+            events: happened.collect(),
+            stopped_by: run.events.stopped_by.map(|event| named(event)),
         }
     }
 }

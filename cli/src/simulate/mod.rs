@@ -1,6 +1,8 @@
 //! `hamel simulate`: a run in time.
 
+pub mod advance;
 pub mod balance;
+pub mod events;
 pub mod inputs;
 #[cfg(feature = "command")]
 mod panels;

@@ -1,15 +1,14 @@
 //! The run itself, and what is kept of it.
 
+use super::advance::{Place, advance};
 use super::balance::Balance;
-use super::steady::Steady;
+use super::events::Events;
 use crate::failure::Failure;
-use crate::mechanism::{Instance, Numbers, Output};
-use crate::method::{Chosen, Stepper};
+use crate::mechanism::{Instance, Output};
+use crate::method::Chosen;
 use crate::names;
 use crate::number::short;
 use crate::progress;
-use hamel::adaptive::{Adaptive, Event, Report};
-use hamel::methods::General;
 use hamel::{Monitor, State, StepError, System};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
@@ -70,7 +69,7 @@ pub enum Spacing {
 
 impl Spacing {
     /// The times of samples in a step.
-    fn within(&self, from: f64, to: f64) -> Vec<f64> {
+    pub fn within(&self, from: f64, to: f64) -> Vec<f64> {
         match self {
             Spacing::Steps => Vec::new(),
             Spacing::Every(time) => {
@@ -145,7 +144,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    fn of(system: &Instance, state: &State<Instance>) -> Self {
+    /// That of a state.
+    pub fn of(system: &Instance, state: &State<Instance>) -> Self {
         let (x, xi) = (&state.x, &state.xi);
         let values = |list: &[Output]| -> Vec<f64> {
             let values = list
@@ -182,11 +182,23 @@ pub struct Run<'a> {
     pub evaluations: u64,
     /// Why it ended early.
     pub failure: Option<String>,
+    /// What of the events has happened.
+    pub events: Events,
 }
 
 impl<'a> Run<'a> {
     /// Integrates; a numerical failure is part of the run, an impossible plan an error.
     pub fn new(generated: &'a Generated, system: &Instance, plan: Plan) -> Result<Self, Failure> {
+        Run::watched(generated, system, plan, Events::default())
+    }
+
+    /// The same with events, whose expressions are outputs of the system.
+    pub fn watched(
+        generated: &'a Generated,
+        system: &Instance,
+        plan: Plan,
+        mut events: Events,
+    ) -> Result<Self, Failure> {
         let mut state = State::start(system);
         let mut monitor = Monitor::new(system, &state);
         let balance = Cell::new(Balance::new(system, &state));
@@ -248,9 +260,19 @@ impl<'a> Run<'a> {
             }
             steps += 1;
         };
-        let outcome = advance(system, &plan, &mut state, &balance, observe);
+        let watched = (&balance, &mut events);
+        let outcome = advance(system, &plan, &mut state, watched, observe);
         bar.finish_and_clear();
-        let failure = ended(system, &plan, outcome, &state, balance.get())?.map(|early| early.why);
+        let failure = match events.undefined() {
+            Some(name) => Some(format!(
+                "the run ends at t = {}: the event `{name}` has no value there",
+                short(state.t)
+            )),
+            None => {
+                let early = ended(system, &plan, outcome, &state, balance.get())?;
+                early.map(|early| early.why)
+            }
+        };
         let listed = matches!(plan.spacing, Spacing::Times(_));
         let lists = [(&mut samples, listed), (&mut track, false)];
         for (list, complete) in lists {
@@ -279,6 +301,7 @@ impl<'a> Run<'a> {
             steps: steps.saturating_sub(1),
             evaluations: system.evaluations(),
             failure,
+            events,
         })
     }
 }
@@ -363,99 +386,4 @@ fn thin(samples: &mut Vec<Sample>) -> bool {
         place % 2 == 1
     });
     true
-}
-
-/// Where an observed state is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
-    /// At the start, or at the end of a step.
-    End,
-    /// Between, for plots: steps chosen by their error may be few.
-    Within,
-    /// Where a sample was asked for.
-    Sample,
-}
-
-/// Shows the end of a step that a tolerance has chosen, and before it what a plot needs of its path.
-fn show<const D: usize>(
-    report: Report<'_, Instance, D>,
-    spacing: f64,
-    samples: &Spacing,
-    observe: &mut impl FnMut(&State<Instance>, Place),
-) {
-    let Report::Step(step) = report else {
-        return;
-    };
-    let (from, to) = (step.start().t, step.end().t);
-    let parts = ((to - from) / spacing).ceil();
-    for part in 1..parts as u64 {
-        let t = from + (to - from) * (part as f64 / parts);
-        observe(&step.at(t), Place::Within);
-    }
-    for t in samples.within(from, to) {
-        observe(&step.at(t), Place::Sample);
-    }
-    observe(step.end(), Place::End);
-}
-
-/// The run from the start to its end, in equal steps or in those that a tolerance asks for. Where `plan.quiet` says that
-/// nobody looks at equal steps, only the start, samples and ends of such stretches are shown.
-pub fn advance(
-    system: &Instance,
-    plan: &Plan,
-    state: &mut State<Instance>,
-    balance: &Cell<Balance>,
-    mut observe: impl FnMut(&State<Instance>, Place),
-) -> Result<(), StepError> {
-    let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
-    let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
-    else {
-        let steady = Steady {
-            system,
-            plan,
-            state,
-            observe,
-        };
-        return steady.alone();
-    };
-    observe(state, Place::End);
-    if let Spacing::Times(times) = &plan.spacing
-        && times.first() == Some(&state.t)
-    {
-        observe(state, Place::Sample);
-    }
-    let until = plan.until;
-    let spacing = until / plan.points as f64;
-    // A run that has lost the motion ends there.
-    let followed = |state: &State<Instance>| {
-        let here = balance.get().after(system, state);
-        if here.lost(tolerance).is_some() {
-            -1.0
-        } else {
-            1.0
-        }
-    };
-    let events = [Event::new(&followed).stopping()];
-    let jumps = system.jumps().iter().filter(|jump| **jump < until);
-    for end in jumps.copied().chain([until]) {
-        system.go_from(state.t);
-        match general {
-            General::Rkmk8 => {
-                let method = Adaptive::rkmk8(tolerance);
-                method.integrate(system, state, end, inputs, &events, |report| {
-                    show(report, spacing, &plan.spacing, &mut observe);
-                })?;
-            }
-            _ => {
-                let method = Adaptive::rkmk54(tolerance);
-                method.integrate(system, state, end, inputs, &events, |report| {
-                    show(report, spacing, &plan.spacing, &mut observe);
-                })?;
-            }
-        }
-        if state.t < end {
-            break;
-        }
-    }
-    Ok(())
 }

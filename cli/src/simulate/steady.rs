@@ -1,8 +1,11 @@
 //! Runs in equal steps, from each time that matters to the next: one on its own, or two side by side.
 
-use super::record::{Place, Plan, Spacing};
+use super::advance::Place;
+use super::events::Events;
+use super::record::{Plan, Spacing};
 use crate::mechanism::{Instance, Numbers, Whole};
-use hamel::{State, StepError, integrate};
+use hamel::{State, StepError, integrate_while};
+use std::ops::ControlFlow;
 
 /// A run in equal steps, who looks at it, and where it is.
 pub struct Steady<'a, O> {
@@ -12,6 +15,8 @@ pub struct Steady<'a, O> {
     pub plan: &'a Plan,
     /// Where it is.
     pub state: &'a mut State<Instance>,
+    /// What it may end at before its time.
+    pub events: Option<&'a mut Events>,
     /// Is shown the start and the ends of steps, or of stretches where nobody looks at steps; and samples.
     pub observe: O,
 }
@@ -23,8 +28,22 @@ impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
     /// Why it has ended early; its state is then the last one that it had.
     pub fn alone(mut self) -> Result<(), StepError> {
         (self.observe)(self.state, Place::End);
-        let mut ends = self.ends().into_iter();
-        ends.try_for_each(|end| self.go(end))
+        if let Some(events) = &mut self.events {
+            events.begin(self.system, self.state)?;
+        }
+        for end in self.ends() {
+            self.go(end)?;
+            if self.is_stopped() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether an event has ended it.
+    fn is_stopped(&self) -> bool {
+        let events = self.events.as_ref();
+        events.is_some_and(|events| events.stopped_by.is_some())
     }
 
     /// Two runs of one mechanism to their ends. As long as both of them take the same steps, two of these are taken by one
@@ -76,20 +95,50 @@ impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
         if end > from {
             self.system.go_from(from);
             let whole = self.whole(end);
-            let mut observe = |state: &State<Instance>| {
-                if state.t > from {
-                    (self.observe)(state, Place::End);
-                }
-            };
-            if self.plan.quiet && whole.run(self.system, self.state, end) {
-                observe(self.state);
+            let (system, step) = (self.system, self.plan.step);
+            let watches = self.events.as_ref().is_some_and(|e| !e.list().is_empty());
+            if self.plan.quiet && !watches && whole.run(system, self.state, end) {
+                (self.observe)(self.state, Place::End);
             } else {
-                let (system, step) = (self.system, self.plan.step);
                 let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
-                integrate(system, &whole, self.state, step, end, inputs, observe)?;
+                let (stepper, observe) = (&self.plan.method.stepper, &mut self.observe);
+                let events = &mut self.events;
+                // Where an event ends the run, or why it cannot be watched.
+                let mut stop = None;
+                let look = |state: &State<Instance>| {
+                    if state.t <= from {
+                        return ControlFlow::Continue(());
+                    }
+                    let seen = match events {
+                        Some(events) => events.see(system, stepper, state),
+                        None => Ok(None),
+                    };
+                    match seen {
+                        Ok(None) => {
+                            observe(state, Place::End);
+                            ControlFlow::Continue(())
+                        }
+                        Ok(Some(at)) => {
+                            observe(&at, Place::End);
+                            stop = Some(Ok(at));
+                            ControlFlow::Break(())
+                        }
+                        Err(error) => {
+                            observe(state, Place::End);
+                            stop = Some(Err(error));
+                            ControlFlow::Break(())
+                        }
+                    }
+                };
+                integrate_while(system, &whole, self.state, step, end, inputs, look)?;
+                if let Some(stop) = stop {
+                    *self.state = stop?;
+                }
             }
         }
-        self.sample(end);
+        if self.state.t == end {
+            self.sample(end);
+        }
         Ok(())
     }
 

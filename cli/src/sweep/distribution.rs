@@ -2,7 +2,7 @@
 
 use super::draws::Draws;
 use super::permutation::Permutation;
-use super::text::Piece;
+use crate::text::Piece;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::suggest::closest;
 
@@ -174,7 +174,7 @@ pub fn count(count: usize, word: &str) -> String {
 mod tests {
     use super::Distribution;
     use crate::sweep::draws::Draws;
-    use crate::sweep::text::Piece;
+    use crate::text::Piece;
 
     fn read(text: &str, entries: usize) -> Result<Vec<Distribution>, String> {
         let numbers = |text: &str| Err(format!("{text} is unknown"));

@@ -1,7 +1,8 @@
 //! `--keep`: what is kept of each member.
 
-use super::text::{Piece, refused};
+use crate::added::{self, Added};
 use crate::failure::Failure;
+use crate::text::{Piece, refused};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::suggest::closest;
 
@@ -41,6 +42,19 @@ pub enum Item<'a> {
 
 /// An item with its text.
 pub type Kept<'a> = (Piece<'a>, Item<'a>);
+
+/// The outputs that are added for what is kept.
+pub fn added<'a>(kept: &[Kept<'a>]) -> Vec<Added<'a>> {
+    let of = |(index, (whole, item)): (usize, &Kept<'a>)| match item {
+        Item::End => None,
+        Item::Of(_, sides) => Some(Added {
+            name: added::name(index),
+            whole: *whole,
+            sides: sides.clone(),
+        }),
+    };
+    kept.iter().enumerate().filter_map(of).collect()
+}
 
 /// Reads the option for runs of this length.
 pub fn read(text: &str, until: f64) -> Result<Vec<Kept<'_>>, Failure> {
@@ -147,7 +161,7 @@ fn event(inner: Piece) -> Result<Item, Diagnostic> {
 mod tests {
     use super::{Item, Of, read};
     use crate::sweep::distribution::Distribution;
-    use crate::sweep::text::{Piece, refused as refused_text};
+    use crate::text::{Piece, refused as refused_text};
 
     fn refused(text: &str) -> String {
         format!("{:?}", read(text, 10.0).expect_err(text))

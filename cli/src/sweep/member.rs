@@ -4,9 +4,11 @@ use super::vary::Vary;
 use super::watch::{Keeping, Watch};
 use crate::failure::Failure;
 use crate::mechanism::{Instance, Mechanism};
+use crate::simulate::advance::{Place, advance};
 use crate::simulate::balance::Balance;
+use crate::simulate::events::Events;
 use crate::simulate::inputs::Inputs;
-use crate::simulate::record::{Early, Place, Plan, advance, ended};
+use crate::simulate::record::{Early, Plan, ended};
 use crate::simulate::steady::Steady;
 use crate::state;
 use hamel::{State, StepError};
@@ -138,7 +140,9 @@ impl<'a> Running<'a> {
     fn advance(&mut self) -> Result<(), StepError> {
         let Member { system, plan, .. } = self.member;
         let balance = &self.balance;
-        advance(system, plan, &mut self.state, balance, |state, place| {
+        // What is kept looks for its own events.
+        let watched = (balance, &mut Events::default());
+        advance(system, plan, &mut self.state, watched, |state, place| {
             if plan.tolerance.is_some() {
                 balance.set(balance.get().after(system, state));
             }
@@ -151,6 +155,7 @@ impl<'a> Running<'a> {
             system: &self.member.system,
             plan: &self.member.plan,
             state: &mut self.state,
+            events: None,
             observe: |state: &State<Instance>, place| self.watch.see(state, place),
         }
     }

@@ -2,15 +2,13 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `text` | options that are lists, and where they are wrong |
 //! | `vary`, `target`, `distribution` | what is varied, and how |
 //! | `draws`, `permutation` | random numbers that depend on the seed and the member alone |
-//! | `keep`, `added`, `watch` | what is kept of a member, compiled as outputs of the description |
+//! | `keep`, `watch` | what is kept of a member, compiled as outputs of the description |
 //! | `member`, `work` | one run, or two side by side, and all of them on threads |
 //! | `shard`, `manifest`, `folder` | what is written, and what is there |
 //! | `status`, `submit` | `--status` and `--submit` |
 
-mod added;
 mod distribution;
 mod draws;
 mod folder;
@@ -22,11 +20,11 @@ mod shard;
 mod status;
 mod submit;
 mod target;
-mod text;
 mod vary;
 mod watch;
 mod work;
 
+use crate::added;
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::mechanism::Mechanism;
@@ -39,6 +37,7 @@ use crate::simulate::stepping::Stepping;
 use crate::source::Source;
 use crate::state::State;
 use crate::state::file::File;
+use crate::text;
 use clap::Args;
 use folder::{Folder, Part};
 use hamel_codegen::generate::Generated;
@@ -229,7 +228,7 @@ fn prepared(
     stepping: &Stepping,
 ) -> Result<(Sweep, Columns), Failure> {
     let kept = keep::read(&arguments.keep, stepping.until)?;
-    let generated = added::derive(source, &arguments.keep, &kept)?;
+    let generated = added::derive(source, (keep::OPTION, &arguments.keep), &keep::added(&kept))?;
     let keeping = Keeping::new(&kept, &generated).map_err(|(item, why)| {
         let error = kept[item].0.wrong(why);
         text::refused(keep::OPTION, &arguments.keep, &[error])

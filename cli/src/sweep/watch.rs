@@ -1,19 +1,18 @@
 //! What is kept of one member while it runs.
 
-use super::added;
 use super::keep::{Item, Kept, Of};
-use crate::mechanism::{Instance, Numbers, Output};
+use crate::added;
+use crate::mechanism::{Instance, Output};
 use crate::method::Stepper;
 use crate::names;
-use crate::simulate::record::Place;
-use hamel::{State, step};
+use crate::simulate::advance::Place;
+use crate::simulate::events;
+use hamel::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 
 /// The name of the time at which a member ended.
 const TIME: &str = "t";
-/// Halvings of a step in which an event is: more are below rounding.
-const HALVINGS: usize = 60;
 
 /// What is made of one item, without the texts that it was read from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,8 +191,8 @@ impl<'a> Watch<'a> {
                         && !holds(&known.last)
                     {
                         let at = |state: &State<Instance>| holds(&value(known.output, state));
-                        let time = first(self.system, self.stepper, before, state.t, &at);
-                        known.values = vec![time];
+                        let first = events::first(self.system, self.stepper, (before, state), &at);
+                        known.values = vec![first.t];
                     }
                 }
             }
@@ -244,31 +243,4 @@ fn extreme(values: &mut Vec<f64>, now: &[f64], beyond: impl Fn(f64, f64) -> bool
             *value = *now;
         }
     }
-}
-
-/// The first time known between a state and a later time at which something holds that does not hold in the state, and
-/// does at that time: by shorter and shorter steps of the method itself.
-fn first(
-    system: &Instance,
-    stepper: &Stepper,
-    from: &State<Instance>,
-    until: f64,
-    holds: &dyn Fn(&State<Instance>) -> bool,
-) -> f64 {
-    let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
-    let (mut before, mut after) = (from.t, until);
-    for _ in 0..HALVINGS {
-        let middle = before + 0.5 * (after - before);
-        if middle <= before || middle >= after {
-            break;
-        }
-        let mut state = from.clone();
-        match step(system, stepper, &mut state, middle - from.t, &inputs) {
-            Ok(()) if holds(&state) => after = middle,
-            Ok(()) => before = middle,
-            // A step that cannot be taken cannot be divided.
-            Err(_) => break,
-        }
-    }
-    after
 }

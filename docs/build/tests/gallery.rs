@@ -77,7 +77,13 @@ fn run(exhibit: &Exhibit) -> Vec<String> {
         lambda: None,
     };
     let start = session.start();
-    let motion = session.simulate(&start, &stepping, (None, None), (&Asked::default(), None));
+    let motion = session.simulate(
+        &start,
+        &stepping,
+        (None, None),
+        (&Asked::default(), None),
+        &[],
+    );
     let motion = match motion {
         Ok(motion) => motion,
         Err(failure) => return vec![failure.text()],

@@ -13,13 +13,15 @@ which.
 """
 
 from ._hamel import Function, HamelError, SingularError, __version__
-from ._system import BaseParameters, Linearization, Names, Run, RunError, State, StepSlopes, System, Tables
+from ._system import BaseParameters, Event, Happened, Linearization, Names, Run, RunError, State, StepSlopes, System, Tables
 from ._sweep import sweep
 
 __all__ = [
     "BaseParameters",
+    "Event",
     "Function",
     "HamelError",
+    "Happened",
     "Linearization",
     "Names",
     "Run",

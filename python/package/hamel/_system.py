@@ -23,6 +23,9 @@ Inputs = Union[
 ]
 
 
+Watched = Union[str, Callable[[float, Array, Array], float]]
+
+
 class RunError(HamelError):
     """A run that ended early; `run` has what there was before."""
 
@@ -77,6 +80,32 @@ class Names(Sequence[str]):
 
 
 @dataclass(frozen=True)
+class Event:
+    """Where a number that is watched along a run changes its sign.
+
+    `of` is an expression of the description's names, such as ``"foot.p[3] - 0.1"``, or a function of (t, x, xi). `direction`
+    is 1 where only changes from negative to positive count, -1 for the others, 0 for both. A run ends at the first event that
+    is `terminal`.
+    """
+
+    of: Watched
+    direction: int = 0
+    terminal: bool = False
+
+
+@dataclass(frozen=True)
+class Happened:
+    """The times at which an event happened, with the states there: a row for each time."""
+
+    t: Array
+    x: Array
+    xi: Array
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+@dataclass(frozen=True)
 class Run:
     """A run: arrays with a row for each sample."""
 
@@ -97,6 +126,10 @@ class Run:
     constraint: float
     #: Why the run ended early.
     failure: str | None
+    #: What became of the events, by their names.
+    events: dict[str, Happened]
+    #: The event at which the run ended.
+    stopped_by: str | None
     coordinates: Names = field(repr=False)
     velocities: Names = field(repr=False)
 
@@ -421,6 +454,7 @@ class System:
         times: ArrayLike | None = None,
         inputs: Inputs = None,
         hold: bool = False,
+        events: Mapping[str, Event | Watched] | None = None,
     ) -> Run:
         """A run from a state, by default the start.
 
@@ -433,6 +467,11 @@ class System:
         every : a sample after so many steps; `spacing`: at multiples of this time; `times`: at these times.
         inputs : `{"F": 2.0, "tau": "-k * q"}` with numbers, or expressions of `t`, parameters, coordinates and velocities; or
             a function of (t, x, xi) that returns u; or a file of CSV, whose values `hold` until the next row.
+        events : `{"ground": hamel.Event("foot.p[3]", direction=-1, terminal=True)}`, by names of your choice: where an
+            expression or a function of (t, x, xi) changes its sign. An expression or a function alone will do, too; `terminal`
+            and `direction` of a function are read as SciPy's `solve_ivp` reads them. `run.events["ground"].t` are the times,
+            found to rounding, and `run.stopped_by` is the name of the event that has ended the run. Signs are compared at the
+            ends of steps, so that two changes within one step are not seen; a zero at the start of the run is no event.
 
         Raises RunError where a run ends early, with what there was until then.
         """
@@ -470,7 +509,9 @@ class System:
         elif inputs is not None:
             options["file"] = os.fspath(inputs)
             options["hold"] = True if hold else None
+        options["events"] = [_watched(name, event) for name, event in (events or {}).items()]
         found = self._session.simulate(state, options)
+        found["events"] = {name: Happened(*parts) for name, parts in found["events"].items()}
         run = Run(**found, coordinates=self.coordinates, velocities=self.velocities)
         if run.failure is not None:
             raise RunError(run.failure, run)
@@ -514,6 +555,17 @@ class System:
         """The base parameters, those that the columns of `regressor` belong to."""
         found = self._session.base_parameters()
         return BaseParameters(json.loads(found["json"]), found["text"], found["latex"], found["markdown"])
+
+
+def _watched(name: str, event: Event | Watched) -> tuple[str, Watched, int, bool]:
+    """An event as the session takes it."""
+    if not isinstance(event, Event):
+        event = Event(event, getattr(event, "direction", 0), getattr(event, "terminal", False))
+    if not isinstance(event.of, str) and not callable(event.of):
+        raise HamelError(f"the event `{name}` is an expression or a function of (t, x, xi), not {event.of!r}")
+    if event.terminal not in (False, True):
+        raise HamelError(f"`terminal` of the event `{name}` is True or False: a run ends at the first event, not after some of them")
+    return name, event.of, int(np.sign(event.direction)), bool(event.terminal)
 
 
 def _numeric(value: Any) -> Any:

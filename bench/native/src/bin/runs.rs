@@ -69,7 +69,7 @@ fn runs() {
         };
         let simulate = || {
             let nothing = (None, None);
-            let motion = session.simulate(&start, &stepping, nothing, (&Asked::default(), None));
+            let motion = session.simulate(&start, &stepping, nothing, (&Asked::default(), None), &[]);
             motion.expect("a run")
         };
         let first = simulate();

@@ -1,23 +1,44 @@
-//! A description with outputs that it does not have itself: what is kept of members is derived with everything else.
+//! A description with outputs that it does not have itself: what is kept of members of a sweep, or watched for events of a run,
+//! is derived with everything else.
 
-use super::keep::{Item, Kept, OPTION};
-use super::text::refused;
 use crate::failure::Failure;
 use crate::source::Source;
+use crate::text::{Piece, refused};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::syntax::ast::{ItemKind, Span};
 use hamel_codegen::syntax::parse_text;
 use std::ops::Range;
 
-/// The output of an item by its place.
-pub fn name(item: usize) -> String {
-    format!("hamel_keep_{}", item + 1)
+/// What names of added outputs begin with.
+const PREFIX: &str = "hamel_keep_";
+
+/// An output that is added.
+pub struct Added<'a> {
+    /// Its name.
+    pub name: String,
+    /// The part of an option's text that it is about.
+    pub whole: Piece<'a>,
+    /// Its expression, or two of which it is the difference.
+    pub sides: Vec<Piece<'a>>,
 }
 
-/// Derives a description with an output for each item that is kept; what is wrong with an expression is shown in the
-/// text of the option.
-pub fn derive(source: &Source, option: &str, kept: &[Kept]) -> Result<Generated, Failure> {
+/// The output of an item by its place.
+pub fn name(item: usize) -> String {
+    format!("{PREFIX}{}", item + 1)
+}
+
+/// Whether an output was added.
+pub fn is_added(name: &str) -> bool {
+    name.starts_with(PREFIX)
+}
+
+/// Derives a description with more outputs; what is wrong with an expression is shown in the text of the option.
+pub fn derive(
+    source: &Source,
+    (option, said): (&str, &str),
+    added: &[Added],
+) -> Result<Generated, Failure> {
     // What is wrong with the description itself, and its warnings.
     source.model()?;
     let mut more = String::from("\n");
@@ -25,12 +46,9 @@ pub fn derive(source: &Source, option: &str, kept: &[Kept]) -> Result<Generated,
     let mut places: Vec<(Range<usize>, Range<usize>)> = Vec::new();
     let mut statements = Vec::new();
     let outputs = Outputs::of(&source.text);
-    for (index, (piece, item)) in kept.iter().enumerate() {
-        let Item::Of(_, sides) = item else {
-            continue;
-        };
+    for Added { name, whole, sides } in added {
         let begin = more.len();
-        more.push_str(&format!("output {} = ", name(index)));
+        more.push_str(&format!("output {name} = "));
         for (number, side) in sides.iter().enumerate() {
             more.push_str(if number == 0 { "" } else { " - " });
             more.push_str(if sides.len() > 1 { "(" } else { "" });
@@ -44,7 +62,7 @@ pub fn derive(source: &Source, option: &str, kept: &[Kept]) -> Result<Generated,
             more.push_str(if sides.len() > 1 { ")" } else { "" });
         }
         more.push_str(";\n");
-        let whole = piece.start..piece.start + piece.text.len();
+        let whole = whole.start..whole.start + whole.text.len();
         statements.push((begin..more.len(), whole));
     }
     places.extend(statements);
@@ -71,7 +89,7 @@ pub fn derive(source: &Source, option: &str, kept: &[Kept]) -> Result<Generated,
         .filter_map(|error| own(error, &moved))
         .collect();
     if !own.is_empty() {
-        return Err(refused(OPTION, option, &own));
+        return Err(refused(option, said, &own));
     }
     source.derive_all()?;
     Err(source.refused(&errors))

@@ -57,6 +57,16 @@ impl<'a> Piece<'a> {
         Diagnostic::new(self.span(), message)
     }
 
+    /// An error about a part of its text, whose place is in that text alone.
+    pub fn moved(&self, error: Diagnostic) -> Diagnostic {
+        let place = error.span.range();
+        let place = place.map(|at| Span::new(at.start + self.start..at.end + self.start));
+        Diagnostic {
+            span: place.unwrap_or_else(|| self.span()),
+            ..error
+        }
+    }
+
     /// A part of it.
     pub fn part(&self, range: Range<usize>) -> Self {
         let start = self.start + range.start;

@@ -1,0 +1,71 @@
+//! A description with the expressions of events as outputs, derived and compiled anew.
+
+use crate::added::{self, Added};
+use crate::failure::Failure;
+use crate::mechanism::{Instance, Mechanism};
+use crate::source::Source;
+use crate::state::State;
+use crate::text::{Piece, refused};
+use hamel_codegen::generate::Generated;
+use hamel_codegen::program::Shape;
+use std::sync::Arc;
+
+/// What messages call the texts of all events.
+const EVENTS: &str = "events";
+
+/// The description with its expressions.
+pub struct Observed {
+    pub generated: Generated,
+    mechanism: Arc<Mechanism>,
+}
+
+impl Observed {
+    /// With these expressions, which stand one behind another in a text.
+    pub fn new(source: &Source, said: &str, expressions: &[&str]) -> Result<Self, Failure> {
+        let mut errors = Vec::new();
+        let (mut outputs, mut start) = (Vec::new(), 0);
+        for (index, text) in expressions.iter().enumerate() {
+            let whole = Piece { text, start };
+            start += text.len() + "; ".len();
+            match Piece::of(text) {
+                Err(error) => errors.push(whole.moved(error)),
+                Ok(_) if text.trim().is_empty() => {
+                    errors.push(whole.wrong("an expression is needed"))
+                }
+                Ok(_) if whole.split(';').len() > 1 => {
+                    errors.push(whole.wrong("one expression is needed"));
+                }
+                Ok(_) => outputs.push(Added {
+                    name: added::name(index),
+                    whole,
+                    sides: vec![whole],
+                }),
+            }
+        }
+        if !errors.is_empty() {
+            return Err(refused(EVENTS, said, &errors));
+        }
+        let generated = added::derive(source, (EVENTS, said), &outputs)?;
+        for Added { name, whole, .. } in &outputs {
+            let function = generated.program.function(name);
+            if function.is_none_or(|function| function.shape != Shape::Scalar) {
+                errors.push(whole.wrong("an event is where one number is zero"));
+            }
+        }
+        if !errors.is_empty() {
+            return Err(refused(EVENTS, said, &errors));
+        }
+        let mechanism = Arc::new(Mechanism::new(&generated, source.shown())?);
+        Ok(Observed {
+            generated,
+            mechanism,
+        })
+    }
+
+    /// A run's system, with the numbers of a state.
+    pub fn instance(&self, state: &State) -> Result<Instance, Failure> {
+        let instance = Instance::of(&self.mechanism, state)?;
+        instance.check_parameters(&state.x)?;
+        Ok(instance)
+    }
+}

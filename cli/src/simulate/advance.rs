@@ -1,0 +1,143 @@
+//! A run from its start to its end: in equal steps, or in those that a tolerance asks for.
+
+use super::balance::Balance;
+use super::events::Events;
+use super::record::{Plan, Sample, Spacing};
+use super::steady::Steady;
+use crate::mechanism::{Instance, Numbers};
+use crate::method::Stepper;
+use hamel::adaptive::{Adaptive, Event, Report};
+use hamel::methods::General;
+use hamel::{State, StepError};
+use std::cell::Cell;
+
+/// Where an observed state is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// At the start, or at the end of a step.
+    End,
+    /// Between, for plots: steps chosen by their error may be few.
+    Within,
+    /// Where a sample was asked for.
+    Sample,
+}
+
+/// Shows the end of a step that a tolerance has chosen, and before it what a plot needs of its path.
+fn show<const D: usize>(
+    report: Report<'_, Instance, D>,
+    spacing: f64,
+    samples: &Spacing,
+    observe: &mut impl FnMut(&State<Instance>, Place),
+) {
+    let Report::Step(step) = report else {
+        return;
+    };
+    let (from, to) = (step.start().t, step.end().t);
+    let parts = ((to - from) / spacing).ceil();
+    for part in 1..parts as u64 {
+        let t = from + (to - from) * (part as f64 / parts);
+        observe(&step.at(t), Place::Within);
+    }
+    for t in samples.within(from, to) {
+        observe(&step.at(t), Place::Sample);
+    }
+    observe(step.end(), Place::End);
+}
+
+/// The run from the start to its end, in equal steps or in those that a tolerance asks for. Where `plan.quiet` says that
+/// nobody looks at equal steps, only the start, samples and ends of such stretches are shown.
+pub fn advance(
+    system: &Instance,
+    plan: &Plan,
+    state: &mut State<Instance>,
+    (balance, watched): (&Cell<Balance>, &mut Events),
+    mut observe: impl FnMut(&State<Instance>, Place),
+) -> Result<(), StepError> {
+    let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+    let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
+    else {
+        let steady = Steady {
+            system,
+            plan,
+            state,
+            events: Some(watched),
+            observe,
+        };
+        return steady.alone();
+    };
+    observe(state, Place::End);
+    if let Spacing::Times(times) = &plan.spacing
+        && times.first() == Some(&state.t)
+    {
+        observe(state, Place::Sample);
+    }
+    let until = plan.until;
+    let spacing = until / plan.points as f64;
+    // A run that has lost the motion ends there.
+    let followed = |state: &State<Instance>| {
+        let here = balance.get().after(system, state);
+        if here.lost(tolerance).is_some() {
+            -1.0
+        } else {
+            1.0
+        }
+    };
+    let mut happened = std::mem::take(&mut watched.happened);
+    let gauges: Vec<_> = (0..watched.list().len())
+        .map(|index| {
+            let watched = &*watched;
+            move |state: &State<Instance>| watched.value(index, system, state)
+        })
+        .collect();
+    // The one that is followed is the last.
+    let mut events = Vec::with_capacity(gauges.len() + 1);
+    for (event, gauge) in watched.list().iter().zip(&gauges) {
+        events.push(event.looked_for(gauge));
+    }
+    events.push(Event::new(&followed).stopping());
+    let mut stopped_by = None;
+    let mut outcome = Ok(());
+    let jumps = system.jumps().iter().filter(|jump| **jump < until);
+    for end in jumps.copied().chain([until]) {
+        system.go_from(state.t);
+        let run = match general {
+            General::Rkmk8 => {
+                let method = Adaptive::rkmk8(tolerance);
+                method.integrate(system, state, end, inputs, &events, |report| {
+                    note(&report, system, &mut happened);
+                    show(report, spacing, &plan.spacing, &mut observe);
+                })
+            }
+            _ => {
+                let method = Adaptive::rkmk54(tolerance);
+                method.integrate(system, state, end, inputs, &events, |report| {
+                    note(&report, system, &mut happened);
+                    show(report, spacing, &plan.spacing, &mut observe);
+                })
+            }
+        };
+        match run {
+            Ok(run) => stopped_by = run.stopped_by,
+            Err(error) => outcome = Err(error),
+        }
+        if outcome.is_err() || stopped_by.is_some() {
+            break;
+        }
+    }
+    watched.stopped_by = stopped_by.filter(|event| *event < watched.list().len());
+    watched.happened = happened;
+    outcome
+}
+
+/// Notes an event of those that are watched.
+fn note<const D: usize>(
+    report: &Report<'_, Instance, D>,
+    system: &Instance,
+    happened: &mut [Vec<Sample>],
+) {
+    if let Report::Event { index, state } = report
+        && let Some(happened) = happened.get_mut(*index)
+    {
+        happened.push(Sample::of(system, state));
+    }
+}

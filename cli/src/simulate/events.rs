@@ -1,0 +1,240 @@
+//! Events of a run: where a number that is watched changes its sign.
+
+use super::record::Sample;
+use crate::mechanism::{Instance, Numbers};
+use crate::method::Stepper;
+use hamel::adaptive::{self, Direction};
+use hamel::{State, StepError, step};
+use std::cell::Cell;
+use std::fmt;
+use std::sync::Arc;
+
+/// Halvings of a step in which an event is: more are below rounding.
+const HALVINGS: usize = 60;
+
+/// A function of t, x and ξ of another program.
+pub type Gauge = dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync;
+
+/// What is watched.
+#[derive(Clone)]
+pub enum Watched {
+    /// An expression of the description's names.
+    Expression(String),
+    /// A function.
+    Function(Arc<Gauge>),
+}
+
+/// A change of sign that is looked for.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// Its name.
+    pub name: String,
+    /// Of what.
+    pub of: Watched,
+    /// Which changes count.
+    pub direction: Direction,
+    /// Whether the run ends there.
+    pub terminal: bool,
+}
+
+impl fmt::Debug for Watched {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Watched::Expression(text) => write!(f, "Expression({text:?})"),
+            Watched::Function(_) => f.write_str("Function"),
+        }
+    }
+}
+
+impl Event {
+    /// The expression that it watches.
+    pub fn expression(&self) -> Option<&str> {
+        match &self.of {
+            Watched::Expression(text) => Some(text),
+            Watched::Function(_) => None,
+        }
+    }
+
+    /// The same for runs whose steps a tolerance chooses.
+    pub fn looked_for<'g>(
+        &self,
+        gauge: &'g dyn Fn(&State<Instance>) -> f64,
+    ) -> adaptive::Event<'g, Instance> {
+        let event = adaptive::Event::new(gauge);
+        let event = match self.direction {
+            Direction::Any => event,
+            Direction::Rising => event.rising(),
+            Direction::Falling => event.falling(),
+        };
+        match self.terminal {
+            true => event.stopping(),
+            false => event,
+        }
+    }
+
+    /// The sign that counts on the way from one value to another; a zero that a value comes from is no event.
+    fn sign(&self, from: f64, to: f64) -> Option<f64> {
+        let rises = from < 0.0 && to >= 0.0 && self.direction != Direction::Falling;
+        let falls = from > 0.0 && to <= 0.0 && self.direction != Direction::Rising;
+        match (rises, falls) {
+            (true, _) => Some(1.0),
+            (_, true) => Some(-1.0),
+            _ => None,
+        }
+    }
+}
+
+/// The events of one run, and what of them has happened.
+#[derive(Default)]
+pub struct Events {
+    list: Vec<Event>,
+    /// The place of an expression among the outputs of the system.
+    outputs: Vec<Option<usize>>,
+    /// The last state, with the values of all events.
+    last: Option<(State<Instance>, Vec<f64>)>,
+    /// The states at each event, in order of time.
+    pub happened: Vec<Vec<Sample>>,
+    /// The event at which the run has ended.
+    pub stopped_by: Option<usize>,
+    /// An event that had no value.
+    undefined: Cell<Option<usize>>,
+}
+
+impl Events {
+    /// Events of a system; expressions are outputs of it, in this order with these names.
+    pub fn new(list: Vec<Event>, system: &Instance, name: impl Fn(usize) -> String) -> Self {
+        let mut expressions = 0..;
+        let outputs = list.iter().map(|event| match event.of {
+            Watched::Function(_) => None,
+            Watched::Expression(_) => {
+                let name = name(expressions.next().unwrap_or(0));
+                let mut all = system.outputs().iter();
+                all.position(|output| output.name == name)
+            }
+        });
+        Events {
+            outputs: outputs.collect(),
+            happened: vec![Vec::new(); list.len()],
+            list,
+            ..Events::default()
+        }
+    }
+
+    /// All of them.
+    pub fn list(&self) -> &[Event] {
+        &self.list
+    }
+
+    /// The name of an event that had no value, where one had none.
+    pub fn undefined(&self) -> Option<&str> {
+        let event = self.list.get(self.undefined.get()?)?;
+        Some(&event.name)
+    }
+
+    /// The value of what an event watches.
+    pub fn value(&self, index: usize, system: &Instance, state: &State<Instance>) -> f64 {
+        let output = self.outputs.get(index).copied().flatten();
+        let value = match (self.list.get(index).map(|event| &event.of), output) {
+            (Some(Watched::Function(gauge)), _) => gauge(state.t, &state.x, &state.xi),
+            (_, Some(output)) => {
+                let output = &system.outputs()[output];
+                let value = system.output(output, state.t, &state.x, &state.xi);
+                value.first().copied().unwrap_or(f64::NAN)
+            }
+            _ => f64::NAN,
+        };
+        if value.is_nan() {
+            self.undefined.set(Some(index));
+        }
+        value
+    }
+
+    /// Begins to watch, from a state.
+    ///
+    /// # Errors
+    /// Where an event has no value there.
+    pub fn begin(&mut self, system: &Instance, state: &State<Instance>) -> Result<(), StepError> {
+        if !self.list.is_empty() {
+            let values = self.values(system, state)?;
+            self.last = Some((state.clone(), values));
+        }
+        Ok(())
+    }
+
+    /// Sees the end of a step; the state at which the run ends, where it ends within the step.
+    ///
+    /// # Errors
+    /// Where an event has no value.
+    pub fn see(
+        &mut self,
+        system: &Instance,
+        stepper: &Stepper,
+        state: &State<Instance>,
+    ) -> Result<Option<State<Instance>>, StepError> {
+        let Some((before, values)) = self.last.take() else {
+            return Ok(None);
+        };
+        let now = self.values(system, state)?;
+        let mut found: Vec<(usize, State<Instance>)> = Vec::new();
+        for (index, event) in self.list.iter().enumerate() {
+            let Some(sign) = event.sign(values[index], now[index]) else {
+                continue;
+            };
+            let holds = |state: &State<Instance>| sign * self.value(index, system, state) >= 0.0;
+            found.push((index, first(system, stepper, (&before, state), &holds)));
+        }
+        if self.undefined.get().is_some() {
+            return Err(StepError::NonFinite { time: state.t });
+        }
+        found.sort_by(|(_, a), (_, b)| a.t.total_cmp(&b.t));
+        for (index, at) in found {
+            self.happened[index].push(Sample::of(system, &at));
+            if self.list[index].terminal {
+                self.stopped_by = Some(index);
+                return Ok(Some(at));
+            }
+        }
+        self.last = Some((state.clone(), now));
+        Ok(None)
+    }
+
+    fn values(&self, system: &Instance, state: &State<Instance>) -> Result<Vec<f64>, StepError> {
+        let all = 0..self.list.len();
+        let values = all.map(|index| self.value(index, system, state)).collect();
+        match self.undefined.get() {
+            Some(_) => Err(StepError::NonFinite { time: state.t }),
+            None => Ok(values),
+        }
+    }
+}
+
+/// The first state known on the way from one state to another in which something holds that does not hold in the former,
+/// and does in the latter: by shorter and shorter steps of the method itself.
+pub fn first(
+    system: &Instance,
+    stepper: &Stepper,
+    (from, end): (&State<Instance>, &State<Instance>),
+    holds: &dyn Fn(&State<Instance>) -> bool,
+) -> State<Instance> {
+    let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+    let (mut before, mut after) = (from.t, end.clone());
+    for _ in 0..HALVINGS {
+        let middle = before + 0.5 * (after.t - before);
+        if middle <= before || middle >= after.t {
+            break;
+        }
+        let mut state = from.clone();
+        match step(system, stepper, &mut state, middle - from.t, &inputs) {
+            Ok(()) => {
+                state.t = middle;
+                match holds(&state) {
+                    true => after = state,
+                    false => before = middle,
+                }
+            }
+            // A step that cannot be taken cannot be divided.
+            Err(_) => break,
+        }
+    }
+    after
+}
