@@ -38,13 +38,10 @@ use hamel_codegen::model::Model;
 use hamel_codegen::program::Cause;
 use hamel_codegen::tables::regressor::BaseParameters;
 use hamel_codegen::tables::{self, Table};
-use observed::Observed;
+use observed::AllObserved;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-
-/// Sets of expressions that are kept.
-const KEPT: usize = 8;
 
 /// A description, derived, with what was compiled of it.
 pub struct Session {
@@ -57,7 +54,7 @@ pub struct Session {
     varied: Mutex<Option<Arc<Varied>>>,
     functions: Mutex<BTreeMap<String, Function>>,
     /// With the expressions of events that were asked for last.
-    observed: Mutex<Vec<(String, Arc<Observed>)>>,
+    observed: AllObserved,
 }
 
 /// Names of entries, and groups of them: name, place of the first, number.
@@ -139,7 +136,7 @@ impl Session {
                 mechanism: OnceLock::new(),
                 varied: Mutex::default(),
                 functions: Mutex::default(),
-                observed: Mutex::default(),
+                observed: AllObserved::default(),
             })
         })
     }
@@ -351,7 +348,7 @@ impl Session {
             Some(law) => Some(law.into()),
             None => Inputs::new(asked, until, &self.generated, state)?,
         };
-        let observed = self.observed(events)?;
+        let observed = self.observed.of(&self.source, events)?;
         let (generated, system) = match &observed {
             None => (&self.generated, self.instance(state)?),
             Some(observed) => (&observed.generated, observed.instance(state)?),
@@ -366,26 +363,6 @@ impl Session {
         let events = Events::new(events.to_vec(), &system, added::name);
         let run = Run::watched(generated, &system, plan, events)?;
         Ok(Motion::of(&run, &system))
-    }
-
-    /// The description with the expressions of events as outputs; none where no event is an expression.
-    fn observed(&self, events: &[Event]) -> Result<Option<Arc<Observed>>, Failure> {
-        let texts: Vec<&str> = events.iter().filter_map(Event::expression).collect();
-        if texts.is_empty() {
-            return Ok(None);
-        }
-        let said = texts.join("; ");
-        let known = || self.observed.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, found)) = known().iter().find(|(of, _)| *of == said) {
-            return Ok(Some(Arc::clone(found)));
-        }
-        let made = Arc::new(Observed::new(&self.source, &said, &texts)?);
-        let mut all = known();
-        if all.len() >= KEPT {
-            all.remove(0);
-        }
-        all.push((said, Arc::clone(&made)));
-        Ok(Some(made))
     }
 
     /// Steps of a method, by its name or `auto`, with the parameters of a state.

@@ -113,7 +113,7 @@ impl Motion {
             constraint: run.monitor.constraint(),
             failure: run.failure.clone(),
             events: happened.collect(),
-            stopped_by: run.events.stopped_by.map(|event| named(event)),
+            stopped_by: run.events.stopped_by.map(named),
         }
     }
 }

@@ -3,15 +3,45 @@
 use crate::added::{self, Added};
 use crate::failure::Failure;
 use crate::mechanism::{Instance, Mechanism};
+use crate::simulate::events::Event;
 use crate::source::Source;
 use crate::state::State;
 use crate::text::{Piece, refused};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Sets of expressions that are kept.
+const KEPT: usize = 8;
 
 /// What messages call the texts of all events.
 const EVENTS: &str = "events";
+
+/// Those that were asked for last, by the texts of their events.
+#[derive(Default)]
+pub struct AllObserved(Mutex<Vec<(String, Arc<Observed>)>>);
+
+impl AllObserved {
+    /// The one for these events; none where no event is an expression.
+    pub fn of(&self, source: &Source, events: &[Event]) -> Result<Option<Arc<Observed>>, Failure> {
+        let texts: Vec<&str> = events.iter().filter_map(Event::expression).collect();
+        if texts.is_empty() {
+            return Ok(None);
+        }
+        let said = texts.join("; ");
+        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = known().iter().find(|(of, _)| *of == said) {
+            return Ok(Some(Arc::clone(found)));
+        }
+        let made = Arc::new(Observed::new(source, &said, &texts)?);
+        let mut all = known();
+        if all.len() >= KEPT {
+            all.remove(0);
+        }
+        all.push((said, Arc::clone(&made)));
+        Ok(Some(made))
+    }
+}
 
 /// The description with its expressions.
 pub struct Observed {
