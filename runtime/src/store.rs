@@ -83,7 +83,7 @@ impl<S: Scalar, const ROWS: usize, const COLUMNS: usize> Table<S> for [[S; COLUM
 
     #[inline]
     fn is_finite(&self) -> bool {
-        self.iter().fold(true, |all, row| all & is_finite(row))
+        is_finite(self.as_flattened())
     }
 }
 
