@@ -48,11 +48,11 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
     /// A number that varies with slope 1 along one direction; a direction from N on is none.
     #[inline]
     pub fn along(value: S, direction: usize) -> Self {
-        let mut dual = Dual::constant(value);
-        if let Some(slope) = dual.slopes.get_mut(direction) {
-            *slope = S::from_f64(1.0);
+        let (zero, one) = (S::default(), S::from_f64(1.0));
+        Dual {
+            value,
+            slopes: from_fn(|i| if i == direction { one } else { zero }),
         }
-        dual
     }
 
     /// f(a) of a function with this value and slope at a.

@@ -133,7 +133,9 @@ pub use nalgebra;
 pub use rotor::Rotor;
 pub use sampled::Sampled;
 pub use scalar::Scalar;
-pub use slopes::{Directions, Nearby, Stepped, Tangent, TangentStep, step_nearby, step_slopes};
+pub use slopes::{
+    Directions, Nearby, Sparsity, Stepped, Tangent, TangentStep, step_nearby, step_slopes,
+};
 pub use split::Split;
 pub use state::State;
 pub use store::{Store, Table};

@@ -30,7 +30,10 @@ pub trait Table<S>: Clone + Debug {
     /// Adds to row `i` multiples of the rows of another table from row `k` on, by factors that are not 0.
     fn follow(&mut self, i: usize, factors: &[S], other: &Self, k: usize);
 
-    /// Makes row `i` a multiple of row `k`.
+    /// Adds to row `i` a multiple of another row, `k`.
+    fn add_scaled(&mut self, i: usize, factor: S, k: usize);
+
+    /// Makes row `i` a multiple of another row, `k`.
     fn repeat(&mut self, i: usize, factor: S, k: usize);
 
     /// Whether every entry is finite.
@@ -73,11 +76,20 @@ impl<S: Scalar, const ROWS: usize, const COLUMNS: usize> Table<S> for [[S; COLUM
     }
 
     #[inline]
+    fn add_scaled(&mut self, i: usize, factor: S, k: usize) {
+        if let Ok([own, row]) = self.get_disjoint_mut([i, k]) {
+            for (entry, by) in own.iter_mut().zip(row) {
+                *entry = factor.mul_add(*by, *entry);
+            }
+        }
+    }
+
+    #[inline]
     fn repeat(&mut self, i: usize, factor: S, k: usize) {
-        if let Some(row) = self.get(k).copied()
-            && let Some(own) = self.get_mut(i)
-        {
-            *own = row.map(|entry| factor * entry);
+        if let Ok([own, row]) = self.get_disjoint_mut([i, k]) {
+            for (entry, by) in own.iter_mut().zip(row) {
+                *entry = factor * *by;
+            }
         }
     }
 

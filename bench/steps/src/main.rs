@@ -45,7 +45,11 @@ where
             let mut slopes = S::Slopes::zero();
             let _ = black_box(system.slopes(&state.x, &state.xi, &u, &mut slopes));
         }),
-        counted(|| drop(black_box(step_nearby(method, &nearby, &state, &u, STEP)))),
+        counted(|| {
+            let mut slopes = S::Slopes::zero();
+            let step = step_nearby(method, &nearby, &state, &u, STEP, &mut slopes);
+            drop(black_box(step));
+        }),
     ]
 }
 
@@ -58,18 +62,21 @@ where
     let inputs: Vec<_> = (0..INPUTS).map(|k| at(system, k)).collect();
     let nearby = Nearby::new(system);
     let linear = |count: u32| {
+        let mut slopes = S::Slopes::zero();
         for _ in 0..count {
             for (state, u) in &inputs {
-                let mut slopes = S::Slopes::zero();
                 let _ = black_box(black_box(system).slopes(&state.x, &state.xi, u, &mut slopes));
                 black_box(&slopes);
             }
         }
     };
     let stepped = |count: u32| {
+        let mut slopes = S::Slopes::zero();
         for _ in 0..count {
             for (state, u) in &inputs {
-                let _ = black_box(step_nearby(method, black_box(&nearby), state, u, STEP));
+                let nearby = black_box(&nearby);
+                let _ = black_box(step_nearby(method, nearby, state, u, STEP, &mut slopes));
+                black_box(&slopes);
             }
         }
     };

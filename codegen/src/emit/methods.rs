@@ -3,6 +3,7 @@
 use super::{Emitter, externals, names, structure, together};
 use crate::algebra::graph::Edge;
 use crate::model::layout::Block;
+use crate::program::sparsity::Sparsity;
 use crate::program::structure::{Inertia, RotorForm, Symmetry};
 use crate::program::{Argument, FunctionId, Program, Shape};
 use crate::syntax::ast::ShapeKind;
@@ -123,7 +124,7 @@ fn canonical(emitter: &Emitter) -> Option<String> {
     Some(head(emitter, "Canonical", &body))
 }
 
-/// Steps with slopes: the system in dual numbers, and the frame of displacements.
+/// Steps with slopes: the system in dual numbers, the frame of displacements, and the sparsity of a step in the chart.
 fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
     let program = emitter.program;
     let matrix = |id: FunctionId| match program.function(id)?.shape {
@@ -162,16 +163,20 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
         fields += &format!("{kept}: self.{kept}.map({constant}),\n");
     }
     let number = format!("::hamel::Dual<S, {columns}>");
-    let (mut applied, mut generics) = (externals::applied(emitter), externals::generics(emitter));
+    let sparsity = Sparsity::of(program)?;
+    let mut few = format!("::hamel::Dual<S, {}>", sparsity.directions());
+    let mut generics = externals::generics(emitter);
     if externals::has(emitter) {
-        // Functions in Rust take such numbers, too.
+        // Functions in Rust take such numbers, too: of one length alone.
         let names = &emitter.names.externals;
         let own = format!("{}<S>", names.of);
         generics = generics.replace(&own, &format!("{own} + {}<{number}>", names.of));
         fields += &format!("{0}: self.{0}.clone(),\n", names.field);
+        few.clone_from(&number);
     }
-    let of = applied.clone();
-    applied = applied.replacen("<S", &format!("<{number}"), 1);
+    let of = externals::applied(emitter);
+    let [applied, compressed] =
+        [&number, &few].map(|number| of.replacen("<S", &format!("<{number}"), 1));
     let name = &emitter.names.type_name;
     let slopes = slopes(emitter, together)?;
     // What is constant for its coordinate kind, and nothing else.
@@ -181,9 +186,24 @@ fn tangent(emitter: &Emitter, together: bool) -> Option<String> {
     let projection = [FunctionId::ProjectPosition, FunctionId::ProjectVelocity];
     let projected = projection.iter().any(|id| program.function(id).is_some());
     let plain = charted && !projected && plain(program);
+    let list = |entries: &[usize]| {
+        let entries: Vec<String> = entries.iter().map(usize::to_string).collect();
+        format!("&[{}]", entries.join(", "))
+    };
+    let pattern = |rows: &[Vec<usize>]| {
+        let rows: Vec<String> = rows.iter().map(|row| list(row)).collect();
+        format!("&[{}]", rows.join(", "))
+    };
+    let sparsity = format!(
+        "::hamel::Sparsity {{ frame: {}, coframe: {}, motion: {}, seeds: {} }}",
+        pattern(&sparsity.frame),
+        pattern(&sparsity.coframe),
+        pattern(&sparsity.motion),
+        list(&sparsity.seeds)
+    );
     let body = format!(
-        "const CHARTED: bool = {charted};\nconst PROJECTED: bool = {projected};\nconst PLAIN: bool = {plain};\n\ntype Number = {number};\ntype Dual = {applied};\n{frame}{coframe}\
-         type Slopes = [[S; {columns}]; {rows}];\n\nfn dual(&self) -> Self::Dual {{\n{name} {{\n{fields}}}\n}}\n{frame_of}{coframe_of}{slopes}"
+        "const CHARTED: bool = {charted};\nconst PROJECTED: bool = {projected};\nconst PLAIN: bool = {plain};\n\nconst SPARSITY: ::hamel::Sparsity = {sparsity};\n\ntype Number = {number};\ntype Dual = {applied};\ntype CompressedNumber = {few};\ntype Compressed = {compressed};\n{frame}{coframe}\
+         type Slopes = [[S; {columns}]; {rows}];\n\nfn dual(&self) -> Self::Dual {{\n{name} {{\n{fields}}}\n}}\n\nfn compressed(&self) -> Self::Compressed {{\n{name} {{\n{fields}}}\n}}\n{frame_of}{coframe_of}{slopes}"
     );
     Some(format!(
         "{}impl{generics} ::hamel::Tangent for {of} {{\n{body}}}\n\n",

@@ -5,6 +5,7 @@ pub mod interpret;
 pub(crate) mod places;
 pub mod rounding;
 pub mod schedule;
+pub(crate) mod sparsity;
 pub(crate) mod statements;
 pub mod structure;
 mod sums;

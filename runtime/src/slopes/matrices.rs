@@ -6,7 +6,8 @@
 //! G = [W_ξ; T W + T_u],  Wᵢ = I + h Σⱼ aᵢⱼ Gⱼ
 //!
 //! and an explicit step is closed by the weights b in the place of a. The semi-implicit Euler method has the rows
-//! I + h T of ξ for coordinates of all kinds; those of x follow from the chart rate along them.
+//! I + h T of ξ for coordinates of all kinds; those of x follow from the slopes of a motion along the chart rate, which
+//! are sparse.
 
 use core::array::from_fn;
 use core::fmt;
@@ -17,7 +18,7 @@ use crate::manifold;
 use crate::methods::tableau::{Row, Stages, Weights};
 use crate::methods::{InChart, Method, arrive};
 use crate::scalar::Scalar;
-use crate::slopes::{Directions, Nearby, Stepped, Tangent, read, values, varying};
+use crate::slopes::{Directions, Nearby, Tangent, displacement, values, varying};
 use crate::state::State;
 use crate::store::{Table, add_scaled, is_finite, scale};
 use crate::system::System;
@@ -46,11 +47,13 @@ impl<Sys: Tangent> fmt::Debug for TangentStep<'_, Sys> {
 impl<Sys: Tangent> TangentStep<'_, Sys> {
     /// The step of a method, with its slopes.
     #[inline]
-    pub(crate) fn of<M: Method<Nearby<Sys>> + InChart>(&self, method: &M) -> Stepped<Sys> {
-        let mut slopes = Sys::Slopes::zero();
+    pub(crate) fn of<M: Method<Nearby<Sys>> + InChart>(
+        &self,
+        method: &M,
+        slopes: &mut Sys::Slopes,
+    ) -> Result<State<Sys>, StepError> {
         let in_dual_numbers = |slopes: &mut Sys::Slopes| self.in_dual_numbers(method, slopes);
-        let end = method.step_slopes(self, &mut slopes, in_dual_numbers)?;
-        Ok((end, slopes))
+        method.step_slopes(self, slopes, in_dual_numbers)
     }
 
     #[inline]
@@ -98,7 +101,11 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
         };
         values(end.x.as_mut(), varied.x.as_ref());
         values(end.xi.as_mut(), varied.xi.as_ref());
-        read(&system.coframe(&end.x), varied.x.as_ref(), slopes);
+        let coframe = system.coframe(&end.x);
+        for i in 0..displacements {
+            let moved = displacement::<Sys, _>(&coframe, i, varied.x.as_ref());
+            slopes.row_mut(i).copy_from_slice(moved.slopes());
+        }
         for (i, number) in varied.xi.as_ref().iter().enumerate() {
             slopes
                 .row_mut(displacements + i)
@@ -141,7 +148,7 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
     }
 
     /// The step of the semi-implicit Euler method, where nothing is projected: the rows of ξ⁺ = ξ + h ξ̇ are I + h T; those
-    /// of x move by h times these where coordinates are plain, else along the chart rate in dual numbers.
+    /// of x move by h times these where coordinates are plain, else along the chart rate.
     #[inline]
     pub(crate) fn semi_implicit(&self, w: &mut Sys::Slopes) -> Result<State<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);
@@ -165,36 +172,76 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
             arrive(system, state, h, x, xi)?
         } else {
             match self.nearby {
-                Some(nearby) => self.along(nearby, xi, w)?,
-                None => self.along(&Nearby::new(system), xi, w)?,
+                Some(nearby) => self.along(&nearby.compressed, xi, w)?,
+                None => self.along(&system.compressed(), xi, w)?,
             }
         };
         checked(end, w, state.t)
     }
 
     /// x moved along the chart rate for the length of the step, with its rows of W: those of ξ are known.
+    ///
+    /// With the slopes P and Q of the displacements at its end by η and ξ, sparse and found in compressed numbers, these
+    /// rows are [P 0] + Q W_ξ.
     #[inline]
     fn along(
         &self,
-        nearby: &Nearby<Sys>,
+        compressed: &Sys::Compressed,
         xi: Sys::Velocities,
         w: &mut Sys::Slopes,
     ) -> Result<State<Sys>, StepError> {
         let (system, state) = (self.system, self.state);
         let displacements = w.rows() - xi.as_ref().len();
-        let mut x = varying(nearby, &system.frame(&state.x), &state.x);
-        let mut velocities = nearby.zero_velocities();
-        let numbers = velocities.as_mut().iter_mut().zip(xi.as_ref());
-        for (i, (number, value)) in numbers.enumerate() {
-            number.vary(*value, w.row(displacements + i));
+        let sparsity = Sys::SPARSITY;
+        let frame = system.frame(&state.x);
+        let mut x = compressed.zero_coordinates();
+        for (i, (number, value)) in x.as_mut().iter_mut().zip(state.x.as_ref()).enumerate() {
+            number.vary(*value, &[]);
+            for &entry in sparsity.frame.get(i).copied().unwrap_or_default() {
+                if let Some(factor) = frame.row(i).get(entry)
+                    && let Some(seed) = sparsity.seeds.get(entry)
+                {
+                    number.lean(*factor, *seed);
+                }
+            }
         }
-        let mut u = nearby.chart_rate(&x, &velocities);
+        let mut velocities = compressed.zero_velocities();
+        let numbers = velocities.as_mut().iter_mut().zip(xi.as_ref());
+        let seeds = sparsity.seeds.iter().skip(displacements);
+        for ((number, value), seed) in numbers.zip(seeds) {
+            *number = Sys::CompressedNumber::along(*value, *seed);
+        }
+        let mut u = compressed.chart_rate(&x, &velocities);
         scale(u.as_mut(), self.h);
-        manifold::retract(nearby.blocks(), x.as_mut(), u.as_ref());
+        manifold::retract(compressed.blocks(), x.as_mut(), u.as_ref());
         let mut place = system.zero_coordinates();
         values(place.as_mut(), x.as_ref());
         let end = arrive(system, state, self.h, place, xi)?;
-        read(&system.coframe(&end.x), x.as_ref(), w);
+        let coframe = system.coframe(&end.x);
+        for (i, entries) in sparsity.motion.iter().enumerate() {
+            let moved = displacement::<Sys, _>(&coframe, i, x.as_ref());
+            let slope = |entry: usize| {
+                let seed = sparsity.seeds.get(entry);
+                let slope = seed.and_then(|&seed| moved.slopes().get(seed));
+                slope.copied().unwrap_or_default()
+            };
+            let (by_eta, by_xi) =
+                entries.split_at(entries.partition_point(|&entry| entry < displacements));
+            match by_xi.split_first() {
+                Some((&first, others)) => {
+                    w.repeat(i, slope(first), first);
+                    for &entry in others {
+                        w.add_scaled(i, slope(entry), entry);
+                    }
+                }
+                None => w.row_mut(i).fill(Sys::Scalar::default()),
+            }
+            for &entry in by_eta {
+                if let Some(own) = w.row_mut(i).get_mut(entry) {
+                    *own += slope(entry);
+                }
+            }
+        }
         Ok(end)
     }
 

@@ -107,6 +107,24 @@ impl<S: Scalar, const N: usize> Directions for Dual<S, N> {
     }
 }
 
+/// What is known of matrices when code is generated: for each row the entries that are not 0, and which of them can be
+/// told apart along one direction.
+///
+/// Source: A. R. Curtis, M. J. D. Powell, J. K. Reid, *On the estimation of sparse Jacobian matrices*, J. Inst. Maths
+/// Applics 13 (1974).
+#[derive(Clone, Copy, Debug)]
+pub struct Sparsity {
+    /// Of the rows of the frame A(x).
+    pub frame: &'static [&'static [usize]],
+    /// Of the rows of the coframe Y(x).
+    pub coframe: &'static [&'static [usize]],
+    /// The entries of (η, ξ, z) that each displacement depends on at the end of a motion along the chart rate.
+    pub motion: &'static [&'static [usize]],
+    /// The direction along which each entry of (η, ξ, z) varies in compressed numbers: entries that no row of `motion`
+    /// contains together may share one.
+    pub seeds: &'static [usize],
+}
+
 /// A system whose steps have slopes; generated code implements it where `linearize` is asked for.
 pub trait Tangent: System + Clone {
     /// Whether the coordinate kinds alone keep φ(x) = 0: all that a method moves in the chart then lies on the
@@ -118,10 +136,17 @@ pub trait Tangent: System + Clone {
     /// matrices in the place of dual numbers.
     const PLAIN: bool;
 
+    /// Which entries of A, of Y and of the slopes of a motion along the chart rate are not 0.
+    const SPARSITY: Sparsity;
+
     /// Numbers with a slope for each entry of η, ξ, z and u, in this order.
     type Number: Directions<Value = Self::Scalar>;
     /// The same system in such numbers.
     type Dual: System<Scalar = Self::Number>;
+    /// Numbers with a slope for each direction of the seeds.
+    type CompressedNumber: Directions<Value = Self::Scalar>;
+    /// The same system in compressed numbers.
+    type Compressed: System<Scalar = Self::CompressedNumber>;
     /// A(x), ν rows.
     type Frame: Table<Self::Scalar>;
     /// Y(x), a row for each entry of η.
@@ -131,6 +156,9 @@ pub trait Tangent: System + Clone {
 
     /// The system in dual numbers, its parameters constant.
     fn dual(&self) -> Self::Dual;
+
+    /// The system in compressed numbers, its parameters constant.
+    fn compressed(&self) -> Self::Compressed;
 
     /// A(x), by rows: δx = A η.
     fn frame(&self, x: &Self::Coordinates) -> Self::Frame;
@@ -159,6 +187,7 @@ pub type Stepped<Sys> = Result<(State<Sys>, <Sys as Tangent>::Slopes), StepError
 pub struct Nearby<Sys: Tangent> {
     system: Sys,
     dual: Sys::Dual,
+    compressed: Sys::Compressed,
 }
 
 impl<Sys: Tangent> Nearby<Sys> {
@@ -167,6 +196,7 @@ impl<Sys: Tangent> Nearby<Sys> {
         Nearby {
             system: system.clone(),
             dual: system.dual(),
+            compressed: system.compressed(),
         }
     }
 }
@@ -178,12 +208,18 @@ fn values<N: Directions>(values: &mut [N::Value], numbers: &[N]) {
     }
 }
 
-/// A row of Y times δx, without a value.
+/// Entry i of η = Y δx, without a value, of coordinates that vary.
 #[inline]
-fn displacement<N: Directions>(row: &[N::Value], x: &[N]) -> N {
+fn displacement<Sys, N>(coframe: &Sys::Coframe, i: usize, x: &[N]) -> N
+where
+    Sys: Tangent,
+    N: Directions<Value = Sys::Scalar>,
+{
     let mut sum = N::default();
-    for (factor, moved) in row.iter().zip(x) {
-        if !is_zero(*factor) {
+    for &entry in Sys::SPARSITY.coframe.get(i).copied().unwrap_or_default() {
+        if let Some(factor) = coframe.row(i).get(entry)
+            && let Some(moved) = x.get(entry)
+        {
             sum.follow(*factor, moved);
         }
     }
@@ -277,7 +313,7 @@ impl<Sys: Tangent> System for Nearby<Sys> {
             })
         };
         for j in (0..displacements).filter(|&j| is_felt(j)) {
-            follow(j, &displacement(coframe.row(j), x.as_ref()));
+            follow(j, &displacement::<Sys, _>(&coframe, j, x.as_ref()));
         }
         for (j, by) in xi.as_ref().iter().chain(u.as_ref()).enumerate() {
             follow(displacements + j, by);
@@ -374,7 +410,9 @@ where
             u,
             h,
         };
-        step.of(method)
+        let mut slopes = Sys::Slopes::zero();
+        let end = step.of(method, &mut slopes)?;
+        Ok((end, slopes))
     };
     // What methods make by matrices needs no dual numbers there.
     match Sys::PLAIN {
@@ -398,39 +436,18 @@ fn varying<Sys: Tangent>(
     varied
 }
 
-/// The rows of the displacements η⁺ = Y δx⁺ at the end of a step.
-#[inline]
-fn read<S, C, N, T>(coframe: &C, x: &[N], slopes: &mut T)
-where
-    S: Scalar,
-    C: Table<S>,
-    N: Directions<Value = S>,
-    T: Table<S>,
-{
-    for i in 0..coframe.rows() {
-        let row = slopes.row_mut(i);
-        row.fill(S::default());
-        for (&factor, moved) in coframe.row(i).iter().zip(x) {
-            if !is_zero(factor) {
-                for (entry, slope) in row.iter_mut().zip(moved.slopes()) {
-                    *entry = factor.mul_add(*slope, *entry);
-                }
-            }
-        }
-    }
-}
-
-/// The same of a system that is in dual numbers already.
+/// The same of a system that is in dual numbers already; [A_d B_d] is written to `slopes`, whatever it was.
 ///
 /// # Errors
-/// Those of [`step`](crate::step()).
+/// Those of [`step`](crate::step()); `slopes` then has no meaning.
 pub fn step_nearby<Sys, M>(
     method: &M,
     nearby: &Nearby<Sys>,
     state: &State<Sys>,
     u: &Sys::Inputs,
     h: f64,
-) -> Stepped<Sys>
+    slopes: &mut Sys::Slopes,
+) -> Result<State<Sys>, StepError>
 where
     Sys: Tangent,
     M: Method<Nearby<Sys>> + InChart,
@@ -442,5 +459,5 @@ where
         u,
         h,
     };
-    step.of(method)
+    step.of(method, slopes)
 }

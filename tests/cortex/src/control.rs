@@ -242,8 +242,9 @@ impl<S: Scalar> Regulator<S> {
         let mut value = zeros();
         add_diagonal(&mut value, S::from_f64(1.0), &curvature(END));
         let nodes = self.plan.states.iter().zip(&self.plan.inputs);
+        let mut slopes = [[S::default(); N + M]; N];
         for ((place, u), answer) in nodes.zip(&mut self.answers).rev() {
-            let (_, slopes) = step_nearby(&SemiImplicitEuler, &self.nearby, place, u, STEP)?;
+            step_nearby(&SemiImplicitEuler, &self.nearby, place, u, STEP, &mut slopes)?;
             if !before(place, u, &slopes, &mut value, &mut slope, answer) {
                 return Ok(false);
             }

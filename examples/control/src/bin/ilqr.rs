@@ -76,8 +76,9 @@ fn answers(
     let mut v = END * off(&states[STEPS]);
     let mut value = END * Matrix4::identity();
     let mut all = Vec::new();
+    let mut slopes = [[0.0; 6]; 4];
     for (state, u) in states.iter().zip(torques).take(STEPS).rev() {
-        let (_, slopes) = step_nearby(&Rkmk4, nearby, state, &[u.x, u.y], STEP)?;
+        step_nearby(&Rkmk4, nearby, state, &[u.x, u.y], STEP, &mut slopes)?;
         let a = Matrix4::from_fn(|i, j| slopes[i][j]);
         let b = Matrix4x2::from_fn(|i, j| slopes[i][4 + j]);
         let held = value + reluctance * Matrix4::identity();

@@ -124,9 +124,9 @@ fn decide(
     let bounds = N * AHEAD;
     let mut right = vec![0.0; bounds + 2 * M * AHEAD];
     let mut place = now.clone();
+    let mut slopes = [[0.0; N + M]; N];
     for (k, u) in plan.iter().enumerate() {
-        let (next, slopes) = step_nearby(&Rkmk4, nearby, &place, u, TICK)?;
-        place = next;
+        place = step_nearby(&Rkmk4, nearby, &place, u, TICK, &mut slopes)?;
         let weight = if k + 1 == AHEAD { END } else { 1.0 };
         for (i, off) in off(&place).into_iter().enumerate() {
             let column = error(k + 1, i);
