@@ -14,12 +14,27 @@ impl Compiled {
         u: &[f64],
         times: u64,
     ) -> u64 {
+        self.repeat_watched(function, constants, (state, u), times, |_| ())
+    }
+
+    /// The same for a function that has more results than the next state: `see` is shown what is behind each of these states.
+    pub fn repeat_watched(
+        &self,
+        function: usize,
+        constants: &Constants,
+        (state, u): (&mut [f64], &[f64]),
+        times: u64,
+        see: impl FnMut(&[f64]),
+    ) -> u64 {
         let [length, ..] = self.tapes().lengths;
-        repeated(state, times, |state, next| {
+        let tape = self.tapes().functions.get(function);
+        let results = tape.map_or(0, |tape| tape.outputs.len());
+        let call = |state: &[f64], next: &mut [f64]| {
             let (x, xi) = state.split_at_checked(length).unwrap_or((state, &[]));
             let arguments = [x, xi, u, &[], &[]];
             self.call(function, constants, arguments, next).is_ok()
-        })
+        };
+        repeated(state, results, times, call, see)
     }
 }
 
@@ -81,13 +96,15 @@ impl Paired {
     ) -> u64 {
         let mut states = paired(first, second);
         let u = paired(u[0], u[1]);
-        let done = repeated(&mut states, times, |states, next| {
+        let length = states.len();
+        let call = |states: &[f64], next: &mut [f64]| {
             let (x, xi) = states
                 .split_at_checked(2 * self.length)
                 .unwrap_or((states, &[]));
             let arguments = [x, xi, &u, &[], &[]];
             self.call(function, constants, arguments, next)
-        });
+        };
+        let done = repeated(&mut states, length, times, call, |_| ());
         let lanes = first.iter_mut().zip(second);
         for ((first, second), pair) in lanes.zip(states.chunks_exact(2)) {
             (*first, *second) = (pair[0], pair[1]);
@@ -104,30 +121,45 @@ fn paired(first: &[f64], second: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Takes `next` from `state` so many times, or until there is no next one that is finite; how many there were.
+/// Takes `next` from `state` so many times, or until there is no next one that is finite; how many there were. A result has so
+/// many numbers, and `see` is shown those that are behind each state that is taken.
 fn repeated(
     state: &mut [f64],
+    results: usize,
     times: u64,
     mut call: impl FnMut(&[f64], &mut [f64]) -> bool,
+    mut see: impl FnMut(&[f64]),
 ) -> u64 {
-    let [mut last, mut here, mut next] = [(); 3].map(|()| state.to_vec());
+    let length = state.len();
+    let mut room = state.to_vec();
+    room.resize(results.max(length), f64::NAN);
+    let (mut last, mut here, mut next) = (room.clone(), room.clone(), room);
     let mut done = 0;
     while done < times {
-        let ended = call(&here, &mut next);
+        let ended = call(&here[..length], &mut next);
         // A result is looked at when the next call is over: reading numbers that have just been written has to wait for
         // them.
-        if !are_finite(&here) || !ended {
+        if !are_finite(&here[..length]) || !ended {
             break;
+        }
+        if done > 0 {
+            see(&here[length..]);
         }
         std::mem::swap(&mut last, &mut here);
         std::mem::swap(&mut here, &mut next);
         done += 1;
     }
-    if done > 0 && !are_finite(&here) {
-        here = last;
-        done -= 1;
+    if done > 0 {
+        match are_finite(&here[..length]) {
+            // Where the loop was left for want of a next one, this state has not been shown yet either.
+            true => see(&here[length..]),
+            false => {
+                here = last;
+                done -= 1;
+            }
+        }
     }
-    state.copy_from_slice(&here);
+    state.copy_from_slice(&here[..length]);
     done
 }
 
@@ -155,23 +187,42 @@ mod tests {
         for (start, last) in [(1.0, 1023), (f64::MAX / 4.0, 2), (-f64::MAX, 0)] {
             for times in [0, 1, 2, last, last + 1, last + 2, last + 100] {
                 let mut state = [0.5, 1.0, 1.0, 1.0, start];
-                let done = repeated(&mut state, times, |here, next| {
-                    next.copy_from_slice(here);
-                    next[4] *= 2.0;
-                    true
-                });
+                let done = repeated(
+                    &mut state,
+                    5,
+                    times,
+                    |here, next| {
+                        next.copy_from_slice(here);
+                        next[4] *= 2.0;
+                        true
+                    },
+                    |_| (),
+                );
                 assert_eq!(done, times.min(last), "{start} {times}");
                 let doubled = (0..done).fold(start, |number, _| 2.0 * number);
                 assert_eq!(state, [0.5, 1.0, 1.0, 1.0, doubled]);
             }
         }
-        assert_eq!(repeated(&mut [f64::NAN], 3, |_, _| true), 0);
+        assert_eq!(repeated(&mut [f64::NAN], 1, 3, |_, _| true, |_| ()), 0);
         let mut state = [1.0];
-        let done = repeated(&mut state, 9, |here, next| {
+        let mut seen = Vec::new();
+        let next = |here: &[f64], next: &mut [f64]| {
             next[0] = here[0] + 1.0;
+            next[1] = 10.0 * next[0];
             here[0] < 5.0
-        });
+        };
+        let done = repeated(&mut state, 2, 9, next, |more| seen.push(more.to_vec()));
         assert_eq!((done, state), (4, [5.0]));
+        // What stands behind every state but the first, once.
+        assert_eq!(seen, [[20.0], [30.0], [40.0], [50.0]]);
+        // A state that is no number is not shown.
+        let mut seen = 0;
+        let next = |here: &[f64], next: &mut [f64]| {
+            next.fill(here[0] * 1e200);
+            true
+        };
+        assert_eq!(repeated(&mut [1.0], 2, 9, next, |_| seen += 1), 1);
+        assert_eq!(seen, 1);
     }
 
     #[test]

@@ -39,12 +39,19 @@ impl<S: Scalar> Monitor<S> {
         Sys: System<Scalar = S> + ?Sized,
     {
         let kinetic = system.kinetic_energy(&state.x, &state.xi);
-        let energy = kinetic + system.potential_energy(&state.x);
+        let potential = system.potential_energy(&state.x);
+        self.note(kinetic, potential, system.constraint_norm(&state.x));
+    }
+
+    /// The same for T, V and the largest |φ| of a state.
+    #[inline]
+    pub fn note(&mut self, kinetic: S, potential: S, constraint: S) {
+        let energy = kinetic + potential;
         let gained = energy - self.initial;
         self.deviation = Scalar::max(self.deviation, gained.abs());
         // Energy that the run has made of nothing is no measure of what it should be.
         self.scale = Scalar::max(self.scale, kinetic - gained.max(S::default()));
-        self.constraint = Scalar::max(self.constraint, system.constraint_norm(&state.x));
+        self.constraint = Scalar::max(self.constraint, constraint);
     }
 
     /// E₀, the energy T + V of the first state.

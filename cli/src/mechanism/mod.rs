@@ -26,7 +26,7 @@ pub use numbers::Numbers;
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 pub use varied::{End, Varied};
-pub use whole::Whole;
+pub use whole::{Glance, Whole};
 
 /// What runs of a description have in common, whatever their parameters: its functions, compiled.
 pub struct Mechanism {
@@ -353,6 +353,12 @@ pub fn constant_singular(program: &Program, params: &[f64]) -> bool {
         .any(|&pivot| !(pivot.is_finite() && pivot > 0.0))
 }
 
+/// The largest size of an entry; a NaN stays.
+fn largest(entries: &[f64]) -> f64 {
+    let sizes = entries.iter().map(|entry| entry.abs());
+    sizes.fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
+}
+
 fn block(block: layout::Block) -> Block {
     match block {
         layout::Block::Flat(n) => Block::Flat(n),
@@ -434,11 +440,7 @@ impl System for Instance {
     }
 
     fn constraint_norm(&self, x: &Numbers) -> f64 {
-        // A NaN stays.
-        self.constraint(x)
-            .iter()
-            .map(|entry| entry.abs())
-            .fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
+        largest(&self.constraint(x))
     }
 
     fn kinetic_energy(&self, x: &Numbers, xi: &Numbers) -> f64 {

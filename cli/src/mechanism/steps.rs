@@ -24,6 +24,8 @@ pub struct Code {
     pub compiled: Option<Compiled>,
     /// The same for two states at once, made when it is first asked for.
     paired: OnceLock<Option<Paired>>,
+    /// The same with T, V and the entries of φ at its end, made when it is first asked for.
+    watched: OnceLock<Option<Compiled>>,
     /// How often ξ̇ is evaluated in it.
     pub evaluations: u64,
 }
@@ -46,22 +48,15 @@ impl Mechanism {
         }
         // What follows is for machine code alone, which some builds never have.
         let tape = cfg!(feature = "machine")
-            .then(|| self.tape(&method, h))
+            .then(|| self.tape(&method, h, false))
             .flatten();
         let code = Arc::new(Code {
             method,
             h,
             paired: OnceLock::new(),
+            watched: OnceLock::new(),
             evaluations: tape.as_ref().map_or(0, |(_, evaluations)| *evaluations),
-            compiled: tape.and_then(|(tape, _)| {
-                let tapes = hamel_native::Tapes {
-                    functions: vec![tape],
-                    ..self.compiled.tapes().clone()
-                };
-                let compiled = Compiled::of(tapes);
-                // Step by step the method itself is as fast.
-                compiled.interpreted_because().is_none().then_some(compiled)
-            }),
+            compiled: tape.and_then(|(tape, _)| self.alone(tape)),
         });
         if known.len() >= KEPT {
             known.clear();
@@ -70,8 +65,28 @@ impl Mechanism {
         code
     }
 
-    /// What a step does, and how often it evaluates ξ̇.
-    fn tape(&self, method: &General, h: f64) -> Option<(Tape, u64)> {
+    /// Such a step with T, V and the entries of φ behind the state at its end.
+    pub fn watched<'c>(&self, code: &'c Code) -> Option<&'c Compiled> {
+        let make = || {
+            let (tape, _) = self.tape(&code.method, code.h, true)?;
+            self.alone(tape)
+        };
+        code.watched.get_or_init(make).as_ref()
+    }
+
+    /// A tape as machine code.
+    fn alone(&self, tape: Tape) -> Option<Compiled> {
+        let tapes = hamel_native::Tapes {
+            functions: vec![tape],
+            ..self.compiled.tapes().clone()
+        };
+        let compiled = Compiled::of(tapes);
+        // Step by step the method itself is as fast.
+        compiled.interpreted_because().is_none().then_some(compiled)
+    }
+
+    /// What a step does, and how often it evaluates ξ̇; with T, V and φ at its end where it is `watched`.
+    fn tape(&self, method: &General, h: f64, watched: bool) -> Option<(Tape, u64)> {
         let explicit = matches!(
             method,
             General::Rkmk4
@@ -120,7 +135,22 @@ impl Mechanism {
         let inputs = |_, _: &Vec<Traced>, _: &Vec<Traced>| held.clone();
         let mut failed = false;
         let tape = traced("step", || match method.step(&written, &state, h, &inputs) {
-            Ok(end) => [end.x, end.xi].concat(),
+            Ok(end) => {
+                let mut all = [&end.x[..], &end.xi].concat();
+                if watched {
+                    let Places {
+                        kinetic,
+                        potential,
+                        constraint,
+                        ..
+                    } = written.0.places;
+                    for function in [kinetic, potential, constraint] {
+                        let value = written.0.call(function, [&end.x, &end.xi, &[]]);
+                        all.extend(value.unwrap_or_default());
+                    }
+                }
+                all
+            }
             Err(_) => {
                 failed = true;
                 Vec::new()

@@ -1,7 +1,7 @@
 //! Runs by whole steps as machine code: step by step, many in one call, or those of two systems side by side.
 
-use super::Instance;
 use super::steps::Code;
+use super::{Instance, largest};
 use crate::method::Stepper;
 use hamel::methods::Method;
 use hamel::{Grid, State, StepError, System};
@@ -17,6 +17,19 @@ struct Ready {
     code: Arc<Code>,
     compiled: Compiled,
     constants: Constants,
+    /// Steps with energies at their ends.
+    watched: OnceCell<Option<(Compiled, Constants)>>,
+}
+
+/// Energies and constraints at the end of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Glance {
+    /// T.
+    pub kinetic: f64,
+    /// V.
+    pub potential: f64,
+    /// The largest |φ|.
+    pub constraint: f64,
 }
 
 /// A method whose steps are machine code where all of them are of one length and inputs are constant.
@@ -57,6 +70,7 @@ impl<'a> Whole<'a> {
                 code,
                 compiled,
                 constants,
+                watched: OnceCell::new(),
             })
         });
         ready.as_ref().filter(|ready| ready.code.h == h)
@@ -90,6 +104,45 @@ impl<'a> Whole<'a> {
         }
         ready.end(system, state, &all, (until, count));
         true
+    }
+
+    /// The equal steps to a time, where all of them can be taken by [`glide`](Self::glide).
+    pub fn glides(&self, system: &Instance, from: f64, until: f64) -> Option<Grid> {
+        let (ready, _) = self.at_once(system, from, until)?;
+        ready.watched(system)?;
+        Grid::new(from, until, self.length).ok()
+    }
+
+    /// Takes so many steps of a grid from one of its times on, where nobody looks at more than energies and constraints at
+    /// their ends; how many there were. The next one, if one is missing, has no end by code.
+    pub fn glide(
+        &self,
+        system: &Instance,
+        state: &mut State<Instance>,
+        (grid, from, count): (&Grid, u64, u64),
+        mut see: impl FnMut(Glance),
+    ) -> u64 {
+        let ready = self.code(system, grid.step());
+        let Some((ready, (compiled, constants))) =
+            ready.and_then(|ready| Some((ready, ready.watched(system)?)))
+        else {
+            return 0;
+        };
+        let u = system.inputs(state.t, &state.x, &state.xi);
+        let mut all = [&*state.x, &*state.xi].concat();
+        let done = compiled.repeat_watched(0, constants, (&mut all, &u), count, |more| {
+            if let [kinetic, potential, residuals @ ..] = more {
+                see(Glance {
+                    kinetic: *kinetic,
+                    potential: *potential,
+                    constraint: largest(residuals),
+                });
+            }
+        });
+        if done > 0 {
+            ready.end(system, state, &all, (grid.time(from + done), done));
+        }
+        done
     }
 
     /// The same for two systems of one mechanism, by code that takes both of their steps at once. Where a step of either
@@ -129,6 +182,15 @@ impl<'a> Whole<'a> {
 }
 
 impl Ready {
+    fn watched(&self, system: &Instance) -> Option<&(Compiled, Constants)> {
+        let make = || {
+            let compiled = system.of.watched(&self.code)?.clone();
+            let constants = compiled.constants(system.functions.params());
+            Some((compiled, constants))
+        };
+        self.watched.get_or_init(make).as_ref()
+    }
+
     /// Where a state is after so many steps.
     fn end(
         &self,
@@ -189,6 +251,7 @@ impl Method<Instance> for Whole<'_> {
             code,
             compiled,
             constants,
+            ..
         }) = self.code(system, h)
         {
             let u = inputs(state.t, &state.x, &state.xi);

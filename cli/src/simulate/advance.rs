@@ -4,7 +4,7 @@ use super::balance::Balance;
 use super::events::Events;
 use super::record::{Plan, Sample, Spacing};
 use super::steady::Steady;
-use crate::mechanism::{Instance, Numbers};
+use crate::mechanism::{Glance, Instance, Numbers};
 use crate::method::Stepper;
 use hamel::adaptive::{Adaptive, Event, Report};
 use hamel::methods::General;
@@ -22,12 +22,32 @@ pub enum Place {
     Sample,
 }
 
+/// Who looks at a run.
+pub trait Observer {
+    /// Sees a state.
+    fn look(&mut self, state: &State<Instance>, place: Place);
+
+    /// Of how many steps that are next it wants no more than a [`glance`](Self::glance) at their ends.
+    fn leisure(&self) -> u64 {
+        0
+    }
+
+    /// Sees the energies and constraints at the end of a step.
+    fn glance(&mut self, _: Glance) {}
+}
+
+impl<F: FnMut(&State<Instance>, Place)> Observer for F {
+    fn look(&mut self, state: &State<Instance>, place: Place) {
+        self(state, place);
+    }
+}
+
 /// Shows the end of a step that a tolerance has chosen, and before it what a plot needs of its path.
 fn show<const D: usize>(
     report: Report<'_, Instance, D>,
     spacing: f64,
     samples: &Spacing,
-    observe: &mut impl FnMut(&State<Instance>, Place),
+    observer: &mut impl Observer,
 ) {
     let Report::Step(step) = report else {
         return;
@@ -36,12 +56,12 @@ fn show<const D: usize>(
     let parts = ((to - from) / spacing).ceil();
     for part in 1..parts as u64 {
         let t = from + (to - from) * (part as f64 / parts);
-        observe(&step.at(t), Place::Within);
+        observer.look(&step.at(t), Place::Within);
     }
     for t in samples.within(from, to) {
-        observe(&step.at(t), Place::Sample);
+        observer.look(&step.at(t), Place::Sample);
     }
-    observe(step.end(), Place::End);
+    observer.look(step.end(), Place::End);
 }
 
 /// The run from the start to its end, in equal steps or in those that a tolerance asks for. Where `plan.quiet` says that
@@ -51,7 +71,7 @@ pub fn advance(
     plan: &Plan,
     state: &mut State<Instance>,
     (balance, watched): (&Cell<Balance>, &mut Events),
-    mut observe: impl FnMut(&State<Instance>, Place),
+    observer: &mut impl Observer,
 ) -> Result<(), StepError> {
     let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
@@ -61,15 +81,15 @@ pub fn advance(
             plan,
             state,
             events: Some(watched),
-            observe,
+            observer,
         };
         return steady.alone();
     };
-    observe(state, Place::End);
+    observer.look(state, Place::End);
     if let Spacing::Times(times) = &plan.spacing
         && times.first() == Some(&state.t)
     {
-        observe(state, Place::Sample);
+        observer.look(state, Place::Sample);
     }
     let until = plan.until;
     let spacing = until / plan.points as f64;
@@ -105,14 +125,14 @@ pub fn advance(
                 let method = Adaptive::rkmk8(tolerance);
                 method.integrate(system, state, end, inputs, &events, |report| {
                     note(&report, system, &mut happened);
-                    show(report, spacing, &plan.spacing, &mut observe);
+                    show(report, spacing, &plan.spacing, observer);
                 })
             }
             _ => {
                 let method = Adaptive::rkmk54(tolerance);
                 method.integrate(system, state, end, inputs, &events, |report| {
                     note(&report, system, &mut happened);
-                    show(report, spacing, &plan.spacing, &mut observe);
+                    show(report, spacing, &plan.spacing, observer);
                 })
             }
         };

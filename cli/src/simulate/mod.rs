@@ -9,6 +9,7 @@ mod panels;
 #[cfg(feature = "command")]
 mod picture;
 pub mod record;
+mod recorder;
 #[cfg(feature = "command")]
 mod rotor;
 pub mod steady;
@@ -34,7 +35,7 @@ use write::Format;
 /// Integrates the equations of motion from a start.
 ///
 /// The functions of the description become machine code at once, and so do whole steps of explicit methods where inputs are
-/// constant: a run takes up to twice the time of generated Rust, where steps are small. Inputs keep the value that
+/// constant: a run takes about as long as generated Rust. Inputs keep the value that
 /// STATE.json gives them, or zero, where no --inputs and no --input says what they are.
 #[derive(Args)]
 #[command(after_help = "Examples:

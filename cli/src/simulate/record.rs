@@ -1,14 +1,14 @@
 //! The run itself, and what is kept of it.
 
-use super::advance::{Place, advance};
+use super::advance::advance;
 use super::balance::Balance;
 use super::events::Events;
+use super::recorder::{Recorded, Recorder};
 use crate::failure::Failure;
 use crate::mechanism::{Instance, Output};
 use crate::method::Chosen;
 use crate::names;
 use crate::number::short;
-use crate::progress;
 use hamel::{Monitor, State, StepError, System};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
@@ -17,13 +17,7 @@ use std::cell::Cell;
 /// Samples where nothing else is asked for.
 const SAMPLES: u64 = 1000;
 /// Points of a plot.
-const POINTS: u64 = 4000;
-/// Samples that are kept at most, where their number is not asked for.
-const MOST: usize = 20_000;
-/// Shorter runs show no progress.
-const LONG: u64 = 20_000;
-/// Steps between two movements of the progress bar.
-const TICK: u64 = 500;
+pub const POINTS: u64 = 4000;
 
 /// How often samples are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -200,69 +194,16 @@ impl<'a> Run<'a> {
         mut events: Events,
     ) -> Result<Self, Failure> {
         let mut state = State::start(system);
-        let mut monitor = Monitor::new(system, &state);
         let balance = Cell::new(Balance::new(system, &state));
-        let (mut samples, mut track) = (Vec::new(), Vec::new());
-        let mut every = plan.every;
-        let mut stride = match plan.tolerance {
-            Some(_) => 1,
-            None => (plan.steps / POINTS).max(1),
-        };
-        // How many steps a tolerance takes is not known: the bar comes when they are many.
-        let long = plan.tolerance.is_none() && plan.steps >= LONG;
-        let mut bar = match long {
-            true => progress::bar(plan.steps),
-            false => progress::hidden(),
-        };
-        let mut steps = 0;
-        let observe = |state: &State<Instance>, place: Place| {
-            if place == Place::Sample {
-                samples.push(Sample::of(system, state));
-                return;
-            }
-            if place == Place::Within {
-                track.push(Sample::of(system, state));
-                if thin(&mut track) {
-                    stride *= 2;
-                }
-                return;
-            }
-            monitor.observe(system, state);
-            if plan.tolerance.is_some() {
-                balance.set(balance.get().after(system, state));
-            }
-            // Times that are given say all of it.
-            let asked = match plan.spacing {
-                Spacing::Steps => steps % every == 0,
-                Spacing::Every(_) => steps == 0,
-                Spacing::Times(_) => false,
-            };
-            if asked {
-                samples.push(Sample::of(system, state));
-                if plan.chosen && thin(&mut samples) {
-                    every *= 2;
-                }
-            }
-            if steps % stride == 0 {
-                track.push(Sample::of(system, state));
-                if thin(&mut track) {
-                    stride *= 2;
-                }
-            }
-            if steps == LONG && !long {
-                bar = progress::bar(plan.steps);
-            }
-            if steps % TICK == 0 {
-                bar.set_position(match plan.tolerance {
-                    Some(_) => (state.t / plan.until * plan.steps as f64) as u64,
-                    None => steps,
-                });
-            }
-            steps += 1;
-        };
+        let mut recorder = Recorder::new(system, &plan, &balance);
         let watched = (&balance, &mut events);
-        let outcome = advance(system, &plan, &mut state, watched, observe);
-        bar.finish_and_clear();
+        let outcome = advance(system, &plan, &mut state, watched, &mut recorder);
+        let Recorded {
+            mut samples,
+            mut track,
+            monitor,
+            steps,
+        } = recorder.finish();
         let failure = match events.undefined() {
             Some(name) => Some(format!(
                 "the run ends at t = {}: the event `{name}` has no value there",
@@ -373,17 +314,4 @@ pub fn ended(
         Err(error) => ("other", error.to_string()),
     };
     Ok(Some(Early { kind, why }))
-}
-
-/// Drops every second sample where there are more than a run shows; whether it did.
-fn thin(samples: &mut Vec<Sample>) -> bool {
-    if samples.len() < MOST {
-        return false;
-    }
-    let mut place = 0;
-    samples.retain(|_| {
-        place += 1;
-        place % 2 == 1
-    });
-    true
 }

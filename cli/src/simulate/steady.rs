@@ -1,10 +1,11 @@
 //! Runs in equal steps, from each time that matters to the next: one on its own, or two side by side.
 
-use super::advance::Place;
+use super::advance::{Observer, Place};
 use super::events::Events;
 use super::record::{Plan, Spacing};
 use crate::mechanism::{Instance, Numbers, Whole};
-use hamel::{State, StepError, integrate_while};
+use hamel::methods::Method;
+use hamel::{Grid, State, StepError, integrate_while};
 use std::ops::ControlFlow;
 
 /// A run in equal steps, who looks at it, and where it is.
@@ -18,16 +19,16 @@ pub struct Steady<'a, O> {
     /// What it may end at before its time.
     pub events: Option<&'a mut Events>,
     /// Is shown the start and the ends of steps, or of stretches where nobody looks at steps; and samples.
-    pub observe: O,
+    pub observer: &'a mut O,
 }
 
-impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
+impl<'a, O: Observer> Steady<'a, O> {
     /// The run on its own, to its end.
     ///
     /// # Errors
     /// Why it has ended early; its state is then the last one that it had.
     pub fn alone(mut self) -> Result<(), StepError> {
-        (self.observe)(self.state, Place::End);
+        self.observer.look(self.state, Place::End);
         if let Some(events) = &mut self.events {
             events.begin(self.system, self.state)?;
         }
@@ -53,8 +54,8 @@ impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
         if ends != second.ends() {
             return [first.alone(), second.alone()];
         }
-        (first.observe)(first.state, Place::End);
-        (second.observe)(second.state, Place::End);
+        first.observer.look(first.state, Place::End);
+        second.observer.look(second.state, Place::End);
         let mut outcomes = [Ok(()), Ok(())];
         for end in ends {
             let [one, other] = &mut outcomes;
@@ -98,10 +99,12 @@ impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
             let (system, step) = (self.system, self.plan.step);
             let watches = self.events.as_ref().is_some_and(|e| !e.list().is_empty());
             if self.plan.quiet && !watches && whole.run(system, self.state, end) {
-                (self.observe)(self.state, Place::End);
+                self.observer.look(self.state, Place::End);
+            } else if let Some(grid) = self.glides(&whole, watches, end) {
+                self.glide(&whole, &grid)?;
             } else {
                 let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
-                let (stepper, observe) = (&self.plan.method.stepper, &mut self.observe);
+                let (stepper, observer) = (&self.plan.method.stepper, &mut self.observer);
                 let events = &mut self.events;
                 // Where an event ends the run, or why it cannot be watched.
                 let mut stop = None;
@@ -115,16 +118,16 @@ impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
                     };
                     match seen {
                         Ok(None) => {
-                            observe(state, Place::End);
+                            observer.look(state, Place::End);
                             ControlFlow::Continue(())
                         }
                         Ok(Some(at)) => {
-                            observe(&at, Place::End);
+                            observer.look(&at, Place::End);
                             stop = Some(Ok(at));
                             ControlFlow::Break(())
                         }
                         Err(error) => {
-                            observe(state, Place::End);
+                            observer.look(state, Place::End);
                             stop = Some(Err(error));
                             ControlFlow::Break(())
                         }
@@ -138,6 +141,42 @@ impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
         }
         if self.state.t == end {
             self.sample(end);
+        }
+        Ok(())
+    }
+
+    /// The steps to a time, where most of them may be taken without a look at their ends.
+    fn glides(&self, whole: &Whole, watches: bool, end: f64) -> Option<Grid> {
+        let free = !watches && self.observer.leisure() > 0 && self.state.is_finite();
+        free.then(|| whole.glides(self.system, self.state.t, end))?
+    }
+
+    /// Takes the steps of a grid: as many at once as the observer has no wish to see, and the others one by one.
+    fn glide(&mut self, whole: &Whole, grid: &Grid) -> Result<(), StepError> {
+        let system = self.system;
+        let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+        let mut done = 0;
+        while done < grid.count() {
+            let observer = &mut *self.observer;
+            let free = observer.leisure().min(grid.count() - done);
+            if free > 0 {
+                let steps = (grid, done, free);
+                let taken =
+                    whole.glide(system, self.state, steps, |glance| observer.glance(glance));
+                done += taken;
+                if taken == free {
+                    continue;
+                }
+            }
+            // Where code has no end, the method says why.
+            let mut next = whole.follow(system, self.state, grid.step(), &inputs, &mut None)?;
+            if !next.is_finite() {
+                return Err(StepError::NonFinite { time: next.t });
+            }
+            done += 1;
+            next.t = grid.time(done);
+            *self.state = next;
+            observer.look(self.state, Place::End);
         }
         Ok(())
     }
@@ -157,7 +196,7 @@ impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
             return false;
         }
         for run in [self, other] {
-            (run.observe)(run.state, Place::End);
+            run.observer.look(run.state, Place::End);
             run.sample(end);
         }
         true
@@ -166,7 +205,7 @@ impl<'a, O: FnMut(&State<Instance>, Place)> Steady<'a, O> {
     /// Shows a sample where one is asked for.
     fn sample(&mut self, end: f64) {
         if self.samples().contains(&end) {
-            (self.observe)(self.state, Place::Sample);
+            self.observer.look(self.state, Place::Sample);
         }
     }
 }

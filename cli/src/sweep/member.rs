@@ -4,7 +4,7 @@ use super::vary::Vary;
 use super::watch::{Keeping, Watch};
 use crate::failure::Failure;
 use crate::mechanism::{Instance, Mechanism};
-use crate::simulate::advance::{Place, advance};
+use crate::simulate::advance::advance;
 use crate::simulate::balance::Balance;
 use crate::simulate::events::Events;
 use crate::simulate::inputs::Inputs;
@@ -142,21 +142,23 @@ impl<'a> Running<'a> {
         let balance = &self.balance;
         // What is kept looks for its own events.
         let watched = (balance, &mut Events::default());
-        advance(system, plan, &mut self.state, watched, |state, place| {
+        let watch = &mut self.watch;
+        let mut observe = |state: &State<Instance>, place| {
             if plan.tolerance.is_some() {
                 balance.set(balance.get().after(system, state));
             }
-            self.watch.see(state, place);
-        })
+            watch.see(state, place);
+        };
+        advance(system, plan, &mut self.state, watched, &mut observe)
     }
 
-    fn steady(&mut self) -> Steady<'_, impl FnMut(&State<Instance>, Place)> {
+    fn steady(&mut self) -> Steady<'_, Watch<'a>> {
         Steady {
             system: &self.member.system,
             plan: &self.member.plan,
             state: &mut self.state,
             events: None,
-            observe: |state: &State<Instance>, place| self.watch.see(state, place),
+            observer: &mut self.watch,
         }
     }
 

@@ -5,7 +5,7 @@ use crate::added;
 use crate::mechanism::{Instance, Output};
 use crate::method::Stepper;
 use crate::names;
-use crate::simulate::advance::Place;
+use crate::simulate::advance::{Observer, Place};
 use crate::simulate::events;
 use hamel::State;
 use hamel_codegen::generate::Generated;
@@ -225,6 +225,12 @@ impl<'a> Watch<'a> {
             }
         }
         row
+    }
+}
+
+impl Observer for Watch<'_> {
+    fn look(&mut self, state: &State<Instance>, place: Place) {
+        self.see(state, place);
     }
 }
 
