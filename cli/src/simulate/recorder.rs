@@ -98,7 +98,7 @@ impl Observer for Recorder<'_> {
         let steps = self.recorded.steps;
         // Times that are given say all of it.
         let asked = match plan.spacing {
-            Spacing::Steps => steps % self.every == 0,
+            Spacing::Steps => steps.is_multiple_of(self.every),
             Spacing::Every(_) => steps == 0,
             Spacing::Times(_) => false,
         };
@@ -108,13 +108,13 @@ impl Observer for Recorder<'_> {
                 self.every *= 2;
             }
         }
-        if steps % self.stride == 0 {
+        if steps.is_multiple_of(self.stride) {
             self.point(state);
         }
         if steps == LONG && !self.long {
             self.bar = progress::bar(plan.steps);
         }
-        if steps % TICK == 0 {
+        if steps.is_multiple_of(TICK) {
             self.bar.set_position(match plan.tolerance {
                 Some(_) => (state.t / plan.until * plan.steps as f64) as u64,
                 None => steps,
