@@ -317,3 +317,17 @@ fn roots_of_velocities_outside_the_prime_fields() {
         }
     }
 }
+
+/// ξ̇ that comes out on the way to [A B] of a tree has the rates of states behind it, as `accel` has.
+#[test]
+fn trees_with_states_have_slopes() {
+    let of = generated(
+        "system A { joint j: spherical moves f; state z = 0.5; rate z = j_dot[3]^3 - 2 * z;
+            body on f { mass 1; inertia [[1, 0.05, 0.02], [0.05, 1, 0.03], [0.02, 0.03, 1]]; }
+            torque [z, 0, 0] on f in body; generate linearize; }",
+    );
+    let x = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    let rows = value(&of, "linearize", [&x, &[0.0, 0.0, 2.0, 0.5], &[], &[]]);
+    // The last row, of ż, by (h, δξ, δz).
+    assert_eq!(rows[42..], [0.0, 0.0, 0.0, 0.0, 0.0, 12.0, -2.0]);
+}

@@ -44,6 +44,8 @@ const CI: Task = &[
     // Thousands of statements, and wrong signs in the generator itself.
     "cargo test --manifest-path tests/big/Cargo.toml --locked",
     "cargo test --manifest-path tests/mutants/Cargo.toml --locked",
+    // Random mechanisms against their definitions, in numbers of many digits.
+    "HAMEL_BUILT=1 bash tests/dalembert/run.sh",
     // Steps of real robots with their slopes, against Pinocchio's.
     "bash tests/robots/steps.sh",
     // Tables of sweeps in the programs that read them, and tasks of a scheduler of which one is killed.
@@ -79,6 +81,8 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full HAMEL_PART=3 cargo test --locked -p hamel-tests-emitted compiled",
     "HAMEL_ATTACK=full HAMEL_PART=4 cargo test --locked -p hamel-tests-emitted compiled",
     "bash tests/robots/pinocchio.sh",
+    "bash tests/dalembert/run.sh --seeds 1000 60 --largest 6",
+    "bash tests/dalembert/run.sh --seeds 2000 60 --largest 5 --hard",
     // An array of tasks on Slurm, which is installed where it is missing.
     "bash tests/sweep/slurm.sh",
     // As a user installs it.

@@ -131,7 +131,7 @@ impl Builder<'_> {
         let mut rates = self.chosen.xi_dot.clone();
         let stateful = !self.model.states.is_empty();
         if stateful {
-            rates.extend(self.state_rates());
+            rates.extend(self.state_rates(&rates));
         }
         self.push_guarded(FunctionId::Accel, rates, guards);
         if let (Some(accel), true) = (self.functions.last_mut(), stateful) {
@@ -162,11 +162,11 @@ impl Builder<'_> {
         self.push(FunctionId::Energy, vec![energy]);
     }
 
-    /// ż, with ξ̇ as it is computed.
-    pub(super) fn state_rates(&mut self) -> Vec<Edge> {
+    /// ż, with ξ̇ as it is computed there.
+    pub(super) fn state_rates(&mut self, xi_dot: &[Edge]) -> Vec<Edge> {
         let model = self.model;
         let rates = rebuild(&model.graph, &mut self.graph, &model.state_rates);
-        with_accelerations(&mut self.graph, &rates, &self.chosen.xi_dot)
+        with_accelerations(&mut self.graph, &rates, xi_dot)
     }
 
     /// D, where there is one.

@@ -116,7 +116,8 @@ impl Builder<'_> {
         }
         let mut entries = candidates.cheapest(&mut self.graph);
         if !model.states.is_empty() {
-            let rates = self.state_rates();
+            let xi_dot = self.chosen.xi_dot.clone();
+            let rates = self.state_rates(&xi_dot);
             entries.extend(by_columns(&mut self.graph, &rates, &symbols));
         }
         let guards = self.guards();

@@ -141,7 +141,7 @@ impl Builder<'_> {
             return;
         };
         let roots = graft(&linear.graph, &mut self.graph, &linear.roots());
-        let (mut rows, guards, rates) = linear.apart(roots);
+        let (mut rows, guards, mut rates) = linear.apart(roots);
         let columns = rows.first().map_or(1, Vec::len);
         self.causes.extend(guards.iter().copied());
         let guards = guards.into_iter().map(|(guard, _)| guard).collect();
@@ -151,6 +151,9 @@ impl Builder<'_> {
             };
             let xi_dot = &self.chosen.xi_dot;
             rows = with_states(self.model, &nearby, (&mut self.graph, rows), xi_dot);
+            if !rates.is_empty() {
+                rates.extend(self.state_rates(&rates));
+            }
         }
         self.push_guarded(FunctionId::Linearize, rows.concat(), guards);
         if let Some(linearize) = self.functions.last_mut() {

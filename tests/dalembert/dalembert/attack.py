@@ -1,0 +1,94 @@
+"""python -m dalembert.attack HAMEL FOLDER [--seeds FIRST COUNT] [--largest N] [--hard] [--jobs N]: random mechanisms by their seeds.
+
+Ends with status 1 where hamel says something else than the definitions, or refuses without a reason that is known here, and
+where a text with a wrong sign is not found."""
+
+import argparse
+import multiprocessing
+import os
+import random
+import sys
+import time
+
+from . import wrong
+from .compare import Comparison, Errors
+from .doors import Doors, Refused
+from .trees import Forest
+
+# What hamel cannot do and says so, with what is left out of `generate` then.
+LEFT_OUT = {"has no regressor": ", regressor", "`centroidal_map` is not known": ", centroidal_map"}
+# What a random mechanism should not have been.
+MEANINGLESS = ["its points keep their distance", "can coincide"]
+
+
+def settled(doors, text):
+    """Takes out of the list of functions what hamel says that it has not; whether there is anything to compare."""
+    while True:
+        try:
+            doors.write(text)
+            doors.run("emit", doors.file, "--language", "c", "-o", os.path.join(doors.folder, "double"))
+            return True
+        except Refused as why:
+            known = next((wanted for said, wanted in LEFT_OUT.items() if said in str(why)), None)
+            if any(said in str(why) for said in MEANINGLESS):
+                return False
+            if known is None or known not in text:
+                raise
+            text = text.replace(known, "")
+
+
+def tree(seed, largest, hard):
+    """A random tree that is neither too large nor hardly one."""
+    r = random.Random(seed)
+    while True:
+        made = Forest(r, 1 + r.randrange(5), hard=hard)
+        if 2 <= made.m.n <= largest:
+            return made
+
+
+def one(job):
+    """Compares the mechanism of a seed; what was found, and whether there was anything to compare."""
+    asked, seed = job
+    begin, errors, where = time.time(), Errors(), f"tree {seed}"
+    made = tree(seed, asked.largest, asked.hard)
+    doors = Doors(asked.hamel, os.path.join(asked.folder, f"tree{seed}"))
+    compared = False
+    try:
+        compared = settled(doors, made.m.text())
+        if compared:
+            state, comparison = made.configuration(), Comparison(made.m, doors, errors, where)
+            comparison.run(state)
+            if seed % 4 == 0:
+                comparison.run(state, single=True)
+    except Refused as why:
+        errors.found.append((where, "refused", str(why)))
+    print(f"{where}: {made.m.n} velocities, {time.time() - begin:.1f} s", *errors.found, flush=True)
+    return errors, compared
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("hamel")
+    parser.add_argument("folder")
+    parser.add_argument("--seeds", nargs=2, type=int, default=(0, 12))
+    parser.add_argument("--largest", type=int, default=6)
+    parser.add_argument("--hard", action="store_true")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    asked = parser.parse_args()
+    unseen = wrong.unseen(asked.hamel, asked.folder)
+    for text in unseen:
+        print("not found to be wrong:", text)
+    errors, compared = Errors(), 0
+    first, count = asked.seeds
+    with multiprocessing.Pool(asked.jobs) as pool:
+        for found, done in pool.imap(one, [(asked, seed) for seed in range(first, first + count)], chunksize=1):
+            errors.join(found)
+            compared += done
+    for name, (error, where) in sorted(errors.worst.items(), key=lambda e: -e[1][0]):
+        print(f"{name:34} {float(error):9.2g}   {where}")
+    print(f"{compared} mechanisms of {count} compared, {len(errors.found)} differences")
+    return 1 if errors.found or unseen or 2 * compared < count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

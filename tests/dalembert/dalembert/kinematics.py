@@ -1,0 +1,102 @@
+"""Frames, momenta, outputs and parameters from their definitions."""
+
+from .definitions import STEP, Definitions, difference
+from .vectors import NIL, add, cross, dot, on, scale, sub, times, transposed, vee
+
+
+def frame(d: Definitions, s, name, own):
+    """Pose, twist, Jacobian and bias acceleration, in world axes or the frame's own."""
+    of = d.of
+    r, p = of.pose(s, name)
+    back = transposed(r) if own else None
+
+    def spoken(v, w):
+        return (on(back, v) + on(back, w)) if own else (v + w)
+
+    pose = [r[i] + [p[i]] for i in range(3)]
+    rate = of.rate(s)
+    dr, dp = d.along(lambda q: of.pose(q, name), s, rate)
+    w = vee(times(dr, transposed(r)))
+    zero = [NIL] * of.n
+    ddr, ddp = d.second(lambda q: of.pose(q, name), s, zero)
+    w_dot = vee(times(ddr, transposed(r)))
+    jacobian = transposed([spoken(v, w_) for v, w_ in d.twists(s, name, [NIL] * 3)])
+    bias = spoken(sub(ddp, cross(w, dp)) if own else ddp, w_dot)
+    return {"pose": pose, "twist": spoken(dp, w), "jacobian": jacobian, "bias_acceleration": bias}
+
+
+def centre(d, s):
+    total, first = NIL, [NIL] * 3
+    for (r, p), m, h, _ in d.of.masses(s):
+        total += m
+        first = add(first, add(scale(m, p), on(r, h)))
+    return scale(1 / total, first)
+
+
+def momentum(d, s):
+    """Momentum of everything, and that about the centre of mass."""
+    c = centre(d, s)
+    rates = d.along(d.places, s, d.of.rate(s))
+    linear, angular = [NIL] * 3, [NIL] * 3
+    for ((r, p), m, h, second), (dr, dp) in zip(d.of.masses(s), rates):
+        arm = sub(p, c)
+        rh, drh = on(r, h), on(dr, h)
+        linear = add(linear, add(scale(m, dp), drh))
+        angular = add(angular, add(scale(m, cross(arm, dp)), add(cross(arm, drh), cross(rh, dp))))
+        # Σ (R s) × (Ṙ s) dm by the second moments.
+        inner = times(times(r, second), transposed(dr))
+        angular = add(angular, [inner[1][2] - inner[2][1], inner[2][0] - inner[0][2], inner[0][1] - inner[1][0]])
+    return linear + angular
+
+
+def centroidal_map(d, s):
+    n = d.of.n
+    still = momentum(d, s.but(xi=[NIL] * n))
+    columns = [sub(momentum(d, s.but(xi=[1 if k == i else NIL for k in range(n)])), still) for i in range(n)]
+    return transposed(columns)
+
+
+def centroidal_bias(d, s):
+    return d.first_order_wide(lambda q: momentum(d, q), s, [NIL] * d.of.n)
+
+
+def output_slopes(d, s, output):
+    """[C D], along ξ̇ = F where the output has accelerations in it."""
+
+    def value(q):
+        if output.accelerations:
+            q = q.but(a=d.accel(q)[: d.of.n])
+        return output.at(q)
+
+    return d.slopes(value, s)
+
+
+def parameter_slopes(d, s):
+    columns = []
+    for k in range(len(s.p)):
+        values = []
+        for sign in (1, -1):
+            p = list(s.p)
+            p[k] += sign * STEP
+            values.append(d.accel(s.but(p=p)))
+        columns.append(difference(values[0], values[1], 2 * STEP))
+    return transposed(columns)
+
+
+def kinetic_energy(d, s):
+    motion = d.along(d.places, s, d.of.rate(s))
+    return d.paired(motion, motion, s) / 2 + d.written_energy(s)
+
+
+def momenta(d, s):
+    """∂T/∂ξ by differences: exact, since T is quadratic."""
+    found = []
+    for i in range(d.of.n):
+        up, down = list(s.xi), list(s.xi)
+        up[i] += 1
+        down[i] -= 1
+        found.append((kinetic_energy(d, s.but(xi=up)) - kinetic_energy(d, s.but(xi=down))) / 2)
+    return found
+
+
+__all__ = ["dot"]

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Random mechanisms whose equations Python has from the definitions alone, by d'Alembert's principle and differences of 80
+# digits, against what hamel says of their texts; needs cargo, gcc and Python with mpmath of PyPI, which goes to a virtual
+# environment below the target. Arguments are those of `dalembert/attack.py` behind the folder.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
+environment="$target/dalembert-environment"
+wheels="mpmath==1.3.0"
+if [ ! -f "$environment/installed" ] || [ "$(cat "$environment/installed")" != "$wheels" ]; then
+    python3 -m venv --clear "$environment"
+    "$environment/bin/pip" --quiet --disable-pip-version-check install "$wheels"
+    echo "$wheels" > "$environment/installed"
+fi
+# The program that was built with the tests will do.
+if [ -z "${HAMEL_BUILT:-}" ] || [ ! -f "$target/debug/hamel" ]; then
+    cargo build --quiet --locked -p hamel-cli
+fi
+export PYTHONPATH=tests/dalembert PYTHONDONTWRITEBYTECODE=1
+if [ $# -eq 0 ]; then
+    set -- --seeds 20 16 --largest 3
+fi
+"$environment/bin/python" -m dalembert.attack "$target/debug/hamel" "$target/dalembert" "$@"
