@@ -25,9 +25,17 @@ def frame(d: Definitions, s, name, own):
     return {"pose": pose, "twist": spoken(dp, w), "jacobian": jacobian, "bias_acceleration": bias}
 
 
+def moving(d, s):
+    """Masses that move along a velocity or with the time: what is fixed to the world has no part in the momentum."""
+    if "moving" not in s.shape:
+        ways = [*d.motions(s), d.along(d.places, s, d.of.rate(s))]
+        s.shape["moving"] = [any(e != 0 for r, p in poses for e in [*p, *sum(r, [])]) for poses in zip(*ways)]
+    return [mass for mass, moves in zip(d.of.masses(s), s.shape["moving"]) if moves]
+
+
 def centre(d, s):
     total, first = NIL, [NIL] * 3
-    for (r, p), m, h, _ in d.of.masses(s):
+    for (r, p), m, h, _ in moving(d, s):
         total += m
         first = add(first, add(scale(m, p), on(r, h)))
     return scale(1 / total, first)
@@ -36,9 +44,9 @@ def centre(d, s):
 def momentum(d, s):
     """Momentum of everything, and that about the centre of mass."""
     c = centre(d, s)
-    rates = d.along(d.places, s, d.of.rate(s))
+    rates = d.along(lambda q: [pose for pose, *_ in moving(d, q)], s, d.of.rate(s))
     linear, angular = [NIL] * 3, [NIL] * 3
-    for ((r, p), m, h, second), (dr, dp) in zip(d.of.masses(s), rates):
+    for ((r, p), m, h, second), (dr, dp) in zip(moving(d, s), rates):
         arm = sub(p, c)
         rh, drh = on(r, h), on(dr, h)
         linear = add(linear, add(scale(m, dp), drh))
