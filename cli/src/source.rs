@@ -33,6 +33,8 @@ pub struct Source {
     warned: AtomicBool,
     /// Whether functions in Rust have to have values, by their stand-ins.
     evaluated: bool,
+    /// Whether all frames are results.
+    shows_frames: bool,
 }
 
 impl Source {
@@ -44,6 +46,7 @@ impl Source {
             robot: None,
             warned: AtomicBool::new(false),
             evaluated: false,
+            shows_frames: false,
         }
     }
 
@@ -144,6 +147,14 @@ impl Source {
         }
     }
 
+    /// The same where frames are what is asked for: nothing is said of one that no other statement uses.
+    pub fn showing_frames(self) -> Self {
+        Source {
+            shows_frames: true,
+            ..self
+        }
+    }
+
     /// The text is a robot in URDF: it becomes a description.
     pub fn robot(self, options: &RobotOptions) -> Result<Self, Failure> {
         let robot = Robot::read(self.text, &self.path, options)?;
@@ -153,6 +164,7 @@ impl Source {
             robot: Some(robot),
             warned: self.warned,
             evaluated: self.evaluated,
+            shows_frames: self.shows_frames,
         })
     }
 
@@ -169,6 +181,7 @@ impl Source {
         if self.evaluated {
             system.evaluate();
         }
+        system.shows_frames = self.shows_frames;
         Ok((system, texts))
     }
 
@@ -191,6 +204,7 @@ impl Source {
             robot: None,
             warned: AtomicBool::new(true),
             evaluated: self.evaluated,
+            shows_frames: self.shows_frames,
         }
     }
 

@@ -1,7 +1,7 @@
 //! What is drawn of a mechanism is where the mechanism's own functions say that it is.
 
 use hamel_cli::drawing::{Acts, Scene, Vector};
-use hamel_cli::{RobotOptions, Session};
+use hamel_cli::{Grip, RobotOptions, Session};
 use std::path::{Path, PathBuf};
 
 fn session(path: &Path) -> Session {
@@ -227,4 +227,85 @@ fn scenes_are_plain_data() {
         "rods",
     ];
     assert_eq!(names, expected);
+}
+
+/// Where a point of a frame is.
+fn at(scene: &Scene, frame: usize, point: Vector) -> Vector {
+    let Scene { frames, .. } = scene;
+    std::array::from_fn(|k| {
+        let row = frames[frame].rotation[k];
+        let arm: f64 = row.iter().zip(point).map(|(a, b)| a * b).sum();
+        frames[frame].position[k] + arm
+    })
+}
+
+#[test]
+fn a_point_that_is_pulled_comes_as_near_as_it_can() {
+    // Within reach: an arm of two joints in the plane, a free body, a tool on six joints, and a coupler of loops that are
+    // closed by multipliers, pulled along where it can go.
+    for (name, pull) in [
+        ("double_pendulum", [-0.3, 0.0, -0.5]),
+        ("wing_nut", [0.1, 0.2, -0.3]),
+        ("ur5", [0.05, -0.1, 0.08]),
+        ("four_bar", [0.02, 0.0, -0.002]),
+        ("peaucellier", [0.0, 0.0, 0.05]),
+    ] {
+        let session = session(&models().join(format!("../../examples/gallery/{name}.eom")));
+        let start = session.start();
+        let drawing = session.drawing();
+        let drawing = drawing.unwrap_or_else(|failure| panic!("{}", failure.text()));
+        let drawn = drawing.with(&start.params);
+        let scene = drawn.scene(&start.x);
+        let last = scene.bodies.last().expect("a body").frame;
+        let grip = [0.02, 0.01, 0.03];
+        let from = at(&scene, last, grip);
+        let target = std::array::from_fn(|k| from[k] + pull[k]);
+        let pulled = session.pulled(&start, Grip::Frame(last, grip), target);
+        let pulled = pulled.unwrap_or_else(|failure| panic!("{}", failure.text()));
+        let to = at(&drawn.scene(&pulled.x), last, grip);
+        let (before, after) = (distance(from, target), distance(to, target));
+        // A loop of one freedom has a path that passes the target at some distance.
+        let part = if name.contains("four") || name.contains("peau") { 0.7 } else { 1e-3 };
+        assert!(after < part * before, "{name}: {before} becomes {after}");
+        // What was reached is a state of the description: nothing is left open.
+        let phi = scene_gap(&drawn.scene(&pulled.x));
+        assert!(phi < 1e-9, "{name}: {phi}");
+    }
+    // A wheel that rolls does not come sideways.
+    let session = session(&models().join("../../examples/gallery/sleigh.eom"));
+    let start = session.start();
+    let drawn = session.drawing().expect("a drawing").with(&start.params);
+    let from = drawn.scene(&start.x).frames[0].position;
+    let target = [from[0] + 0.3, from[1] + 0.2, from[2] + 1.0];
+    let pulled = session.pulled(&start, Grip::Frame(0, [0.0; 3]), target);
+    let to = drawn.scene(&pulled.expect("a state").x).frames[0].position;
+    close(to[2], from[2]);
+    assert!(distance(to, target) < 1.02, "{to:?}");
+}
+
+/// The widest gap of a loop.
+fn scene_gap(scene: &Scene) -> f64 {
+    let gaps = scene.loops.iter().map(|[a, b]| distance(*a, *b));
+    gaps.fold(0.0, f64::max)
+}
+
+#[test]
+fn what_has_no_place_is_named() {
+    let missing = |session: &Session| session.drawing().expect("a drawing").missing().to_vec();
+    assert_eq!(missing(&session(&models().join("../../examples/gallery/furuta.eom"))), [""; 0]);
+    assert_eq!(missing(&session(&models().join("../../examples/gallery/four_bar.eom"))), [""; 0]);
+    let numbers = read(
+        "pub system Numbers {
+            param a = 1.2;
+            joint p: revolute [0, 1, 0] moves crank { armature 0.1; }
+            joint q: revolute [0, 1, 0] at [1.5, 0, 0] moves rocker;
+            body on crank { mass 1; com [0, 0, 0.2]; inertia diag(0.1, 0.1, 0.1) about com; }
+            kinetic q_dot^2 / 2;
+            loop sin(p) = a * sin(q);
+        }",
+    );
+    let said = missing(&numbers);
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(said[0].contains("`kinetic`"), "{said:?}");
+    assert!(said[1].contains("sin(p) = a * sin(q)"), "{said:?}");
 }

@@ -138,7 +138,16 @@ export interface Run {
   // What there is to draw, at the start, and how many numbers say where it is at each sample; no scene where nothing
   // can be drawn.
   scene: Scene | null;
+  // What is not drawn, and what would give it a place.
+  missing: string[];
   width: number;
+  numbers?: Float32Array;
+}
+
+// A start that was pulled to by a point, with where everything is there.
+export interface Pulled {
+  x: number[];
+  xi: number[];
   numbers?: Float32Array;
 }
 

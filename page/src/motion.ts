@@ -1,10 +1,10 @@
 // The motion: a run from a start that can be changed, in space and over time, and what the methods cost on it.
 
-import type { Case, Run, System } from "./answers";
+import type { Case, Pulled, Run, System } from "./answers";
 import { element } from "./dom";
 import { Dropped, type Generator } from "./generator";
 import { overTime, precision, type Line } from "./plots";
-import { Stage } from "./scene";
+import { type Grip, Stage } from "./scene";
 import { Start } from "./start";
 
 // How long numbers rest before a run is made again, in ms.
@@ -21,7 +21,11 @@ export class Motion {
   // Where everything is at each sample, and at the moment that is shown.
   private scenes: Float32Array[] = [];
   private between = new Float32Array();
+  private system: System | undefined;
   private start: Start | undefined;
+  // A pull that waits for the one before it, and whether one is under way.
+  private waiting: (() => Promise<void>) | undefined;
+  private pulling = false;
   private moments: ((t: number) => void)[] = [];
   private playing = false;
   private time = 0;
@@ -41,6 +45,8 @@ export class Motion {
   private readonly plots = element("div", { class: "plots" });
   private readonly summary = element("p", { class: "note", role: "status", id: "summary" });
   private readonly fields = element("div", {});
+  private readonly missing = element("p", { class: "note", id: "missing" });
+  private readonly reset = element("button", { type: "button", id: "reset" }, "Back to the start of the text");
   private readonly comparison = element("div", {});
 
   constructor(
@@ -53,9 +59,10 @@ export class Motion {
       element("div", { class: "controls" }, field("method", this.method), field("until (s)", this.until), field("step (s)", this.step)),
       this.summary,
       this.view,
+      this.missing,
       element("div", { class: "controls" }, this.play, this.scrub, this.clock, field("speed", this.speed)),
       this.plots,
-      element("details", { open: "" }, element("summary", {}, "Start"), this.fields),
+      element("details", { open: "" }, element("summary", {}, "Start"), element("p", { class: "note" }, "Type a number, drag its name sideways, or, while the time is 0, drag a body in the picture."), this.fields, this.reset),
       element("h3", {}, "Error against work", compare),
       this.comparison,
     );
@@ -68,6 +75,55 @@ export class Motion {
       this.show(this.scrub.valueAsNumber);
     };
     compare.onclick = () => void this.compare();
+    this.reset.onclick = () => {
+      if (this.system !== undefined) {
+        this.begin(this.system);
+        this.again();
+      }
+    };
+  }
+
+  // Fields for the start of a system, or for another one.
+  private begin(system: System): void {
+    this.start = new Start(system, () => this.again());
+    this.fields.replaceChildren(this.start.element);
+    this.reset.hidden = system === this.system;
+  }
+
+  // Where the point of the picture is that a place of the world is seen at, for tests.
+  place(point: number[]): [number, number] | undefined {
+    return this.stage?.place(point);
+  }
+
+  // A point of the mechanism follows the pointer: the start becomes one at which it is there, or near. One pull is made
+  // at a time, and the last one is always made.
+  private pull(grip: Grip, target: number[]): void {
+    this.waiting = async () => {
+      const pulled = await this.generator.ask<Pulled>("pull", { ...this.start?.asked(), ...grip, target });
+      if (this.system === undefined || pulled.numbers === undefined) {
+        return;
+      }
+      this.begin({ ...this.system, start: { ...this.system.start, x: pulled.x, xi: pulled.xi } });
+      this.stage?.move(pulled.numbers);
+    };
+    if (!this.pulling) {
+      void this.pullOn();
+    }
+  }
+
+  private async pullOn(): Promise<void> {
+    this.pulling = true;
+    try {
+      while (this.waiting !== undefined) {
+        const next = this.waiting;
+        this.waiting = undefined;
+        await next();
+      }
+    } catch (error) {
+      this.refused(error);
+    } finally {
+      this.pulling = false;
+    }
   }
 
   // Runs a system that is new.
@@ -76,8 +132,8 @@ export class Motion {
     this.method.replaceChildren(...system.methods.map((name) => element("option", {}, name)));
     this.method.value = system.methods.includes(before) ? before : "auto";
     this.names = system.velocities.entries;
-    this.start = new Start(system, () => this.again());
-    this.fields.replaceChildren(this.start.element);
+    this.system = system;
+    this.begin(system);
     this.comparison.replaceChildren();
     await this.integrate(true);
   }
@@ -124,7 +180,7 @@ export class Motion {
       ...(step > 0 ? { step } : {}),
       method: this.method.value,
       scenes: true,
-      state: this.start?.state() ?? null,
+      ...this.start?.asked(),
     };
   }
 
@@ -147,8 +203,16 @@ export class Motion {
     this.summary.dataset["drift"] = String(run.drift);
     const { scene, width, numbers } = run;
     this.view.hidden = scene === null || numbers === undefined;
+    const nothing = "There is nothing to draw: a statement such as `frame f = pose(R, r);` says where a part of the mechanism is.";
+    const missing = run.missing.map((part) => `Not drawn: ${part}.`);
+    this.missing.replaceChildren([...(scene === null ? [nothing] : []), ...missing].join(" "));
     if (scene !== null && numbers !== undefined) {
-      this.stage ??= new Stage(this.view);
+      this.stage ??= new Stage(
+        this.view,
+        () => !this.playing && this.time === 0,
+        (grip, target) => this.pull(grip, target),
+        () => this.again(),
+      );
       const scenes = Array.from({ length: numbers.length / width }, (_, at) => numbers.subarray(at * width, (at + 1) * width));
       this.stage.show(scene, scenes, fresh);
       this.scenes = scenes;

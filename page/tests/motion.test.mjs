@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { answered, model, opened, picture, root, stopped, typed } from "./browser.mjs";
+import { answered, opened, picture, root, stopped, typed } from "./browser.mjs";
 
 after(stopped);
 
@@ -33,6 +33,33 @@ function drawn(page) {
   });
 }
 
+async function gallery(name) {
+  return readFile(join(root, "examples", "gallery", `${name}.eom`), "utf8");
+}
+
+// How many points near one of the window are red, where nothing else is.
+function red(page, [x, y]) {
+  return page.evaluate(
+    ([x, y]) => {
+      const canvas = document.querySelector(".stage canvas");
+      const box = canvas.getBoundingClientRect();
+      const copy = document.createElement("canvas");
+      [copy.width, copy.height] = [canvas.width, canvas.height];
+      const context = copy.getContext("2d");
+      globalThis.hamelMotion.draw();
+      context.drawImage(canvas, 0, 0);
+      const scale = canvas.width / box.width;
+      const { data } = context.getImageData((x - box.left) * scale - 8, (y - box.top) * scale - 8, 16, 16);
+      let points = 0;
+      for (let at = 0; at < data.length; at += 4) {
+        points += data[at + 3] > 128 && data[at] > 1.3 * data[at + 1] && data[at] > 1.3 * data[at + 2] ? 1 : 0;
+      }
+      return points;
+    },
+    [x, y],
+  );
+}
+
 async function dropped(page, path, name) {
   const text = await readFile(path, "utf8");
   await page.evaluate(
@@ -53,7 +80,8 @@ async function dropped(page, path, name) {
 test("a run keeps its energy, and can be played, moved through and changed", async () => {
   const { page, left, close } = await opened();
   await answered(page);
-  await typed(page, await model("heavy_top"));
+  const top = await gallery("heavy_top");
+  await typed(page, top);
   await shown(page);
   const drift = Number(await page.getAttribute("#summary", "data-drift"));
   assert.ok(drift > 0 && drift < 1e-9, `energy changes by ${drift}`);
@@ -62,6 +90,11 @@ test("a run keeps its energy, and can be played, moved through and changed", asy
   const titles = await page.$$eval(".plots figcaption", (list) => list.map((one) => one.textContent));
   assert.ok(titles.includes("velocities"), titles.join());
   assert.ok(titles.some((title) => title.startsWith("energy less its start")), titles.join());
+  const claimed = [...top.matchAll(/^ *invariant (\w+)/gm)].map(([, name]) => `invariant ${name}`);
+  assert.ok(claimed.length > 1);
+  for (const title of claimed) {
+    assert.ok(titles.includes(title), `${title} of ${titles.join()}`);
+  }
   await page.click("#play");
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.1);
   await page.click("#play");
@@ -125,6 +158,97 @@ test("a robot that is dropped is drawn sixty times a second", async () => {
   assert.ok(frame < 1000 / 60, `${frame} ms`);
   assert.ok(calls < 300, `${calls} calls`);
   await picture(page, "solo12");
+  assert.deepEqual(left, []);
+  await close();
+});
+
+// Two bars that meet in a loop, which no frame and no body is near.
+const BARS = `pub system Bars {
+    joint a: revolute [0, 1, 0] moves left;
+    joint b: revolute [0, 1, 0] at [1, 0, 0] moves right;
+    body on left { mass 1; com [0, 0, 0.2]; inertia diag(0.02, 0.02, 0.02) about com; }
+    body on right { mass 1; com [0, 0, 0.2]; inertia diag(0.02, 0.02, 0.02) about com; }
+    joint c: revolute [0, 1, 0] on left at [0, 0, 0.8] moves top;
+    body on top { mass 1; com [0.3, 0, 0]; inertia diag(0.02, 0.02, 0.02) about com; }
+    loop position(top, [1, 0, 0])[1] = position(right, [0, 0, 0.8])[1];
+    loop position(top, [1, 0, 0])[3] = position(right, [0, 0, 0.8])[3];
+    gravity [0, 0, -9.81];
+    start a = 0.2, b ~ 0.2, c ~ -0.2;
+}`;
+
+test("points of loops are drawn where they meet, and what has no place is named", async () => {
+  const { page, left, close } = await opened();
+  await answered(page);
+  await typed(page, BARS);
+  await shown(page);
+  const scene = await page.evaluate(() => globalThis.hamelMotion.run.scene);
+  assert.equal(scene.loops.length, 1);
+  const [one, other] = scene.loops[0];
+  assert.ok(Math.hypot(...one.map((entry, k) => entry - other[k])) < 1e-9);
+  const place = (point) => page.evaluate((point) => globalThis.hamelMotion.place(point), point);
+  assert.ok((await red(page, await place(one))) > 10);
+  assert.equal(await red(page, await place([one[0], one[1], one[2] + 0.3])), 0);
+  assert.equal(await page.textContent("#missing"), "");
+  // Energies alone have no place, and a loop of numbers has none either.
+  await typed(page, "pub system Abstract { coord q; velocity w; rate q = w; kinetic w^2 / 2; potential q^2 / 2; start q = 1; }");
+  await shown(page);
+  const missing = await page.textContent("#missing");
+  assert.match(missing, /nothing to draw.*`kinetic` has no place/);
+  assert.equal(await page.isVisible(".stage"), false);
+  assert.deepEqual(left, []);
+  await close();
+});
+
+test("a body that is dragged at the start stays where it was put, and names drag their numbers", async () => {
+  const { page, left, close } = await opened();
+  await answered(page);
+  for (const text of [await gallery("double_pendulum"), BARS]) {
+    await typed(page, text);
+    await shown(page);
+    const found = () =>
+      page.evaluate(() => {
+        const { scene } = globalThis.hamelMotion.run;
+        return globalThis.hamelMotion.place(scene.bodies[scene.bodies.length - 1].centre);
+      });
+    const fields = () => page.$$eval(".start input", (list) => list.map((one) => one.value));
+    const [before, from] = [await fields(), await found()];
+    await page.locator(".stage").scrollIntoViewIfNeeded();
+    const [x, y] = await found();
+    // A few pixels, so that two bars in a loop can follow.
+    const to = [x + 14, y + 3];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 7, y + 2, { steps: 4 });
+    await page.mouse.move(...to, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForFunction((before) => [...document.querySelectorAll(".start input")].some((one, k) => one.value !== before[k]), before);
+    await page.waitForFunction(
+      ([x, y]) => {
+        const { scene } = globalThis.hamelMotion.run;
+        const [a, b] = globalThis.hamelMotion.place(scene.bodies[scene.bodies.length - 1].centre);
+        return Math.hypot(a - x, b - y) > 5;
+      },
+      [x, y],
+    );
+    const [a, b] = await found();
+    assert.ok(Math.hypot(a - to[0], b - to[1]) < 8, `${[x, y]} was dragged to ${to}, and is at ${[a, b]}; from ${from}`);
+    assert.doesNotMatch(await page.getAttribute("#summary", "class"), /bad/);
+    // Loops are closed, and the energy is kept.
+    assert.ok(Number(await page.getAttribute("#summary", "data-drift")) < 1e-6);
+    await page.click("#reset");
+    await page.waitForFunction((before) => [...document.querySelectorAll(".start input")].every((one, k) => one.value === before[k]), before);
+  }
+  // A name that is dragged sideways changes its number by a hundredth for each pixel.
+  const handle = page.locator(".start .handle").first();
+  const input = page.locator(".start input").first();
+  await handle.scrollIntoViewIfNeeded();
+  const [box, number] = [await handle.boundingBox(), Number(await input.inputValue())];
+  await page.mouse.move(box.x + 4, box.y + 4);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 14, box.y + 4);
+  await page.mouse.up();
+  assert.ok(Math.abs(Number(await input.inputValue()) - number - 0.1) < 1e-9);
+  await picture(page, "dragged");
   assert.deepEqual(left, []);
   await close();
 });

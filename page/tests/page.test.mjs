@@ -1,7 +1,8 @@
 // What somebody does with the page: types, makes a mistake, drops a robot, follows a link, reads it on a phone.
 
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
+import { mkdtemp, readFile, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
 import { gzipSync } from "node:zlib";
@@ -36,9 +37,17 @@ test("a system that is typed has its γ, from a file and from a server", async (
     // γ of body rates on SO(3): ±1 for the permutations of 123, and nothing else.
     const indices = await page.$$eval('[data-table="gamma"] .index', (list) => list.map((one) => one.textContent).sort());
     assert.deepEqual(indices, ["123", "132", "213", "231", "312", "321"]);
-    // Pointing at an entry shows its equation.
+    const shown = await page.$$eval("[data-table]", (list) => list.map((one) => one.dataset.table).sort());
+    assert.deepEqual(shown, ["A", "Gamma", "M", "Y", "gamma", "phi"]);
+    // Pointing at an entry shows its equation, and so does moving to it by the keyboard.
+    const tip = '[data-table="gamma"] .tip .katex';
     await page.hover('[data-table="gamma"] .index');
-    await page.waitForSelector('[data-table="gamma"] .tip .katex');
+    await page.waitForSelector(tip);
+    await page.hover("h1");
+    assert.equal(await page.$$eval(tip, (list) => list.length), 0);
+    await page.focus('[data-table="gamma"] .index');
+    await page.keyboard.press("Tab");
+    assert.match(await page.textContent(tip), /γ/);
     assert.deepEqual(left, []);
     await close();
   }
@@ -86,13 +95,20 @@ test("identities, operations and code are those of the command line", async () =
   assert.equal(verdicts.filter((verdict) => verdict === "failed").length, 0);
   await picture(page, "identities");
   await page.click("#tab-operations");
-  await page.waitForSelector("#panel-operations .grid ~ *, #panel-operations h3 + div .grid");
+  await page.waitForSelector("#panel-operations .grid");
   const counts = JSON.parse(said(["ops", "tests/models/cart_pole.eom", "--format", "json"]).stdout);
   const accel = await page.$eval("#panel-operations", (panel) => {
     const rows = [...panel.querySelectorAll("tbody tr")];
     return rows.find((row) => row.querySelector("th")?.textContent === "accel")?.querySelector("td").textContent;
   });
   assert.equal(accel, String(counts.functions.accel.shared.flops));
+  // The adviser's choices are those of the command line, with what each costs.
+  await page.waitForSelector("#panel-operations h3 + div .grid");
+  const advised = JSON.parse(said(["ops", "tests/models/cart_pole.eom", "--advise", "--format", "json"]).stdout);
+  const choices = await page.$$eval("#panel-operations h3 + div tbody tr", (rows) =>
+    rows.map((row) => [row.querySelector("th").textContent, Number(row.querySelector("td").textContent)]),
+  );
+  assert.deepEqual(choices, advised.choices.map((choice) => [choice.velocities, choice.accel.flops]));
   await picture(page, "operations");
   await page.click("#tab-code");
   await page.waitForSelector("#panel-code .source");
@@ -105,6 +121,14 @@ test("identities, operations and code are those of the command line", async () =
   const emitted = said(["emit", "-"], text).stdout;
   const body = (code) => code.split("\n").filter((line) => !line.startsWith("//")).join("\n");
   assert.equal(body(rust), body(emitted));
+  const folder = await mkdtemp(join(tmpdir(), "hamel-page-"));
+  const stem = join(folder, "system");
+  await writeFile(`${stem}.eom`, text);
+  assert.equal(said(["emit", `${stem}.eom`, "--language", "c", "-o", `${stem}.c`]).status, 0);
+  const [h, c] = await Promise.all(["h", "c"].map((end) => readFile(`${stem}.${end}`, "utf8")));
+  const unnamed = (code) => code.split("\n").filter((line) => !line.includes(".eom")).join("\n");
+  assert.equal(unnamed(header), unnamed(h));
+  assert.equal(unnamed(source), unnamed(c));
   await picture(page, "code");
   assert.deepEqual(left, []);
   await close();
@@ -129,7 +153,7 @@ test("a link holds the system", async () => {
   await Promise.all([close(), other.close(), broken.close()]);
 });
 
-test("the tabs are reached by the keyboard", async () => {
+test("tabs, editor and motion are reached by the keyboard", async () => {
   const { page, left, close } = await opened();
   await answered(page);
   await page.focus("#tab-tables");
@@ -139,6 +163,21 @@ test("the tabs are reached by the keyboard", async () => {
   assert.equal(await page.evaluate(() => document.activeElement.id), "tab-identities");
   await page.keyboard.press("End");
   assert.equal(await page.evaluate(() => document.activeElement.id), "tab-motion");
+  // The time moves by the arrows, and the space bar plays.
+  await page.waitForFunction(() => document.body.dataset.motion !== undefined, undefined, { timeout: 120_000 });
+  await page.focus('.controls input[type="range"]');
+  await page.keyboard.press("ArrowRight");
+  assert.ok(Number.parseFloat(await page.textContent(".clock")) > 0);
+  await page.focus("#play");
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => document.querySelector("#play").textContent === "Pause");
+  // Tab indents in the editor, and leaves it after Escape.
+  await page.click(".cm-content");
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.className.includes("cm-content")), true);
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.className.includes("cm-content")), false);
   assert.deepEqual(left, []);
   await close();
 });

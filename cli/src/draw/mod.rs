@@ -72,7 +72,8 @@ pub struct Arguments {
 
 /// Draws.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
+    let source = Source::open(&arguments.file, &arguments.robot)?;
+    let source = source.in_numbers().showing_frames();
     let until = arguments.time.unwrap_or(0.0) + arguments.motion.unwrap_or(0.0);
     let generated = match until > 0.0 {
         true => source.derive_all()?,
@@ -95,9 +96,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     if last.is_empty() {
         return Err(Failure::failed(format!(
-            "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. A statement such as `frame f = pose(R, r);` says where a part of it is",
-            generated.model.name
+            "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. A statement such as `frame f = pose(R, r);` says where a part of it is{}",
+            generated.model.name,
+            drawing.missing().iter().map(|part| format!("\n  {part}")).collect::<String>()
         )));
+    }
+    for part in drawing.missing() {
+        failure::warn(&format!("not drawn: {part}\n"));
     }
     let path = |frame: usize| -> Vec<Vector> {
         let scenes = moments.path.iter().map(|x| drawn.scene(x));

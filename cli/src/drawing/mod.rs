@@ -20,6 +20,7 @@
 //! ```
 
 mod ellipsoid;
+mod missing;
 mod points;
 mod scene;
 
@@ -54,6 +55,7 @@ pub struct Drawing {
     lines: Vec<(Acts, [Option<usize>; 2])>,
     rods: usize,
     loops: usize,
+    missing: Vec<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -143,8 +145,14 @@ impl Drawing {
             lines: points.lines,
             rods: points.rods,
             loops: model.closures.len(),
+            missing: missing::missing(&generated.model),
             compiled,
         })
+    }
+
+    /// What is not drawn, since the description does not say where it is: a sentence for each part.
+    pub fn missing(&self) -> &[String] {
+        &self.missing
     }
 
     /// The drawing for these parameters; where one is missing it and what depends on it is NaN.
@@ -250,7 +258,7 @@ impl Frame {
     }
 
     /// A point of it, in the world.
-    fn point(&self, at: Vector) -> Vector {
+    pub(crate) fn point(&self, at: Vector) -> Vector {
         let arm = self.direction(at);
         std::array::from_fn(|k| self.position[k] + arm[k])
     }

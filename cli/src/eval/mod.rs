@@ -67,7 +67,10 @@ pub struct Arguments {
 
 /// Evaluates and prints; where something has no value it is `null`, and the command fails.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
+    let mut source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
+    if !arguments.frame.is_empty() {
+        source = source.showing_frames();
+    }
     let at = arguments.at.as_deref();
     let at = at.map(|path| File::read(path, &source)).transpose()?;
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {

@@ -3,10 +3,12 @@
 mod function;
 mod motion;
 mod observed;
+mod pull;
 mod reports;
 
 pub use function::Function;
 pub use motion::{Happened, Motion};
+pub use pull::Grip;
 pub use reports::imported;
 
 use crate::added;
@@ -55,6 +57,7 @@ pub struct Session {
     functions: Mutex<BTreeMap<String, Function>>,
     /// With the expressions of events that were asked for last.
     observed: AllObserved,
+    drawing: OnceLock<Drawing>,
 }
 
 /// Names of entries, and groups of them: name, place of the first, number.
@@ -137,6 +140,7 @@ impl Session {
                 varied: Mutex::default(),
                 functions: Mutex::default(),
                 observed: AllObserved::default(),
+                drawing: OnceLock::new(),
             })
         })
     }
@@ -229,7 +233,15 @@ impl Session {
             params: params.to_vec(),
             ..self.start()
         };
-        File::of(name.into(), json, &self.source)?.changes(start, &self.source, &self.generated)
+        self.changed(start, json, name)
+    }
+
+    /// Another state, changed by what a JSON text says.
+    ///
+    /// # Errors
+    /// All that is wrong with it.
+    pub fn changed(&self, from: State, json: &str, name: &str) -> Result<State, Failure> {
+        File::of(name.into(), json, &self.source)?.changes(from, &self.source, &self.generated)
     }
 
     /// Names of all functions that there are, also of those that are derived when they are asked for.
@@ -458,8 +470,12 @@ impl Session {
     ///
     /// # Errors
     /// Where a frame depends on a function in Rust.
-    pub fn drawing(&self) -> Result<Drawing, Failure> {
-        Drawing::new(&self.generated)
+    pub fn drawing(&self) -> Result<&Drawing, Failure> {
+        if let Some(drawing) = self.drawing.get() {
+            return Ok(drawing);
+        }
+        let made = Drawing::new(&self.generated)?;
+        Ok(self.drawing.get_or_init(|| made))
     }
 
     /// The names of the methods.

@@ -34,7 +34,7 @@ pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
             ItemKind::Frame { name, .. } => {
                 // A frame of two statements is the one that relates them.
                 let statements = frames.get(name.name.as_str());
-                if statements == Some(&1) && placed.insert(&name.name) {
+                if !system.shows_frames && statements == Some(&1) && placed.insert(&name.name) {
                     found.push(uses.unused(name, "frame"));
                 }
                 continue;

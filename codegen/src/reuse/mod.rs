@@ -62,6 +62,7 @@ pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
             docs: system.docs.clone(),
             public: system.public,
             name: system.name.clone(),
+            shows_frames: system.shows_frames,
         },
         used,
         warnings,

@@ -28,6 +28,7 @@ impl SceneBuilder {
                 name: ident(name),
                 items: Vec::new(),
                 origins: Origins::default(),
+                shows_frames: false,
             },
         }
     }

@@ -39,6 +39,8 @@ pub struct System {
     pub items: Vec<Item>,
     /// Where statements come from that do not stand in the text itself.
     pub origins: Origins,
+    /// Whether all frames are results, as where they are drawn: then none of them is without a use.
+    pub shows_frames: bool,
 }
 
 /// A shape annotation: `vec3`, `mat3`, `sym3`, or nothing for a scalar.

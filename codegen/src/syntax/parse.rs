@@ -53,6 +53,7 @@ fn header(cursor: &mut Cursor<'_>) -> Parsed<System> {
         name,
         items: Vec::new(),
         origins: Origins::default(),
+        shows_frames: false,
     })
 }
 
