@@ -23,6 +23,14 @@
 //! | `session` | the same for other front ends: numbers in place of texts |
 //! | `failure` | errors, warnings and exit statuses |
 
+//! # Features
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `command` | the program `hamel`, its sweeps, its pictures, and what it shows while work takes its time |
+//! | `machine` | runs by machine code; without it functions are evaluated step by step, on any target |
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 // What the command line alone calls stays where it is when the crate is built without it.
 #![cfg_attr(not(feature = "command"), allow(dead_code, unused_imports))]
 

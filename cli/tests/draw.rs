@@ -196,6 +196,26 @@ fn what_cannot_be_drawn_is_said() {
         said.contains("nothing of Abstract can be drawn") && said.contains("frame f = pose"),
         "{said}"
     );
+    assert!(said.contains("`kinetic` has no place"), "{said}");
+    // What a picture leaves out is said beside it; a frame that is there to be seen is of use.
+    let partly = energies.replace(
+        "kinetic",
+        "frame mark = pose(identity(3), [q, 0, 0]); kinetic",
+    );
+    let output = common::hamel(&["draw", "-"], &partly);
+    assert_eq!(output.status.code(), Some(0));
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("not drawn: the inertia in `kinetic`"),
+        "{said}"
+    );
+    assert!(!said.contains("never used"), "{said}");
+    let output = common::hamel(&["check", "-"], &partly);
+    let said = text(&output.stderr);
+    assert!(said.contains("the frame `mark` is never used"), "{said}");
+    let output = common::hamel(&["eval", "-", "--frame", "mark"], &partly);
+    let said = text(&output.stderr);
+    assert!(!said.contains("never used"), "{said}");
     let file = model("multibody/furuta.eom");
     let said = refused(
         &[&file, "--motion", "1", "--trace", "bob", "--trace", "rod"],

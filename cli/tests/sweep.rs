@@ -289,3 +289,42 @@ fn all_that_is_wrong_is_said_at_once() {
         assert!(said.contains(message), "{message}: {said}");
     }
 }
+
+#[test]
+fn every_member_is_a_point_of_the_picture() {
+    let folder = fresh("plotted");
+    let (out, picture) = (folder.display().to_string(), folder.with_extension("svg"));
+    let place = picture.display().to_string();
+    let options = [
+        "sweep",
+        "-",
+        "--out",
+        &out,
+        "--vary",
+        VARY,
+        "--members",
+        "40",
+        "--until",
+        "0.1",
+        "--step",
+        "0.01",
+        "--keep",
+        "end; max(w)",
+        "--plot",
+        &place,
+    ];
+    let drawn = || {
+        let output = hamel(&options, BALL);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).contains("wrote "));
+        std::fs::read_to_string(&picture).expect("a picture")
+    };
+    let first = drawn();
+    // Three causes; of the results the time of the end has no diagram, since it is the same for all.
+    let diagrams = first.matches("h0").count() / 40;
+    assert_eq!(first.matches("h0").count(), 40 * diagrams);
+    assert!(diagrams >= 9 && diagrams % 3 == 0, "{diagrams}");
+    assert!(first.contains("start w") && first.contains("max(w)") && first.contains("40 members"));
+    // With nothing left to compute it is the same picture.
+    assert_eq!(drawn(), first);
+}

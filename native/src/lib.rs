@@ -21,6 +21,14 @@
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |
 //! | `evaluate` | tapes, interpreted step by step |
 //! | `traced` | algorithms in Rust as tapes |
+//!
+//! # Features
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `machine` | machine code; without it all tapes are run step by step, on any target |
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(not(feature = "machine"))]
 mod absent;

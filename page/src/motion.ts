@@ -23,9 +23,10 @@ export class Motion {
   private between = new Float32Array();
   private system: System | undefined;
   private start: Start | undefined;
-  // A pull that waits for the one before it, and whether one is under way.
+  // A pull that waits for the one before it, whether one is under way, and whether a body is held.
   private waiting: (() => Promise<void>) | undefined;
   private pulling = false;
+  private held = false;
   private moments: ((t: number) => void)[] = [];
   private playing = false;
   private time = 0;
@@ -97,9 +98,10 @@ export class Motion {
 
   // A point of the mechanism follows the pointer: the start becomes one at which it is there, or near. One pull is made
   // at a time, and the last one is always made.
-  private pull(grip: Grip, target: number[]): void {
+  private pull(grip: Grip, target: number[], sight: number[]): void {
+    this.held = true;
     this.waiting = async () => {
-      const pulled = await this.generator.ask<Pulled>("pull", { ...this.start?.asked(), ...grip, target });
+      const pulled = await this.generator.ask<Pulled>("pull", { ...this.start?.asked(), ...grip, target, sight });
       if (this.system === undefined || pulled.numbers === undefined) {
         return;
       }
@@ -123,6 +125,14 @@ export class Motion {
       this.refused(error);
     } finally {
       this.pulling = false;
+    }
+    this.letGo();
+  }
+
+  // Runs from where a body was put, once it is let go and the last pull is made.
+  private letGo(): void {
+    if (!this.held && !this.pulling) {
+      this.again();
     }
   }
 
@@ -210,8 +220,11 @@ export class Motion {
       this.stage ??= new Stage(
         this.view,
         () => !this.playing && this.time === 0,
-        (grip, target) => this.pull(grip, target),
-        () => this.again(),
+        (grip, target, sight) => this.pull(grip, target, sight),
+        () => {
+          this.held = false;
+          this.letGo();
+        },
       );
       const scenes = Array.from({ length: numbers.length / width }, (_, at) => numbers.subarray(at * width, (at + 1) * width));
       this.stage.show(scene, scenes, fresh);

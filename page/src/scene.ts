@@ -73,7 +73,7 @@ export class Stage {
   constructor(
     private readonly holder: HTMLElement,
     private readonly grips: () => boolean,
-    private readonly pulled: (grip: Grip, target: number[]) => void,
+    private readonly pulled: (grip: Grip, target: number[], sight: number[]) => void,
     private readonly released: () => void,
   ) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
@@ -144,7 +144,7 @@ export class Stage {
     this.render();
   }
 
-  // Takes hold of a body or particle; it goes where the pointer goes, at the same distance from the camera.
+  // Takes hold of a body or particle; it goes where the pointer is seen.
   private take(event: PointerEvent): void {
     if (event.button !== 0 || !this.grips()) {
       return;
@@ -171,9 +171,10 @@ export class Stage {
     this.controls.enabled = false;
     canvas.setPointerCapture(event.pointerId);
     canvas.onpointermove = (move) => {
-      const target = ray(move).ray.intersectPlane(plane, new Vector3());
+      const { ray: line } = ray(move);
+      const target = line.intersectPlane(plane, new Vector3());
       if (target !== null) {
-        this.pulled(grip, target.toArray());
+        this.pulled(grip, target.toArray(), line.direction.toArray());
       }
     };
     canvas.onpointerup = canvas.onpointercancel = () => {

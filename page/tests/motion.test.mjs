@@ -90,7 +90,7 @@ test("a run keeps its energy, and can be played, moved through and changed", asy
   const titles = await page.$$eval(".plots figcaption", (list) => list.map((one) => one.textContent));
   assert.ok(titles.includes("velocities"), titles.join());
   assert.ok(titles.some((title) => title.startsWith("energy less its start")), titles.join());
-  const claimed = [...top.matchAll(/^ *invariant (\w+)/gm)].map(([, name]) => `invariant ${name}`);
+  const claimed = [...top.matchAll(/^ *invariant (\w+)/gm)].filter(([, name]) => name !== "energy").map(([, name]) => `invariant ${name}`);
   assert.ok(claimed.length > 1);
   for (const title of claimed) {
     assert.ok(titles.includes(title), `${title} of ${titles.join()}`);
@@ -202,7 +202,11 @@ test("points of loops are drawn where they meet, and what has no place is named"
 test("a body that is dragged at the start stays where it was put, and names drag their numbers", async () => {
   const { page, left, close } = await opened();
   await answered(page);
-  for (const text of [await gallery("double_pendulum"), BARS]) {
+  // The two bars in a loop have one freedom: what is dragged comes as near as its path does.
+  for (const [text, near] of [
+    [await gallery("double_pendulum"), 3],
+    [BARS, 10],
+  ]) {
     await typed(page, text);
     await shown(page);
     const found = () =>
@@ -211,7 +215,7 @@ test("a body that is dragged at the start stays where it was put, and names drag
         return globalThis.hamelMotion.place(scene.bodies[scene.bodies.length - 1].centre);
       });
     const fields = () => page.$$eval(".start input", (list) => list.map((one) => one.value));
-    const [before, from] = [await fields(), await found()];
+    const before = await fields();
     await page.locator(".stage").scrollIntoViewIfNeeded();
     const [x, y] = await found();
     // A few pixels, so that two bars in a loop can follow.
@@ -231,7 +235,7 @@ test("a body that is dragged at the start stays where it was put, and names drag
       [x, y],
     );
     const [a, b] = await found();
-    assert.ok(Math.hypot(a - to[0], b - to[1]) < 8, `${[x, y]} was dragged to ${to}, and is at ${[a, b]}; from ${from}`);
+    assert.ok(Math.hypot(a - to[0], b - to[1]) < near, `${[x, y]} was dragged to ${to}, and is at ${[a, b]}`);
     assert.doesNotMatch(await page.getAttribute("#summary", "class"), /bad/);
     // Loops are closed, and the energy is kept.
     assert.ok(Number(await page.getAttribute("#summary", "data-drift")) < 1e-6);

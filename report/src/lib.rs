@@ -28,6 +28,14 @@
 //! length), and its text is deterministic. It knows whole pixels and fixed colours only; [`plot`]
 //! draws ten times as large and gives the colours of a dark page by a style sheet. HTML is written by
 //! `maud` (MIT or Apache-2.0), which escapes whatever is inserted.
+//!
+//! # Features
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `pictures` | pictures, and the pages that show them |
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod auto;
 pub mod baselines;

@@ -365,3 +365,42 @@ fn snapshots_can_be_read() {
     assert!(files > 200, "the snapshots have gone");
     assert!(lines < 25_000, "{lines} lines of snapshots");
 }
+
+/// Each published crate says in its documentation what its features add, and docs.rs marks what needs one of them.
+#[test]
+fn features_are_documented() {
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
+    let paths = manifest.lines().filter_map(|line| {
+        let (name, rest) = line.split_once(" = { path = \"")?;
+        name.starts_with("hamel").then_some(rest.split_once('"')?.0)
+    });
+    let mut missing = Vec::new();
+    let mut found = 0;
+    for path in paths {
+        let read = |file: &str| fs::read_to_string(root().join(path).join(file)).expect("a file");
+        let manifest = read("Cargo.toml");
+        let Some((_, features)) = manifest.split_once("[features]\n") else {
+            continue;
+        };
+        let features = features.split("\n[").next().unwrap_or_default();
+        let names = features
+            .lines()
+            .filter_map(|line| Some(line.split_once(" = [")?.0));
+        let documentation = read("src/lib.rs");
+        for name in names.filter(|name| *name != "default") {
+            found += 1;
+            if !documentation.contains(&format!("//! | `{name}` |")) {
+                missing.push(format!(
+                    "{path}/src/lib.rs has no row for the feature `{name}`"
+                ));
+            }
+        }
+        if !documentation.contains("#![cfg_attr(docsrs, feature(doc_cfg))]") {
+            missing.push(format!(
+                "{path}/src/lib.rs: docs.rs cannot mark what needs a feature"
+            ));
+        }
+    }
+    assert!(found >= 10, "{found} features");
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}

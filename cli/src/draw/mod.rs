@@ -98,7 +98,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::failed(format!(
             "nothing of {} can be drawn: it has no frames, bodies or particles, only energies. A statement such as `frame f = pose(R, r);` says where a part of it is{}",
             generated.model.name,
-            drawing.missing().iter().map(|part| format!("\n  {part}")).collect::<String>()
+            drawing
+                .missing()
+                .iter()
+                .map(|part| format!("\n  {part}"))
+                .collect::<String>()
         )));
     }
     for part in drawing.missing() {

@@ -1,6 +1,7 @@
 //! A mechanism that is pulled by one of its points, as by hand: where motions along its own velocities take it.
 //!
-//! With p(x) the point and J its slopes along δx = A h, each round moves by h = Jᵀ (J Jᵀ + λ² I)⁻¹ (target − p), where
+//! Who pulls sees a picture: of a place behind or before another one nothing is seen, and only the distance from the line of sight
+//! counts. With p(x) the point and J its slopes along δx = A h, each round moves by h = Jᵀ (J Jᵀ + λ² I)⁻¹ (target − p), where
 //! λ keeps h small near singular positions. Directions that constraints do not allow are projected out, so that loops
 //! stay closed and wheels roll. Slopes are differences: what is dragged by hand needs no more digits.
 
@@ -50,11 +51,17 @@ impl Grip {
 
 impl Session {
     /// The state that is reached where a mechanism is pulled by a point towards a place in the world (m), as near as its
-    /// joints, loops and constraints let it come. Its velocities are kept where constraints let them be.
+    /// joints, loops and constraints let it come; with a line of sight, as near to the line through the place along it. Its
+    /// velocities are kept where constraints let them be.
     ///
     /// # Errors
     /// Where there is no such point, and where the kinematics are singular.
-    pub fn pulled(&self, state: &State, grip: Grip, target: Vector) -> Result<State, Failure> {
+    pub fn pulled(
+        &self,
+        state: &State,
+        grip: Grip,
+        (target, sight): (Vector, Option<Vector>),
+    ) -> Result<State, Failure> {
         let drawn = self.drawing()?.with(&state.params);
         let instance = self.instance(state)?;
         let n = self.active().n();
@@ -62,6 +69,7 @@ impl Session {
             instance: &instance,
             drawn,
             grip,
+            seen: seen(sight),
             x: Numbers::from(state.x.as_slice()),
         };
         let target = Vector3::from(target);
@@ -86,6 +94,8 @@ struct Pulled<'a> {
     instance: &'a Instance,
     drawn: Drawn<'a>,
     grip: Grip,
+    /// What is left of a difference for who pulls.
+    seen: Matrix3<f64>,
     x: Numbers,
 }
 
@@ -93,12 +103,12 @@ impl Pulled<'_> {
     /// Moves once; whether that brought the point nearer.
     fn round(&mut self, n: usize, target: Vector3<f64>) -> Result<bool, Failure> {
         let from = self.point(&self.x)?;
-        let away = target - from;
+        let away = self.seen * (target - from);
         let directions: Result<Vec<Numbers>, Failure> = (0..n).map(|i| self.direction(i)).collect();
         let directions = directions?;
         let slope = |direction: &Numbers| -> Result<Vector3<f64>, Failure> {
             let there = self.point(&self.moved(&self.x, direction, STEP))?;
-            Ok((there - from) / STEP)
+            Ok(self.seen * (there - from) / STEP)
         };
         let slopes: Result<Vec<Vector3<f64>>, Failure> = directions.iter().map(slope).collect();
         let slopes = slopes?;
@@ -119,7 +129,7 @@ impl Pulled<'_> {
         let mut share = (FAR / length).min(1.0);
         for _ in 0..ROUNDS {
             if let Some(next) = self.closed(self.moved(&self.x, &h, share))
-                && (target - self.point(&next)?).norm() < away.norm()
+                && (self.seen * (target - self.point(&next)?)).norm() < away.norm()
             {
                 self.x = next;
                 return Ok(true);
@@ -156,7 +166,9 @@ impl Pulled<'_> {
     fn moved(&self, x: &Numbers, h: &Numbers, share: f64) -> Numbers {
         let mut chart = self.instance.chart_rate(x, h);
         // A alone: where the time is a coordinate, rates have terms without ξ.
-        let still = self.instance.chart_rate(x, &self.instance.zero_velocities());
+        let still = self
+            .instance
+            .chart_rate(x, &self.instance.zero_velocities());
         let entries = chart.as_mut().iter_mut().zip(still.iter());
         entries.for_each(|(entry, still)| *entry = share * (*entry - still));
         let mut next = x.clone();
@@ -174,7 +186,8 @@ impl Pulled<'_> {
             manifold::normalise(self.instance.blocks(), x.as_mut());
             let step = self.instance.project_position(&x).ok()?;
             let open = step.as_ref().map_or(0.0, |step| {
-                step.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()))
+                step.iter()
+                    .fold(0.0, |most: f64, entry| most.max(entry.abs()))
             });
             if let Some(step) = step {
                 x = self.moved(&x, &step, 1.0);
@@ -185,6 +198,14 @@ impl Pulled<'_> {
         }
         None
     }
+}
+
+/// The projection along a line of sight; without one everything is seen.
+fn seen(sight: Option<Vector>) -> Matrix3<f64> {
+    let sight = sight.and_then(|sight| Vector3::from(sight).try_normalize(0.0));
+    sight.map_or_else(Matrix3::identity, |sight| {
+        Matrix3::identity() - sight * sight.transpose()
+    })
 }
 
 fn singular() -> Failure {

@@ -7,7 +7,7 @@
 //! | `keep`, `watch` | what is kept of a member, compiled as outputs of the description |
 //! | `member`, `work` | one run, or two side by side, and all of them on threads |
 //! | `shard`, `manifest`, `folder` | what is written, and what is there |
-//! | `status`, `submit` | `--status` and `--submit` |
+//! | `status`, `submit`, `plot` | `--status`, `--submit` and `--plot` |
 
 mod distribution;
 mod draws;
@@ -16,6 +16,7 @@ mod keep;
 mod manifest;
 mod member;
 mod permutation;
+mod plot;
 mod shard;
 mod status;
 mod submit;
@@ -120,6 +121,10 @@ pub struct Arguments {
     /// a fused multiply-add, or none of them: last digits differ, and a machine of the other kind is refused.
     #[arg(long, value_name = "i/N", value_parser = Part::read)]
     shard: Option<Part>,
+    /// Draw what is kept over what is varied, as SVG: a diagram for each pair of the first columns, with a point for each
+    /// member that there is.
+    #[arg(long, value_name = "F.svg", conflicts_with = "submit")]
+    plot: Option<PathBuf>,
     /// Let an engine compute the parts, as an array of tasks; the folder has to be one that all machines share.
     #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
     submit: Option<Engine>,
@@ -217,7 +222,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
     let done = work.on(missing.collect(), threads.unwrap_or_else(cores))?;
-    print(&summary(out, done, there.members))
+    print(&summary(out, done, there.members))?;
+    if let Some(place) = &arguments.plot {
+        let there = folder::there(out, &manifest)?;
+        let name = &sweep.family.generated.model.name;
+        plot::run(place, name, &columns, &folder, &there)?;
+        print(&format!("wrote {}\n", place.display()))?;
+    }
+    Ok(())
 }
 
 /// What members share, and the columns of their rows.

@@ -2,10 +2,12 @@
 
 use super::member::Row;
 use parquet::basic::{LogicalType, Repetition, Type};
+use parquet::column::reader::get_typed_column_reader;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{KeyValue, ParquetMetaData, ParquetMetaDataReader};
 use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type as Field, TypePtr};
 use std::collections::BTreeSet;
@@ -133,6 +135,42 @@ fn optional<T>(values: impl Iterator<Item = Option<T>>) -> (Vec<i16>, Vec<T>) {
         present.extend(value);
     }
     (levels, present)
+}
+
+/// The first columns of numbers of a file, behind that of the index; NaN where there is none.
+pub fn numbers(path: &Path, count: usize) -> Result<Vec<Vec<f64>>, String> {
+    let read = || -> Result<Vec<Vec<f64>>, ParquetError> {
+        let reader = SerializedFileReader::new(File::open(path)?)?;
+        let mut all = vec![Vec::new(); count];
+        for group in 0..reader.num_row_groups() {
+            let group = reader.get_row_group(group)?;
+            let rows = group.metadata().num_rows().unsigned_abs() as usize;
+            for (place, column) in all.iter_mut().enumerate() {
+                let mut reader =
+                    get_typed_column_reader::<DoubleType>(group.get_column_reader(place + 1)?);
+                let optional = group
+                    .metadata()
+                    .column(place + 1)
+                    .column_descr()
+                    .max_def_level()
+                    > 0;
+                let (mut values, mut levels) = (Vec::new(), Vec::new());
+                reader.read_records(rows, optional.then_some(&mut levels), None, &mut values)?;
+                let mut present = values.into_iter();
+                let mut next = || present.next().unwrap_or(f64::NAN);
+                match optional {
+                    true => column.extend(
+                        levels
+                            .iter()
+                            .map(|level| if *level > 0 { next() } else { f64::NAN }),
+                    ),
+                    false => column.extend((0..rows).map(|_| next())),
+                }
+            }
+        }
+        Ok(all)
+    };
+    read().map_err(|error| error.to_string())
 }
 
 /// What the end of a file says of it.

@@ -134,24 +134,32 @@ fn state(session: &Session, request: &Value) -> Result<State, String> {
         Value::Null => Ok(start),
         changes => {
             let changes = changes.to_string();
-            session
-                .changed(start, &changes, "the start")
-                .map_err(said)
+            session.changed(start, &changes, "the start").map_err(said)
         }
     }
 }
 
 /// The start after a point of it was pulled towards a place, and how it looks.
 fn pull(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Value, String> {
-    let vector = |key: &str| <[f64; 3]>::try_from(list(request, key)).map_err(|_| format!("`{key}` has to have three numbers"));
-    let index = |key: &str| request[key].as_u64().and_then(|index| usize::try_from(index).ok());
+    let vector = |key: &str| {
+        <[f64; 3]>::try_from(list(request, key))
+            .map_err(|_| format!("`{key}` has to have three numbers"))
+    };
+    let index = |key: &str| {
+        request[key]
+            .as_u64()
+            .and_then(|index| usize::try_from(index).ok())
+    };
     let grip = match (index("frame"), index("particle")) {
         (Some(frame), _) => Grip::Frame(frame, vector("at")?),
         (None, Some(particle)) => Grip::Particle(particle),
         (None, None) => return Err("a pull needs a `frame` or a `particle`".into()),
     };
     let state = state(session, request)?;
-    let pulled = session.pulled(&state, grip, vector("target")?).map_err(said)?;
+    let sight = vector("sight").ok();
+    let pulled = session
+        .pulled(&state, grip, (vector("target")?, sight))
+        .map_err(said)?;
     if let Some(drawn) = scenes(session, &pulled.params, &pulled.x) {
         *numbers = drawn.numbers;
     }
@@ -256,7 +264,10 @@ fn texts(request: &Value, key: &str) -> Vec<String> {
 
 fn list(request: &Value, key: &str) -> Vec<f64> {
     let list = request[key].as_array();
-    list.into_iter().flatten().filter_map(Value::as_f64).collect()
+    list.into_iter()
+        .flatten()
+        .filter_map(Value::as_f64)
+        .collect()
 }
 
 fn number(request: &Value, key: &str) -> Option<f64> {

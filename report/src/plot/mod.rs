@@ -8,6 +8,7 @@ mod chart;
 mod figure;
 mod line;
 mod precision;
+mod scatter;
 pub mod space;
 mod sphere;
 mod theme;
@@ -16,6 +17,7 @@ mod windows;
 
 pub use figure::{Figure, PlotError, escape};
 pub use precision::{Precision, precision};
+pub use scatter::{Scatter, scatter};
 pub use sphere::Poinsot;
 pub use theme::sheet;
 pub use width::width;

@@ -1,0 +1,62 @@
+//! `--plot`: what is kept of each member over what is varied, as a picture.
+
+use super::folder::{Folder, There};
+use super::shard::{Columns, numbers};
+use crate::failure::{self, Failure};
+use crate::number::grouped;
+use hamel_report::plot::{Scatter, scatter};
+use std::path::Path;
+
+/// So many members are drawn at most, evenly spread over all that there are.
+const POINTS: u64 = 4000;
+/// So many causes and results at most; the title says how many there are.
+const CAUSES: usize = 3;
+const RESULTS: usize = 4;
+
+/// Draws the members that a folder has.
+pub fn run(
+    place: &Path,
+    name: &str,
+    columns: &Columns,
+    folder: &Folder,
+    there: &There,
+) -> Result<(), Failure> {
+    let causes: Vec<&String> = columns.varied.iter().take(CAUSES).collect();
+    let mut read: Vec<Vec<f64>> = vec![Vec::new(); columns.varied.len() + columns.kept.len()];
+    for shard in &there.shards {
+        let path = folder.place(*shard);
+        let all = numbers(&path, read.len());
+        let all =
+            all.map_err(|why| Failure::failed(format!("cannot read {}: {why}", path.display())))?;
+        read.iter_mut()
+            .zip(all)
+            .for_each(|(to, from)| to.extend(from));
+    }
+    let step = there.members.div_ceil(POINTS).max(1) as usize;
+    let column = |index: usize| -> Vec<f64> { read[index].iter().copied().step_by(step).collect() };
+    let across = causes.iter().enumerate();
+    let across = across.map(|(index, name)| ((*name).clone(), column(index)));
+    let results = columns.kept.iter().enumerate();
+    let results = results.map(|(index, name)| (name.clone(), column(columns.varied.len() + index)));
+    let results = results.filter(|(_, values)| differ(values));
+    let drawn = there.members.div_ceil(step as u64);
+    let mut subtitle = format!("{} members", grouped(there.members));
+    if drawn < there.members {
+        subtitle = format!("{} of {subtitle}", grouped(drawn));
+    }
+    let picture = Scatter {
+        title: name.into(),
+        subtitle,
+        across: across.collect(),
+        up: results.take(RESULTS).collect(),
+    };
+    let figure = scatter(&picture).map_err(|why| Failure::failed(why.to_string()))?;
+    failure::write(place, &figure.standalone())
+}
+
+/// Whether a result is not the same everywhere: the time of the end is, where all members reach it.
+fn differ(values: &[f64]) -> bool {
+    let mut finite = values.iter().filter(|value| value.is_finite());
+    let first = finite.next();
+    finite.any(|value| Some(value) != first)
+}

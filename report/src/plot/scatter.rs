@@ -1,0 +1,99 @@
+//! Points of many runs: each of some results over each of some causes.
+
+use super::axes::{Axes, Axis, Frame};
+use super::figure::{Area, Drawn, Figure, PlotError, circle, headed, stroke};
+use super::theme;
+use plotters::style::ShapeStyle;
+
+/// Numbers of many runs, by their names; in each list a run has the same place. What is not finite is not drawn.
+#[derive(Clone, Debug)]
+pub struct Scatter {
+    /// Heading.
+    pub title: String,
+    /// A sentence below it.
+    pub subtitle: String,
+    /// What each column of diagrams has along its lower edge.
+    pub across: Vec<(String, Vec<f64>)>,
+    /// What each row of diagrams has along its left edge.
+    pub up: Vec<(String, Vec<f64>)>,
+}
+
+const TOP: f64 = 96.0;
+const LEFT: f64 = 76.0;
+const WIDE: f64 = 230.0;
+const HIGH: f64 = 150.0;
+/// Between frames; the name of the one below, or the labels of the one beside, stand there.
+const GAP: (f64, f64) = (86.0, 40.0);
+const BOTTOM: f64 = 62.0;
+
+/// A diagram for each pair.
+///
+/// # Errors
+/// Those of the library that draws; none are known.
+pub fn scatter(of: &Scatter) -> Result<Figure, PlotError> {
+    let (columns, rows) = (of.across.len().max(1) as f64, of.up.len().max(1) as f64);
+    let width = LEFT + columns * (WIDE + GAP.0) - GAP.0 + 30.0;
+    let height = TOP + rows * (HIGH + GAP.1) - GAP.1 + BOTTOM;
+    Figure::draw(width, height, &of.title, |area| {
+        headed(area, &of.title, &of.subtitle)?;
+        for row in 0..of.up.len() {
+            for column in 0..of.across.len() {
+                diagram(area, of, row, column)?;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn diagram(area: &Area, of: &Scatter, row: usize, column: usize) -> Drawn {
+    let ((cause, causes), (result, results)) = (&of.across[column], &of.up[row]);
+    let frame = Frame {
+        x: LEFT + column as f64 * (WIDE + GAP.0),
+        y: TOP + row as f64 * (HIGH + GAP.1),
+        width: WIDE,
+        height: HIGH,
+    };
+    let axes = Axes {
+        frame,
+        across: Axis::around(causes.iter().copied()),
+        up: Axis::around(results.iter().copied()),
+    };
+    let last = row + 1 == of.up.len();
+    axes.draw(area, last)?;
+    axes.name(area, &format!("{result}{}", axes.up.factor()))?;
+    if last {
+        axes.below(area, &format!("{cause}{}", axes.across.factor()))?;
+    }
+    let style = ShapeStyle {
+        filled: true,
+        ..stroke(theme::series(row), 1.0)
+    };
+    let points = causes.iter().zip(results);
+    for (&x, &y) in points.filter(|(x, y)| x.is_finite() && y.is_finite()) {
+        circle(area, axes.place(x, y), 1.5, style)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Scatter, scatter};
+
+    #[test]
+    fn every_run_is_a_point_of_every_diagram() {
+        let numbers = |factor: f64| (0..10).map(|k| factor * f64::from(k)).collect();
+        let mut picture = Scatter {
+            title: "a <sweep>".into(),
+            subtitle: "ten members".into(),
+            across: vec![("m".into(), numbers(0.1)), ("w".into(), numbers(-2.0))],
+            up: vec![("end".into(), numbers(3.0)), ("max".into(), numbers(7.0))],
+        };
+        let text = scatter(&picture).expect("a drawing").standalone();
+        assert_eq!(text.matches("h0").count(), 4 * 10);
+        assert!(text.contains("a &lt;sweep&gt;"));
+        // A member that has no result is no point.
+        picture.up[1].1[3] = f64::NAN;
+        let text = scatter(&picture).expect("a drawing").standalone();
+        assert_eq!(text.matches("h0").count(), 4 * 10 - 2);
+    }
+}
