@@ -81,7 +81,7 @@ pub use robot::{Mimic, RobotOptions};
 pub use session::{Function, Grip, Happened, Motion, Names, Session, Stepped, imported};
 pub use simulate::events::{Event, Gauge, Watched};
 pub use simulate::inputs::{Asked, Control, Law};
-pub use simulate::record::Every;
+pub use simulate::plan::Every;
 pub use simulate::stepping::Stepping;
 pub use state::State;
 pub use tables::Format;

@@ -2,7 +2,8 @@
 
 use crate::added;
 use crate::mechanism::{Instance, Output};
-use crate::simulate::record::{Run, Sample};
+use crate::simulate::record::Run;
+use crate::simulate::sample::Sample;
 use hamel_codegen::program::Shape;
 
 /// A run: samples one after the other, each entry of a list beside the time.

@@ -2,7 +2,8 @@
 
 use super::balance::Balance;
 use super::events::Events;
-use super::record::{Plan, Sample, Spacing};
+use super::plan::{Plan, Spacing};
+use super::sample::Sample;
 use super::steady::Steady;
 use crate::mechanism::{Glance, Instance, Numbers};
 use crate::method::Stepper;

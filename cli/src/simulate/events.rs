@@ -1,6 +1,6 @@
 //! Events of a run: where a number that is watched changes its sign.
 
-use super::record::Sample;
+use super::sample::Sample;
 use crate::mechanism::{Instance, Numbers};
 use crate::method::Stepper;
 use hamel::adaptive::{self, Direction};

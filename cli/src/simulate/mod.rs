@@ -8,10 +8,12 @@ pub mod inputs;
 mod panels;
 #[cfg(feature = "command")]
 mod picture;
+pub mod plan;
 pub mod record;
 mod recorder;
 #[cfg(feature = "command")]
 mod rotor;
+pub mod sample;
 pub mod steady;
 pub mod stepping;
 mod summary;
@@ -26,7 +28,8 @@ use crate::state::State;
 use clap::Args;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::tables::{self, Table};
-use record::{Every, Run, Spacing};
+use plan::{Every, Spacing};
+use record::Run;
 use std::path::PathBuf;
 use stepping::Stepping;
 pub use stepping::positive;

@@ -1,6 +1,7 @@
 //! The panels of a plot over time: coordinates, velocities, outputs.
 
-use super::record::{Run, Sample};
+use super::record::Run;
+use super::sample::Sample;
 use crate::mechanism::Instance;
 use hamel::{s3, so3};
 use hamel_codegen::program::Shape;

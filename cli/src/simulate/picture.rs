@@ -1,7 +1,8 @@
 //! What a plot of a run shows.
 
-use super::record::{Run, Sample};
+use super::record::Run;
 use super::rotor::poinsot;
+use super::sample::Sample;
 use crate::mechanism::Instance;
 use hamel::s3;
 use hamel_codegen::model::layout::Block;

@@ -2,7 +2,8 @@
 
 use super::advance::{Observer, Place};
 use super::balance::Balance;
-use super::record::{POINTS, Plan, Sample, Spacing};
+use super::plan::{POINTS, Plan, Spacing};
+use super::sample::Sample;
 use crate::mechanism::{Glance, Instance};
 use crate::progress::{self, Bar};
 use hamel::{Monitor, State};

@@ -1,7 +1,7 @@
 //! The angular momentum of a single body, and whether it is nearly free: what Poinsot's construction
 //! needs.
 
-use super::record::Sample;
+use super::sample::Sample;
 use crate::mechanism::{Instance, Numbers};
 use hamel::{Block, System};
 use hamel_report::plot::Poinsot;

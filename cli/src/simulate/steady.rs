@@ -2,7 +2,7 @@
 
 use super::advance::{Observer, Place};
 use super::events::Events;
-use super::record::{Plan, Spacing};
+use super::plan::{Plan, Spacing};
 use crate::mechanism::{Instance, Numbers, Whole};
 use hamel::methods::Method;
 use hamel::{Grid, State, StepError, integrate_while};

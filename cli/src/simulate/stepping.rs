@@ -1,6 +1,6 @@
 //! How a run is stepped: its length, the method, the step or the tolerance.
 
-use super::record::{Every, Plan};
+use super::plan::{Every, Plan};
 use crate::failure::Failure;
 use crate::mechanism::Instance;
 use crate::method::{self, AUTO, Chosen, Stepper};

@@ -1,6 +1,7 @@
 //! What a run comes to, for a terminal.
 
-use super::record::{Run, Sample};
+use super::record::Run;
+use super::sample::Sample;
 use crate::columns::aligned;
 use crate::number::{digits, error, grouped, short};
 use hamel_codegen::syntax::ast::CoordKind;

@@ -33,7 +33,7 @@ use crate::method;
 use crate::number::grouped;
 use crate::robot::RobotOptions;
 use crate::simulate::inputs::{self, Inputs};
-use crate::simulate::record::Spacing;
+use crate::simulate::plan::Spacing;
 use crate::simulate::stepping::Stepping;
 use crate::source::Source;
 use crate::state::State;

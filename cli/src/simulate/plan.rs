@@ -1,0 +1,112 @@
+//! What is to be run: the method, its steps, and where samples are taken.
+
+use crate::method::Chosen;
+
+/// Samples where nothing else is asked for.
+const SAMPLES: u64 = 1000;
+/// Points of a plot.
+pub const POINTS: u64 = 4000;
+
+/// How often samples are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Every {
+    /// Every so many steps.
+    Steps(u64),
+    /// At multiples of this time.
+    Time(f64),
+}
+
+/// What is to be run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    pub method: Chosen,
+    pub until: f64,
+    pub step: f64,
+    /// Expected number of steps.
+    pub steps: u64,
+    /// A sample every so many steps.
+    pub every: u64,
+    /// Whether that was left to the plan, which may then take fewer.
+    pub chosen: bool,
+    /// The error that a step may make, where steps are chosen by it.
+    pub tolerance: Option<f64>,
+    /// Where samples are that are not at the ends of steps.
+    pub spacing: Spacing,
+    /// Steps chosen by their error are shown at no fewer points than that.
+    pub points: u64,
+    /// Whether nobody looks at the ends of steps.
+    pub quiet: bool,
+}
+
+/// Where samples are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spacing {
+    /// At ends of steps.
+    Steps,
+    /// At multiples of a time.
+    Every(f64),
+    /// At these times.
+    Times(Vec<f64>),
+}
+
+impl Spacing {
+    /// The times of samples in a step.
+    pub fn within(&self, from: f64, to: f64) -> Vec<f64> {
+        match self {
+            Spacing::Steps => Vec::new(),
+            Spacing::Every(time) => {
+                let first = (from / time).floor() + 1.0;
+                let numbers = std::iter::successors(Some(first), |number| Some(number + 1.0));
+                let times = numbers.map(|number| number * time);
+                times.take_while(|t| *t <= to).collect()
+            }
+            Spacing::Times(times) => {
+                let first = times.partition_point(|t| *t <= from);
+                let last = times.partition_point(|t| *t <= to);
+                times[first..last].to_vec()
+            }
+        }
+    }
+}
+
+impl Plan {
+    /// A plan with about a thousand samples, or as many as are asked for. Equal steps are shortened so that samples are
+    /// at their ends.
+    pub fn new(
+        method: Chosen,
+        until: f64,
+        mut step: f64,
+        every: Option<Every>,
+        tolerance: Option<f64>,
+    ) -> Self {
+        let (every, spacing) = match (every, tolerance) {
+            (None, _) => (None, Spacing::Steps),
+            (Some(Every::Steps(steps)), _) => (Some(steps), Spacing::Steps),
+            (Some(Every::Time(time)), Some(_)) => (Some(1), Spacing::Every(time)),
+            (Some(Every::Time(time)), None) => {
+                let parts = (time / step * (1.0 - 1e-9)).ceil().max(1.0);
+                step = time / parts;
+                (Some(parts as u64), Spacing::Steps)
+            }
+        };
+        // As the integrator counts: a ratio that is whole but for rounding is whole.
+        let steps = ((until / step) * (1.0 - 1e-9)).ceil().max(1.0) as u64;
+        let default = match tolerance {
+            // How many steps there will be is not known.
+            Some(_) => 1,
+            None => (steps / SAMPLES).max(1),
+        };
+        Plan {
+            method,
+            until,
+            step,
+            steps,
+            every: every.unwrap_or(default),
+            chosen: every.is_none(),
+            tolerance,
+            spacing,
+            points: POINTS,
+            quiet: false,
+        }
+    }
+}
