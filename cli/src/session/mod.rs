@@ -370,8 +370,7 @@ impl Session {
         let mut plan = stepping.plan(generated, &system, every)?;
         // All samples that are asked for are kept.
         if let Some(times) = times {
-            ordered(&times, until)?;
-            plan.spacing = Spacing::Times(times);
+            plan.spacing = Spacing::at(times, until)?;
         }
         let events = Events::new(events.to_vec(), &system, added::name);
         let run = Run::watched(generated, &system, plan, events)?;
@@ -490,21 +489,4 @@ fn groups(groups: &[hamel_codegen::model::Group]) -> Vec<(String, usize, usize)>
     parts
         .map(|group| (group.name.clone(), group.offset, group.len))
         .collect()
-}
-
-/// Refuses times that do not increase, or are outside of a run.
-fn ordered(times: &[f64], until: f64) -> Result<(), Failure> {
-    let outside = times.iter().find(|time| !(0.0..=until).contains(*time));
-    let falling = times.windows(2).find(|pair| pair[0] >= pair[1]);
-    match (outside, falling) {
-        (Some(time), _) => Err(Failure::usage(format!(
-            "t = {time} is outside of the run, which is from 0 to {until}"
-        ))),
-        (None, Some(pair)) => Err(Failure::usage(format!(
-            "times have to increase: {} is not behind {}",
-            pair[1], pair[0]
-        ))),
-        (None, None) if times.is_empty() => Err(Failure::usage("there are no times for samples")),
-        (None, None) => Ok(()),
-    }
 }

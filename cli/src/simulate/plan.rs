@@ -1,5 +1,6 @@
 //! What is to be run: the method, its steps, and where samples are taken.
 
+use crate::failure::Failure;
 use crate::method::Chosen;
 
 /// Samples where nothing else is asked for.
@@ -50,6 +51,28 @@ pub enum Spacing {
 }
 
 impl Spacing {
+    /// At these times.
+    ///
+    /// # Errors
+    /// Where they do not increase, or are outside of a run until this time.
+    pub fn at(times: Vec<f64>, until: f64) -> Result<Self, Failure> {
+        let outside = times.iter().find(|time| !(0.0..=until).contains(*time));
+        let falling = times.windows(2).find(|pair| pair[0] >= pair[1]);
+        match (outside, falling) {
+            (Some(time), _) => Err(Failure::usage(format!(
+                "t = {time} is outside of the run, which is from 0 to {until}"
+            ))),
+            (None, Some(pair)) => Err(Failure::usage(format!(
+                "times have to increase: {} is not behind {}",
+                pair[1], pair[0]
+            ))),
+            (None, None) if times.is_empty() => {
+                Err(Failure::usage("there are no times for samples"))
+            }
+            (None, None) => Ok(Spacing::Times(times)),
+        }
+    }
+
     /// The times of samples in a step.
     pub fn within(&self, from: f64, to: f64) -> Vec<f64> {
         match self {
