@@ -14,7 +14,7 @@ unpack() {
     mkdir -p "$archives/partial"
     # A package that is installed is fetched, too: a script looks for its program in one place.
     local download=(apt-get install -y -qq --no-install-recommends --download-only --reinstall
-        -o "Dir::Cache::archives=$archives" "$@")
+        -o "Dir::Cache::archives=$archives" -o DPkg::Lock::Timeout=300 "$@")
     "${download[@]}" > /dev/null 2>&1 ||
         { apt-get update -qq > /dev/null 2>&1 && "${download[@]}" > /dev/null 2>&1; } || return 1
     local archive

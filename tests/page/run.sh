@@ -6,12 +6,9 @@ cd "$(dirname "$0")/../.."
 
 chromium="${CHROMIUM:-/usr/bin/chromium}"
 if [ ! -x "$chromium" ]; then
-    # While the module is compiled.
-    {
-        apt-get update -qq
-        DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core > /dev/null
-    } &
-    installing=$!
+    # Before the module is built, which may need packages, too: only one program at a time may take any.
+    apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core > /dev/null
 fi
 bash tests/robots/install.sh
 bash page/build.sh
@@ -19,9 +16,6 @@ target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
 # The command line whose numbers the page has to have; as it was built with the tests, where it was.
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$target/debug/hamel" ]; then
     cargo build --quiet --locked -p hamel-cli
-fi
-if [ -n "${installing:-}" ]; then
-    wait "$installing"
 fi
 robots="$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)"
 CHROMIUM="$chromium" HAMEL="$target/debug/hamel" HAMEL_ROBOTS="$robots" node --test --test-concurrency=1 page/tests/*.test.mjs
