@@ -23,20 +23,21 @@ fn refused(options: &[&str]) -> String {
 }
 
 const VARY: &str = "m = normal(2, 0.1); start w = uniform(3, 5); start y = latin(0, 1)";
+/// What is swept, for how long, and what is kept.
+const SWEPT: [&str; 8] = [
+    "--vary",
+    VARY,
+    "--until",
+    "0.1",
+    "--step",
+    "0.01",
+    "--keep",
+    "end; max(w)",
+];
 
 #[test]
 fn a_member_depends_on_the_seed_and_its_number_alone() {
-    let fixed = [
-        "--vary",
-        VARY,
-        "--until",
-        "0.1",
-        "--step",
-        "0.01",
-        "--keep",
-        "end; max(w)",
-    ];
-    let options = |more: &[&'static str]| [&fixed[..], more].concat();
+    let options = |more: &[&'static str]| [&SWEPT[..], more].concat();
     let one = options(&[
         "--members",
         "50",
@@ -295,24 +296,17 @@ fn every_member_is_a_point_of_the_picture() {
     let folder = fresh("plotted");
     let (out, picture) = (folder.display().to_string(), folder.with_extension("svg"));
     let place = picture.display().to_string();
-    let options = [
+    let own = [
         "sweep",
         "-",
         "--out",
         &out,
-        "--vary",
-        VARY,
         "--members",
         "40",
-        "--until",
-        "0.1",
-        "--step",
-        "0.01",
-        "--keep",
-        "end; max(w)",
         "--plot",
         &place,
     ];
+    let options = [&own[..], &SWEPT].concat();
     let drawn = || {
         let output = hamel(&options, BALL);
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));

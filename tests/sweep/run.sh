@@ -4,15 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
-environment="$target/sweep-readers"
-wheels="polars==2.1.0 duckdb==2.0.0 pandas==3.1.1 pyarrow==26.0.1"
-if [ ! -f "$environment/installed" ] || [ "$(cat "$environment/installed")" != "$wheels" ]; then
-    python3 -m venv --clear "$environment"
-    # shellcheck disable=SC2086
-    "$environment/bin/pip" --quiet --disable-pip-version-check install $wheels
-    echo "$wheels" > "$environment/installed"
-fi
+source xtask/wheels.sh
+wheels sweep-readers polars==2.1.0 duckdb==2.0.0 pandas==3.1.1 pyarrow==26.0.1
 # One that was built with the tests will do: alone, its dependencies have other features, and are built anew.
 hamel="$target/debug/hamel"
 if [ -z "${HAMEL_BUILT:-}" ] || [ ! -x "$hamel" ]; then

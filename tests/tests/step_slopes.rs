@@ -5,7 +5,8 @@ use hamel::methods::{
     BackwardEuler, Cf4, InChart, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Splitting,
 };
 use hamel::{
-    Block, Method, Nearby, State, StepError, System, Table, Tangent, manifold, step, step_slopes,
+    Block, Method, Nearby, State, StepError, System, Table, Tangent, manifold, step, step_nearby,
+    step_slopes,
 };
 use hamel_tests::dc_pendulum::{DcPendulum, DcPendulumParameters};
 use hamel_tests::linear;
@@ -18,6 +19,25 @@ hamel::rigid_eom! {
         rate x = v;
         kinetic v^2 / 2;
         generalized force v = -norm([v])^1.7 * v;
+        generate all, linearize;
+    }
+}
+
+hamel::rigid_eom! {
+    /// A hull with a leg whose hip is mounted at 45°, a knee tilted by 1e-7 against it, and a slider.
+    system Legged {
+        gravity [1.1, -2.3, -9.81];
+        input hip_torque, push;
+        joint base: free moves hull;
+        body on hull { mass 2; com [0.1, 0.05, -0.02]; inertia [[1.2, 0.1, 0.2], [0.1, 1.5, 0.3], [0.2, 0.3, 1.1]] about com; }
+        joint hip: continuous [1, 0, 0] on hull at pose(roty(pi / 4), [0.3, 0.2, 0.1]) moves thigh { force hip_torque; }
+        body on thigh { mass 1; com [0.1, 0.2, 0.3]; inertia [[0.5, 0.1, 0.02], [0.1, 0.6, 0.03], [0.02, 0.03, 0.7]] about com; }
+        joint knee: revolute [1, 0.0000001, 0] on thigh at [0.1, 0.05, -0.6] moves shank { armature 0.2; }
+        body on shank { mass 0.5; com [0.1, 0.2, -0.2]; inertia [[0.08, 0.01, 0.02], [0.01, 0.09, 0.01], [0.02, 0.01, 0.07]] about com; }
+        joint slide: prismatic [0, 0.6, 0.8] on hull at [0, 0.1, 0.2] moves hand { force push - 0.4 * slide_dot; }
+        body on hand { mass 0.5; com [0.1, 0.2, -0.2]; inertia diag(1, 1.2, 1.5) about com; }
+        start hip = 0.7, knee = 0.4, slide = 0.2, base_w = [0.7, 0.9, -1.1], base_v = [0.3, -0.4, 0.5];
+        start base_R = rotx(0.4) * roty(-0.7), hip_dot = 0.6, knee_dot = -0.8, slide_dot = 0.4;
         generate all, linearize;
     }
 }
@@ -164,6 +184,13 @@ where
     let mut inputs = system.zero_inputs();
     inputs.as_mut().copy_from_slice(u);
     let (end, slopes) = step_slopes(method, system, start, &inputs, h).expect("a step");
+    // A table of the caller's is written all over, whatever was in it.
+    let mut table = slopes.clone();
+    (0..table.rows()).for_each(|i| table.row_mut(i).fill(f64::NAN));
+    let nearby = Nearby::new(system);
+    let again = step_nearby(method, &nearby, start, &inputs, h, &mut table).expect("a step");
+    assert_eq!(rows(&table), rows(&slopes), "{name}");
+    assert_eq!(again.xi.as_ref(), end.xi.as_ref(), "{name}");
     let mut alone = start.clone();
     step(system, method, &mut alone, h, &|_, _, _| inputs.clone()).expect("a step");
     // Explicit methods add up in another order; implicit ones go on until slopes have converged, too.
@@ -275,6 +302,11 @@ fixtures! {
     angles_with_rates_that_are_none spherical_angles SphericalAngles [];
     a_chain_of_springs spring_chain SpringChain [];
     wheels two_wheeled_robot TwoWheeledRobot [0.4, -0.3];
+}
+
+#[test]
+fn a_floating_base_with_a_leg_and_a_slider() {
+    all_methods("a legged robot", &Legged::<f64>::default(), &[0.7, -0.4]);
 }
 
 /// Matrices in the place of dual numbers, with a state of first order behind the velocity.

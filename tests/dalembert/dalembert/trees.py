@@ -37,6 +37,7 @@ class Forest:
             self.m.say(f"gravity {self.m.gravity.text};")
         self.tree(size, free)
         self.loads()
+        self.constraints()
         self.outputs()
         self.asked()
 
@@ -333,17 +334,28 @@ class Forest:
                 m.say(f"kinetic {e.text};")
                 m.kinetic.append(e)
                 self.written = True
-        if r.random() < 0.2:
+        single = [(name, place) for name, size, place in m.velocities if size == 1]
+        if single and r.random() < 0.3:
             m.state("z0", "0.3", lambda z: z * "-0.7" + self.effort() + call("sin", z))
             z = Ex("z0", lambda s: s.z[0])
-            m.say(f"generalized force {self.scalar()[0]} = {(z * '0.4').text};")
-            m.generalized.append((self.last, z * "0.4"))
+            name, place = self.pick(single)
+            m.say(f"generalized force {name} = {(z * '0.4').text};")
+            m.generalized.append((place, z * "0.4"))
 
-    def scalar(self):
-        name, size, place = self.pick(self.m.velocities)
-        k = self.r.randrange(size)
-        self.last = place + k
-        return (name if size == 1 else f"{name}[{k + 1}]"), place + k
+    def constraints(self):
+        """Velocities that are tied to one another, by factors that change: multipliers keep them so."""
+        r, m = self.r, self.m
+        if not self.plain or m.n < 3 or r.random() > 0.3:
+            return
+        for _ in range(1 + (m.n > 4 and r.random() < 0.4)):
+            parts = [(call(self.pick(["sin", "cos"]), self.pick(self.plain)) + self.number()) * v for v in r.sample(self.velocities, 3)]
+            if self.t is not None and r.random() < 0.5:
+                parts.append(call("cos", self.t) * self.number())
+            tie = parts[0]
+            for part in parts[1:]:
+                tie = tie + part
+            m.say(f"nonholonomic {tie.text} = 0;")
+            m.kept.append(tie)
 
     # What is asked for.
 
@@ -393,13 +405,22 @@ class Forest:
         wanted += [f"{o.name}_slopes" for o in m.outputs]
         if m.default:
             wanted.append("parameter_slopes")
-        if self.t is None and not m.inerters and not self.written:
+        if self.t is None and not m.inerters and not self.written and not m.kept:
             wanted.append("regressor")
         m.say(f"generate {', '.join(wanted)};")
 
     def configuration(self):
-        """A random state, of numbers that doubles have."""
-        return random_state(self.m, self.r)
+        """A random state, of numbers that doubles have; velocities are those nearest to it that are allowed."""
+        from .definitions import Definitions
+
+        s = random_state(self.m, self.r)
+        if not self.m.kept:
+            return s
+        d = Definitions(self.m)
+        b = d.conditions(s)
+        square = [[vectors.dot(p, q) for q in b] for p in b]
+        off = vectors.on(vectors.transposed(b), vectors.solve(square, d.kept(s)))
+        return s.but(xi=[vectors.mpf(float(e)) for e in vectors.sub(s.xi, off)])
 
 
 def _defaults(m):
