@@ -181,7 +181,7 @@ fn no_more(path: &[Step], taken: usize, span: Span) -> Diagnostic {
         )
         .help("parts that components make have names of their own: `left.knee`"),
         _ => Diagnostic::new(span, format!("`{name}` is no array"))
-            .help("an array is declared with its index, as in `frame link[0] = world;`"),
+            .help("an array is declared with its index, as in `frame link[0] = world;`; a vector is given whole, as in `generalized force w = [a, b, c];`"),
     }
 }
 
