@@ -76,7 +76,7 @@ const packed = (bytes) => Buffer.from(compress(bytes, 9)).toString("base64");
 const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
 
 const [wasm, page, loader, worker, css, list, html] = await Promise.all([
-  readFile(join(target, "page", "hamel_page.wasm")),
+  readFile(join(target, "page", "hamel_page.small.wasm")),
   bundled("main.ts"),
   bundled("loader.ts"),
   bundled("worker.ts"),

@@ -6,4 +6,10 @@ cd "$(dirname "$0")/.."
 bash page/module.sh
 npm --prefix page ci --silent
 npm --prefix page run --silent types
+# Instances of generic functions that came out alike are kept once. What else Binaryen could do makes the module shorter,
+# and what is downloaded longer, since then less of it repeats.
+folder="${CARGO_TARGET_DIR:-target}/page"
+page/node_modules/.bin/wasm-opt "$folder/hamel_page.wasm" -o "$folder/hamel_page.small.wasm" --enable-bulk-memory \
+    --enable-sign-ext --enable-mutable-globals --enable-nontrapping-float-to-int --enable-multivalue \
+    --enable-reference-types --duplicate-function-elimination --optimize-instructions --code-folding --reorder-locals
 node page/build.mjs

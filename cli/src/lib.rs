@@ -78,7 +78,7 @@ pub use failure::{Failure, Mark, Said};
 pub use linearize::Linear;
 pub use mechanism::{End, Varied};
 pub use robot::{Mimic, RobotOptions};
-pub use session::{Function, Happened, Motion, Names, Session, Stepped, imported};
+pub use session::{Function, Grip, Happened, Motion, Names, Session, Stepped, imported};
 pub use simulate::events::{Event, Gauge, Watched};
 pub use simulate::inputs::{Asked, Control, Law};
 pub use simulate::plan::Every;

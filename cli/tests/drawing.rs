@@ -1,7 +1,7 @@
 //! What is drawn of a mechanism is where the mechanism's own functions say that it is.
 
 use hamel_cli::drawing::{Acts, Scene, Vector};
-use hamel_cli::{RobotOptions, Session};
+use hamel_cli::{Asked, Grip, RobotOptions, Session, Stepping};
 use std::path::{Path, PathBuf};
 
 fn session(path: &Path) -> Session {
@@ -227,6 +227,89 @@ fn scenes_are_plain_data() {
         "rods",
     ];
     assert_eq!(names, expected);
+}
+
+/// Where a point of a frame is.
+fn at(scene: &Scene, frame: usize, point: Vector) -> Vector {
+    let Scene { frames, .. } = scene;
+    std::array::from_fn(|k| {
+        let row = frames[frame].rotation[k];
+        let arm: f64 = row.iter().zip(point).map(|(a, b)| a * b).sum();
+        frames[frame].position[k] + arm
+    })
+}
+
+#[test]
+fn a_point_that_is_pulled_comes_to_where_it_can_be() {
+    // Two joints, a free body, six joints, a particle on a spring, and loops that are closed by multipliers; each is pulled to where
+    // its motion would take the point.
+    for name in [
+        "double_pendulum",
+        "wing_nut",
+        "ur5",
+        "elastic_pendulum",
+        "four_bar",
+        "peaucellier",
+    ] {
+        let session = session(&models().join(format!("../../examples/gallery/{name}.eom")));
+        let start = session.start();
+        let drawing = session.drawing();
+        let drawing = drawing.unwrap_or_else(|failure| panic!("{}", failure.text()));
+        let drawn = drawing.with(&start.params);
+        let scene = drawn.scene(&start.x);
+        let grip = match scene.bodies.last() {
+            Some(body) => Grip::Frame(body.frame, [0.02, 0.01, -0.1]),
+            None => Grip::Particle(0),
+        };
+        let place = |scene: &Scene| match grip {
+            Grip::Frame(frame, point) => at(scene, frame, point),
+            Grip::Particle(particle) => scene.particles[particle].position,
+        };
+        let stepping = Stepping {
+            until: 0.1,
+            step: None,
+            method: "auto".into(),
+            tol: None,
+            lambda: None,
+        };
+        let inputs = (&Asked::default(), None);
+        let run = session.simulate(&start, &stepping, (None, None), inputs, &[]);
+        let run = run.unwrap_or_else(|failure| panic!("{}", failure.text()));
+        let end = &run.x[run.x.len() - start.x.len()..];
+        let target = place(&drawn.scene(end));
+        let pulled = session.pulled(&start, grip, (target, None));
+        let pulled = pulled.unwrap_or_else(|failure| panic!("{}", failure.text()));
+        let there = drawn.scene(&pulled.x);
+        let before = distance(place(&scene), target);
+        let after = distance(place(&there), target);
+        assert!(before > 1e-4, "{name} does not move");
+        assert!(after < 1e-2 * before, "{name}: {before} becomes {after}");
+        // What was reached is a state of the description: no loop is open.
+        let gaps = there.loops.iter().map(|[a, b]| distance(*a, *b));
+        let gap = gaps.fold(0.0, f64::max);
+        assert!(gap < 1e-9, "{name}: {gap}");
+    }
+    // A wheel that rolls does not come sideways.
+    let session = session(&models().join("../../examples/gallery/sleigh.eom"));
+    let start = session.start();
+    let drawn = session.drawing().expect("a drawing").with(&start.params);
+    let from = drawn.scene(&start.x).frames[0].position;
+    let target = [from[0] + 0.3, from[1] + 0.2, from[2] + 1.0];
+    let pulled = session.pulled(&start, Grip::Frame(0, [0.0; 3]), (target, None));
+    let to = drawn.scene(&pulled.expect("a state").x).frames[0].position;
+    close(to[2], from[2]);
+    assert!(distance(to, target) < 1.02, "{to:?}");
+    // Seen from above it is as far as it can roll: how high the place is does not count.
+    let seen = session.pulled(
+        &start,
+        Grip::Frame(0, [0.0; 3]),
+        (target, Some([0.0, 0.0, 1.0])),
+    );
+    let seen = drawn.scene(&seen.expect("a state").x).frames[0].position;
+    assert!(
+        distance(seen, [target[0], target[1], seen[2]]) < 0.25,
+        "{seen:?}"
+    );
 }
 
 #[test]

@@ -144,6 +144,13 @@ export interface Run {
   numbers?: Float32Array;
 }
 
+// A start that was pulled to by a point, with where everything is there.
+export interface Pulled {
+  x: number[];
+  xi: number[];
+  numbers?: Float32Array;
+}
+
 export interface Case {
   reference: string;
   methods: {

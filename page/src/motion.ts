@@ -1,10 +1,10 @@
 // The motion: a run from a start that can be changed, in space and over time, and what the methods cost on it.
 
-import type { Case, Run, System } from "./answers";
+import type { Case, Pulled, Run, System } from "./answers";
 import { element } from "./dom";
 import { Dropped, type Generator } from "./generator";
 import { overTime, precision, type Line } from "./plots";
-import { Stage } from "./scene";
+import { type Grip, Stage } from "./scene";
 import { Start } from "./start";
 
 // How long numbers rest before a run is made again, in ms.
@@ -21,7 +21,12 @@ export class Motion {
   // Where everything is at each sample, and at the moment that is shown.
   private scenes: Float32Array[] = [];
   private between = new Float32Array();
+  private system: System | undefined;
   private start: Start | undefined;
+  // A pull that waits for the one before it, whether one is under way, and whether a body is held.
+  private waiting: (() => Promise<void>) | undefined;
+  private pulling = false;
+  private held = false;
   private moments: ((t: number) => void)[] = [];
   private playing = false;
   private time = 0;
@@ -42,6 +47,7 @@ export class Motion {
   private readonly summary = element("p", { class: "note", role: "status", id: "summary" });
   private readonly fields = element("div", {});
   private readonly missing = element("p", { class: "note", id: "missing" });
+  private readonly reset = element("button", { type: "button", id: "reset" }, "Back to the start of the text");
   private readonly comparison = element("div", {});
 
   constructor(
@@ -57,7 +63,7 @@ export class Motion {
       this.missing,
       element("div", { class: "controls" }, this.play, this.scrub, this.clock, field("speed", this.speed)),
       this.plots,
-      element("details", { open: "" }, element("summary", {}, "Start"), this.fields),
+      element("details", { open: "" }, element("summary", {}, "Start"), element("p", { class: "note" }, "Type a number, drag its name sideways, or, while the time is 0, drag a body in the picture."), this.fields, this.reset),
       element("h3", {}, "Error against work", compare),
       this.comparison,
     );
@@ -70,11 +76,64 @@ export class Motion {
       this.show(this.scrub.valueAsNumber);
     };
     compare.onclick = () => void this.compare();
+    this.reset.onclick = () => {
+      if (this.system !== undefined) {
+        this.begin(this.system);
+        this.again();
+      }
+    };
+  }
+
+  // Fields for the start of a system, or for another one.
+  private begin(system: System): void {
+    this.start = new Start(system, () => this.again());
+    this.fields.replaceChildren(this.start.element);
+    this.reset.hidden = system === this.system;
   }
 
   // Where the point of the picture is that a place of the world is seen at, for tests.
   place(point: number[]): [number, number] | undefined {
     return this.stage?.place(point);
+  }
+
+  // A point of the mechanism follows the pointer: the start becomes one at which it is there, or near. One pull is made
+  // at a time, and the last one is always made.
+  private pull(grip: Grip, target: number[], sight: number[]): void {
+    this.held = true;
+    this.waiting = async () => {
+      const pulled = await this.generator.ask<Pulled>("pull", { ...this.start?.asked(), ...grip, target, sight });
+      if (this.system === undefined || pulled.numbers === undefined) {
+        return;
+      }
+      this.begin({ ...this.system, start: { ...this.system.start, x: pulled.x, xi: pulled.xi } });
+      this.stage?.move(pulled.numbers);
+    };
+    if (!this.pulling) {
+      void this.pullOn();
+    }
+  }
+
+  private async pullOn(): Promise<void> {
+    this.pulling = true;
+    try {
+      while (this.waiting !== undefined) {
+        const next = this.waiting;
+        this.waiting = undefined;
+        await next();
+      }
+    } catch (error) {
+      this.refused(error);
+    } finally {
+      this.pulling = false;
+    }
+    this.letGo();
+  }
+
+  // Runs from where a body was put, once it is let go and the last pull is made.
+  private letGo(): void {
+    if (!this.held && !this.pulling) {
+      this.again();
+    }
   }
 
   // Runs a system that is new.
@@ -83,8 +142,8 @@ export class Motion {
     this.method.replaceChildren(...system.methods.map((name) => element("option", {}, name)));
     this.method.value = system.methods.includes(before) ? before : "auto";
     this.names = system.velocities.entries;
-    this.start = new Start(system, () => this.again());
-    this.fields.replaceChildren(this.start.element);
+    this.system = system;
+    this.begin(system);
     this.comparison.replaceChildren();
     await this.integrate(true);
   }
@@ -131,7 +190,7 @@ export class Motion {
       ...(step > 0 ? { step } : {}),
       method: this.method.value,
       scenes: true,
-      state: this.start?.state() ?? null,
+      ...this.start?.asked(),
     };
   }
 
@@ -158,7 +217,15 @@ export class Motion {
     const missing = run.missing.map((part) => `Not drawn: ${part}.`);
     this.missing.replaceChildren([...(scene === null ? [nothing] : []), ...missing].join(" "));
     if (scene !== null && numbers !== undefined) {
-      this.stage ??= new Stage(this.view);
+      this.stage ??= new Stage(
+        this.view,
+        () => !this.playing && this.time === 0,
+        (grip, target, sight) => this.pull(grip, target, sight),
+        () => {
+          this.held = false;
+          this.letGo();
+        },
+      );
       const scenes = Array.from({ length: numbers.length / width }, (_, at) => numbers.subarray(at * width, (at + 1) * width));
       this.stage.show(scene, scenes, fresh);
       this.scenes = scenes;

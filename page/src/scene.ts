@@ -16,14 +16,20 @@ import {
   Matrix4,
   Mesh,
   MeshStandardMaterial,
+  Plane,
   PerspectiveCamera,
+  Raycaster,
   Scene as Space,
   SphereGeometry,
+  Vector2,
   Vector3,
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Scene } from "./answers";
+
+// What a mechanism is held by: a point of a frame in its axes, or a particle.
+export type Grip = { frame: number; at: number[] } | { particle: number };
 
 const COLOURS = [0x4f8fd9, 0xe08a4c, 0x5fae78, 0xb877b8, 0xcf6a5f, 0x9aa653, 0x45a5ab, 0x8f83cf];
 // The thinnest that a body is drawn, beside the size of the mechanism.
@@ -58,14 +64,26 @@ export class Stage {
   private followed = false;
   private readonly centre = new Vector3();
   private update: (numbers: ArrayLike<number>) => void = () => {};
+  // What can be held, with the frame of a body.
+  private frames: LineSegments[] = [];
+  private held: { part: Mesh; body: number | null; particle: number }[] = [];
 
-  constructor(private readonly holder: HTMLElement) {
+  // `grips` says whether a pointer may take hold of what it meets; then `pulled` is told where it goes, and `released`
+  // that it let go.
+  constructor(
+    private readonly holder: HTMLElement,
+    private readonly grips: () => boolean,
+    private readonly pulled: (grip: Grip, target: number[], sight: number[]) => void,
+    private readonly released: () => void,
+  ) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.holder.append(this.renderer.domElement);
     this.renderer.domElement.setAttribute("role", "img");
-    this.renderer.domElement.setAttribute("aria-label", "The mechanism; drag to turn it, scroll to come closer");
+    this.renderer.domElement.setAttribute("aria-label", "The mechanism; drag a body to place it at the start, drag beside it to look from elsewhere, scroll to come closer");
     this.camera.up.set(0, 0, 1);
+    // Before the camera's own, which would turn it.
+    this.renderer.domElement.addEventListener("pointerdown", (event) => this.take(event));
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.render());
     const sun = new DirectionalLight(0xffffff, 2.2);
@@ -126,6 +144,46 @@ export class Stage {
     this.render();
   }
 
+  // Takes hold of a body or particle; it goes where the pointer is seen.
+  private take(event: PointerEvent): void {
+    if (event.button !== 0 || !this.grips()) {
+      return;
+    }
+    const canvas = this.renderer.domElement;
+    const ray = (at: PointerEvent) => {
+      const box = canvas.getBoundingClientRect();
+      const caster = new Raycaster();
+      const [x, y] = [(at.clientX - box.left) / box.width, (at.clientY - box.top) / box.height];
+      caster.setFromCamera(new Vector2(2 * x - 1, 1 - 2 * y), this.camera);
+      return caster;
+    };
+    const [hit] = ray(event).intersectObjects(this.held.map(({ part }) => part));
+    const found = this.held.find(({ part }) => part === hit?.object);
+    if (hit === undefined || found === undefined) {
+      return;
+    }
+    const frame = this.frames[found.body ?? -1];
+    const grip: Grip =
+      found.body === null || frame === undefined
+        ? { particle: found.particle }
+        : { frame: found.body, at: hit.point.clone().applyMatrix4(frame.matrix.clone().invert()).toArray() };
+    const plane = new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), hit.point);
+    this.controls.enabled = false;
+    canvas.setPointerCapture(event.pointerId);
+    canvas.onpointermove = (move) => {
+      const { ray: line } = ray(move);
+      const target = line.intersectPlane(plane, new Vector3());
+      if (target !== null) {
+        this.pulled(grip, target.toArray(), line.direction.toArray());
+      }
+    };
+    canvas.onpointerup = canvas.onpointercancel = () => {
+      canvas.onpointermove = canvas.onpointerup = canvas.onpointercancel = null;
+      this.controls.enabled = true;
+      this.released();
+    };
+  }
+
   // Where a point of the world is in the window (pixels).
   place(point: number[]): [x: number, y: number] {
     const box = this.renderer.domElement.getBoundingClientRect();
@@ -162,6 +220,7 @@ export class Stage {
     };
     const ball = new SphereGeometry(1, 32, 20);
     const frames = scene.frames.map(() => add(triad(0.13 * size)));
+    this.frames = frames;
     const links = scene.frames.map((frame) => (frame.attached ? add(segment(0x8a8f99)) : null));
     const bodies = scene.bodies.map((_, index) =>
       add(new Mesh(ball, new MeshStandardMaterial({ color: colour(index), roughness: 0.55, transparent: true, opacity: 0.88 }))),
@@ -175,6 +234,10 @@ export class Stage {
     const closed = () => add(new Mesh(ball, new MeshStandardMaterial({ color: 0xcf6a5f, roughness: 0.4, wireframe: true })));
     const loops = scene.loops.map(() => ({ ends: [closed(), closed()], gap: add(segment(0xcf6a5f)) }));
     const centre = scene.centre === null ? null : add(new Mesh(ball, new MeshStandardMaterial({ color: 0xd9b13a })));
+    this.held = [
+      ...bodies.map((part, index) => ({ part, body: scene.bodies[index]?.frame ?? null, particle: 0 })),
+      ...particles.map((part, index) => ({ part, body: null, particle: index })),
+    ];
     const mass = scene.particles.reduce((most, particle) => Math.max(most, particle.mass), 0);
     return (numbers) => {
       const reader = new Reader(numbers);

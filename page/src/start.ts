@@ -18,7 +18,10 @@ export class Start {
   private readonly coordinates: Field[];
   private readonly velocities: Field[];
 
-  constructor(system: System, private readonly changed: () => void) {
+  constructor(
+    private readonly system: System,
+    private readonly changed: () => void,
+  ) {
     const { x, xi } = system.start;
     this.coordinates = system.coordinates.groups.map(([name, first, count], index) => {
       const kind = system.kinds[index] ?? "real";
@@ -37,8 +40,14 @@ export class Start {
     }
   }
 
+  // The start that a run is asked for from: numbers, and what was changed of them.
+  asked(): { x: number[]; xi: number[]; state: object | null } {
+    const { x, xi } = this.system.start;
+    return { x, xi, state: this.state() };
+  }
+
   // What was changed, as the command line reads states.
-  state(): { coord: Record<string, Value>; velocity: Record<string, Value> } | null {
+  private state(): { coord: Record<string, Value>; velocity: Record<string, Value> } | null {
     const values = (fields: Field[]) => {
       const moved = fields.filter((field) => {
         const before = field.kind === "plain" ? field.start : shown(field.kind, field.start);

@@ -199,6 +199,54 @@ test("points of loops are drawn where they meet, and what has no place is named"
   await close();
 });
 
+test("a body that is dragged at the start stays where it was put", async () => {
+  const { page, left, close } = await opened();
+  await answered(page);
+  // The two bars in a loop have one freedom: what is dragged comes as near as its path does.
+  for (const [text, [right, down], near] of [
+    [await gallery("double_pendulum"), [-14, 10], 1],
+    [BARS, [14, 3], 10],
+  ]) {
+    await typed(page, text);
+    await shown(page);
+    const found = () =>
+      page.evaluate(() => {
+        const { scene } = globalThis.hamelMotion.run;
+        return globalThis.hamelMotion.place(scene.bodies[scene.bodies.length - 1].centre);
+      });
+    const fields = () => page.$$eval(".start input", (list) => list.map((one) => one.value));
+    const before = await fields();
+    await page.locator(".stage").scrollIntoViewIfNeeded();
+    const [x, y] = await found();
+    // A few pixels, so that two bars in a loop can follow.
+    const to = [x + right, y + down];
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + right / 2, y + down / 2, { steps: 4 });
+    await page.mouse.move(...to, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForFunction((before) => [...document.querySelectorAll(".start input")].some((one, k) => one.value !== before[k]), before);
+    await page.waitForFunction(
+      ([x, y]) => {
+        const { scene } = globalThis.hamelMotion.run;
+        const [a, b] = globalThis.hamelMotion.place(scene.bodies[scene.bodies.length - 1].centre);
+        return Math.hypot(a - x, b - y) > 5;
+      },
+      [x, y],
+    );
+    const [a, b] = await found();
+    assert.ok(Math.hypot(a - to[0], b - to[1]) < near, `${[x, y]} was dragged to ${to}, and is at ${[a, b]}`);
+    assert.doesNotMatch(await page.getAttribute("#summary", "class"), /bad/);
+    // Loops are closed, and the energy is kept.
+    assert.ok(Number(await page.getAttribute("#summary", "data-drift")) < 1e-6);
+    await page.click("#reset");
+    await page.waitForFunction((before) => [...document.querySelectorAll(".start input")].every((one, k) => one.value === before[k]), before);
+  }
+  await picture(page, "dragged");
+  assert.deepEqual(left, []);
+  await close();
+});
+
 test("a name that is dragged sideways changes its number", async () => {
   const { page, left, close } = await opened();
   await answered(page);

@@ -258,7 +258,7 @@ impl Frame {
     }
 
     /// A point of it, in the world.
-    fn point(&self, at: Vector) -> Vector {
+    pub(crate) fn point(&self, at: Vector) -> Vector {
         let arm = self.direction(at);
         std::array::from_fn(|k| self.position[k] + arm[k])
     }

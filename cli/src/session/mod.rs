@@ -3,10 +3,12 @@
 mod function;
 mod motion;
 mod observed;
+mod pull;
 mod reports;
 
 pub use function::Function;
 pub use motion::{Happened, Motion};
+pub use pull::Grip;
 pub use reports::imported;
 
 use crate::added;
@@ -232,7 +234,15 @@ impl Session {
             params: params.to_vec(),
             ..self.start()
         };
-        File::of(name.into(), json, &self.source)?.changes(start, &self.source, &self.generated)
+        self.changed(start, json, name)
+    }
+
+    /// Another state, changed by what a JSON text says.
+    ///
+    /// # Errors
+    /// All that is wrong with it.
+    pub fn changed(&self, from: State, json: &str, name: &str) -> Result<State, Failure> {
+        File::of(name.into(), json, &self.source)?.changes(from, &self.source, &self.generated)
     }
 
     /// Names of all functions that there are, also of those that are derived when they are asked for.

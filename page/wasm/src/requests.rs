@@ -3,7 +3,9 @@
 
 use crate::described::{described, marks};
 use crate::scenes::scenes;
-use hamel_cli::{Asked, Comparison, Failure, RobotOptions, Session, State, Stepping, imported};
+use hamel_cli::{
+    Asked, Comparison, Failure, Grip, RobotOptions, Session, State, Stepping, imported,
+};
 use serde_json::{Value, json};
 use std::cell::RefCell;
 
@@ -90,6 +92,7 @@ fn asked(
         }
         "evaluate" => parsed(session.evaluate(&state(session, request)?))?,
         "simulate" => simulate(session, request, numbers)?,
+        "pull" => pull(session, request, numbers)?,
         "compare" => {
             let steps = request["steps"].as_array();
             let steps = steps.map(|list| list.iter().filter_map(Value::as_u64).collect());
@@ -118,18 +121,49 @@ fn check(session: &Session) -> Value {
     json!({ "identities": identities.collect::<Vec<Value>>(), "remarks": remarks })
 }
 
-/// The start, changed by what is asked for.
+/// The start, or the x and ξ that are given, changed by what is asked for.
 fn state(session: &Session, request: &Value) -> Result<State, String> {
-    let start = session.start();
+    let mut start = session.start();
+    for (entries, key) in [(&mut start.x, "x"), (&mut start.xi, "xi")] {
+        let given = list(request, key);
+        if given.len() == entries.len() {
+            *entries = given;
+        }
+    }
     match &request["state"] {
         Value::Null => Ok(start),
         changes => {
             let changes = changes.to_string();
-            session
-                .state(&start.params, &changes, "the start")
-                .map_err(said)
+            session.changed(start, &changes, "the start").map_err(said)
         }
     }
+}
+
+/// The start after a point of it was pulled towards a place, and how it looks.
+fn pull(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Value, String> {
+    let vector = |key: &str| {
+        <[f64; 3]>::try_from(list(request, key))
+            .map_err(|_| format!("`{key}` has to have three numbers"))
+    };
+    let index = |key: &str| {
+        request[key]
+            .as_u64()
+            .and_then(|index| usize::try_from(index).ok())
+    };
+    let grip = match (index("frame"), index("particle")) {
+        (Some(frame), _) => Grip::Frame(frame, vector("at")?),
+        (None, Some(particle)) => Grip::Particle(particle),
+        (None, None) => return Err("a pull needs a `frame` or a `particle`".into()),
+    };
+    let state = state(session, request)?;
+    let sight = vector("sight").ok();
+    let pulled = session
+        .pulled(&state, grip, (vector("target")?, sight))
+        .map_err(said)?;
+    if let Some(drawn) = scenes(session, &pulled.params, &pulled.x) {
+        *numbers = drawn.numbers;
+    }
+    Ok(json!({ "x": pulled.x, "xi": pulled.xi }))
 }
 
 fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Result<Value, String> {
@@ -226,6 +260,14 @@ fn texts(request: &Value, key: &str) -> Vec<String> {
     let list = request[key].as_array();
     let texts = list.into_iter().flatten().filter_map(Value::as_str);
     texts.map(String::from).collect()
+}
+
+fn list(request: &Value, key: &str) -> Vec<f64> {
+    let list = request[key].as_array();
+    list.into_iter()
+        .flatten()
+        .filter_map(Value::as_f64)
+        .collect()
 }
 
 fn number(request: &Value, key: &str) -> Option<f64> {
