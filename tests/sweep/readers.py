@@ -25,10 +25,13 @@ def run(*arguments):
 
 run("sweep", MODEL, "--vary", VARY, "--members", str(MEMBERS), "--keep", KEEP, "--out", RUNS, "--seed", "7", *STEPS)
 
-# The lines of the README.
-by_polars = polars.read_parquet(f"{RUNS}/*.parquet")
+# The lines of the chapter on ensembles.
+with open("docs/book/src/ensembles.md") as page:
+    [shown] = [rest.split("```")[0].replace("runs", RUNS) for rest in page.read().split("```python\n")[1:]]
+names = {"polars": polars, "duckdb": duckdb, "pandas": pandas}
+by_polars, mean, by_pandas = (eval(line, names) for line in shown.splitlines())
 by_duckdb = duckdb.sql(f"SELECT * FROM '{RUNS}/*.parquet'")
-by_pandas = pandas.read_parquet(RUNS)
+assert math.isclose(mean.fetchall()[0][0], by_polars["max(norm(w))"].mean(), rel_tol=1e-12)
 
 matrix = [f"end R[{i},{j}]" for i in (1, 2, 3) for j in (1, 2, 3)]
 vector = lambda name: [f"{name}[{i}]" for i in (1, 2, 3)]

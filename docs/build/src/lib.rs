@@ -20,3 +20,16 @@ pub mod lists;
 pub mod page;
 pub mod rare;
 pub mod shell;
+
+/// The pages that have programs in Rust: each is compiled and run, but for build scripts, which are compiled.
+#[cfg(doctest)]
+mod programs {
+    #[doc = include_str!("../../../README.md")]
+    struct Readme;
+    #[doc = include_str!("../../book/src/ensembles.md")]
+    struct Ensembles;
+    #[doc = include_str!("../../book/src/front-ends.md")]
+    struct FrontEnds;
+    #[doc = include_str!("../../book/src/robots.md")]
+    struct Robots;
+}

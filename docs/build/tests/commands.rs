@@ -67,6 +67,40 @@ fn commands_run_as_they_stand() {
     assert!(commands > 25, "{commands}");
 }
 
+/// Who runs or compiles the blocks of each kind: nothing that a page shows is only shown.
+#[test]
+fn nothing_is_only_shown() {
+    let programs = fs::read_to_string(root().join("docs/build/src/lib.rs")).expect("the library");
+    let python = fs::read_to_string(root().join("python/tests/test_pages.py")).expect("tests");
+    let mut wrong = Vec::new();
+    for (page, text) in pages() {
+        let root = root();
+        let name = page.strip_prefix(&root).expect("of the repository");
+        let name = name.display().to_string();
+        let fences = text.lines().filter_map(|line| line.strip_prefix("```"));
+        for kind in fences.step_by(2) {
+            let held = match kind {
+                // `commands_run_as_they_stand`, and in tests/complete.rs.
+                "sh" | CRATES | "eom" | "ebnf" => true,
+                "toml" => name == "README.md" && text.contains("path = \"../hamel/runtime\""),
+                // Tests of this crate's documentation.
+                "rust" | "rust,no_run" => {
+                    programs.contains(name.strip_prefix("docs/").unwrap_or(&name))
+                }
+                // tests/c99/tests/attack.rs
+                "c" => name == "docs/book/src/front-ends.md",
+                // python/tests/test_pages.py, tests/sweep/readers.py
+                "python" => python.contains(&name) || name == "docs/book/src/ensembles.md",
+                _ => false,
+            };
+            if !held {
+                wrong.push(format!("{name}: {kind:?}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn links_lead_somewhere() {
     let mut links = 0;

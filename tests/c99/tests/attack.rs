@@ -169,6 +169,36 @@ fn random_descriptions_give_what_the_interpreter_gives() {
     attack("random", cases);
 }
 
+/// The lines of C that the book shows compile between the declarations that they need, and give a status.
+#[test]
+fn the_lines_of_the_book_are_c() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let page = std::fs::read_to_string(root.join("docs/book/src/front-ends.md")).expect("a page");
+    let (_, rest) = page.split_once("```c\n").expect("a block");
+    let (shown, rest) = rest.split_once("```").expect("its end");
+    assert!(!rest.contains("```c\n"), "a second block");
+    let folder = folder("book");
+    let built = Builder::new()
+        .file(root.join("examples/c/cart_pole.eom"))
+        .out_dir(&folder)
+        .c_files(&folder, Precision::Double)
+        .generate();
+    built.unwrap_or_else(|error| panic!("{error}"));
+    let program = format!(
+        "#include \"cart_pole.h\"\nint main(void)\n{{\ncart_pole_parameters parameters;\ncart_pole_system system;\n\
+         cart_pole_status status;\ndouble x[CART_POLE_COORDINATES] = {{0}}, xi[CART_POLE_VELOCITIES] = {{0}};\n\
+         double u[CART_POLE_INPUTS] = {{1}}, xi_dot[CART_POLE_VELOCITIES];\n{shown}\
+         return status || xi_dot[0] <= 0;\n}}\n"
+    );
+    std::fs::write(folder.join("shown.c"), program).expect("written");
+    for line in [
+        &*format!("gcc -std=c99 -O2 {STRICT} shown.c cart_pole.c -lm -o shown"),
+        &folder.join("shown").display().to_string(),
+    ] {
+        run(&folder, line).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
 /// By the door of build scripts, without a warning; the program ends with 0 where the pole stands.
 #[test]
 fn the_example_holds_its_pole_upright() {

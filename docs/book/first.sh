@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# The first chapter as a reader follows it: its blocks as they stand, in a clone that has nothing else, with the command line
+# installed into a folder of its own. It has ten minutes. Needs cargo and git; what is committed counts.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+scratch="$(mktemp -d)"
+trap 'rm -rf "$scratch"' EXIT
+git clone --quiet . "$scratch/hamel"
+export CARGO_INSTALL_ROOT="$scratch/installed" PATH="$scratch/installed/bin:$PATH"
+unset CARGO_TARGET_DIR
+# Blocks for a shell are for the clone, and those that make crates for the folder that has it.
+awk '/^```sh$/ { print "cd \"$clone\""; inside = 1; next }
+     /^```sh,crates$/ { print "cd \"$clone/..\""; inside = 1; next }
+     /^```/ { inside = 0 }
+     inside' docs/book/src/ten-minutes.md > "$scratch/chapter.sh"
+begin=$SECONDS
+clone="$scratch/hamel" timeout 600 bash -euo pipefail "$scratch/chapter.sh"
+for made in hamel/swing.svg hamel/pendulum.csv hamel/held.svg hamel/flip.svg swing/swing.svg; do
+    [ -s "$scratch/$made" ] || { echo "the chapter has not made $made" >&2; exit 1; }
+done
+echo "the first chapter takes $((SECONDS - begin)) s"
