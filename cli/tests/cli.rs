@@ -410,7 +410,7 @@ fn wrong_usage_has_status_two() {
         (&["simulate", &top, "--until", "NaN"], "greater than zero"),
         (
             &["simulate", &top, "--until", "1", "--step", "1e-300"],
-            "cannot be covered",
+            "a time of 1.0 cannot be covered by steps of 1e-300",
         ),
         (
             &["simulate", &top, "--until", "1", "--lambda", "3"],

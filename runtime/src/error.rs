@@ -157,7 +157,8 @@ impl fmt::Display for StepError {
                 found,
             } => write!(f, "{part}: {expected} entries expected, {found} found"),
             Self::InvalidStep { step, span } => {
-                write!(f, "a time of {span} cannot be covered by steps of {step}")
+                // As `Debug` writes numbers: never with a long row of zeros.
+                write!(f, "a time of {span:?} cannot be covered by steps of {step:?}")
             }
             Self::NotConverged { time, iterations } => write!(
                 f,
