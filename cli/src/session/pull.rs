@@ -1,9 +1,9 @@
-//! A mechanism that is pulled by one of its points, as by hand: where motions along its own velocities take it.
+//! A mechanism that is pulled by one of its points, as by hand: it moves along its own velocities, as far as they let it.
 //!
-//! Who pulls sees a picture: of a place behind or before another one nothing is seen, and only the distance from the line of sight
+//! A picture does not show depth: whoever drags in one means the line of sight through a place, and only the distance from that line
 //! counts. With p(x) the point and J its slopes along δx = A h, each round moves by h = Jᵀ (J Jᵀ + λ² I)⁻¹ (target − p), where
 //! λ keeps h small near singular positions. Directions that constraints do not allow are projected out, so that loops
-//! stay closed and wheels roll. Slopes are differences: what is dragged by hand needs no more digits.
+//! stay closed and wheels roll. Slopes are differences, whose digits suffice for what is dragged by hand.
 
 use super::Session;
 use crate::drawing::{Drawn, Scene, Vector};
@@ -94,7 +94,7 @@ struct Pulled<'a> {
     instance: &'a Instance,
     drawn: Drawn<'a>,
     grip: Grip,
-    /// What is left of a difference for who pulls.
+    /// The projection along the line of sight.
     seen: Matrix3<f64>,
     x: Numbers,
 }
