@@ -15,7 +15,8 @@ awk '/^```sh$/ { print "cd \"$clone\""; inside = 1; next }
      /^```/ { inside = 0 }
      inside' docs/book/src/ten-minutes.md > "$scratch/chapter.sh"
 begin=$SECONDS
-clone="$scratch/hamel" timeout 600 bash -euo pipefail "$scratch/chapter.sh"
+clone="$scratch/hamel" timeout 600 bash -euo pipefail "$scratch/chapter.sh" ||
+    { echo "the first chapter fails, or takes more than ten minutes: $((SECONDS - begin)) s" >&2; exit 1; }
 for made in hamel/swing.svg hamel/pendulum.csv hamel/held.svg hamel/flip.svg swing/swing.svg; do
     [ -s "$scratch/$made" ] || { echo "the chapter has not made $made" >&2; exit 1; }
 done

@@ -158,7 +158,10 @@ impl fmt::Display for StepError {
             } => write!(f, "{part}: {expected} entries expected, {found} found"),
             Self::InvalidStep { step, span } => {
                 // As `Debug` writes numbers: never with a long row of zeros.
-                write!(f, "a time of {span:?} cannot be covered by steps of {step:?}")
+                write!(
+                    f,
+                    "a time of {span:?} cannot be covered by steps of {step:?}"
+                )
             }
             Self::NotConverged { time, iterations } => write!(
                 f,
