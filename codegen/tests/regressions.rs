@@ -331,3 +331,29 @@ fn trees_with_states_have_slopes() {
     // The last row, of ż, by (h, δξ, δz).
     assert_eq!(rows[42..], [0.0, 0.0, 0.0, 0.0, 0.0, 12.0, -2.0]);
 }
+
+/// Runs are led back to every loop that is not straight, also where the factor of a velocity in it is constant: as long as the
+/// velocity of the slider followed from the others, its place drifted away from the rod. Gears are kept by every method.
+#[test]
+fn runs_are_led_back_to_sliders() {
+    let text = |kept: &str| {
+        format!(
+            "system A {{ coord q, p, x; velocity w, u, v; rate q = w, p = u, x = v;
+                kinetic w^2 / 2 + u^2 / 2 + v^2;
+                loop {kept}; start q = 0.5; }}"
+        )
+    };
+    let slider = generated(&text("cos(q) + 3 * cos(p) = x, sin(q) + 3 * sin(p) = 0"));
+    assert_eq!(slider.active.n(), 3);
+    // φ = (cos q + 3 cos p − x, sin q + 3 sin p), beside the loop.
+    let [x, p] = [0.0_f64, 0.25];
+    let off = value(&slider, "constraint", [&[0.0, p, x], &[], &[], &[]]);
+    assert_eq!(off, [1.0 + 3.0 * p.cos() - x, 3.0 * p.sin()]);
+    let step = value(&slider, "project_position", [&[0.0, p, x], &[], &[], &[]]);
+    assert!(
+        step[2] > 0.0,
+        "the slider goes where the rod ends: {step:?}"
+    );
+    let gears = generated(&text("q = 2 * p + x"));
+    assert_eq!(gears.active.n(), 2);
+}

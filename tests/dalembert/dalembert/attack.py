@@ -1,4 +1,5 @@
-"""python -m dalembert.attack HAMEL FOLDER [--seeds FIRST COUNT] [--largest N] [--hard] [--jobs N]: random mechanisms by their seeds.
+"""python -m dalembert.attack HAMEL FOLDER [--what KIND …] [--seeds FIRST COUNT] [--largest N] [--hard] [--jobs N]: random
+mechanisms by their kinds and seeds.
 
 Ends with status 1 where hamel says something else than the definitions, or refuses without a reason that is known here, and
 where a text with a wrong sign is not found."""
@@ -13,7 +14,9 @@ import time
 from . import wrong
 from .compare import Comparison, Errors
 from .doors import Doors, Refused
+from .loops import Loops, Open
 from .trees import Forest
+from .written import Written
 
 # What hamel cannot do and says so, with what is left out of `generate` then.
 LEFT_OUT = {"has no regressor": ", regressor", "`centroidal_map` is not known": ", centroidal_map"}
@@ -43,20 +46,49 @@ def tree(seed, largest, hard):
     while True:
         made = Forest(r, 1 + r.randrange(5), hard=hard)
         if 2 <= made.m.n <= largest:
+            made.state = made.configuration()
             return made
+
+
+def loop(seed, largest, hard):
+    """A random mechanism with closed loops, and a state in which they are closed."""
+    r = random.Random(seed)
+    while True:
+        try:
+            made = Loops(r, 2 + r.randrange(3), hard=hard)
+            if 2 <= made.m.n <= largest:
+                made.state = made.configuration()
+                if any(v != 0 for v in made.state.xi):
+                    return made
+        except (Open, ZeroDivisionError):
+            pass
+
+
+def written(seed, largest, hard):
+    """A mechanism with rates and constraints of its own."""
+    r = random.Random(seed)
+    while True:
+        made = Written(r, 1 + r.randrange(4), hard=hard)
+        if made.m.n <= largest:
+            made.state = made.configuration()
+            return made
+
+
+# What is compared, by name.
+WHAT = {"trees": tree, "loops": loop, "written": written}
 
 
 def one(job):
     """Compares the mechanism of a seed; what was found, and whether there was anything to compare."""
-    asked, seed = job
-    begin, errors, where = time.time(), Errors(), f"tree {seed}"
-    made = tree(seed, asked.largest, asked.hard)
-    doors = Doors(asked.hamel, os.path.join(asked.folder, f"tree{seed}"))
+    asked, what, seed = job
+    begin, errors, where = time.time(), Errors(), f"{what} {seed}"
+    made = WHAT[what](seed, asked.largest, asked.hard)
+    doors = Doors(asked.hamel, os.path.join(asked.folder, f"{what}{seed}"))
     compared = False
     try:
         compared = settled(doors, made.m.text())
         if compared:
-            state, comparison = made.configuration(), Comparison(made.m, doors, errors, where)
+            state, comparison = made.state, Comparison(made.m, doors, errors, where)
             comparison.run(state)
             if seed % 4 == 0:
                 comparison.run(state, single=True)
@@ -70,6 +102,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("hamel")
     parser.add_argument("folder")
+    parser.add_argument("--what", nargs="+", choices=WHAT, default=list(WHAT))
     parser.add_argument("--seeds", nargs=2, type=int, default=(0, 12))
     parser.add_argument("--largest", type=int, default=6)
     parser.add_argument("--hard", action="store_true")
@@ -80,14 +113,15 @@ def main():
         print("not found to be wrong:", text)
     errors, compared = Errors(), 0
     first, count = asked.seeds
+    jobs = [(asked, what, seed) for seed in range(first, first + count) for what in asked.what]
     with multiprocessing.Pool(asked.jobs) as pool:
-        for found, done in pool.imap(one, [(asked, seed) for seed in range(first, first + count)], chunksize=1):
+        for found, done in pool.imap(one, jobs, chunksize=1):
             errors.join(found)
             compared += done
     for name, (error, where) in sorted(errors.worst.items(), key=lambda e: -e[1][0]):
         print(f"{name:34} {float(error):9.2g}   {where}")
-    print(f"{compared} mechanisms of {count} compared, {len(errors.found)} differences")
-    return 1 if errors.found or unseen or 2 * compared < count else 0
+    print(f"{compared} mechanisms of {len(jobs)} compared, {len(errors.found)} differences")
+    return 1 if errors.found or unseen or 2 * compared < len(jobs) else 0
 
 
 if __name__ == "__main__":

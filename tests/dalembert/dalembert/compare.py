@@ -1,8 +1,9 @@
 """One mechanism at one state: every function of generated C, and what `eval` and `linearize` print, beside the definitions."""
 
-from . import kinematics
-from .definitions import Definitions
-from .vectors import mpf
+from . import kinematics, left, tied
+from .definitions import Definitions, independent
+from .doors import Refused
+from .vectors import mpf, on, times, transposed
 
 
 def flat(value):
@@ -39,7 +40,7 @@ class Errors:
             self.found.append((where, name, f"error {float(error):.3g} of {float(size):.3g}"))
 
 
-def state_of(m, s):
+def state_of(m, s, active):
     """A state as `--at` takes it."""
     coordinates = {}
     for name, kind, place in m.coordinates:
@@ -52,10 +53,12 @@ def state_of(m, s):
     def parts(of, values):
         return {name: float(values[place]) if size == 1 else [float(e) for e in values[place : place + size]] for name, size, place in of}
 
+    velocities = [v for v in m.velocities if all(v[2] + k in active for k in range(v[1]))]
+
     return {
         "param": parts(m.parameters, s.p),
         "coord": coordinates,
-        "velocity": parts(m.velocities, s.xi),
+        "velocity": parts(velocities, s.xi),
         "state": parts(m.states, s.z),
         "input": parts(m.inputs, s.u),
     }
@@ -67,6 +70,8 @@ class Comparison:
     def __init__(self, m, doors, errors, where, tolerance=1e-9, slopes=True):
         self.slopes = slopes
         self.m, self.d, self.doors, self.errors, self.where, self.tolerance = m, Definitions(m), doors, errors, where, tolerance
+        # Slopes that mean something along the ties alone, where ties follow from one another.
+        self.along = set()
 
     def note(self, name, mine, theirs, tolerance=None):
         self.errors.note(name, mine, theirs, tolerance or self.tolerance, self.where)
@@ -75,15 +80,15 @@ class Comparison:
         """Name, and a function that gives it."""
         d, m = self.d, self.m
         yield "rate", lambda: m.rate(s)
-        yield "mass_matrix", lambda: [row[d.first :] for row in d.mass_matrix(s)[d.first :]]
+        yield "mass_matrix", lambda: d.mass_active(s, [row[d.first :] for row in d.mass_matrix(s)[d.first :]])
         yield "potential_energy", lambda: [m.potential_energy(s)]
         yield "kinetic_energy", lambda: [kinematics.kinetic_energy(d, s)]
         yield "energy", lambda: [m.potential_energy(s) + kinematics.kinetic_energy(d, s)]
-        yield "momentum", lambda: kinematics.momenta(d, s)
-        yield "potential_force", lambda: d.potential_force(s)
-        yield "bias", lambda: d.inertia_force(s, [mpf(0)] * m.n)
-        yield "generalized_force", lambda: d.generalized_force(s)
-        yield "inverse_dynamics", lambda: d.inverse_dynamics(s, list(s.a))
+        yield "momentum", lambda: d.on_active(kinematics.momenta(d, s), s)
+        yield "potential_force", lambda: d.on_active(d.potential_force(s), s)
+        yield "bias", lambda: d.on_active(d.inertia_force(s, d.wide(s, [mpf(0)] * len(d.active))), s)
+        yield "generalized_force", lambda: d.on_active(d.generalized_force(s), s)
+        yield "inverse_dynamics", lambda: self.needed(s)
         yield "accel", lambda: d.accel(s)
         for output in m.outputs:
             yield output.name, (lambda o: lambda: o.at(s))(output)
@@ -105,38 +110,103 @@ class Comparison:
         if not self.slopes:
             return
         yield "linearize", lambda: d.linearize(s)
-        yield "inverse_dynamics_slopes", lambda: [row[: 2 * m.n] for row in d.slopes(lambda q: d.inverse_dynamics(q, list(s.a)), s)]
+        yield "inverse_dynamics_slopes", lambda: [row[: m.n + len(d.active)] for row in d.slopes(self.needed, s)]
         yield "parameter_slopes", lambda: kinematics.parameter_slopes(d, s)
         for output in m.outputs:
             yield f"{output.name}_slopes", (lambda o: lambda: kinematics.output_slopes(d, s, o))(output)
 
+    def needed(self, s):
+        """The force of the given ξ̇ of active velocities."""
+        d = self.d
+        return d.on_active(d.inverse_dynamics(s, d.wide(s, [self.given[i] for i in d.active])), s)
+
+    def start(self, c, s):
+        """Which velocities follow from others, and the state with them."""
+        m = self.m
+        said = self.doors.eval()
+        names = tied.names(m)
+        active = [names.index(name) for name in said["velocities"]]
+        if [name for name in said["frame"] if m.time is None or name != f"{m.coordinates[0][0]}_dot"] != names:
+            self.errors.found.append((self.where, "frame", f"{said['frame']} in place of {names}"))
+
+        def rate(xi):
+            return [mpf(e) for e in c.call("rate", m.nu, x=[float(e) for e in s.x], xi=[float(e) for e in [*xi, *s.z]])]
+
+        d = left.found(m, active, rate, s)
+        if d is None:
+            raise Refused(f"the velocities {said['velocities']} are not what ties leave")
+        self.d, self.given = d, s.a
+        s = d.held(s)
+        return s.but(a=d.wide(s, [s.a[i] for i in d.active]))
+
     def run(self, s, single=False):
         """All functions of the generated C, and what is printed."""
-        m, d = self.m, self.d
-        kind = "f32 " if single else ""
+        m, kind = self.m, "f32 " if single else ""
         c = self.doors.compiled(single)
         if m.default or "set_parameters" in c:
             c.set([float(p) for p in s.p])
+        s = self.start(c, s)
+        d = self.d
+        self.rows = len(m.closures) + len(m.kept)
+        self.unique = not self.rows or len(independent(d.conditions(s))) == self.rows
+        if not self.unique:
+            self.along = {"linearize"} | {f"{o.name}_slopes" for o in m.outputs if o.accelerations}
         given = {
             "x": [float(e) for e in s.x],
-            "xi": [float(e) for e in [*s.xi, *s.z]],
+            "xi": [float(e) for e in [*(s.xi[i] for i in d.active), *s.z]],
             "u": [float(e) for e in s.u],
-            "xi_dot": [float(e) for e in [*s.a, *([0] * m.nz)]],
+            "xi_dot": [float(e) for e in [*(self.given[i] for i in d.active), *([0] * m.nz)]],
         }
         mine = {}
         for name, value in self.quantities(s):
-            if name in c:
-                mine[name] = value()
+            if name not in c or (name == "parameter_slopes" and not self.unique):
+                continue
+            mine[name] = value()
+            if name in self.along:
+                basis = tied.allowed(d, s)
+                theirs = c.call(name, len(flat(mine[name])), **given)
+                self.note(kind + name, self.on_ties(mine[name], basis), self.on_ties(square(theirs, len(mine[name])), basis), 1e-3 if single else None)
+            else:
                 self.note(kind + name, mine[name], c.call(name, len(flat(mine[name])), **given), 1e-3 if single else None)
-        if "momentum_rate" in c and "accel" in mine:
+        if "momentum_rate" in c and "accel" in mine and not d.solved:
             rate = d.first_order_wide(lambda q: kinematics.momenta(d, q), s, mine["accel"][: m.n])
             self.note(kind + "momentum_rate", rate, c.call("momentum_rate", m.n, **given), 1e-3 if single else None)
         if "velocity_from_momentum" in c:
             p = mine["momentum"]
-            self.note(kind + "velocity_from_momentum", list(s.xi), c.call("velocity_from_momentum", m.n, momentum=[float(e) for e in p], **given), 1e-3 if single else 1e-7)
+            self.note(kind + "velocity_from_momentum", [s.xi[i] for i in d.active], c.call("velocity_from_momentum", len(d.active), momentum=[float(e) for e in p], **given), 1e-3 if single else 1e-7)
         self.regressor(c, s, given, kind)
+        if m.closures or m.kept:
+            self.ties(c, s, given, kind, 1e-3 if single else None)
         if not single and self.slopes:
             self.printed(s, mine)
+
+    def ties(self, c, s, given, kind, tolerance):
+        """What keeps ties, and what leads back onto them."""
+        d, m = self.d, self.m
+        if "constraint_force" in c:
+            force = c.call("constraint_force", self.rows, **given)
+            self.note(kind + "constraint_force", d.motion(s)[1], on(transposed(d.conditions(s)), [mpf(f) for f in force]), tolerance)
+        elif self.unique:
+            self.errors.found.append((self.where, kind + "constraint_force", "is missing"))
+        # From beside the ties.
+        beside = tied.beside(d, s)
+        given = {**given, "x": [float(e) for e in beside.x], "xi": [float(e) for e in [*(beside.xi[i] for i in d.active), *s.z]]}
+        closures = [e for k, e in enumerate(m.closures) if k not in d.solved]
+        if "constraint" in c and closures and self.unique:
+            # Behind those that kinds of coordinates bring along.
+            own = len(self.doors.eval(self.state(s))["constraint"]) - len(closures)
+            said = c.call("constraint", own + len(closures), **given)[own:]
+            self.note(kind + "constraint", [e.at(beside) for e in closures], said, tolerance)
+        if not self.unique:
+            return
+        if "project_position" in c:
+            step = tied.project_position(d, beside)
+            # States of first order stand behind the velocities, and do not move.
+            step = [step[i] for i in d.active] + [mpf(0)] * m.nz
+            self.note(kind + "project_position", step, c.call("project_position", len(step), **given), tolerance)
+        if "project_velocity" in c:
+            projected = [tied.project_velocity(d, beside)[i] for i in d.active] + list(s.z)
+            self.note(kind + "project_velocity", projected, c.call("project_velocity", len(projected), **given), tolerance)
 
     def regressor(self, c, s, given, kind):
         if "regressor" not in c:
@@ -154,9 +224,12 @@ class Comparison:
         # With the force of dampers that joints have: they are parameters, too.
         self.note(kind + "regressor", self.m.with_dampers(d, s), force, 1e-3 if single_of(kind) else None)
 
+    def state(self, s):
+        return state_of(self.m, s, self.d.active)
+
     def printed(self, s, mine):
         d, m = self.d, self.m
-        said = self.doors.eval(state_of(m, s))
+        said = self.doors.eval(self.state(s))
         self.note("eval accel", mine["accel"], said["accel"])
         self.note("eval A", [list(row) for row in zip(*d.columns(s))], said["A"])
         self.note("eval gamma", d.gamma(s), said["gamma"])
@@ -165,11 +238,37 @@ class Comparison:
         # The row of the time is no equation of motion, and is not compared.
         first = d.first
         self.note("eval M", [row[first:] for row in matrix[first:]], [row[first:] for row in said["M"][first:]])
-        lin = self.doors.linearize(state_of(m, s))
-        rows = len(mine["linearize"]) if "linearize" in mine else 0
-        if rows:
-            both = [a + b for a, b in zip(lin["A"], lin["B"])] if m.m else lin["A"]
-            self.note("printed linearize", mine["linearize"], both)
+        if not mine.get("linearize"):
+            return
+        full = mine["linearize"]
+        said = whole(self.doors.linearize(self.state(s)))
+        if "linearize" in self.along:
+            basis = tied.allowed(d, s)
+            self.note("printed linearize", self.on_ties(full, basis), self.on_ties(said, basis))
+        else:
+            self.note("printed linearize", full, said)
+        if m.closures or m.kept:
+            lin = self.doors.linearize(self.state(s), full=False)
+            least = tied.minimal(d, s, full, lin["states"])
+            if least is None:
+                self.errors.found.append((self.where, "minimal linearize", f"{lin['states']} are not the freedoms"))
+            else:
+                self.note("minimal linearize", least, whole(lin), self.tolerance * 1e2)
+
+    def on_ties(self, rows, basis):
+        """What slopes say of what ties allow, and of the inputs."""
+        size = len(basis)
+        return [times([row[:size]], basis)[0] + list(row[size:]) for row in rows]
+
+
+def whole(lin):
+    """[A B] as they are printed."""
+    return [a + b for a, b in zip(lin["A"], lin["B"])]
+
+
+def square(numbers, rows):
+    size = len(numbers) // rows
+    return [[mpf(e) for e in numbers[k * size : (k + 1) * size]] for k in range(rows)]
 
 
 def single_of(kind):

@@ -22,6 +22,24 @@ class Definitions:
         self.of = mechanism
         self.time = mechanism.time is not None
         self.first = 1 if self.time else 0
+        # Places of the velocities from which the others follow, and the ties by which they do; here none do.
+        self.active, self.solved = list(range(mechanism.n)), []
+
+    def held(self, s):
+        """The same with the velocities that follow from others."""
+        return s
+
+    def wide(self, s, given):
+        """ξ̇ of all velocities, of those of the active ones."""
+        return list(given)
+
+    def on_active(self, force, s):
+        """The force on active velocities."""
+        return force
+
+    def mass_active(self, s, m):
+        """The inertia of active velocities."""
+        return m
 
     # The columns of A, and what moves along them.
 
@@ -267,6 +285,14 @@ class Definitions:
         still = self.kept(s.but(xi=[NIL] * self.of.n))
         return transposed([sub(self.kept(s.but(xi=unit(self.of.n, i))), still) for i in range(self.of.n)])
 
+    def decay(self, s):
+        """What is added to φ̈ so that (d/dt + λ)² φ = 0."""
+        speeds, found = self.kept(s) if any(self.of.stabilized) else [], []
+        for k, decay in enumerate(self.of.stabilized):
+            rate = decay.at(s) if decay else NIL
+            found.append(2 * rate * speeds[k] + rate**2 * self.of.closures[k].at(s) if decay else NIL)
+        return found + [NIL] * len(self.of.kept)
+
     def motion(self, s):
         """ξ̇, multipliers, and whether they are unique."""
         n = self.of.n
@@ -276,7 +302,7 @@ class Definitions:
         if not self.of.closures and not self.of.kept:
             return solve(m, force), []
         b = self.conditions(s)
-        b_dot = self.first_order_wide(self.kept, s, zero)
+        b_dot = add(self.first_order_wide(self.kept, s, zero), self.decay(s))
         rows = independent(b)
         b, b_dot = [b[i] for i in rows], [b_dot[i] for i in rows]
         big = [m[i] + [-b[k][i] for k in range(len(b))] for i in range(n)]
@@ -289,7 +315,7 @@ class Definitions:
         if "accel" not in s.kept:
             a = self.motion(s)[0]
             full = s.but(a=a)
-            s.kept["accel"] = a + [rate.at(full) for rate in self.of.state_rates]
+            s.kept["accel"] = [a[i] for i in self.active] + [rate.at(full) for rate in self.of.state_rates]
         return s.kept["accel"]
 
     # Slopes.
@@ -302,20 +328,26 @@ class Definitions:
         return s.kept[key]
 
     def beside(self, s, k, step):
-        n, nz = self.of.n, self.of.nz
+        n = self.of.n
         if k < n:
-            return self.moved(s, self.columns(s)[self.first + k], step)
+            return self.held(self.moved(s, self.columns(s)[self.first + k], step))
         k -= n
-        for name, size in (("xi", n), ("z", nz), ("u", self.of.m)):
+        if k < len(self.active):
+            return self.held(s.but(xi=add(s.xi, scale(step, unit(n, self.active[k])))))
+        k -= len(self.active)
+        for name, size in (("z", self.of.nz), ("u", self.of.m)):
             if k < size:
                 return s.but(**{name: add(getattr(s, name), scale(step, unit(size, k)))})
             k -= size
         raise IndexError
 
+    def count(self):
+        """How many h, δξ, δz and δu there are."""
+        return self.of.n + len(self.active) + self.of.nz + self.of.m
+
     def slopes(self, f, s):
         """Rows of a list of numbers, columns along h, δξ, δz, δu."""
-        count = 2 * self.of.n + self.of.nz + self.of.m
-        columns = []
+        count, columns = self.count(), []
         for k in range(count):
             ahead, behind = f(self.displaced(s, k, WIDE)), f(self.displaced(s, k, -WIDE))
             columns.append(scale(1 / (2 * WIDE), sub(ahead, behind)))
@@ -323,15 +355,15 @@ class Definitions:
 
     def displacement_rates(self, s):
         """ḣ along h, δξ, δz, δu: from d/dt (A h) = ∂(A ξ) A h + A δξ."""
-        n, count = self.of.n, 2 * self.of.n + self.of.nz + self.of.m
+        n, count = self.of.n, self.count()
         a = self.columns(s)[self.first :]
         rows = transposed(a)
         turned = self.along(lambda q: self.columns(q)[self.first :], s, self.of.rate(s))
         columns = []
-        for j in range(n):
-            columns.append(least_squares(rows, sub(self.along(self.of.rate, s, a[j]), turned[j])))
-        columns += [unit(n, j) for j in range(n)]
-        columns += [[NIL] * n] * (count - 2 * n)
+        for k in range(count):
+            ahead, behind = self.displaced(s, k, WIDE), self.displaced(s, k, -WIDE)
+            change = scale(1 / (2 * WIDE), sub(self.of.rate(ahead), self.of.rate(behind)))
+            columns.append(least_squares(rows, sub(change, turned[k]) if k < n else change))
         return transposed(columns)
 
     def linearize(self, s):
@@ -349,8 +381,8 @@ def difference(a, b, over):
     return combine(lambda p, q: (p - q) / over, a, b)
 
 
-def independent(rows):
-    """Which rows do not depend on those before, by elimination."""
+def independent(rows, least=mpf(10) ** -12):
+    """Which rows do not depend on those before, by elimination: what is left of them is not so small a part."""
     found, reduced = [], []
     for index, row in enumerate(rows):
         size = max([abs(e) for e in row], default=NIL)
@@ -358,7 +390,7 @@ def independent(rows):
         for pivot, kept in reduced:
             rest = sub(rest, scale(rest[pivot], kept))
         pivot = max(range(len(rest)), key=lambda k: abs(rest[k]))
-        if size > 0 and abs(rest[pivot]) > size * mpf(10) ** -12:
+        if size > 0 and abs(rest[pivot]) > size * least:
             reduced.append((pivot, scale(1 / rest[pivot], rest)))
             found.append(index)
     return found

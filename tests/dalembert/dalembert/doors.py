@@ -29,8 +29,9 @@ class Doors:
             raise Refused(f"{' '.join(arguments)}: status {done.returncode}\n{done.stderr}")
         return done.stdout
 
-    def eval(self, state):
-        return json.loads(self.run("eval", self.file, "--tables", "--at", "-", text=json.dumps(state)))
+    def eval(self, state=None):
+        at = ["--at", "-"] if state else []
+        return json.loads(self.run("eval", self.file, "--tables", *at, text=json.dumps(state)))
 
     def linearize(self, state, full=True):
         more = ["--full"] if full else []

@@ -17,10 +17,10 @@ def frame(d: Definitions, s, name, own):
     rate = of.rate(s)
     dr, dp = d.along(lambda q: of.pose(q, name), s, rate)
     w = vee(times(dr, transposed(r)))
-    zero = [NIL] * of.n
+    zero = d.wide(s, [NIL] * len(d.active))
     ddr, ddp = d.second(lambda q: of.pose(q, name), s, zero)
     w_dot = vee(times(ddr, transposed(r)))
-    jacobian = transposed([spoken(v, w_) for v, w_ in d.twists(s, name, [NIL] * 3)])
+    jacobian = [d.on_active(row, s) for row in transposed([spoken(v, w_) for v, w_ in d.twists(s, name, [NIL] * 3)])]
     bias = spoken(sub(ddp, cross(w, dp)) if own else ddp, w_dot)
     return {"pose": pose, "twist": spoken(dp, w), "jacobian": jacobian, "bias_acceleration": bias}
 
@@ -61,11 +61,11 @@ def centroidal_map(d, s):
     n = d.of.n
     still = momentum(d, s.but(xi=[NIL] * n))
     columns = [sub(momentum(d, s.but(xi=[1 if k == i else NIL for k in range(n)])), still) for i in range(n)]
-    return transposed(columns)
+    return [d.on_active(row, s) for row in transposed(columns)]
 
 
 def centroidal_bias(d, s):
-    return d.first_order_wide(lambda q: momentum(d, q), s, [NIL] * d.of.n)
+    return d.first_order_wide(lambda q: momentum(d, q), s, d.wide(s, [NIL] * len(d.active)))
 
 
 def output_slopes(d, s, output):
@@ -73,7 +73,7 @@ def output_slopes(d, s, output):
 
     def value(q):
         if output.accelerations:
-            q = q.but(a=d.accel(q)[: d.of.n])
+            q = q.but(a=d.motion(q)[0])
         return output.at(q)
 
     return d.slopes(value, s)
@@ -86,7 +86,7 @@ def parameter_slopes(d, s):
         for sign in (1, -1):
             p = list(s.p)
             p[k] += sign * STEP
-            values.append(d.accel(s.but(p=p)))
+            values.append(d.accel(d.held(s.but(p=p))))
         columns.append(difference(values[0], values[1], 2 * STEP))
     return transposed(columns)
 

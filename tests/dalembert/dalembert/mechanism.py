@@ -33,7 +33,9 @@ class Mechanism:
         self.generalized = []  # place of the velocity, expression
         self.dampers = []  # place of the velocity, its force
         self.dissipation = []  # expressions
+        self.onto = []  # place in x, size, what leads these numbers back to the constraints that are written of them
         self.closures = []  # scalars of the configuration that are zero
+        self.stabilized = []  # of each closure, how fast it decays, or None
         self.kept = []  # scalars linear in the velocities that are zero
         self.outputs = []  # name, expression or vector
         self.jacobians = []  # frame, own

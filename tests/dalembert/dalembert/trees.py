@@ -4,6 +4,7 @@ from . import vectors
 from .expressions import PI, STILL, Ex, Mat, Vec, axis_angle, call, lift, rotation, rpy
 from .joints import add_joint
 from .mechanism import WORLD, Mechanism
+from .tied import allowed_velocities
 
 AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, 0], [0, 0, -1], [1, 1, 0], [1, 2, 2], [0, "0.6", "0.8"], [0, "1e-7", 1], ["0.3", "-0.7", "0.2"]]
 KINDS = ["revolute"] * 5 + ["continuous"] * 4 + ["prismatic"] * 3 + ["spherical", "spherical3", "planar", "universal", "cylindrical", "fixed", "follows"]
@@ -405,22 +406,13 @@ class Forest:
         wanted += [f"{o.name}_slopes" for o in m.outputs]
         if m.default:
             wanted.append("parameter_slopes")
-        if self.t is None and not m.inerters and not self.written and not m.kept:
+        if self.t is None and not m.inerters and not self.written and not m.kept and not m.closures:
             wanted.append("regressor")
         m.say(f"generate {', '.join(wanted)};")
 
     def configuration(self):
         """A random state, of numbers that doubles have; velocities are those nearest to it that are allowed."""
-        from .definitions import Definitions
-
-        s = random_state(self.m, self.r)
-        if not self.m.kept:
-            return s
-        d = Definitions(self.m)
-        b = d.conditions(s)
-        square = [[vectors.dot(p, q) for q in b] for p in b]
-        off = vectors.on(vectors.transposed(b), vectors.solve(square, d.kept(s)))
-        return s.but(xi=[vectors.mpf(float(e)) for e in vectors.sub(s.xi, off)])
+        return allowed_velocities(self.m, random_state(self.m, self.r))
 
 
 def _defaults(m):

@@ -2,7 +2,8 @@
 //! c = 0; with it c is what ξ⁰ = 1 puts in, so that a row B ξ = b ξ⁰ becomes affine.
 //!
 //! A row is solved for a velocity whose factor is constant at run time, so that nothing is divided
-//! by what may vanish on X; rows without such a factor are kept and get multipliers. With C the
+//! by what may vanish on X; rows without such a factor are kept and get multipliers. So do loops that are not straight,
+//! since a velocity that was solved for lets its coordinate drift away from the loop. With C the
 //! equations of motion are Cᵀ (M ξ̇ + Γ ξ ξ + ∂V − f) = 0: for an inactive velocity of an adapted
 //! frame these are the active rows of KR18 (30).
 
@@ -168,6 +169,7 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
         values.into_iter().map(f64::abs).collect()
     };
     let mut at_start: Vec<Vec<f64>> = rows.iter().map(|row| sizes(graph, row)).collect();
+    let kept: Vec<bool> = constraints.iter().map(|c| returns(graph, c)).collect();
     loop {
         // The largest entry of each column in the rows that are left.
         let open = (0..rows.len()).filter(|i| solved.iter().all(|&(row, _)| row != *i));
@@ -176,8 +178,8 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
             pairs.map(|(most, size)| most.max(*size)).collect()
         });
         let mut best = None;
-        for (i, constraint) in constraints.iter().enumerate() {
-            if constraint.stabilized.is_some() || solved.iter().any(|&(row, _)| row == i) {
+        for i in 0..constraints.len() {
+            if kept[i] || solved.iter().any(|&(row, _)| row == i) {
                 continue;
             }
             // The two largest entries of the row: beside a single one, nothing is lost.
@@ -236,11 +238,19 @@ fn eliminate(model: &mut Model) -> Result<Echelon, Diagnostic> {
         if (0..row.len()).all(|j| row[j] == zero || is_time(j)) {
             return Err(contradicting(&constraints, i));
         }
-        if constraints[i].stabilized.is_none() && solved.iter().all(|&(row, _)| row != i) {
+        if !kept[i] && solved.iter().all(|&(row, _)| row != i) {
             impossible(model, &model.graph, (row, &constraints[i]))?;
         }
     }
     Ok((rows, solved))
+}
+
+/// Whether runs are led back to a constraint, which takes its multiplier: to those that are stabilised, and to loops that are
+/// not straight. A straight one, such as the ratio of gears, has constant factors; every method keeps to it by itself.
+fn returns(graph: &Graph, constraint: &Pfaffian) -> bool {
+    let bent = |entry: &Edge| !graph.is_free(entry.node());
+    constraint.stabilized.is_some()
+        || constraint.kind == Kind::Loop && constraint.row.iter().any(bent)
 }
 
 /// A row that could be solved for velocities that the user wants to stay, and for no others.
