@@ -82,7 +82,7 @@ const ATTACK: Task = &[
     "HAMEL_ATTACK=full HAMEL_PART=4 cargo test --locked -p hamel-tests-emitted compiled",
     "bash tests/robots/pinocchio.sh",
     "bash tests/dalembert/run.sh --what trees --seeds 1000 60 --largest 6",
-    "bash tests/dalembert/run.sh --what loops written --seeds 1000 60 --largest 5",
+    "bash tests/dalembert/run.sh --what loops written driven --seeds 1000 60 --largest 5",
     "bash tests/dalembert/run.sh --seeds 2000 40 --largest 5 --hard",
     // An array of tasks on Slurm, which is installed where it is missing.
     "bash tests/sweep/slurm.sh",

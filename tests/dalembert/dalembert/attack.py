@@ -14,6 +14,7 @@ import time
 from . import wrong
 from .compare import Comparison, Errors
 from .doors import Doors, Refused
+from .driven import Driven
 from .loops import Loops, Open
 from .trees import Forest
 from .written import Written
@@ -21,7 +22,7 @@ from .written import Written
 # What hamel cannot do and says so, with what is left out of `generate` then.
 LEFT_OUT = {"has no regressor": ", regressor", "`centroidal_map` is not known": ", centroidal_map"}
 # What a random mechanism should not have been.
-MEANINGLESS = ["its points keep their distance", "can coincide"]
+MEANINGLESS = ["can coincide", "its points keep their distance", "the velocity by others"]
 
 
 def settled(doors, text):
@@ -50,18 +51,23 @@ def tree(seed, largest, hard):
             return made
 
 
-def loop(seed, largest, hard):
+def loop(seed, largest, hard, kind=Loops):
     """A random mechanism with closed loops, and a state in which they are closed."""
     r = random.Random(seed)
     while True:
         try:
-            made = Loops(r, 2 + r.randrange(3), hard=hard)
+            made = kind(r, 2 + r.randrange(3), hard=hard)
             if 2 <= made.m.n <= largest:
                 made.state = made.configuration()
                 if any(v != 0 for v in made.state.xi):
                     return made
         except (Open, ZeroDivisionError):
             pass
+
+
+def driven(seed, largest, hard):
+    """One with motions that are given."""
+    return loop(seed, largest, hard, Driven)
 
 
 def written(seed, largest, hard):
@@ -75,7 +81,7 @@ def written(seed, largest, hard):
 
 
 # What is compared, by name.
-WHAT = {"trees": tree, "loops": loop, "written": written}
+WHAT = {"trees": tree, "loops": loop, "written": written, "driven": driven}
 
 
 def one(job):

@@ -120,7 +120,7 @@ class Comparison:
         d = self.d
         return d.on_active(d.inverse_dynamics(s, d.wide(s, [self.given[i] for i in d.active])), s)
 
-    def start(self, c, s):
+    def start(self, c, s, single):
         """Which velocities follow from others, and the state with them."""
         m = self.m
         said = self.doors.eval()
@@ -132,7 +132,7 @@ class Comparison:
         def rate(xi):
             return [mpf(e) for e in c.call("rate", m.nu, x=[float(e) for e in s.x], xi=[float(e) for e in [*xi, *s.z]])]
 
-        d = left.found(m, active, rate, s)
+        d = left.found(m, active, rate, s, 1e-4 if single else 1e-10)
         if d is None:
             raise Refused(f"the velocities {said['velocities']} are not what ties leave")
         self.d, self.given = d, s.a
@@ -145,12 +145,15 @@ class Comparison:
         c = self.doors.compiled(single)
         if m.default or "set_parameters" in c:
             c.set([float(p) for p in s.p])
-        s = self.start(c, s)
+        s = self.start(c, s, single)
         d = self.d
-        self.rows = len(m.closures) + len(m.kept)
-        self.unique = not self.rows or len(independent(d.conditions(s))) == self.rows
+        self.rows = len(m.closures) + len(m.kept) + len(m.accelerated)
+        self.unique = not self.rows or len(independent(d.bonds(s))) == self.rows
         if not self.unique:
             self.along = {"linearize"} | {f"{o.name}_slopes" for o in m.outputs if o.accelerations}
+        if m.driven:
+            # A coordinate that is given is not read, wherever it is.
+            self.along = {"linearize", "inverse_dynamics_slopes"} | {f"{o.name}_slopes" for o in m.outputs}
         given = {
             "x": [float(e) for e in s.x],
             "xi": [float(e) for e in [*(s.xi[i] for i in d.active), *s.z]],
@@ -175,7 +178,7 @@ class Comparison:
             p = mine["momentum"]
             self.note(kind + "velocity_from_momentum", [s.xi[i] for i in d.active], c.call("velocity_from_momentum", len(d.active), momentum=[float(e) for e in p], **given), 1e-3 if single else 1e-7)
         self.regressor(c, s, given, kind)
-        if m.closures or m.kept:
+        if self.rows:
             self.ties(c, s, given, kind, 1e-3 if single else None)
         if not single and self.slopes:
             self.printed(s, mine)
@@ -185,7 +188,7 @@ class Comparison:
         d, m = self.d, self.m
         if "constraint_force" in c:
             force = c.call("constraint_force", self.rows, **given)
-            self.note(kind + "constraint_force", d.motion(s)[1], on(transposed(d.conditions(s)), [mpf(f) for f in force]), tolerance)
+            self.note(kind + "constraint_force", d.motion(s)[1], on(transposed(d.bonds(s)), [mpf(f) for f in force]), tolerance)
         elif self.unique:
             self.errors.found.append((self.where, kind + "constraint_force", "is missing"))
         # From beside the ties.
@@ -257,8 +260,8 @@ class Comparison:
 
     def on_ties(self, rows, basis):
         """What slopes say of what ties allow, and of the inputs."""
-        size = len(basis)
-        return [times([row[:size]], basis)[0] + list(row[size:]) for row in rows]
+        size = min(len(basis), len(rows[0]) if rows else 0)
+        return [times([row[:size]], basis[:size])[0] + list(row[size:]) for row in rows]
 
 
 def whole(lin):

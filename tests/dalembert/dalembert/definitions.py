@@ -285,6 +285,11 @@ class Definitions:
         still = self.kept(s.but(xi=[NIL] * self.of.n))
         return transposed([sub(self.kept(s.but(xi=unit(self.of.n, i))), still) for i in range(self.of.n)])
 
+    def bonds(self, s):
+        """The rows of B, and those of velocities whose rates are given."""
+        ties = self.conditions(s) if self.of.closures or self.of.kept else []
+        return ties + [unit(self.of.n, place) for place, _ in self.of.accelerated]
+
     def decay(self, s):
         """What is added to φ̈ so that (d/dt + λ)² φ = 0."""
         speeds, found = self.kept(s) if any(self.of.stabilized) else [], []
@@ -294,15 +299,17 @@ class Definitions:
         return found + [NIL] * len(self.of.kept)
 
     def motion(self, s):
-        """ξ̇, multipliers, and whether they are unique."""
+        """ξ̇, and the force that keeps ties and given rates."""
         n = self.of.n
         zero = [NIL] * n
         m = [row[self.first :] for row in self.mass_matrix(s)[self.first :]]
         force = sub(self.generalized_force(s), self.inverse_dynamics(s, zero))
-        if not self.of.closures and not self.of.kept:
+        b, b_dot = self.bonds(s), []
+        if not b:
             return solve(m, force), []
-        b = self.conditions(s)
-        b_dot = add(self.first_order_wide(self.kept, s, zero), self.decay(s))
+        if self.of.closures or self.of.kept:
+            b_dot = add(self.first_order_wide(self.kept, s, zero), self.decay(s))
+        b_dot += [-rate.at(s) for _, rate in self.of.accelerated]
         rows = independent(b)
         b, b_dot = [b[i] for i in rows], [b_dot[i] for i in rows]
         big = [m[i] + [-b[k][i] for k in range(len(b))] for i in range(n)]

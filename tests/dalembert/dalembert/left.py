@@ -4,7 +4,7 @@ is read from the text's names and from its `rate`; that they follow from as many
 from itertools import combinations
 
 from .definitions import WIDE, Definitions
-from .vectors import NIL, ONE, add, least_squares, mpf, on, scale, solve, sub, times, transposed
+from .vectors import NIL, ONE, add, least_squares, on, scale, solve, sub, times, transposed
 
 
 class Left(Definitions):
@@ -54,7 +54,7 @@ def section(rows, rest, active, n):
     return c, shift
 
 
-def found(mechanism, active, rate, s):
+def found(mechanism, active, rate, s, tolerance):
     """The definitions of what is left, by the ties that agree with rates of unit velocities; None where no ties do."""
     n = mechanism.n
     if len(active) == n:
@@ -70,6 +70,6 @@ def found(mechanism, active, rate, s):
             c, _ = section([conditions[i] for i in rows], [rest[i] for i in rows], active, n)
         except ZeroDivisionError:
             continue
-        if all(abs(a - b) < mpf(10) ** -10 * (1 + abs(a)) for p, q in zip(transposed(c), theirs) for a, b in zip(p, q)):
+        if all(abs(a - b) < tolerance * (1 + abs(a)) for p, q in zip(transposed(c), theirs) for a, b in zip(p, q)):
             return Left(mechanism, active, list(rows))
     return None

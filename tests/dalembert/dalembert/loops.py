@@ -22,11 +22,11 @@ class Open(Exception):
 class Loops(Forest):
     """Trees with one loop or with more; what moves them is as for trees."""
 
-    def __init__(self, random, size, hard=False):
+    def __init__(self, random, size, hard=False, time=0.2):
         self.kind = random.choice(KINDS)
         # Between which points there are pins, in which of their directions; rods; axes that meet.
         self.ends, self.guess = [], None
-        super().__init__(random, size, free=0.1, time=0.2, hard=hard)
+        super().__init__(random, size, free=0.1, time=time, hard=hard)
 
     def positive(self):
         # Lengths as well: what is tiny makes a loop that cannot be closed.
@@ -177,6 +177,10 @@ class Loops(Forest):
             for (name, _, place), value in zip([c for c in self.m.coordinates if c[0].startswith("a")], self.guess):
                 x[place] = mpf(value)
             s = s.but(x=x)
+        if self.m.time is not None:
+            x = list(s.x)
+            x[self.m.time] = mpf(f"{float(x[self.m.time]):.2f}")
+            s = s.but(x=x)
         self.near = s
         return s
 
@@ -234,9 +238,11 @@ class Loops(Forest):
         """With guesses for the start, so that a run could begin."""
         s, m = self.near, self.m
         for name, kind, place in m.coordinates:
-            if kind in ("real", "S1") and place != m.time:
+            if place == m.time:
+                m.say(f"start {name} = {float(s.x[place])};")
+            elif kind in ("real", "S1") and place not in [driven for driven, *_ in m.driven]:
                 value = s.x[place] if kind == "real" else vectors.mp.atan2(s.x[place + 1], s.x[place])
-                m.say(f"start {name} ~ {float(value):.4f};")
+                m.say(f"start {name} {'~' if self.ends else '='} {float(value):.4f};")
         super().asked()
 
     def configuration(self):

@@ -37,6 +37,8 @@ class Mechanism:
         self.closures = []  # scalars of the configuration that are zero
         self.stabilized = []  # of each closure, how fast it decays, or None
         self.kept = []  # scalars linear in the velocities that are zero
+        self.accelerated = []  # place of a velocity, its rate
+        self.driven = []  # place of a coordinate that is given, kind, its value
         self.outputs = []  # name, expression or vector
         self.jacobians = []  # frame, own
         self.time = None

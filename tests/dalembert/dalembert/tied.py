@@ -1,8 +1,9 @@
 """What ties leave: the force that keeps them, the way back onto them, and slopes along what they allow."""
 
 from .definitions import Definitions, independent
+from .expressions import State
 from .mechanism import SIZES
-from .vectors import NIL, ONE, add, cross, dot, mpf, on, scale, solve, sub, times, transposed, unit
+from .vectors import NIL, ONE, add, cross, dot, mp, mpf, on, scale, solve, sub, times, transposed, unit
 
 
 def names(m):
@@ -10,8 +11,10 @@ def names(m):
     return [name if size == 1 else f"{name}[{k + 1}]" for name, size, _ in m.velocities for k in range(size)]
 
 
-def nearest(d, s, b, off):
-    """−M⁻¹ Bᵀ S⁻¹ of how far off rows are: the shortest way, as M measures."""
+def nearest(d, s, off):
+    """−M⁻¹ Bᵀ S⁻¹ of how far off ties are, with what has a given rate held: the shortest way, as M measures."""
+    b = d.bonds(s)
+    off = off + [NIL] * (len(b) - len(off))
     m = [row[d.first :] for row in d.mass_matrix(s)[d.first :]]
     kept = independent(b)
     b, off = [b[i] for i in kept], [off[i] for i in kept]
@@ -46,6 +49,18 @@ def on_kinds(m, x):
         x[place : place + len(part)] = part
     for place, size, nearest_to in m.onto:
         x[place : place + size] = nearest_to(x[place : place + size])
+    return given(m, x)
+
+
+def given(m, x):
+    """With what is given as a function of time."""
+    s = State(x)
+    for place, kind, value in m.driven:
+        value = value.at(s)
+        if kind == "S1":
+            x[place : place + 2] = [mp.cos(value), mp.sin(value)]
+        else:
+            x[place] = value
     return x
 
 
@@ -62,13 +77,13 @@ def allowed_velocities(m, s):
 
 
 def project_velocity(d, s):
-    return add(s.xi, nearest(d, s, d.conditions(s), d.kept(s)))
+    return add(s.xi, nearest(d, s, d.kept(s)))
 
 
 def project_position(d, s):
     """Back to the loops, along what all other ties allow; those from which velocities follow cannot be left."""
     off = [NIL if k in d.solved else e.at(s) for k, e in enumerate(d.of.closures)]
-    return nearest(d, s, d.conditions(s), off + [NIL] * len(d.of.kept))
+    return nearest(d, s, off)
 
 
 def allowed(d, s):

@@ -1,6 +1,7 @@
 """Random trees of bodies, with everything that can hang on them."""
 
 from . import vectors
+from .elements import hang
 from .expressions import PI, STILL, Ex, Mat, Vec, axis_angle, call, lift, rotation, rpy
 from .joints import add_joint
 from .mechanism import WORLD, Mechanism
@@ -40,6 +41,7 @@ class Forest:
         self.loads()
         self.constraints()
         self.outputs()
+        hang(self)
         self.asked()
 
     # Numbers.

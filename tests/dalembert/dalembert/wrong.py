@@ -12,6 +12,7 @@ from .mechanism import WORLD, Mechanism
 from .tied import allowed_velocities
 from .trees import Output, random_state
 from .vectors import mp, mpf
+from .wrong_driven import DRIVEN, driven_one, driven_state
 
 # What is replaced in the texts, and by what.
 SMALL = [
@@ -99,7 +100,7 @@ def on_loops(m, random_):
 
 
 # Texts with what is replaced in them, how a state is found, and whether slopes are needed.
-CASES = [(small, SMALL, random_state, False), (closed_one, CLOSED, on_loops, True)]
+CASES = [(small, SMALL, random_state, False), (closed_one, CLOSED, on_loops, True), (driven_one, DRIVEN, driven_state, False)]
 
 
 def unseen(hamel, folder):
