@@ -1,6 +1,6 @@
 //! The words of the language, from the tables that the parser and the evaluator read: for references and for editors.
 
-use crate::lower::{function_names, function_usage};
+use crate::symbols::words;
 use crate::syntax::{body_fields, joint_fields, joint_kinds, statement_forms};
 
 /// The statements, each with the sentence that shows how it is written.
@@ -25,5 +25,5 @@ pub fn fields_of_bodies() -> impl Iterator<Item = (&'static str, &'static str)> 
 
 /// The functions that expressions can call, each with what it takes.
 pub fn functions() -> impl Iterator<Item = (&'static str, String)> {
-    function_names().filter_map(|name| Some((name, function_usage(name)?.into_owned())))
+    words::names().filter_map(|name| Some((name, words::usage(name)?.into_owned())))
 }

@@ -80,6 +80,20 @@ fn components_are_written_out_before_anything_is_resolved() {
 }
 
 #[test]
+fn names_are_resolved_without_a_graph() {
+    forbid(
+        "codegen/src/symbols",
+        &[
+            "crate::lower",
+            "crate::model",
+            "crate::derive",
+            "crate::scene",
+            "algebra::graph",
+        ],
+    );
+}
+
+#[test]
 fn the_model_knows_no_text() {
     forbid(
         "codegen/src/model",

@@ -4,95 +4,16 @@
 //! all other names are those of the description. Functions may call others, but not themselves.
 
 use super::expression::Evaluator;
-use super::functions;
-use super::scope::Scope;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{
-    Expr, ExprKind, Function, Ident, ItemKind, Shape, ShapeKind, Span, System,
-};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::syntax::ast::{Expr, Function, Shape, ShapeKind, Span};
+use std::collections::BTreeMap;
 
 /// The most calls of functions that a description writes out.
 const MOST_CALLS: usize = 100_000;
 
 /// Calls around an error that are shown with it.
 const MOST_NOTES: usize = 4;
-
-/// Makes a function known; one that calls itself, or has two parameters of one name, is refused.
-pub fn declare(
-    function: &Function,
-    all: &BTreeMap<&str, &Function>,
-    scope: &mut Scope,
-    report: &mut Report,
-) {
-    let name = &function.name;
-    if scope.functions.contains_key(&name.name) {
-        // Its name is claimed later, and refused then.
-        return;
-    }
-    let mut known: Vec<&Ident> = Vec::new();
-    for (parameter, _) in &function.parameters {
-        if let Some(first) = known.iter().find(|first| first.name == parameter.name) {
-            let message = format!("two parameters are called `{}`", parameter.name);
-            report.push(
-                Diagnostic::new(parameter.span, message)
-                    .help("rename one of the two")
-                    .note(first.span, "the first one"),
-            );
-            return;
-        }
-        known.push(parameter);
-    }
-    if reaches(all, function, &name.name) {
-        let message = format!("the value of `{}` needs `{}` itself", name.name, name.name);
-        report
-            .push(Diagnostic::new(function.value.span, message).help(
-                "a function may call others, but there is no recursion: write its value out",
-            ));
-        return;
-    }
-    scope.functions.insert(name.name.clone(), function.clone());
-}
-
-/// Takes the name of a function, after all others are taken.
-pub fn claim(function: &Function, scope: &mut Scope, report: &mut Report) {
-    functions::claim(&function.name, scope, report);
-}
-
-/// The functions of a description, by their names.
-pub fn functions(system: &System) -> BTreeMap<&str, &Function> {
-    let functions = system.items.iter().filter_map(|item| match &item.kind {
-        ItemKind::Function(function) => Some((function.name.name.as_str(), function)),
-        _ => None,
-    });
-    functions.collect()
-}
-
-/// Whether the value of a function calls a name, itself or by functions that it calls.
-fn reaches(all: &BTreeMap<&str, &Function>, function: &Function, wanted: &str) -> bool {
-    let mut reached = BTreeSet::new();
-    let mut open = vec![function];
-    while let Some(function) = open.pop() {
-        let mut calls = BTreeSet::new();
-        called(&function.value, &mut calls);
-        for name in calls {
-            if reached.insert(name) {
-                open.extend(all.get(name));
-            }
-        }
-    }
-    reached.contains(wanted)
-}
-
-/// The functions that an expression calls.
-fn called<'a>(expr: &'a Expr, names: &mut BTreeSet<&'a str>) {
-    if let ExprKind::Call(function, _) = &expr.kind {
-        names.insert(&function.name);
-    }
-    let parts = expr.parts().into_iter();
-    parts.for_each(|part| called(part, names));
-}
 
 impl Evaluator<'_> {
     /// The value of a call of a function of the description. An error in the function's expression is reported
@@ -141,7 +62,7 @@ impl Evaluator<'_> {
         let parameters = function.parameters.iter().zip(arguments);
         for (((parameter, shape), argument), value) in parameters.zip(values) {
             if !fits(shape, &value) {
-                let (what, found) = (words(shape.kind), value.shape());
+                let (what, found) = (shape.kind.describe(), value.shape());
                 let message = format!(
                     "`{}` of `{}` has to be {what}, this is {found}",
                     parameter.name, name.name
@@ -175,13 +96,5 @@ fn fits(shape: &Shape, value: &Value) -> bool {
             m.len() == n && m.iter().all(|row| row.len() == n)
         }
         _ => false,
-    }
-}
-
-fn words(shape: ShapeKind) -> String {
-    match shape {
-        ShapeKind::Scalar => "a scalar".into(),
-        ShapeKind::Vector(n) => format!("a vector of {n}"),
-        ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => format!("a {n}×{n} matrix"),
     }
 }

@@ -16,7 +16,9 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::closure::Closure;
 use crate::model::{Model, class, samples};
 use crate::reuse;
+use crate::symbols;
 use crate::syntax::ast::{ItemKind, Origins, System};
+use std::collections::BTreeSet;
 
 /// Points are chosen anew this often when a square root has no value there.
 const ATTEMPTS: u64 = 8;
@@ -33,23 +35,23 @@ pub fn build(system: &System) -> Result<Model, Vec<Diagnostic>> {
 pub fn build_at(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
     let written = reuse::expand(system)?;
     let origins = &written.system.origins;
-    let mut model = read(&written.system, number).map_err(|errors| origins.located_all(errors))?;
-    let mut warnings = unused::warnings(&written.system, &written.used);
-    warnings.append(&mut model.warnings);
-    model.warnings = origins.located_all(warnings);
+    let model = read(&written.system, &written.used, number);
+    let mut model = model.map_err(|errors| origins.located_all(errors))?;
+    model.warnings = origins.located_all(std::mem::take(&mut model.warnings));
     model.warnings.extend(written.warnings);
     model.origins = origins.clone();
     Ok(model)
 }
 
-/// Reads a description without components and repetition.
-fn read(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
+/// Reads a description without components and repetition; `used` are names that these mention.
+fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, Vec<Diagnostic>> {
     let own = SEED + number * ATTEMPTS;
     let mut first = Report::new();
     let described = system;
     let system = &joints::expand(system, &mut first);
     let system = &time::expand(system, &mut first);
-    let mut variety = Variety::read(system, own, &mut first);
+    let names = symbols::resolve(system, &mut first);
+    let mut variety = Variety::read(system, &names, own, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     let mut branches = false;
     for seed in own..own + ATTEMPTS {
@@ -58,7 +60,7 @@ fn read(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
         errors.extend(choice.finish().err().unwrap_or_default());
         let mut report = Report::new();
         errors.iter().cloned().for_each(|error| report.push(error));
-        let result = Reading::new(system, &variety, &point, seed, report).read();
+        let result = Reading::new(system, &names, &variety, &point, seed, report).read();
         match result {
             Ok(model) if model.graph.is_unfaithful() => {
                 errors.push(
@@ -77,7 +79,9 @@ fn read(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
             Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
-                model.warnings = strange::warnings(described, &model);
+                let strange = strange::warnings(described, &model);
+                model.warnings = unused::warnings(described, &(&names.used | used));
+                model.warnings.extend(strange);
                 return Ok(model);
             }
             Err((errors, _)) => return Err(errors),
@@ -110,9 +114,10 @@ fn read(system: &System, number: u64) -> Result<Model, Vec<Diagnostic>> {
 /// One reading of a description, at points of its variety.
 struct Reading<'a> {
     system: &'a System,
+    names: &'a symbols::Resolved<'a>,
     variety: &'a Variety,
     graph: Graph,
-    scope: Scope,
+    scope: Scope<'a>,
     declared: Declared,
     report: Report,
 }
@@ -123,13 +128,14 @@ type Failure = (Vec<Diagnostic>, Option<Box<Graph>>);
 impl<'a> Reading<'a> {
     fn new(
         system: &'a System,
+        names: &'a symbols::Resolved<'a>,
         variety: &'a Variety,
         point: &[Fp],
         seed: u64,
         mut report: Report,
     ) -> Self {
         let mut graph = Graph::new(seed, class::PARAM);
-        let mut scope = Scope::new(system, false);
+        let mut scope = Scope::new(system, &names.symbols, false);
         let mut count = 0;
         let mut next = |_: &mut Graph| {
             count += 1;
@@ -143,6 +149,7 @@ impl<'a> Reading<'a> {
         graph.watch(near.is_some() && variety.complete);
         Reading {
             system,
+            names,
             variety,
             graph,
             scope,
@@ -156,7 +163,9 @@ impl<'a> Reading<'a> {
         let (system, variety) = (self.system, self.variety);
         let (graph, report) = (&mut self.graph, &mut self.report);
         let defaults = defaults::read(system, graph, &self.scope, &self.declared, report);
-        let mut names = Names::read(system, graph, &mut self.scope, report);
+        let order = &self.names.order;
+        let mut names = Names::default();
+        names.read(&order.before, graph, &mut self.scope, report);
         let (scope, declared) = (&self.scope, &self.declared);
         variety.check(system, graph, scope, report);
         // The start is needed to choose pivots; what is wrong with it is said last.
@@ -185,7 +194,7 @@ impl<'a> Reading<'a> {
             self.scope.motion = Some(motion);
         }
         self.scope.unmoved = kinematics.is_none();
-        names.go_on(graph, &mut self.scope, report);
+        names.read(&order.after, graph, &mut self.scope, report);
         let scope = &self.scope;
         let numbers = declared.numbers(&defaults, starts.as_ref());
         let frames = names.frames;
@@ -244,7 +253,8 @@ impl<'a> Reading<'a> {
         if let Err(errors) = self.report.finish() {
             return Err((errors, Some(Box::new(self.graph))));
         }
-        let (Some(kinematics), Some(start)) = (kinematics, starts) else {
+        let (Some(kinematics), Some(start), false) = (kinematics, starts, self.scope.missed.get())
+        else {
             let error = Diagnostic::new(system.name.span, "the description could not be read");
             return Err((vec![error], None));
         };

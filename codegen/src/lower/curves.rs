@@ -2,7 +2,6 @@
 
 use super::curve::Curve;
 use super::expression::Evaluator;
-use super::functions;
 use super::scope::Scope;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -22,16 +21,6 @@ pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &m
             let curve = Evaluator::new(graph, scope, report).curve(table);
             scope.tables.insert(table.name.name.clone(), curve);
         }
-    }
-}
-
-/// Takes the names of tables, after all others are taken.
-pub fn claim(system: &System, scope: &mut Scope, report: &mut Report) {
-    for item in &system.items {
-        let ItemKind::Table(table) = &item.kind else {
-            continue;
-        };
-        functions::claim(&table.name, scope, report);
     }
 }
 

@@ -1,14 +1,15 @@
 //! Declarations: every symbol of the description, with values at points of X.
 
 use super::expression::Evaluator;
-use super::scope::{NameKind, Scope};
-use super::{applied, curves, externals, time};
+use super::scope::Scope;
+use super::{curves, externals, time};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::layout::{blocks, entry_names};
 use crate::model::value::Value;
 use crate::model::{Clock, Coordinate, Group, class, samples};
+use crate::symbols::Kind;
 use crate::syntax::ast::{CoordKind, Declaration, ItemKind, ShapeKind, Span, System};
 
 /// Makes the next symbol of a graph: free points draw a random value, constrained ones read it.
@@ -59,25 +60,18 @@ pub fn declare(
     }
     curves::declare(system, graph, scope, report);
     externals::declare(system, graph, scope, report);
-    let functions = applied::functions(system);
-    for item in &system.items {
-        if let ItemKind::Function(function) = &item.kind {
-            applied::declare(function, &functions, scope, report);
-        }
-    }
     let mut declarer = Declarer {
         time: time::name(system).map(|time| time.name.as_str()),
         graph,
         next,
         scope,
-        report,
     };
     let mut params = Vec::new();
     for item in &system.items {
         if let ItemKind::Param(list) = &item.kind {
             declarer.groups(
                 list,
-                NameKind::Param,
+                Kind::Param,
                 class::PARAM,
                 &mut declared.params,
                 &mut params,
@@ -92,7 +86,7 @@ pub fn declare(
     for item in &system.items {
         if let ItemKind::Velocity(list) = &item.kind {
             let (groups, xi) = (&mut declared.velocities, &mut declared.xi);
-            let complete = declarer.groups(list, NameKind::Velocity, class::VELOCITY, groups, xi);
+            let complete = declarer.groups(list, Kind::Velocity, class::VELOCITY, groups, xi);
             declared.faulty |= !complete;
             for declaration in list {
                 let group = declared
@@ -108,23 +102,16 @@ pub fn declare(
     for item in &system.items {
         if let ItemKind::Input(list) = &item.kind {
             let (groups, u) = (&mut declared.inputs, &mut declared.u);
-            declarer.groups(list, NameKind::Input, class::INPUT, groups, u);
+            declarer.groups(list, Kind::Input, class::INPUT, groups, u);
         }
     }
     for item in &system.items {
         if let ItemKind::State(list) = &item.kind {
             let (groups, z) = (&mut declared.states, &mut declared.z);
-            declarer.groups(list, NameKind::State, class::INPUT, groups, z);
+            declarer.groups(list, Kind::State, class::INPUT, groups, z);
         }
     }
     declared.u.extend(&declared.z);
-    for item in &system.items {
-        if let ItemKind::Function(function) = &item.kind {
-            applied::claim(function, scope, report);
-        }
-    }
-    curves::claim(system, scope, report);
-    externals::claim(system, scope, report);
     let velocities = graph
         .symbols()
         .iter()
@@ -146,20 +133,19 @@ pub fn declare(
     declared
 }
 
-struct Declarer<'a, 'b> {
+struct Declarer<'a, 'b, 's> {
     time: Option<&'a str>,
     graph: &'a mut Graph,
     next: &'a mut NextValue<'b>,
-    scope: &'a mut Scope,
-    report: &'a mut Report,
+    scope: &'a mut Scope<'s>,
 }
 
-impl Declarer<'_, '_> {
+impl Declarer<'_, '_, '_> {
     /// Declares groups of symbols; whether all their names were free.
     fn groups(
         &mut self,
         list: &[Declaration],
-        kind: NameKind,
+        kind: Kind,
         class: u8,
         all: &mut Vec<Group>,
         edges: &mut Vec<Edge>,
@@ -167,7 +153,7 @@ impl Declarer<'_, '_> {
         let mut complete = true;
         for declaration in list {
             let (name, shape) = (&declaration.name, declaration.shape.kind);
-            if !self.scope.claim(name, kind, self.report) {
+            if !self.scope.claim(name, kind) {
                 complete = false;
                 continue;
             }
@@ -192,7 +178,7 @@ impl Declarer<'_, '_> {
         declared: &mut Declared,
     ) {
         for (name, kind) in list {
-            if !self.scope.claim(name, NameKind::Coord(*kind), self.report) {
+            if !self.scope.claim(name, Kind::Coord(*kind)) {
                 declared.faulty = true;
                 continue;
             }
@@ -232,7 +218,7 @@ fn define_const(
     let name = &declaration.name;
     let missing = format!("write `const {} = 1;`", name.name);
     let value = declared_value(declaration, &missing, graph, scope, report);
-    scope.define(name, NameKind::Const, value, report);
+    scope.define(name, Kind::Const, value);
 }
 
 /// The value that a declaration has to have, if it fits the declared shape.
@@ -268,7 +254,7 @@ pub fn shape_fits(declaration: &Declaration, value: &Value, report: &mut Report)
         .as_ref()
         .map_or(declaration.name.span, |value| value.span);
     if !fits {
-        let wanted = shape_words(shape.kind);
+        let wanted = shape.kind.describe();
         report.push(
             Diagnostic::new(
                 span,
@@ -302,14 +288,6 @@ pub fn shape_fits(declaration: &Declaration, value: &Value, report: &mut Report)
     true
 }
 
-/// A declared shape in words.
-fn shape_words(shape: ShapeKind) -> String {
-    match shape {
-        ShapeKind::Scalar => "a scalar".into(),
-        ShapeKind::Vector(n) => format!("a vector of {n}"),
-        ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => format!("a {n}×{n} matrix"),
-    }
-}
 fn symbols_of(
     graph: &mut Graph,
     next: &mut NextValue,

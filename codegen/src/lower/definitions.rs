@@ -85,7 +85,7 @@ pub fn read(
 }
 
 /// Symbols for ẋ, and a scope in which d/dt is along them.
-fn rates(graph: &mut Graph, scope: &Scope, x: &[Edge]) -> (Scope, Vec<Edge>) {
+fn rates<'a>(graph: &mut Graph, scope: &Scope<'a>, x: &[Edge]) -> (Scope<'a>, Vec<Edge>) {
     let mut random = Random::new(SEED);
     let mut x_dot = Vec::new();
     for _ in x {

@@ -121,7 +121,7 @@ pub fn read(
     }
     let mut outputs = output_names(system, report);
     outputs.extend(super::invariants::names(system));
-    dynamics.asked = asked(system, &outputs, frames, report);
+    dynamics.asked = asked(system, &outputs, report);
     has_inertia |= dynamics.kinetic != graph.zero();
     if !has_inertia && !dynamics.asked.is_kinematic() {
         report.push(
@@ -165,7 +165,7 @@ fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
 }
 
 /// What the statements `generate` ask for, everything where there are none; unknown names are reported.
-fn asked(system: &System, outputs: &[&Ident], frames: &[Frame], report: &mut Report) -> Asked {
+fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
     let statements = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::Generate(all) => Some(all),
         _ => None,
@@ -179,8 +179,11 @@ fn asked(system: &System, outputs: &[&Ident], frames: &[Frame], report: &mut Rep
         match wanted {
             Wanted::Function(name) => function(name, (system, outputs), &mut asked, report),
             Wanted::Jacobian { frame, axes } => {
-                let found = jacobian(frame, axes.as_ref(), frames, report);
-                asked.jacobians.extend(found);
+                let own = |axes: &Ident| axes.name == frame.name || axes.name == "body";
+                asked.jacobians.push(Jacobian {
+                    frame: frame.name.clone(),
+                    own: axes.as_ref().is_some_and(own),
+                });
             }
         }
     }
@@ -244,45 +247,4 @@ fn function(
             functions.join(", ")
         )),
     });
-}
-
-/// `jacobian f in f`: the frame, and whether components are in its own axes.
-fn jacobian(
-    frame: &Ident,
-    axes: Option<&Ident>,
-    frames: &[Frame],
-    report: &mut Report,
-) -> Option<Jacobian> {
-    let mut found = true;
-    if frames.iter().all(|known| known.name != frame.name) {
-        let known = frames.iter().map(|frame| frame.name.as_str());
-        let message = match frame.name.as_str() {
-            "world" => "the world does not move".into(),
-            name => format!("no frame is called `{name}`"),
-        };
-        let error = Diagnostic::new(frame.span, message);
-        report.push(match closest(&frame.name, known) {
-            Some(near) => error.help(format!("did you mean `{near}`?")),
-            None => error.help(
-                "`jacobian f` is the kinematics of a frame f that the description has by `frame` or by a joint's `moves`",
-            ),
-        });
-        found = false;
-    }
-    let own = axes.is_some_and(|axes| axes.name == frame.name || axes.name == "body");
-    if let Some(axes) = axes
-        && !own
-        && axes.name != "world"
-    {
-        let message = format!("components are in axes of `world` or of `{}`", frame.name);
-        report.push(Diagnostic::new(axes.span, message).help(format!(
-            "write `jacobian {0} in world` or `jacobian {0} in {0}`",
-            frame.name
-        )));
-        found = false;
-    }
-    found.then(|| Jacobian {
-        frame: frame.name.clone(),
-        own,
-    })
 }

@@ -10,7 +10,6 @@ use super::functions::angle_from;
 use super::line::{Line, is_root};
 use super::quadratic::is_quadratic;
 use super::reader::{Dynamics, Reader};
-use super::scope::NameKind;
 use super::time;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{scale3, sub3};
@@ -18,7 +17,7 @@ use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::elements::{Along, Damper, Push, Spring};
 use crate::model::value::Value;
-use crate::syntax::ast::{Acting, CoordKind, Expr, ExprKind, ItemKind, Span};
+use crate::syntax::ast::{Acting, Expr, ExprKind, ItemKind, Span};
 
 impl Reader<'_, '_> {
     /// Reads a statement into energies and forces, where it is one of these; `start` are the numbers of all
@@ -183,9 +182,9 @@ impl Reader<'_, '_> {
         let ExprKind::Name(name) = &expr.kind else {
             return None;
         };
-        let entry = self.evaluator.scope.get(name)?;
-        match (entry.kind, entry.value.as_ref()?) {
-            (NameKind::Coord(CoordKind::S1), Value::Vector(point)) => {
+        let scope = self.evaluator.scope;
+        match scope.value(name)? {
+            Value::Vector(point) if scope.symbols.is_circle(name) => {
                 Some([*point.first()?, *point.get(1)?])
             }
             _ => None,

@@ -1,12 +1,11 @@
 //! Expressions become shaped values of the graph.
 
-use super::motion::FUNCTIONS;
-use super::scope::{NameKind, Scope, reserved};
+use super::scope::Scope;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{identity3, transpose};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Span};
 use num_traits::ToPrimitive;
 use std::collections::BTreeMap;
 
@@ -25,7 +24,7 @@ pub struct Evaluator<'a> {
     /// The graph that values live in.
     pub graph: &'a mut Graph,
     /// The names.
-    pub scope: &'a Scope,
+    pub scope: &'a Scope<'a>,
     /// Where errors go.
     pub report: &'a mut Report,
     /// Values of the parameters of the function whose value is wanted; none outside of functions.
@@ -36,7 +35,7 @@ pub struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     /// An evaluator outside of functions.
-    pub fn new(graph: &'a mut Graph, scope: &'a Scope, report: &'a mut Report) -> Self {
+    pub fn new(graph: &'a mut Graph, scope: &'a Scope<'a>, report: &'a mut Report) -> Self {
         Evaluator {
             graph,
             scope,
@@ -91,7 +90,7 @@ impl<'a> Evaluator<'a> {
                 let edge = self.graph.rational(number);
                 self.bounded(Value::Scalar(edge), expr.span)
             }
-            ExprKind::Name(name) => self.name(name, expr.span),
+            ExprKind::Name(name) => self.name(name),
             ExprKind::Field(base, field) => self.field(base, field),
             ExprKind::Index(base, indices) => self.index(base, indices, expr.span),
             ExprKind::Call(function, arguments) => self.call(function, arguments, expr.span),
@@ -158,41 +157,33 @@ impl<'a> Evaluator<'a> {
         Value::Pose(identity3(self.graph), [self.graph.zero(); 3])
     }
 
-    fn name(&mut self, name: &str, span: Span) -> Option<Value> {
+    fn name(&mut self, name: &str) -> Option<Value> {
         if let Some(value) = self.locals.get(name) {
             return Some(value.clone());
         }
-        match self.scope.get(name) {
-            Some(entry) if entry.kind == NameKind::Function => self.error(
-                Diagnostic::new(span, format!("`{name}` is a function"))
-                    .help(format!("write its arguments in parentheses: `{name}(…)`")),
-            ),
-            Some(entry) => entry.value.clone(),
-            None if name == "world" => Some(self.world()),
-            None if name == "pi" => {
-                let known = self
-                    .graph
-                    .symbols()
-                    .iter()
-                    .find(|s| s.name == "pi")
-                    .map(|s| s.node);
-                known.map(|node| Value::Scalar(Edge::of(node)))
+        if self.scope.symbols.get(name).is_some() {
+            let value = self.scope.value(name).cloned();
+            self.scope
+                .missed
+                .set(self.scope.missed.get() || value.is_none());
+            return value;
+        }
+        match name {
+            "world" => Some(self.world()),
+            "pi" => {
+                let mut symbols = self.graph.symbols().iter();
+                let pi = symbols.find(|symbol| symbol.name == "pi")?;
+                Some(Value::Scalar(Edge::of(pi.node)))
             }
-            None if reserved().any(|word| word == name) || FUNCTIONS.contains(&name) => self.error(
-                Diagnostic::new(span, format!("`{name}` is a function"))
-                    .help(format!("write its arguments in parentheses: `{name}(…)`")),
-            ),
-            None => {
-                let error = self.scope.unknown(span, name, None, |_| true);
-                self.error(error)
-            }
+            // A name that stands for nothing is an error already.
+            _ => None,
         }
     }
 
     fn field(&mut self, base: &Expr, field: &Ident) -> Option<Value> {
         let value = self.value(base)?;
-        let circle = matches!(&base.kind, ExprKind::Name(name)
-            if self.scope.get(name).is_some_and(|e| e.kind == NameKind::Coord(CoordKind::S1)));
+        let circle =
+            matches!(&base.kind, ExprKind::Name(name) if self.scope.symbols.is_circle(name));
         let help = match (&value, field.name.as_str()) {
             (Value::Vector(v), "c") if circle => return v.first().copied().map(Value::Scalar),
             (Value::Vector(v), "s") if circle => return v.get(1).copied().map(Value::Scalar),

@@ -4,7 +4,6 @@
 //! and rates of states may depend on them; what proofs take slopes of more than once may not.
 
 use super::expression::Evaluator;
-use super::functions;
 use super::scope::Scope;
 use crate::algebra::external;
 use crate::algebra::graph::{Component, Edge, Graph};
@@ -26,7 +25,7 @@ pub fn declare(system: &System, graph: &mut Graph, scope: &mut Scope, report: &m
     for function in all(system) {
         let name = &function.name;
         if scope.externals.contains_key(&name.name) {
-            // Its name is claimed later, and refused then.
+            // Its name is taken, and refused.
             continue;
         }
         check(function, report);
@@ -102,13 +101,6 @@ fn check(function: &External, report: &mut Report) {
             name.name
         );
         report.push(Diagnostic::new(name.span, message).help(help));
-    }
-}
-
-/// Takes the names of the functions, after all others are taken.
-pub fn claim(system: &System, scope: &mut Scope, report: &mut Report) {
-    for function in all(system) {
-        functions::claim(&function.name, scope, report);
     }
 }
 

@@ -2,13 +2,14 @@
 
 use super::declare::declared_value;
 use super::expression::Evaluator;
-use super::scope::{NameKind, Scope};
+use super::scope::Scope;
 use crate::algebra::graph::Graph;
 use crate::algebra::linear::{add3, apply3, identity3, multiply3, transpose3};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
 use crate::model::value::Value;
-use crate::syntax::ast::{Declaration, Expr, Ident, Span};
+use crate::symbols::{Kind, Relation};
+use crate::syntax::ast::{Declaration, Ident};
 
 /// Defines a `let`; its value, where it has one.
 pub fn define_let(
@@ -20,28 +21,8 @@ pub fn define_let(
     let name = &declaration.name;
     let missing = format!("write `let {} = …;`", name.name);
     let value = declared_value(declaration, &missing, graph, scope, report);
-    let free = scope.define(name, NameKind::Let, value.clone(), report);
+    let free = scope.define(name, Kind::Let, value.clone());
     value.filter(|_| free)
-}
-
-/// `frame f on g = P`: the pose of f in g is P.
-#[derive(Clone, Copy)]
-pub struct Relation<'a> {
-    /// f.
-    pub name: &'a Ident,
-    /// g, the world where absent.
-    pub on: Option<&'a Ident>,
-    /// P.
-    pub pose: &'a Expr,
-    /// The statement.
-    pub span: Span,
-}
-
-impl<'a> Relation<'a> {
-    /// The name of g.
-    pub fn parent(&self) -> &'a str {
-        self.on.map_or("world", |on| on.name.as_str())
-    }
 }
 
 /// The world pose of f from that of g: f = g P.
@@ -126,21 +107,10 @@ pub fn relative_pose(
 }
 
 /// The pose of the frame after `on`.
-pub fn parent_pose(
-    parent: &Ident,
-    graph: &mut Graph,
-    scope: &Scope,
-    report: &mut Report,
-) -> Option<Value> {
-    let mut evaluator = Evaluator::new(graph, scope, report);
-    match evaluator.scope.get(&parent.name) {
-        Some(entry) if entry.kind == NameKind::Frame => entry.value.clone(),
-        None if parent.name == "world" => Some(evaluator.world()),
-        _ => {
-            let is_frame = |kind| kind == NameKind::Frame;
-            let scope = evaluator.scope;
-            let error = scope.unknown(parent.span, &parent.name, Some("frame"), is_frame);
-            evaluator.error(error)
-        }
+pub fn parent_pose(parent: &Ident, graph: &Graph, scope: &Scope) -> Option<Value> {
+    match scope.symbols.kind(&parent.name) {
+        Some(Kind::Frame) => scope.value(&parent.name).cloned(),
+        None if parent.name == "world" => Some(Value::Pose(identity3(graph), [graph.zero(); 3])),
+        _ => None,
     }
 }

@@ -3,19 +3,16 @@
 use super::axes;
 use super::choice::{greater, lesser};
 use super::expression::Evaluator;
-use super::motion::FUNCTIONS;
-use super::scope::{NameKind, Scope, reserved};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::linear::{apply3, cross, identity3, multiply3, transpose, transpose3};
-use crate::diagnostics::{Diagnostic, Report};
+use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, Expr, ExprKind, Ident, Span};
-use crate::syntax::suggest::closest;
+use crate::symbols::words::usage;
+use crate::syntax::ast::{Expr, ExprKind, Ident, Span};
 use num_traits::Signed;
 use rustc_hash::FxHashSet;
-use std::borrow::Cow;
 
 /// Largest number of rows that a function makes.
 const MOST_ROWS: usize = 64;
@@ -24,7 +21,7 @@ impl Evaluator<'_> {
     /// A call; wrong names, counts and shapes are reported.
     pub fn call(&mut self, function: &Ident, arguments: &[Expr], span: Span) -> Option<Value> {
         let scope = self.scope;
-        if let Some(own) = scope.functions.get(&function.name) {
+        if let Some(own) = scope.symbols.functions.get(function.name.as_str()) {
             return self.applied(own, arguments, span);
         }
         if let Some(curve) = scope.tables.get(&function.name) {
@@ -47,9 +44,8 @@ impl Evaluator<'_> {
             .iter()
             .map(|argument| self.value(argument))
             .collect();
-        let Some(usage) = usage(&function.name) else {
-            return self.no_function(function);
-        };
+        // A name that is no function is an error already.
+        let usage = usage(&function.name)?;
         let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
         if let Some(value) = self.motion(function, arguments, &values, span) {
             return value;
@@ -74,28 +70,6 @@ impl Evaluator<'_> {
         }
     }
 
-    fn no_function(&mut self, function: &Ident) -> Option<Value> {
-        let name = &function.name;
-        let error = Diagnostic::new(function.span, format!("no function is called `{name}`"));
-        let known = names;
-        if self.scope.get(name).is_some() {
-            return self.error(error.help("a product is written with `*`"));
-        }
-        let scope = self.scope;
-        let own = scope.functions.keys().chain(scope.tables.keys());
-        let own = own.chain(scope.externals.keys());
-        let own = own.map(String::as_str);
-        let all: Vec<&str> = known().collect();
-        let all = all.into_iter().chain(own);
-        match closest(name, all) {
-            Some(known) => self.error(error.help(format!("did you mean `{known}`?"))),
-            None => {
-                let all: Vec<&str> = known().collect();
-                self.error(error.help(format!("the functions are {}", all.join(", "))))
-            }
-        }
-    }
-
     /// The part of an S1 coordinate that stands for its sine or cosine.
     fn circle_part(&self, function: &str, arguments: &[Expr]) -> Option<String> {
         let [
@@ -107,7 +81,7 @@ impl Evaluator<'_> {
         else {
             return None;
         };
-        if self.scope.get(name)?.kind != NameKind::Coord(CoordKind::S1) {
+        if !self.scope.symbols.is_circle(name) {
             return None;
         }
         match function {
@@ -117,35 +91,6 @@ impl Evaluator<'_> {
             _ => None,
         }
     }
-}
-
-/// Functions whose names values and functions of a description may share.
-const NAMES_OF_ALL: [&str; 2] = ["translation", "angle"];
-
-/// The functions of the language by their names.
-pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    reserved()
-        .chain(FUNCTIONS)
-        .chain(NAMES_OF_ALL)
-        .filter(|name| usage(name).is_some())
-}
-
-/// Takes the name of a function of the description, which none of the language's has.
-pub fn claim(name: &Ident, scope: &mut Scope, report: &mut Report) {
-    if is_function(&name.name) {
-        let message = format!("`{}` is a function of the language", name.name);
-        let help = format!("choose another name, such as `{}_1`", name.name);
-        report.push(Diagnostic::new(name.span, message).help(help));
-    } else {
-        scope.claim(name, NameKind::Function, report);
-    }
-}
-
-/// Whether a name is that of a function of the language, which no function of a description can have.
-fn is_function(name: &str) -> bool {
-    usage(name).is_some() && !NAMES_OF_ALL.contains(&name)
-        || FUNCTIONS.contains(&name)
-        || name == "rate"
 }
 
 /// Why a call has no value.
@@ -160,55 +105,6 @@ const ZERO_DIVISOR: Fault = Fault::Why(
     "division by something that is identically zero",
     "this is 0 for every configuration that satisfies the constraints",
 );
-
-/// How a function is called.
-pub(crate) fn usage(name: &str) -> Option<Cow<'static, str>> {
-    let text = match name {
-        "sin" => "`sin(angle)` of a scalar",
-        "cos" => "`cos(angle)` of a scalar",
-        "tan" => "`tan(angle)` of a scalar",
-        "asin" => "`asin(a)` of a scalar",
-        "acos" => "`acos(a)` of a scalar",
-        "atan2" => "`atan2(y, x)` of scalars",
-        "min" => "`min(a, b)` of scalars",
-        "max" => "`max(a, b)` of scalars",
-        "clamp" => "`clamp(a, low, high)` of scalars",
-        "hypot" => "`hypot(a, b)` of scalars",
-        "dot" => "`dot(a, b)` of vectors of equal length",
-        "cross" => "`cross(a, b)` of vectors of 3",
-        "outer" => "`outer(a, b)` of vectors",
-        "norm" => "`norm(v)` of a vector",
-        "hat" => "`hat(w)` of a vector of 3",
-        "vee" => "`vee(W)` of a 3×3 matrix",
-        "transpose" => "`transpose(M)` of a matrix",
-        "trace" => "`trace(M)` of a square matrix",
-        "diag" => "`diag(a, b, c)` of scalars or `diag(v)` of a vector",
-        "identity" => "`identity(n)` with a number n from 1 to 64, known at build time",
-        "rotx" => "`rotx(angle)`, `rotx(c, s)` or `rotx(q)` with an S1 coordinate q",
-        "roty" => "`roty(angle)`, `roty(c, s)` or `roty(q)` with an S1 coordinate q",
-        "rotz" => "`rotz(angle)`, `rotz(c, s)` or `rotz(q)` with an S1 coordinate q",
-        "rpy" => "`rpy(roll, pitch, yaw)` of scalars",
-        "axis_angle" => {
-            "`axis_angle(axis, angle)` of a unit vector of 3 and a scalar, `axis_angle(axis, c, s)` or `axis_angle(axis, q)` with an S1 coordinate q"
-        }
-        "rot" => "`rot(q)` of a unit quaternion, scalar first",
-        "qmul" => "`qmul(p, q)` of vectors of 4, scalar first",
-        "pose" => "`pose(R, p)` of a rotation matrix and a vector of 3",
-        "inverse" => "`inverse(P)` of a pose",
-        "translation" => "`translation(p)` of a vector of 3",
-        "angle" => "`angle(q)` of an S1 coordinate, or of a cosine and a sine in one vector",
-        "position" => "`position(f, p)` of a frame and a point of it",
-        "velocity" => "`velocity(f, p)` of a frame and a point of it",
-        "acceleration" => "`acceleration(f, p)` of a frame and a point of it",
-        "angular_velocity" => "`angular_velocity(f)` of a frame",
-        "angular_acceleration" => "`angular_acceleration(f)` of a frame",
-        name => {
-            let name = Function::named(name)?.name();
-            return Some(format!("`{name}(a)` of a scalar").into());
-        }
-    };
-    Some(text.into())
-}
 
 /// The value of a call; `free` where points are off the variety.
 fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Result<Value, Fault> {

@@ -3,14 +3,15 @@
 use super::declare::Declared;
 use super::expression::Evaluator;
 use super::reader::{Reader, is_taken};
-use super::scope::{NameKind, Scope};
+use super::scope::Scope;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::Vec3;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::invariants::{Invariant, Quantity};
 use crate::model::value::Value;
 use crate::model::{Frame, class};
-use crate::syntax::ast::{Condition, Conserved, Expr, Ident, ItemKind, Span, System};
+use crate::symbols::Kind;
+use crate::syntax::ast::{Condition, Conserved, Expr, ExprKind, Ident, ItemKind, Span, System};
 use crate::syntax::written;
 
 /// The names of all invariants but of the energy, which has a function anyway.
@@ -227,7 +228,16 @@ impl Reader<'_, '_> {
     }
 
     fn condition(&mut self, condition: &Condition) -> Option<Vec<(usize, Edge)>> {
-        self.settable(&condition.target)?;
+        let set = match &condition.target.kind {
+            ExprKind::Index(base, _) => &base.kind,
+            name => name,
+        };
+        let symbols = self.evaluator.scope.symbols;
+        match set {
+            ExprKind::Name(name) if symbols.kind(name).is_some_and(Kind::is_settable) => {}
+            // An error already.
+            _ => return None,
+        }
         let (target, value) = (
             self.evaluator.value(&condition.target),
             self.evaluator.value(&condition.value),
@@ -268,37 +278,5 @@ impl Reader<'_, '_> {
             }
         }
         Some(set)
-    }
-
-    /// Whether the name of a condition is that of an input or a parameter; reports it where not.
-    fn settable(&mut self, target: &Expr) -> Option<()> {
-        use crate::syntax::ast::ExprKind;
-        let (name, span) = match &target.kind {
-            ExprKind::Name(name) => (name, target.span),
-            ExprKind::Index(base, _) => match &base.kind {
-                ExprKind::Name(name) => (name, base.span),
-                _ => return None,
-            },
-            _ => return None,
-        };
-        let settable = |kind| matches!(kind, NameKind::Input | NameKind::Param);
-        let scope = self.evaluator.scope;
-        match scope.get(name) {
-            Some(entry) if settable(entry.kind) => Some(()),
-            Some(entry) => {
-                let message = format!(
-                    "`{name}` is {}, a claim can set inputs and parameters alone",
-                    entry.kind.describe()
-                );
-                let error = Diagnostic::new(span, message)
-                    .help("what holds at some states only is no invariant of the motion")
-                    .note(entry.span, "defined here");
-                self.evaluator.error(error)
-            }
-            None => {
-                let error = scope.unknown(span, name, Some("input or parameter"), settable);
-                self.evaluator.error(error)
-            }
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! Forces, torques, wrenches and generalised forces.
 
 use super::reader::Reader;
-use super::scope::NameKind;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{
     Vec3, add3, apply_transposed, apply3, multiply3, sub3, transpose3, zero3,
@@ -127,24 +126,8 @@ impl Reader<'_, '_> {
     pub fn generalized(&mut self, target: &Target, value: &Expr) -> Option<(usize, Vec<Edge>)> {
         let force = self.evaluator.value(value);
         let name = &target.name;
-        let scope = self.evaluator.scope;
-        let Some(group) = self
-            .declared
-            .velocities
-            .iter()
-            .find(|group| group.name == name.name)
-        else {
-            let is_velocity = |kind| kind == NameKind::Velocity;
-            if scope
-                .get(&name.name)
-                .is_some_and(|entry| is_velocity(entry.kind))
-            {
-                // Its own definition was in error.
-                return None;
-            }
-            let error = scope.unknown(name.span, &name.name, Some("velocity"), is_velocity);
-            return self.evaluator.error(error);
-        };
+        let groups = &self.declared.velocities;
+        let group = groups.iter().find(|group| group.name == name.name)?;
         if let Some(field) = &target.field {
             let message = format!("`{}` has no part `.{}`", name.name, field.name);
             let help = format!(

@@ -1,7 +1,7 @@
 //! From the description as written to the mechanical system that it means.
 //!
-//! Names are resolved, shapes checked, and every semantic error is found here: stages after this
-//! one cannot fail on user input.
+//! Names are resolved already. Shapes are checked and every other semantic error is found here: stages after
+//! this one cannot fail on user input.
 
 mod agreement;
 mod applied;
@@ -51,4 +51,3 @@ mod unused;
 mod variety;
 
 pub use build::{build, build_at};
-pub(crate) use functions::{names as function_names, usage as function_usage};

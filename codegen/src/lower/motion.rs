@@ -21,20 +21,6 @@ use crate::model::motion::Observed;
 use crate::model::motion::Quantity;
 use std::cell::RefCell;
 
-/// The functions; a value may share the name of one, as a coordinate `position` does.
-pub const FUNCTIONS: [&str; 5] = [
-    "position",
-    "velocity",
-    "acceleration",
-    "angular_velocity",
-    "angular_acceleration",
-];
-
-/// Whether a function is known only once the rates are.
-pub fn needs_rates(function: &str) -> bool {
-    function == "rate" || FUNCTIONS.contains(&function) && function != "position"
-}
-
 /// ẋ and ξ̇: what d/dt does to x and ξ.
 #[derive(Clone, Debug)]
 pub struct TimeDerivative {

@@ -137,7 +137,13 @@ impl Evaluator<'_> {
     pub fn in_axes(&mut self, call: &Expr, frame: &Expr) -> Option<Value> {
         let motion = match &call.kind {
             ExprKind::Call(function, arguments) => Quantity::named(&function.name)
-                .filter(|_| !self.scope.functions.contains_key(&function.name))
+                .filter(|_| {
+                    !self
+                        .scope
+                        .symbols
+                        .functions
+                        .contains_key(function.name.as_str())
+                })
                 .map(|_| arguments),
             _ => None,
         };

@@ -84,13 +84,7 @@ impl Reader<'_> {
         let value = self.evaluator.value(expr);
         let name = &target.name.name;
         let velocity = self.declared.velocities.iter().find(|g| g.name == *name);
-        let Some(group) = velocity.filter(|_| target.field.is_none()) else {
-            let message = format!("`{}` is no velocity", written(target));
-            return self.evaluator.error(
-                Diagnostic::new(target.span(), message)
-                    .help("the rate of a velocity is given: `prescribe rate(v) = a;`"),
-            );
-        };
+        let group = velocity.filter(|_| target.field.is_none())?;
         let value = value?;
         if !value.same_shape(&group.value) {
             let what = format!("the rate of `{name}`");

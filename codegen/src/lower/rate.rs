@@ -2,7 +2,6 @@
 
 use super::declare::{Declared, coordinate_value, size};
 use super::expression::Evaluator;
-use super::scope::NameKind;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::evaluate;
 use crate::diagnostics::Diagnostic;
@@ -57,33 +56,8 @@ pub fn part(
     declared: &Declared,
 ) -> Option<(std::ops::Range<usize>, Value)> {
     let name = &target.name;
-    let Some(coordinate) = declared.coordinates.iter().find(|c| c.name == name.name) else {
-        let error = match evaluator.scope.get(&name.name) {
-            // Its own definition was in error.
-            Some(entry) if matches!(entry.kind, NameKind::Coord(_)) => return None,
-            Some(entry) if entry.kind == NameKind::State => {
-                let message = format!(
-                    "`{}` is a state: its motion follows from its rate",
-                    name.name
-                );
-                let error = Diagnostic::new(name.span, message).note(entry.span, "declared here");
-                error.help(format!("write `rate {} = …;`", name.name))
-            }
-            Some(entry) => {
-                let kind = entry.kind.describe();
-                let message = format!("`{}` is {kind}, it has no rate of its own", name.name);
-                let error = Diagnostic::new(name.span, message).note(entry.span, "defined here");
-                error.help("rates belong to coordinates")
-            }
-            None => {
-                let is_coordinate = |kind| matches!(kind, NameKind::Coord(_));
-                evaluator
-                    .scope
-                    .unknown(name.span, &name.name, Some("coordinate"), is_coordinate)
-            }
-        };
-        return evaluator.error(error);
-    };
+    let mut coordinates = declared.coordinates.iter();
+    let coordinate = coordinates.find(|c| c.name == name.name)?;
     let entries = &declared.x[coordinate.offset..coordinate.offset + size(coordinate.kind)];
     let at = |from: usize, len: usize| coordinate.offset + from..coordinate.offset + from + len;
     let field = target.field.as_ref().map(|field| field.name.as_str());

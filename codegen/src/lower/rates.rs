@@ -8,14 +8,13 @@
 //! | any expression of coordinates | its derivative by the chain rule, entry by entry |
 
 use super::expression::Evaluator;
-use super::scope::NameKind;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{identity3, zero3};
 use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::motion::{Observed, Quantity};
 use crate::model::value::Value;
-use crate::syntax::ast::{CoordKind, Expr, ExprKind, Span};
+use crate::syntax::ast::{Expr, ExprKind, Span};
 
 impl Evaluator<'_> {
     /// `rate(…)` of an expression.
@@ -78,8 +77,8 @@ impl Evaluator<'_> {
                 .borrow_mut()
                 .extend(noted(self, &entries, &rates));
         }
-        let circle = matches!(&argument.kind, ExprKind::Name(name)
-            if scope.get(name).is_some_and(|e| e.kind == NameKind::Coord(CoordKind::S1)));
+        let circle =
+            matches!(&argument.kind, ExprKind::Name(name) if scope.symbols.is_circle(name));
         if let (true, Value::Vector(x), [c_dot, s_dot]) = (circle, &value, rates.as_slice()) {
             let graph = &mut *self.graph;
             let (gain, loss) = (graph.mul(x[0], *s_dot), graph.mul(x[1], *c_dot));

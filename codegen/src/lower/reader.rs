@@ -2,7 +2,6 @@
 
 use super::declare::Declared;
 use super::expression::Evaluator;
-use super::scope::NameKind;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::Vec3;
 use crate::diagnostics::Diagnostic;
@@ -100,23 +99,8 @@ impl Reader<'_, '_> {
             .error(Diagnostic::new(span, message).help(help))
     }
 
-    pub fn frame(&mut self, name: &Ident) -> Option<usize> {
-        if let Some(index) = self.frames.iter().position(|frame| frame.name == name.name) {
-            return Some(index);
-        }
-        let scope = self.evaluator.scope;
-        match scope.get(&name.name) {
-            // Its own definition was in error.
-            Some(entry) if entry.kind == NameKind::Frame => None,
-            _ => {
-                let is_frame = |kind| kind == NameKind::Frame;
-                let error = scope.unknown(name.span, &name.name, Some("frame"), is_frame);
-                self.evaluator.error(if name.name == "world" {
-                    error.help("write `frame ground = world;` and use `ground`")
-                } else {
-                    error
-                })
-            }
-        }
+    /// The frame of a name, unless its own definition was in error.
+    pub fn frame(&self, name: &Ident) -> Option<usize> {
+        self.frames.iter().position(|frame| frame.name == name.name)
     }
 }

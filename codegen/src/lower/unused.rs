@@ -1,24 +1,19 @@
 //! Declarations that nothing uses: parameters, constants, named expressions, functions, inputs and frames.
 //!
-//! Such a description is correct, so these are warnings. What is looked at is the text as written, before joints
+//! Such a description is correct, so these are warnings. What is looked at are declarations as written, before joints
 //! are written out: a frame that a joint moves is used by the joint. Names that begin with `_` are left alone.
 
 use crate::diagnostics::Diagnostic;
-use crate::syntax::ast::visit::{Visit, parts, visit};
-use crate::syntax::ast::{
-    Expr, ExprKind, Ident, Item, ItemKind, Origins, Span, System, Target, Wanted,
-};
+use crate::syntax::ast::{Ident, Item, ItemKind, Origins, Span, System};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A warning for every declaration whose name occurs nowhere else, in the order of the text; `used` are further names
+/// A warning for every declaration whose name occurs nowhere else, in the order of the text; `used` are the names
 /// that are used. What stands in several copies is used where one of them is, and what is included need not be.
 pub fn warnings(system: &System, used: &BTreeSet<String>) -> Vec<Diagnostic> {
-    let mut uses = Uses {
-        origins: Some(&system.origins),
-        ..Uses::default()
+    let uses = Uses {
+        names: used,
+        origins: &system.origins,
     };
-    uses.names.extend(used.iter().cloned());
-    system.items.iter().for_each(|item| uses.item(item));
     let mut found = Vec::new();
     let mut placed = BTreeSet::new();
     let mut frames: BTreeMap<&str, usize> = BTreeMap::new();
@@ -77,18 +72,17 @@ fn frame(item: &Item) -> Option<&str> {
 }
 
 /// The names that statements mention, but for what they declare.
-#[derive(Default)]
 struct Uses<'a> {
-    names: BTreeSet<String>,
+    names: &'a BTreeSet<String>,
     /// How names are written.
-    origins: Option<&'a Origins>,
+    origins: &'a Origins,
 }
 
 impl Uses<'_> {
     /// A warning, or the place of what is used.
     fn unused(&self, name: &Ident, kind: &str) -> Result<Diagnostic, Span> {
         let Ident { name, span } = name;
-        let written = self.origins.and_then(|origins| origins.written(name));
+        let written = self.origins.written(name);
         let last = written.map(|name| name.rsplit_once('.').map_or(name, |(_, last)| last));
         let begins = last.unwrap_or(name).starts_with('_');
         if begins || self.names.contains(name.as_str()) {
@@ -100,66 +94,14 @@ impl Uses<'_> {
             Some(_) => warning.help("remove it, or let its name begin with `_`"),
         })
     }
-
-    fn item(&mut self, item: &Item) {
-        match &item.kind {
-            // A frame that a joint moves is used by the joint.
-            ItemKind::Joint(joint) => _ = self.names.insert(joint.moves.name.clone()),
-            ItemKind::Prescribe { target, .. } => _ = self.names.insert(target.name.name.clone()),
-            ItemKind::Function(function) => {
-                return self.within(item, function.parameters.iter().map(|(name, _)| name));
-            }
-            ItemKind::External(function) => return self.within(item, &function.parameters),
-            // The functions that are asked for are no names of the description; the frames of Jacobians are.
-            ItemKind::Generate(all) => {
-                for wanted in all {
-                    if let Wanted::Jacobian { frame, .. } = wanted {
-                        self.names.insert(frame.name.clone());
-                    }
-                }
-                return;
-            }
-            _ => {}
-        }
-        visit(&mut item.clone(), self);
-    }
-
-    /// What the statement of a function mentions, but for its parameters.
-    fn within<'p>(&mut self, item: &Item, parameters: impl IntoIterator<Item = &'p Ident>) {
-        let mut inner = Uses::default();
-        visit(&mut item.clone(), &mut inner);
-        for parameter in parameters {
-            inner.names.remove(&parameter.name);
-        }
-        self.names.extend(inner.names);
-    }
-}
-
-impl Visit for Uses<'_> {
-    fn declares(&mut self, _: &mut Ident, _: bool) {}
-
-    fn uses(&mut self, name: &mut Ident) {
-        self.names.insert(name.name.clone());
-    }
-
-    // Rates, starts and forces are said of what there is; they use nothing.
-    fn target(&mut self, _: &mut Target) {}
-
-    fn expr(&mut self, expr: &mut Expr) {
-        match &expr.kind {
-            ExprKind::Name(name) => _ = self.names.insert(name.clone()),
-            ExprKind::Call(function, _) => _ = self.names.insert(function.name.clone()),
-            _ => {}
-        }
-        parts(expr).into_iter().for_each(|part| self.expr(part));
-    }
-
-    fn place(&mut self, _: &mut Span) {}
 }
 
 #[cfg(test)]
 mod tests {
     use super::warnings;
+    use crate::diagnostics::Report;
+    use crate::lower::joints;
+    use crate::symbols;
     use crate::syntax::parse_text;
 
     /// What is said of a description with further statements.
@@ -168,7 +110,11 @@ mod tests {
             "system A {{ coord q; velocity w; rate q = w; kinetic w^2 / 2; {statements} }}"
         );
         let system = parse_text(&text).expect("a description");
-        let list = warnings(&system, &Default::default()).into_iter();
+        let mut report = Report::new();
+        let written = joints::expand(&system, &mut report);
+        let used = symbols::resolve(&written, &mut report).used;
+        assert!(report.is_empty(), "{text}: {report:?}");
+        let list = warnings(&system, &used).into_iter();
         list.map(|warning| warning.message).collect()
     }
 

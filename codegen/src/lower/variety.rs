@@ -13,6 +13,7 @@ use crate::model::layout::{Block, blocks, constraint};
 use crate::model::points::{HIGHEST_DEGREE, Points};
 use crate::model::value::Value;
 use crate::model::{class, samples};
+use crate::symbols::Resolved;
 use crate::syntax::ast::{Expr, ItemKind, Span, System};
 use std::collections::BTreeMap;
 
@@ -51,15 +52,15 @@ impl Variety {
     ///
     /// Errors are kept for [`Variety::check`]: all that is read here is read again on X, where what is equal modulo φ is
     /// one node, and where the same mistakes are reported.
-    pub fn read(system: &System, seed: u64, report: &mut Report) -> Self {
+    pub fn read(system: &System, names: &Resolved, seed: u64, report: &mut Report) -> Self {
         let mut random = Random::new(seed ^ 0xf4ee);
         let mut graph = Graph::new(seed ^ 0xf4ee, class::PARAM);
         let mut next = |_: &mut Graph| -> Fp { random.element() };
-        let mut scope = Scope::new(system, true);
+        let mut scope = Scope::new(system, &names.symbols, true);
         let mut before = Report::new();
         let declared = declare(system, &mut graph, &mut next, &mut scope, &mut before);
         graph.set_reals(samples::anywhere(graph.symbols().len(), seed));
-        Names::read(system, &mut graph, &mut scope, &mut before);
+        Names::default().read(&names.order.before, &mut graph, &mut scope, &mut before);
         let before = before.finish().err().unwrap_or_default();
         let (mut rows, mut unread, mut complete) = (Vec::new(), BTreeMap::new(), !declared.faulty);
         for (index, left, right) in written(system) {

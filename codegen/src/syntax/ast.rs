@@ -57,6 +57,15 @@ pub enum ShapeKind {
 }
 
 impl ShapeKind {
+    /// The shape in words.
+    pub fn describe(self) -> String {
+        match self {
+            ShapeKind::Scalar => "a scalar".into(),
+            ShapeKind::Vector(n) => format!("a vector of {n}"),
+            ShapeKind::Matrix(n) | ShapeKind::Symmetric(n) => format!("a {n}×{n} matrix"),
+        }
+    }
+
     /// What stands behind a name: `: vec3`, nothing for a scalar.
     pub fn annotation(self) -> String {
         match self {

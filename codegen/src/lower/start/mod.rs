@@ -9,7 +9,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::declare::Declared;
 use crate::lower::expression::Evaluator;
 use crate::lower::rate::{part, written};
-use crate::lower::scope::{NameKind, Scope};
+use crate::lower::scope::Scope;
 use crate::model::class;
 use crate::model::closure::{Closure, Open};
 use crate::model::layout::{blocks, identity};
@@ -289,31 +289,8 @@ fn place(
             false,
         ));
     }
-    if declared.coordinates.iter().any(|c| c.name == *name) {
-        let (range, wanted) = part(target, evaluator, declared)?;
-        return Some((range, wanted, true));
-    }
-    let accept = |kind: NameKind| matches!(kind, NameKind::Coord(_) | NameKind::Velocity);
-    if evaluator
-        .scope
-        .get(name)
-        .is_some_and(|entry| accept(entry.kind))
-    {
-        // Its own definition was in error.
-        return None;
-    }
-    if let Some(entry) = evaluator.scope.get(name)
-        && entry.kind == NameKind::State
-    {
-        let message = format!("the start of the state `{name}` stands in its declaration");
-        let error = Diagnostic::new(target.name.span, message).note(entry.span, "declared here");
-        return evaluator.error(error.help(format!("write `state {name} = …;`")));
-    }
-    let wanted = Some("coordinate or velocity");
-    let error = evaluator
-        .scope
-        .unknown(target.name.span, name, wanted, accept);
-    evaluator.error(error)
+    let (range, wanted) = part(target, evaluator, declared)?;
+    Some((range, wanted, true))
 }
 
 impl Declared {
