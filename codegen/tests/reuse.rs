@@ -497,7 +497,7 @@ fn names_stay_when_something_is_added() {
 fn the_book_shows_a_description() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/book/src/mechanisms.md");
     let page = std::fs::read_to_string(path).expect("a page");
-    let mut blocks = page.split("```text\n").skip(1);
+    let mut blocks = page.split("```eom\n").skip(1);
     let block = blocks
         .find(|block| block.contains("component Rope"))
         .expect("the swing");
