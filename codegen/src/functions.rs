@@ -155,7 +155,8 @@ table! {
         "generalised force that keeps an inactive velocity at zero, a force where B ξ is a speed.",
     ]
     ProjectPosition "project_position" (Coordinates) Vector System true false [
-        "The step along A that closes the loops φ(x) = 0 to first order, −M⁻¹ Bᵀ S⁻¹ φ with S = B M⁻¹ Bᵀ.",
+        "The step along A that closes the loops φ(x) = 0 to first order and keeps to every other row of B,",
+        "−M⁻¹ Bᵀ S⁻¹ φ with S = B M⁻¹ Bᵀ, where φ of a row that is no loop is 0.",
     ]
     ProjectVelocity "project_velocity" (Coordinates, Velocities) Vector System true false [
         "The velocities with B ξ = 0 that are nearest in kinetic energy, ξ − M⁻¹ Bᵀ S⁻¹ B ξ.",

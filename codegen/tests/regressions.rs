@@ -357,3 +357,83 @@ fn runs_are_led_back_to_sliders() {
     let gears = generated(&text("q = 2 * p + x"));
     assert_eq!(gears.active.n(), 2);
 }
+
+/// Terms without a velocity may stand inside of products: a spin that is known in part, beside Euler's equations of
+/// the whole spin, and a constraint of which a moving factor is taken out.
+#[test]
+fn terms_without_a_velocity_stand_in_products() {
+    let spin = "[w[1] + 0.3 * cos(t), w[2], w[3]]";
+    let (t, w) = (0.7_f64, [0.4, -0.8, 1.1]);
+    let full = [w[0] + 0.3 * t.cos(), w[1], w[2]];
+    // Θ = diag(2, 3, 4): Θ dΩ/dt = (Θ Ω) × Ω, and Ω₁ = w₁ + 0.3 cos t.
+    let expected = [
+        (3.0 - 4.0) * full[1] * full[2] / 2.0 + 0.3 * t.sin(),
+        (4.0 - 2.0) * full[2] * full[0] / 3.0,
+        (2.0 - 3.0) * full[0] * full[1] / 4.0,
+    ];
+    for (kind, rate, x) in [
+        (
+            "S3",
+            format!("qmul(q, [0, {spin}[1], {spin}[2], {spin}[3]]) / 2"),
+            &[t, 0.5, -0.5, 0.5, 0.5][..],
+        ),
+        (
+            "SO3",
+            format!("q * hat({spin})"),
+            &[t, 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        ),
+    ] {
+        let frame = if kind == "S3" { "rot(q)" } else { "q" };
+        let of = generated(&format!(
+            "system A {{ time t; coord q: {kind}; velocity w: vec3; rate q = {rate};
+                frame f = pose({frame}, [0, 0, 0]); body on f {{ mass 1; inertia diag(2, 3, 4) about com; }} }}"
+        ));
+        let found = value(&of, "accel", [x, &w, &[], &[]]);
+        for (found, expected) in found.iter().zip(expected) {
+            assert!(
+                (found - expected).abs() < 1e-14,
+                "{kind}: {found} {expected}"
+            );
+        }
+    }
+    let text = |time: &str, constraint: &str| {
+        format!(
+            "system A {{ {time} coord x, y; velocity u, v; rate x = u, y = v; kinetic u^2 / 2 + v^2 / 2;
+                nonholonomic {constraint}; start x = 1; start v = 2; }}"
+        )
+    };
+    // v = x (u + sin t): one freedom u of mass 1 + x², moved by d/dt of x (u + sin t) along it.
+    let of = generated(&text("time t;", "x * (u + sin(t)) = v"));
+    let [x, u] = [1.3, 0.4];
+    let other = u * (u + t.sin()) + x * t.cos();
+    let expected = -x * other / (1.0 + x * x);
+    let found = value(&of, "accel", [&[t, x, 0.2], &[u], &[], &[]]);
+    assert!((found[0] - expected).abs() < 1e-14, "{found:?} {expected}");
+    // Without time, it is said what is wrong with the same text.
+    let errors = from_text(&text("", "x * (u + 3) = y * v")).expect_err("no time");
+    assert!(errors[0].message.contains("a term without a velocity"));
+}
+
+/// d/dt (B ξ) = −λ B ξ where a constraint of velocities is stabilised, and φ̈ = −2 λ φ̇ − λ² φ where a loop is: either
+/// violation decays like exp(−λ t).
+#[test]
+fn violations_decay_at_the_rate_that_is_given() {
+    let (x, xi) = ([0.4, 0.1], [0.7, -0.3]);
+    let accel = |kept: &str| {
+        let of = generated(&format!(
+            "system A {{ coord x, y; velocity u, v; rate x = u, y = v; kinetic u^2 / 2 + v^2;
+                start x = 1; {kept} }}"
+        ));
+        value(&of, "accel", [&x, &xi, &[], &[]])
+    };
+    // s = x u + y v.
+    let found = accel("nonholonomic x * u + y * v = 0 stabilized 5;");
+    let s = x[0] * xi[0] + x[1] * xi[1];
+    let s_dot = x[0] * found[0] + x[1] * found[1] + xi[0] * xi[0] + xi[1] * xi[1];
+    assert!((s_dot + 5.0 * s).abs() < 1e-14, "{s_dot} {s}");
+    // φ = x² + y² − 1, of the same directions.
+    let found = accel("loop x^2 + y^2 = 1 stabilized 5;");
+    let phi = x[0] * x[0] + x[1] * x[1] - 1.0;
+    let twice = 2.0 * (x[0] * found[0] + x[1] * found[1] + xi[0] * xi[0] + xi[1] * xi[1]);
+    assert!((twice + 10.0 * 2.0 * s + 25.0 * phi).abs() < 1e-13);
+}

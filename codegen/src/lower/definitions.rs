@@ -1,11 +1,11 @@
 //! Velocities defined by rates: rows of Y with ξ = Y(x) ẋ, KR18 (5).
 
+use super::affine::Affine;
 use super::declare::{Declared, shape_fits};
 use super::expression::Evaluator;
 use super::motion::TimeDerivative;
 use super::scope::Scope;
 use super::time;
-use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Random;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
@@ -132,30 +132,22 @@ fn define(
         _ => return None,
     };
     let graph = &mut *evaluator.graph;
-    let mut columns: Vec<Derivation> = x_dot
-        .iter()
-        .map(|rate| Derivation::new([(rate.node(), graph.one())]))
-        .collect();
     let mut rows = Vec::new();
-    for &entry in &entries {
-        let mut row: Vec<Edge> = columns.iter_mut().map(|c| c.of(graph, entry)).collect();
-        let whole = graph.dot(&row, x_dot);
-        let mut rest = graph.sub(entry, whole);
+    for mut affine in Affine::of_each(graph, &entries, x_dot) {
         // ξ = Y ẋ + y(x, t): the term without a rate goes with ṫ.
         if let (Some(clock), Some((_, given))) =
-            (declared.clock, time::carried(graph, declared, rest))
+            (declared.clock, time::carried(graph, declared, &affine))
         {
-            row[clock.x] = graph.add(row[clock.x], given);
-            rest = graph.zero();
+            affine.slopes[clock.x] = graph.add(affine.slopes[clock.x], given);
+            affine.rest = graph.zero();
         }
-        let found = row
-            .iter()
-            .chain([&rest])
-            .fold(0, |found, edge| found | graph.class(edge.node()));
-        if rest.abs() != graph.zero() || found & !(class::PARAM | class::CONFIGURATION) != 0 {
+        let (slopes, rest) = affine.classes(graph);
+        let found = slopes | rest;
+        if affine.rest.abs() != graph.zero() || found & !(class::PARAM | class::CONFIGURATION) != 0
+        {
             return evaluator.error(not_linear(name, expr, found));
         }
-        rows.push(row);
+        rows.push(affine.slopes);
     }
     Some(rows)
 }

@@ -3,6 +3,7 @@
 //! Names are resolved already. Shapes are checked and every other semantic error is found here: stages after
 //! this one cannot fail on user input.
 
+mod affine;
 mod agreement;
 mod applied;
 mod arithmetic;

@@ -1,6 +1,7 @@
 //! Constraints B(x) ξ = 0 on the velocities of a frame: inactive velocities, nonholonomic
 //! constraints, and the rates of closed loops.
 
+use super::affine::Affine;
 use super::declare::Declared;
 use super::expression::Evaluator;
 use super::rate::Kinematics;
@@ -148,21 +149,12 @@ impl Reader<'_> {
         for edge in entries {
             // B ξ = b(x, t): the term without a velocity goes with ξ⁰.
             let edge = time::linear(graph, self.declared, edge);
-            let row: Vec<Edge> = self
-                .declared
-                .xi
-                .iter()
-                .map(|xi| Derivation::new([(xi.node(), graph.one())]).of(graph, edge))
-                .collect();
-            let whole = graph.dot(&row, &self.declared.xi);
-            let class = row
-                .iter()
-                .fold(0, |class, entry| class | graph.class(entry.node()));
+            let affine = Affine::of(graph, edge, &self.declared.xi);
+            let (class, rest) = affine.classes(graph);
+            let (row, whole) = (affine.slopes, affine.linear);
             if whole != edge || class & !(class::PARAM | class::CONFIGURATION) != 0 {
-                let rest = graph.sub(edge, whole);
-                let without =
-                    class & class::VELOCITY == 0 && graph.class(rest.node()) & class::VELOCITY == 0;
-                let inputs = (class | graph.class(rest.node())) & class::INPUT != 0;
+                let without = (class | rest) & class::VELOCITY == 0;
+                let inputs = (class | rest) & class::INPUT != 0;
                 let message = if inputs {
                     "a nonholonomic constraint cannot depend on inputs or states"
                 } else if without {

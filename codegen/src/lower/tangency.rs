@@ -1,10 +1,10 @@
 //! What ẋ = A ξ has to satisfy: linear in ξ, tangent to φ = 0, and A a basis of the tangent space.
 
+use super::affine::Affine;
 use super::declare::Declared;
 use super::rate::{Rate, rate_help, velocity_for};
 use super::time;
 use super::variety::{Origin, Variety};
-use crate::algebra::derivation::Derivation;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::rank;
@@ -28,29 +28,23 @@ pub fn linear_part(
     for rate in rates.iter_mut().flatten() {
         rate.edge = time::linear(graph, declared, rate.edge);
     }
+    let edges: Vec<Edge> = rates.iter().flatten().map(|rate| rate.edge).collect();
+    let mut parts = Affine::of_each(graph, &edges, &declared.xi).into_iter();
     let mut a = vec![Vec::new(); rates.len()];
-    for &xi in &declared.xi {
-        let mut derivation = Derivation::new([(xi.node(), graph.one())]);
-        for (row, rate) in a.iter_mut().zip(rates.iter()) {
-            row.extend(rate.as_ref().map(|rate| derivation.of(graph, rate.edge)));
-        }
-    }
     // One error a statement.
     let mut bad: Vec<usize> = Vec::new();
-    for (row, rate) in a.iter().zip(rates.iter()) {
+    for (row, rate) in a.iter_mut().zip(rates.iter()) {
         let Some(rate) = rate else { continue };
-        let whole = graph.dot(row, &declared.xi);
-        let class = row
-            .iter()
-            .fold(0, |class, edge| class | graph.class(edge.node()));
-        if (whole == rate.edge && class & !(class::PARAM | class::CONFIGURATION) == 0)
+        let Some(affine) = parts.next() else { continue };
+        let (class, rest) = affine.classes(graph);
+        let linear = affine.linear == rate.edge;
+        *row = affine.slopes;
+        if (linear && class & !(class::PARAM | class::CONFIGURATION) == 0)
             || bad.contains(&rate.item)
         {
             continue;
         }
         bad.push(rate.item);
-        let rest = graph.sub(rate.edge, whole);
-        let rest = graph.class(rest.node());
         let Some(span) = value_of(system, rate.item).map(|value| value.span) else {
             continue;
         };

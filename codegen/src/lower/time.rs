@@ -5,6 +5,7 @@
 //! linear or quadratic as it is without time, and γ, M and Γ of the extended frame follow from KR18 (12), (20) and
 //! (23). ξ⁰ = 1 is put in when the system is reduced to the velocities that are free.
 
+use super::affine::Affine;
 use super::declare::Declared;
 use super::quadratic::is_quadratic;
 use crate::algebra::derivation::Derivation;
@@ -103,29 +104,25 @@ pub fn clock(system: &System, declared: &Declared) -> Option<Clock> {
     })
 }
 
-/// The expression e₀ of what is linear in ξ but for e₀, which contains neither velocities nor inputs: it becomes
-/// e₀ ξ⁰. `None` where there is no time, or the rest is of another kind.
-pub fn carried(graph: &mut Graph, declared: &Declared, rest: Edge) -> Option<(usize, Edge)> {
+/// What a function that is linear in ξ has without a velocity, which then goes with ξ⁰, by the place of ξ⁰. `None`
+/// where there is no time, or the rest depends on more than coordinates and parameters.
+pub fn carried(graph: &Graph, declared: &Declared, affine: &Affine) -> Option<(usize, Edge)> {
     let clock = declared.clock?;
-    let found = graph.class(rest.node()) & !(class::PARAM | class::CONFIGURATION);
-    (found == 0).then_some((clock.xi, rest))
+    let (_, found) = affine.classes(graph);
+    (found & !(class::PARAM | class::CONFIGURATION) == 0).then_some((clock.xi, affine.rest))
 }
 
 /// A function that is linear in ξ but for a term without a velocity, as a linear one: that term goes with ξ⁰. Without
 /// time, and where it is of another kind, the function itself.
 pub fn linear(graph: &mut Graph, declared: &Declared, rate: Edge) -> Edge {
-    let Some(clock) = declared.clock else {
+    if declared.clock.is_none() {
         return rate;
-    };
-    let slopes: Vec<Edge> = (declared.xi.iter())
-        .map(|xi| Derivation::new([(xi.node(), graph.one())]).of(graph, rate))
-        .collect();
-    let whole = graph.dot(&slopes, &declared.xi);
-    let rest = graph.sub(rate, whole);
-    match carried(graph, declared, rest) {
-        Some((_, rest)) => {
-            let moved = graph.mul(rest, declared.xi[clock.xi]);
-            graph.add(whole, moved)
+    }
+    let affine = Affine::of(graph, rate, &declared.xi);
+    match carried(graph, declared, &affine) {
+        Some((xi, rest)) => {
+            let moved = graph.mul(rest, declared.xi[xi]);
+            graph.add(affine.linear, moved)
         }
         None => rate,
     }

@@ -30,7 +30,8 @@ pub struct Pfaffian {
     pub shift: Edge,
     /// φ(x) of a loop, in units of the description; 0 otherwise.
     pub residual: Edge,
-    /// λ (1/s) in d/dt (B ξ) = −2 λ B ξ − λ² φ; nothing is added where absent.
+    /// λ (1/s), at which a violation decays: d/dt (B ξ) = −λ B ξ, or −2 λ B ξ − λ² φ of a loop. Nothing is added where
+    /// absent.
     pub stabilized: Option<Edge>,
     /// As it was written.
     pub written: String,

@@ -16,7 +16,8 @@ pub struct Saddle {
     pub multipliers: Vec<Edge>,
 }
 
-/// The right side of B ξ̇ = … where s = B ξ + b decays: −Ḃ ξ − ḃ − 2 λ s − λ² φ.
+/// The right side of B ξ̇ = … with s = B ξ + b: −Ḃ ξ − ḃ, and with it what makes a violation decay like exp(−λ t), −λ s,
+/// or −2 λ s − λ² φ where s is the rate of an equation φ = 0 of coordinates.
 pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
     let constraints = model.constraints.clone();
     constraints
@@ -26,8 +27,9 @@ pub fn right_side(model: &mut Model, calculus: &mut Calculus) -> Vec<Edge> {
             let speed = constraint.speed(graph, &model.xi);
             let mut sum = calculus.rate(graph, speed);
             if let Some(lambda) = constraint.stabilized {
-                let two = graph.ratio(2, 1);
-                let damping = graph.mul(two, lambda);
+                let order = if constraint.is_holonomic() { 2 } else { 1 };
+                let order = graph.ratio(order, 1);
+                let damping = graph.mul(order, lambda);
                 let damped = graph.mul(damping, speed);
                 let stiffness = graph.mul(lambda, lambda);
                 let pulled = graph.mul(stiffness, constraint.residual);
@@ -177,7 +179,8 @@ impl Factored {
 /// What leads back to the constraints.
 #[derive(Clone, Debug)]
 pub struct Projections {
-    /// −M⁻¹ Bᵀ S⁻¹ φ(x), with what has a given rate held: the step along A that closes the loops, to first order.
+    /// −M⁻¹ Bᵀ S⁻¹ φ(x), with what has a given rate held: the step along A that closes the loops to first order, and that
+    /// nonholonomic constraints allow.
     pub position: Vec<Edge>,
     /// ξ − M⁻¹ Bᵀ S⁻¹ B ξ: the velocities nearest in kinetic energy that satisfy B ξ = 0.
     pub velocity: Vec<Edge>,

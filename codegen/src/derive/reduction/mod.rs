@@ -71,7 +71,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
         .filter(|&i| solved.iter().all(|&(_, velocity)| velocity != i))
         .collect();
     let (kept, rank) = keep(&full, &rows, &solved)?;
-    accelerated(&full, &active)?;
+    accelerated(&full, &rows, &kept, &active)?;
     let drives = |c: &Pfaffian| matches!(c.kind, Kind::Drive { .. });
     let driven = model.constraints.iter().any(drives);
     // Where drives leave nothing to move by itself, the equations of motion give the forces that they need.
@@ -286,17 +286,53 @@ fn entry_name(model: &Model, place: usize) -> String {
         .map_or(String::new(), |s| s.name.clone())
 }
 
-/// Velocities whose rates are given have to stay.
-fn accelerated(full: &Model, active: &[usize]) -> Result<(), Diagnostic> {
-    let mut velocities = full.accelerated.iter().map(|(velocity, _)| velocity);
-    let Some(&velocity) = velocities.find(|velocity| !active.contains(velocity)) else {
-        return Ok(());
-    };
-    let error = Diagnostic::new(
-        full.velocity_spans[velocity],
-        "the rate of this velocity is prescribed, and the constraints give the velocity by others",
-    );
-    Err(error.help("prescribe the rate of one that stays free"))
+/// Velocities whose rates are given have to stay, and to be free at the start of what is kept.
+fn accelerated(
+    full: &Model,
+    rows: &[Vec<Edge>],
+    kept: &[usize],
+    active: &[usize],
+) -> Result<(), Diagnostic> {
+    let edges: Vec<Edge> = (kept.iter())
+        .flat_map(|&row| active.iter().map(move |&i| rows[row][i]))
+        .collect();
+    let values = evaluate(&full.graph, &edges, &start_numbers(full));
+    let mut given: Vec<Vec<f64>> = values.chunks(active.len().max(1)).map(unit).collect();
+    let mut rank = independent(given.clone()).len();
+    for &(velocity, _) in &full.accelerated {
+        let place = active.iter().position(|&i| i == velocity);
+        if let Some(place) = place {
+            let entries = (0..active.len()).map(|i| f64::from(i == place));
+            given.push(entries.collect());
+            if independent(given.clone()).len() > rank {
+                rank += 1;
+                continue;
+            }
+        }
+        let name = entry_name(full, velocity);
+        let message = match place {
+            Some(_) => format!(
+                "the rate of `{name}` is prescribed, and the constraints leave it none of its own at the start"
+            ),
+            None => format!(
+                "the rate of `{name}` is prescribed, and the constraints give this velocity by others"
+            ),
+        };
+        let error = Diagnostic::new(full.velocity_spans[velocity], message);
+        return Err(error.help("prescribe the rate of a velocity that the constraints, and the rates that are prescribed before it, leave free"));
+    }
+    Ok(())
+}
+
+/// A row over its length; a row of zeros as it is.
+fn unit(row: &[f64]) -> Vec<f64> {
+    let length = row.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let divided = row.iter().map(|v| v / length);
+    if length > 0.0 {
+        divided.collect()
+    } else {
+        row.to_vec()
+    }
 }
 
 fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
@@ -365,7 +401,21 @@ fn keep(
     let edges: Vec<Edge> = open.iter().flat_map(|&i| moving(&rows[i])).collect();
     let values = evaluate(&model.graph, &edges, &start_numbers(model));
     let columns = moving(&model.xi).len();
-    let mut left: Vec<Vec<f64>> = values.chunks(columns).map(<[f64]>::to_vec).collect();
+    let left: Vec<Vec<f64>> = values.chunks(columns).map(<[f64]>::to_vec).collect();
+    let independent: Vec<usize> = (independent(left).into_iter())
+        .map(|row| open[row])
+        .collect();
+    let redundant_row = open
+        .iter()
+        .find(|i| !independent.contains(i) && model.constraints[**i].kind != Kind::Loop);
+    match redundant_row {
+        Some(&row) => Err(redundant(&model.constraints, row, " at the start")),
+        None => Ok((open, independent.len())),
+    }
+}
+
+/// Rows that are independent in numbers, the largest first: as many as there are.
+fn independent(mut left: Vec<Vec<f64>>) -> Vec<usize> {
     let norm = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>().sqrt();
     let most = left.iter().map(|row| norm(row)).fold(0.0, f64::max);
     let mut independent = Vec::new();
@@ -376,9 +426,9 @@ fn keep(
             _ => Some((i, size)),
         });
         let Some((row, size)) = largest.filter(|(_, size)| *size > REDUNDANT * most) else {
-            break;
+            return independent;
         };
-        independent.push(open[row]);
+        independent.push(row);
         let unit: Vec<f64> = left[row].iter().map(|v| v / size).collect();
         for other in &mut left {
             let along: f64 = other.iter().zip(&unit).map(|(a, b)| a * b).sum();
@@ -388,12 +438,5 @@ fn keep(
                 .for_each(|(a, b)| *a -= along * b);
         }
         left[row].fill(0.0);
-    }
-    let redundant_row = open
-        .iter()
-        .find(|i| !independent.contains(i) && model.constraints[**i].kind != Kind::Loop);
-    match redundant_row {
-        Some(&row) => Err(redundant(&model.constraints, row, " at the start")),
-        None => Ok((open, independent.len())),
     }
 }
