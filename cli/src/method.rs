@@ -298,6 +298,14 @@ where
         }
     }
 
+    fn stays_near(&self) -> bool {
+        match self {
+            Stepper::General(method) => Method::<Sys>::stays_near(method),
+            Stepper::Slide | Stepper::Buss(_) => false,
+            _ => true,
+        }
+    }
+
     fn step<U>(
         &self,
         system: &Sys,

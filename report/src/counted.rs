@@ -107,6 +107,11 @@ impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
     }
 
     #[inline]
+    fn project_coordinates(&self, x: &Self::Coordinates) -> Option<Self::Coordinates> {
+        self.system.project_coordinates(x)
+    }
+
+    #[inline]
     fn project_position(
         &self,
         x: &Self::Coordinates,

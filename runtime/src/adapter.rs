@@ -14,7 +14,7 @@ use core::cell::Cell;
 
 use crate::adaptive::control::power;
 use crate::error::StepError;
-use crate::integrate::{acceleration, project};
+use crate::integrate::{acceleration, lead_back, project};
 use crate::manifold;
 use crate::scalar::Scalar;
 use crate::state::State;
@@ -71,6 +71,7 @@ where
         manifold::normalise(self.system.blocks(), x.as_mut());
         let mut state = State { t, x, xi };
         if state.is_finite() {
+            lead_back(self.system, &mut state);
             project(self.system, &mut state)?;
             Ok(state)
         } else {

@@ -8,8 +8,8 @@ use crate::store::is_finite;
 use crate::system::System;
 use core::ops::ControlFlow;
 
-/// Moves `state` by one step of length `h`, which may be negative or zero, and projects it onto the constraints that
-/// multipliers enforce. `inputs(t, x, ξ)` returns u.
+/// Moves `state` by one step of length `h`, which may be negative or zero, and projects it onto the constraints that no
+/// chart keeps: those of the coordinates, and those that multipliers enforce. `inputs(t, x, ξ)` returns u.
 ///
 /// # Errors
 /// [`StepError`]; `state` is then unchanged.
@@ -27,9 +27,27 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     let mut next = method.step(system, state, h, inputs)?;
+    if !method.stays_near() {
+        lead_back(system, &mut next);
+    }
     project(system, &mut next)?;
     *state = next;
     Ok(())
+}
+
+/// Leads x back to what no chart keeps of φ(x) = 0, by one Newton step; whether there is such a constraint.
+#[inline]
+pub(crate) fn lead_back<Sys>(system: &Sys, state: &mut State<Sys>) -> bool
+where
+    Sys: System + ?Sized,
+{
+    let Some(step) = system.project_coordinates(&state.x) else {
+        return false;
+    };
+    for (entry, &towards) in state.x.as_mut().iter_mut().zip(step.as_ref()) {
+        *entry += towards;
+    }
+    true
 }
 
 /// Moves a state onto the constraints that multipliers keep: loops closed by one Newton step, velocities
@@ -131,7 +149,8 @@ where
     let mut force = None;
     for index in 1..=grid.count {
         let mut next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
-        if project(system, &mut next)? {
+        let led_back = !method.stays_near() && lead_back(system, &mut next);
+        if project(system, &mut next)? || led_back {
             force = None;
         }
         *state = next;

@@ -108,6 +108,14 @@ pub trait System {
     /// KR18 (8) with Λ = λ I, φ decays like exp(−λ t).
     fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates;
 
+    /// −Ψ(x) φ(x) as [`correction`](System::correction) has it, by which integrators lead x back to φ = 0 after every
+    /// step; `None` where charts keep all of φ.
+    #[inline]
+    fn project_coordinates(&self, x: &Self::Coordinates) -> Option<Self::Coordinates> {
+        let _ = x;
+        None
+    }
+
     /// The displacement along A, in units of velocity times time, that closes to first order the loops which multipliers
     /// enforce; `None` if there are no such loops.
     ///

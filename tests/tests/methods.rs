@@ -4,12 +4,16 @@ use hamel::methods::{Gauss6, General, Scheme, Splitting};
 use hamel::rotor::{Rotor, Symmetry};
 use hamel::{Canonical, Method, Split, State, System, integrate};
 use hamel_tests::benchmark_top::BenchmarkTop;
+use hamel_tests::four_bar::FourBar;
 use hamel_tests::free_body::FreeBody;
 use hamel_tests::free_body_both::FreeBodyBoth;
 use hamel_tests::free_body_world::WorldBody;
+use hamel_tests::heavy_top_columns::ColumnTop;
+use hamel_tests::pendulum::Pendulum;
 use hamel_tests::planar_world::PlanarWorld;
 use hamel_tests::principal_axes::PrincipalAxes;
 use hamel_tests::reference::relative;
+use hamel_tests::rod_particles::RodParticles;
 use hamel_tests::spherical_bob::SphericalBob;
 use hamel_tests::two_bodies::TwoBodies;
 
@@ -87,4 +91,45 @@ fn chains_of_bodies_run_by_gauss() {
     let expected = end(&system, General::Rkmk8, 400, 0.5, &[]);
     let found = end(&system, Gauss6, 400, 0.5, &[]);
     assert!(relative(&found.x, &expected.x) <= SAME);
+}
+
+/// Constraints of coordinates that no chart keeps hold to rounding over long runs, and leading x back to them leaves
+/// the order as it is.
+fn is_led_back<Sys: System<Scalar = f64>>(system: &Sys) {
+    let u = system.zero_inputs();
+    let long = end(system, General::Rkmk4, 20_000, 100.0, &u);
+    let off = system.constraint_norm(&long.x);
+    assert!(off < 1e-11, "off by {off:e} at the end");
+    let exact = end(system, General::Rkmk8, 800, 0.5, &u);
+    let [coarse, fine] = [100, 200].map(|steps| {
+        let found = end(system, General::Rkmk4, steps, 0.5, &u);
+        relative(found.x.as_ref(), exact.x.as_ref())
+            .max(relative(found.xi.as_ref(), exact.xi.as_ref()))
+    });
+    let order = (coarse / fine).log2();
+    assert!(
+        (order - 4.0).abs() < 0.3,
+        "order {order}: {coarse:e} {fine:e}"
+    );
+    let mut adaptive = State::start(system);
+    hamel::adaptive::Adaptive::rkmk54(1e-6)
+        .integrate(
+            system,
+            &mut adaptive,
+            10.0,
+            |_, _, _| u.clone(),
+            &[],
+            |_| {},
+        )
+        .expect("a run");
+    let off = system.constraint_norm(&adaptive.x);
+    assert!(off < 1e-11, "off by {off:e} with steps by tolerance");
+}
+
+#[test]
+fn what_no_chart_keeps_is_led_back_to() {
+    is_led_back(&Pendulum::default());
+    is_led_back(&FourBar::default());
+    is_led_back(&ColumnTop::default());
+    is_led_back(&RodParticles::default());
 }

@@ -40,6 +40,8 @@ pub struct Mechanism {
     /// None where M is not positive definite.
     accel: Option<Place>,
     correction: Place,
+    /// Whether the correction leads back to constraints that no chart keeps.
+    embedded: bool,
     project_position: Option<Place>,
     project_velocity: Option<Place>,
     constraint: Place,
@@ -120,6 +122,7 @@ impl Mechanism {
             chart_rate: function("chart_rate")?,
             accel: function("accel").ok(),
             correction: function("correction")?,
+            embedded: program.embedded,
             project_position: function("project_position").ok(),
             project_velocity: function("project_velocity").ok(),
             constraint: function("constraint")?,
@@ -421,6 +424,10 @@ impl System for Instance {
 
     fn correction(&self, x: &Numbers) -> Numbers {
         self.value(self.of.correction, x, &[], &[])
+    }
+
+    fn project_coordinates(&self, x: &Numbers) -> Option<Numbers> {
+        self.of.embedded.then(|| self.correction(x))
     }
 
     fn project_position(&self, x: &Numbers) -> Result<Option<Numbers>, Singular> {

@@ -121,6 +121,7 @@ impl Mechanism {
                 kinetic: self.kinetic.index(),
                 potential: self.potential.index(),
                 // A step of a method projects nothing: that is done behind it.
+                embedded: false,
                 project_position: None,
                 project_velocity: None,
             },

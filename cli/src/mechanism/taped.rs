@@ -18,6 +18,8 @@ pub struct Places {
     pub constraint: usize,
     pub kinetic: usize,
     pub potential: usize,
+    /// Whether the correction leads back to constraints that no chart keeps.
+    pub embedded: bool,
     pub project_position: Option<usize>,
     pub project_velocity: Option<usize>,
 }
@@ -118,6 +120,10 @@ impl<T: Tapes> System for Taped<T> {
     fn correction(&self, x: &Self::Coordinates) -> Self::Coordinates {
         let places = self.0.places();
         self.value(places.correction, places.lengths[0], x, &[])
+    }
+
+    fn project_coordinates(&self, x: &Self::Coordinates) -> Option<Self::Coordinates> {
+        self.0.places().embedded.then(|| self.correction(x))
     }
 
     fn project_position(

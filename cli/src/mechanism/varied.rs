@@ -80,6 +80,7 @@ impl Varied {
                 constraint: place("constraint")?,
                 kinetic: place("kinetic_energy")?,
                 potential: place("potential_energy")?,
+                embedded: program.embedded,
                 project_position: find("project_position"),
                 project_velocity: find("project_velocity"),
             },

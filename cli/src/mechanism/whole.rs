@@ -79,7 +79,8 @@ impl<'a> Whole<'a> {
     /// The code of all steps to a time, and how many there are, where they can be taken at once.
     fn at_once(&self, system: &Instance, from: f64, until: f64) -> Option<(&Ready, u64)> {
         // What a projection moves after a step, or an input that changes, is not in the code.
-        if system.of.project_position.is_some() || system.of.project_velocity.is_some() {
+        let of = &system.of;
+        if of.embedded || of.project_position.is_some() || of.project_velocity.is_some() {
             return None;
         }
         let grid = Grid::new(from, until, self.length).ok()?;
@@ -213,6 +214,10 @@ impl Ready {
 impl Method<Instance> for Whole<'_> {
     fn order(&self) -> u32 {
         Method::<Instance>::order(self.stepper)
+    }
+
+    fn stays_near(&self) -> bool {
+        Method::<Instance>::stays_near(self.stepper)
     }
 
     fn step<U>(

@@ -291,6 +291,7 @@ impl Builder<'_> {
         constant_guards.sort_by_key(|guard| guard.node());
         constant_guards.dedup();
         let loops = self.loops().len();
+        let kinds: usize = model.blocks.iter().map(|block| block.constraints()).sum();
         // What is a number, or guards nothing, asks nobody.
         let guards = self.functions.iter().flat_map(|function| &function.guards);
         let guards: FxHashSet<Edge> = guards.chain(&constant_guards).copied().collect();
@@ -314,6 +315,7 @@ impl Builder<'_> {
             m: model.m(),
             n_z: model.state_rates.len(),
             phi: model.phi.len() + loops,
+            embedded: model.completion.independent.len() > kinds,
             start_x: model.start_x.clone(),
             start_xi: [&model.start_xi[..], &model.start_z].concat(),
             names,

@@ -34,6 +34,11 @@ pub fn implementation(emitter: &Emitter) -> String {
         return String::new();
     };
     let mut methods = methods;
+    if program.embedded {
+        methods.push_str(
+            "fn project_coordinates(&self, x: &Self::Coordinates) -> ::core::option::Option<Self::Coordinates> {\n::core::option::Option::Some(::hamel::System::correction(self, x))\n}\n\n",
+        );
+    }
     for name in ["project_position", "project_velocity"] {
         methods.push_str(&projection(emitter, name));
     }

@@ -163,6 +163,8 @@ pub struct Program {
     pub n_z: usize,
     /// Number of rows of φ.
     pub phi: usize,
+    /// Whether φ has rows that the kinds of coordinates do not keep by themselves: integrators lead x back to them.
+    pub embedded: bool,
     /// x at the start.
     pub start_x: Vec<f64>,
     /// (ξ, z) at the start.

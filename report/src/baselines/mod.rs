@@ -49,6 +49,12 @@ impl<Sys: System + ?Sized> Method<Sys> for Baseline {
         }
     }
 
+    /// They are here to show what is not led back, or is in other ways.
+    #[inline]
+    fn stays_near(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn step<U>(
         &self,

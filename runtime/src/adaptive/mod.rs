@@ -67,7 +67,7 @@ pub use step::Step;
 use crate::adaptive::control::{Controller, power};
 use crate::adaptive::stiff::Stiffness;
 use crate::error::StepError;
-use crate::integrate::{acceleration, project};
+use crate::integrate::{acceleration, lead_back, project};
 use crate::methods::tableau::{Stages, Sums};
 use crate::methods::{rkmk8, rkmk54};
 use crate::scalar::Scalar;
@@ -231,6 +231,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
                 return Ok(None);
             };
             let mut state = step.at(time);
+            lead_back(step.system, &mut state);
             project(step.system, &mut state)?;
             observe(Report::Event {
                 index,
@@ -319,7 +320,8 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             if is_last {
                 end.t = until;
             }
-            let moved = project(system, &mut end)?;
+            let led_back = lead_back(system, &mut end);
+            let moved = project(system, &mut end)? || led_back;
             let mut stopped_by = None;
             if dense {
                 let mut step = Step::new(system, state, end, h, &stages, self.pair, change);

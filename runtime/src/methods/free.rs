@@ -52,6 +52,11 @@ impl<Sys: Split + ?Sized> Method<Sys> for Free {
     }
 
     #[inline]
+    fn stays_near(&self) -> bool {
+        true
+    }
+
+    #[inline]
     fn step<U>(
         &self,
         system: &Sys,

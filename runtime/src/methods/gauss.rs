@@ -83,6 +83,11 @@ macro_rules! method {
             }
 
             #[inline]
+            fn stays_near(&self) -> bool {
+                true
+            }
+
+            #[inline]
             fn step<U>(
                 &self,
                 system: &Sys,

@@ -42,6 +42,14 @@ macro_rules! general {
             }
 
             #[inline]
+            fn stays_near(&self) -> bool {
+                match self {
+                    Self::Rk4 { lambda } => Method::<Sys>::stays_near(&Rk4 { lambda: *lambda }),
+                    $(Self::$variant => Method::<Sys>::stays_near(&$variant),)*
+                }
+            }
+
+            #[inline]
             fn step<U>(
                 &self,
                 system: &Sys,

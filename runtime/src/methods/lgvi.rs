@@ -34,6 +34,11 @@ impl<Sys: Split + ?Sized> Method<Sys> for Lgvi {
     }
 
     #[inline]
+    fn stays_near(&self) -> bool {
+        true
+    }
+
+    #[inline]
     fn step<U>(
         &self,
         system: &Sys,

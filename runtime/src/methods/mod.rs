@@ -63,6 +63,13 @@ pub trait Method<Sys: System + ?Sized> {
     /// The order p: the error at a fixed time is O(hᵖ).
     fn order(&self) -> u32;
 
+    /// Whether x stays near φ(x) = 0 over long runs by the method itself. Symmetric methods do that, and lose it where x is
+    /// moved after each step; x is led back after the steps of all others ([`System::project_coordinates`]).
+    #[inline]
+    fn stays_near(&self) -> bool {
+        false
+    }
+
     /// The state one step of length `h` after `state`, with `h` of either sign or zero.
     /// `inputs(t, x, ξ)` gives u.
     ///
@@ -151,6 +158,11 @@ impl<M: InChart + ?Sized> InChart for &M {
 impl<Sys: System + ?Sized, M: Method<Sys> + ?Sized> Method<Sys> for &M {
     fn order(&self) -> u32 {
         (**self).order()
+    }
+
+    #[inline]
+    fn stays_near(&self) -> bool {
+        (**self).stays_near()
     }
 
     #[inline]

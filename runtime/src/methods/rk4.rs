@@ -24,6 +24,12 @@ impl<Sys: System + ?Sized> Method<Sys> for Rk4 {
         4
     }
 
+    /// It leads back at the rate λ, in its own way.
+    #[inline]
+    fn stays_near(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn step<U>(
         &self,

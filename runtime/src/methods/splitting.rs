@@ -63,6 +63,11 @@ impl<Sys: Split + ?Sized> Method<Sys> for Splitting {
     }
 
     #[inline]
+    fn stays_near(&self) -> bool {
+        true
+    }
+
+    #[inline]
     fn step<U>(
         &self,
         system: &Sys,

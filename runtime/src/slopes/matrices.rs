@@ -13,7 +13,7 @@ use core::array::from_fn;
 use core::fmt;
 
 use crate::error::StepError;
-use crate::integrate::project;
+use crate::integrate::{lead_back, project};
 use crate::manifold;
 use crate::methods::tableau::{Row, Stages, Weights};
 use crate::methods::{InChart, Method, arrive};
@@ -93,6 +93,9 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
             *varied = Sys::Number::along(*value, first + i);
         }
         let mut varied = method.step(nearby, &begin, self.h, &|_, _, _| held.clone())?;
+        if !method.stays_near() {
+            lead_back(nearby, &mut varied);
+        }
         project(nearby, &mut varied)?;
         let mut end = State::<Sys> {
             t: varied.t,

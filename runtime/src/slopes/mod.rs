@@ -325,6 +325,10 @@ impl<Sys: Tangent> System for Nearby<Sys> {
         self.dual.correction(x)
     }
 
+    fn project_coordinates(&self, x: &Self::Coordinates) -> Option<Self::Coordinates> {
+        self.dual.project_coordinates(x)
+    }
+
     fn project_position(
         &self,
         x: &Self::Coordinates,
