@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# A sweep on HyperQueue, on one node: 16 tasks, server and worker killed in the middle, the same command again, and the
-# union compared with a run on this machine, byte for byte. Needs cargo and Python; the wheel `hyperqueue` of PyPI goes to a
-# virtual environment below the target.
+# A sweep on HyperQueue, on one node: 16 tasks and two workers, one of them killed with its task in the middle, which the other
+# one then gets; and all killed in the middle and the same command again. The union is compared with a run on this machine, byte
+# for byte. Needs cargo and Python; the wheel `hyperqueue` of PyPI goes to a virtual environment below the target.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

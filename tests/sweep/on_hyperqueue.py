@@ -1,4 +1,4 @@
-"""A sweep on a cluster of HyperQueue, which is killed in the middle.
+"""A sweep on a cluster of HyperQueue, of which a worker is killed in the middle, and then everything.
 
 The wheel of HyperQueue has its server, its worker and its client, and not the command `hq`: that is stood for by `submit`
 here, which takes the arguments that `hamel sweep --submit hyperqueue` gives it.
@@ -17,16 +17,32 @@ SWEEP += ["--members", "96", "--until", "1", "--seed", "5", "--shard-size", "2",
 PATIENCE = 300
 
 
-def cluster(folder):
-    """A server and a worker in this process, until it is killed."""
+def serve(folder):
+    """A server, until it is killed."""
+    from hyperqueue import LocalCluster
+
+    started = LocalCluster(folder)
+    forever(started, folder)
+
+
+def work(folder, server):
+    """A worker of a server in another process, until it is killed.
+
+    The wheel starts workers for a server of the same process alone, which they find by a link in its folder.
+    """
     from hyperqueue import LocalCluster
     from hyperqueue.cluster import WorkerConfig
 
-    local = LocalCluster()
-    local.start_worker(WorkerConfig(cores=2))
-    place = pathlib.Path(folder, "server")
-    place.with_suffix(".new").write_text(str(local.cluster.server_dir))
-    place.with_suffix(".new").rename(place)
+    started = LocalCluster(folder)
+    link = pathlib.Path(folder, "hq-current")
+    link.unlink()
+    link.symlink_to(pathlib.Path(server, "hq-current"))
+    started.start_worker(WorkerConfig(cores=1))
+    forever(started, folder)
+
+
+def forever(_held, folder):
+    pathlib.Path(folder, "ready").touch()
     while True:
         time.sleep(1)
 
@@ -40,7 +56,7 @@ def submit(arguments):
     assert (command, cpus, named[6:8]) == ("submit", "--cpus=1", ["--wait", "sh"]), arguments
     options = dict(zip(named[0:6:2], named[1:6:2]))
     count = int(array.removeprefix("--array=1-"))
-    client = Client(pathlib.Path(os.environ["SERVER"], "server").read_text())
+    client = Client(os.environ["SERVER"])
     job = Job()
     # Tasks are numbered from 0.
     job.program(["true"], stdout=os.devnull, stderr=os.devnull)
@@ -50,9 +66,50 @@ def submit(arguments):
     sys.exit(0 if client.wait_for_jobs([client.submit(job)], raise_on_error=False) else 1)
 
 
+class Cluster:
+    """A server and two workers, each a process of its own."""
+
+    def __init__(self, folder):
+        folder.mkdir()
+        self.server = folder / "server"
+        self.processes = [self.start("serve", self.server)]
+        self.workers = [self.start("work", folder / f"worker-{i}", self.server) for i in (1, 2)]
+        self.processes += self.workers
+
+    def start(self, role, folder, *more):
+        folder.mkdir()
+        words = [sys.executable, __file__, role, folder, *more]
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, start_new_session=True)
+        until(f"{folder}", (folder / "ready").exists)
+        return process
+
+    def lose(self, worker):
+        """A worker as if its machine were lost, with the tasks on it: it has no chance to say that they have failed."""
+        tasks = []
+
+        def caught():
+            os.kill(worker.pid, signal.SIGSTOP)
+            found = subprocess.run(["pgrep", "--parent", str(worker.pid)], capture_output=True, text=True).stdout
+            tasks.extend(map(int, found.split()))
+            if not tasks:
+                os.kill(worker.pid, signal.SIGCONT)
+            return tasks
+
+        until("a task of the worker", caught)
+        for process in (*tasks, worker.pid):
+            os.kill(process, signal.SIGKILL)
+        worker.wait()
+
+    def kill(self):
+        for process in self.processes:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+
+
 def test(hamel, folder):
     folder = pathlib.Path(folder)
-    whole, runs, server = (folder / name for name in ("whole", "runs", "server"))
+    whole = folder / "whole"
     subprocess.run([hamel, *SWEEP, "--out", whole], check=True)
     wanted = shards(whole)
     assert len(wanted) == 48
@@ -60,36 +117,44 @@ def test(hamel, folder):
     hq = folder / "hq"
     hq.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{os.path.abspath(__file__)}" submit "$@"\n')
     hq.chmod(0o755)
-    environment = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "SERVER": str(folder)}
 
-    def start():
-        server.unlink(missing_ok=True)
-        arguments = [sys.executable, __file__, "cluster", str(folder)]
-        process = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, start_new_session=True)
-        until("the cluster", server.exists)
-        return process
+    def submitted(cluster, runs, **options):
+        environment = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "SERVER": str(cluster.server)}
+        words = [hamel, *SWEEP, "--out", runs, "--submit", "hyperqueue", "--tasks", "16", "--wait"]
+        return subprocess.Popen(words, env=environment, start_new_session=True, **options)
 
-    submission = [hamel, *SWEEP, "--out", runs, "--submit", "hyperqueue", "--tasks", "16", "--wait"]
-    process = start()
-    first = subprocess.Popen(submission, env=environment, start_new_session=True, stderr=subprocess.DEVNULL)
+    # HyperQueue gives the task of a worker that is lost to the other one, and the one submission ends well.
+    runs, cluster = folder / "runs", Cluster(folder / "cluster")
+    try:
+        submission = submitted(cluster, runs, stderr=subprocess.DEVNULL)
+        until("a shard", lambda: len(shards(runs)) > 4)
+        cluster.lose(cluster.workers[0])
+        there = len(shards(runs))
+        assert there < len(wanted), "it was over before a worker was lost"
+        until("the rest", lambda: submission.poll() is not None)
+    finally:
+        cluster.kill()
+    assert submission.returncode == 0
+    assert shards(runs) == wanted
+    print(f"{len(wanted)} shards by 16 tasks, the same as those of one process: a worker was lost with {there} of them there")
+
+    # Server, workers and client are killed, and the same command begins again.
+    runs, cluster = folder / "again", Cluster(folder / "first")
+    submission = submitted(cluster, runs, stderr=subprocess.DEVNULL)
     until("a shard", lambda: len(shards(runs)) > 4)
-    for killed in (process, first):
-        os.killpg(killed.pid, signal.SIGKILL)
-        killed.wait()
-    there = shards(runs)
-    assert len(there) < len(wanted), "it was over before it was killed"
-    print(f"killed with {len(there)} of {len(wanted)} shards")
-
-    process = start()
+    os.killpg(submission.pid, signal.SIGKILL)
+    submission.wait()
+    cluster.kill()
+    there = len(shards(runs))
+    assert there < len(wanted), "it was over before it was killed"
+    cluster = Cluster(folder / "second")
     try:
         # Tasks that have outlived their worker hold their parts until they end.
-        again = lambda: subprocess.run(submission, env=environment).returncode == 0
-        until("the rest", again)
+        until("the rest", lambda: submitted(cluster, runs).wait() == 0)
     finally:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
+        cluster.kill()
     assert shards(runs) == wanted
-    print(f"{len(wanted)} shards by 16 tasks, the same as those of one process")
+    print(f"the same after all was killed with {there} of {len(wanted)} shards")
 
 
 def shards(folder):
@@ -105,4 +170,5 @@ def until(what, holds):
 
 if __name__ == "__main__":
     role, *rest = sys.argv[1:]
-    {"cluster": lambda: cluster(*rest), "submit": lambda: submit(rest), "test": lambda: test(*rest)}[role]()
+    roles = {"serve": serve, "work": work, "submit": lambda *words: submit(list(words)), "test": test}
+    roles[role](*rest)
