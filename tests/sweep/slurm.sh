@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
 # A sweep on Slurm, on one node: an array of 16 tasks, one of them killed in the middle and the others cancelled, the same command
-# again, and the union compared with a run on this machine, byte for byte. Needs cargo, Python, and a root that can install
-# `slurm-wlm` and `munge` where they are missing.
+# again, and the union compared with a run on this machine, byte for byte. Needs cargo and Python. Slurm and munge come from
+# Debian's packages, which are unpacked below the target; where they cannot be had the script says so and ends well.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-if ! command -v slurmctld > /dev/null || ! command -v munged > /dev/null; then
-    apt-get update --quiet > /dev/null
-    DEBIAN_FRONTEND=noninteractive apt-get install --yes --quiet --no-install-recommends slurm-wlm munge > /dev/null
+source xtask/debian.sh
+plugins="$debian/usr/lib/x86_64-linux-gnu/slurm-wlm"
+if [ ! -x "$debian/usr/sbin/slurmctld-wlm" ] && ! unpack slurm-wlm munge; then
+    echo "not run on Slurm: there are no packages of Debian to take it from"
+    exit 0
 fi
+export PATH="$debian/usr/bin:$PATH" LD_LIBRARY_PATH="$debian_libraries:$plugins"
 target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
 # One that was built with the tests will do: alone, its dependencies have other features, and are built anew.
 hamel="$target/debug/hamel"
@@ -19,8 +22,9 @@ folder="$(mktemp -d)"
 node="$(hostname -s)"
 export SLURM_CONF="$folder/slurm.conf"
 ended() {
-    pkill -KILL -f "$SLURM_CONF" || true
-    pkill -KILL -f "$folder/munge" || true
+    for pid in "$folder"/*.pid "$folder/munge/pid"; do
+        [ ! -f "$pid" ] || kill -KILL "$(cat "$pid")" || true
+    done
     rm -rf "$folder"
 }
 trap ended EXIT
@@ -29,12 +33,14 @@ mkdir -m 755 "$folder/munge"
 chmod 755 "$folder"
 head -c 1024 /dev/urandom > "$folder/munge/key"
 chmod 400 "$folder/munge/key"
-munged --force --key-file="$folder/munge/key" --socket="$folder/munge/socket" --pid-file="$folder/munge/pid" \
+"$debian/usr/sbin/munged" --force --key-file="$folder/munge/key" --socket="$folder/munge/socket" --pid-file="$folder/munge/pid" \
     --log-file="$folder/munge/log" --seed-file="$folder/munge/seed"
 cat > "$SLURM_CONF" <<CONF
 ClusterName=one
+PluginDir=$plugins
 SlurmctldHost=$node(127.0.0.1)
 SlurmUser=$(id -un)
+SlurmdUser=$(id -un)
 AuthType=auth/munge
 AuthInfo=socket=$folder/munge/socket
 CredType=cred/munge
@@ -51,6 +57,7 @@ TaskPlugin=task/none
 JobAcctGatherType=jobacct_gather/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
+SchedulerParameters=sched_min_interval=0,batch_sched_delay=0,sched_interval=1
 MpiDefault=none
 ReturnToService=2
 KillWait=1
@@ -58,6 +65,6 @@ NodeName=$node NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 CONF
 mkdir "$folder/state" "$folder/spool"
-slurmctld -f "$SLURM_CONF"
-slurmd -f "$SLURM_CONF"
+"$debian/usr/sbin/slurmctld-wlm" -f "$SLURM_CONF"
+"$debian/usr/sbin/slurmd-wlm" -f "$SLURM_CONF" -d "$debian/usr/sbin/slurmstepd-wlm"
 python3 tests/sweep/on_slurm.py "$hamel" "$folder"

@@ -48,9 +48,10 @@ const CI: Task = &[
     "HAMEL_BUILT=1 bash tests/dalembert/run.sh",
     // Steps of real robots with their slopes, against Pinocchio's.
     "bash tests/robots/steps.sh",
-    // Tables of sweeps in the programs that read them, and tasks of a scheduler of which one is killed.
+    // Tables of sweeps in the programs that read them, and tasks of schedulers of which one is killed.
     "HAMEL_BUILT=1 bash tests/sweep/run.sh",
     "HAMEL_BUILT=1 bash tests/sweep/hyperqueue.sh",
+    "HAMEL_BUILT=1 bash tests/sweep/slurm.sh",
     // The Python package against Pinocchio and SciPy, its types, examples and notebooks.
     "HAMEL_BUILT=1 bash tests/python/run.sh",
     // The book, by the program that its tests were built with; its links are looked at once it is built.
@@ -84,8 +85,6 @@ const ATTACK: Task = &[
     "bash tests/dalembert/run.sh --what trees --seeds 1000 60 --largest 6",
     "bash tests/dalembert/run.sh --what loops written driven --seeds 1000 60 --largest 5",
     "bash tests/dalembert/run.sh --seeds 2000 40 --largest 5 --hard",
-    // An array of tasks on Slurm, which is installed where it is missing.
-    "bash tests/sweep/slurm.sh",
     // As a user installs it.
     "bash tests/python/wheel.sh",
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --allow-dirty --locked",
