@@ -33,11 +33,13 @@ pub fn is_added(name: &str) -> bool {
     name.starts_with(PREFIX)
 }
 
-/// Derives a description with more outputs; what is wrong with an expression is shown in the text of the option.
+/// Derives a description with more outputs; what is wrong with an expression is shown in the text of the option, beside what
+/// is known to be wrong with that.
 pub fn derive(
     source: &Source,
     (option, said): (&str, &str),
     added: &[Added],
+    wrong: Vec<Diagnostic>,
 ) -> Result<Generated, Failure> {
     // What is wrong with the description itself, and its warnings.
     source.model()?;
@@ -67,10 +69,14 @@ pub fn derive(
     }
     places.extend(statements);
     let Some((end, text)) = with(&source.text, &more) else {
-        return source.derive_all();
+        return match wrong.is_empty() {
+            true => source.derive_all(),
+            false => Err(refused(option, said, &wrong)),
+        };
     };
     let errors = match source.saying(text).try_derive_all() {
-        Ok(generated) => return Ok(generated),
+        Ok(generated) if wrong.is_empty() => return Ok(generated),
+        Ok(_) => Vec::new(),
         Err(errors) => errors,
     };
     let moved = |span: Span| {
@@ -84,10 +90,12 @@ pub fn derive(
             false => Span::new(of.clone()),
         })
     };
-    let own: Vec<Diagnostic> = errors
+    let mut own: Vec<Diagnostic> = errors
         .iter()
         .filter_map(|error| own(error, &moved))
+        .chain(wrong)
         .collect();
+    own.sort_by_key(|error| error.span.range().map(|range| range.start));
     if !own.is_empty() {
         return Err(refused(option, said, &own));
     }

@@ -245,6 +245,42 @@ fn all_that_is_wrong_is_said_at_once() {
         said.contains("an event compares numbers") && said.contains("--keep:1:6"),
         "{said}"
     );
+    // Forms, names and the other option together.
+    let said = refused(&[
+        "--vary",
+        "n = normal(1, 1); m = normal(1, -1)",
+        "--members",
+        "3",
+        "--until",
+        "1",
+        "--keep",
+        "ends; max(k); at(2, w)",
+    ]);
+    for (message, place) in [
+        ("`ends` cannot be kept", "--keep:1:1"),
+        ("nothing is called `k`", "--keep:1:11"),
+        ("a time from 0 to 1 is needed", "--keep:1:18"),
+        ("3 errors", ""),
+        ("no parameter is called `n`", "--vary:1:1"),
+        ("a standard deviation is not negative", "--vary:1:33"),
+        ("2 errors", ""),
+    ] {
+        assert!(
+            said.contains(message) && said.contains(place),
+            "{message} {place}: {said}"
+        );
+    }
+    for (option, value, message) in [
+        ("--seed", "-1", "a whole number from 0 to 2^64 - 1"),
+        ("--members", "-3", "a whole number from 1 to 2^63 - 1"),
+        ("--members", "0", "a whole number from 1 to 2^63 - 1"),
+        ("--threads", "-1", "not in 1..=65535"),
+        ("--shard-size", "-1", "invalid value '-1'"),
+    ] {
+        let said = refused(&["--vary", "m = normal(1, 1)", "--until", "1", option, value]);
+        let whole = format!("invalid value '{value}' for '{option}");
+        assert!(said.contains(&whole) && said.contains(message), "{said}");
+    }
     for (options, message) in [
         (
             &["--vary", "m = normal(1, 1)", "--until", "1"][..],

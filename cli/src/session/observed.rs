@@ -72,10 +72,8 @@ impl Observed {
                 }),
             }
         }
-        if !errors.is_empty() {
-            return Err(refused(EVENTS, said, &errors));
-        }
-        let generated = added::derive(source, (EVENTS, said), &outputs)?;
+        let generated = added::derive(source, (EVENTS, said), &outputs, errors)?;
+        let mut errors = Vec::new();
         for Added { name, whole, .. } in &outputs {
             let function = generated.program.function(name);
             if function.is_none_or(|function| function.shape != Shape::Scalar) {

@@ -1,8 +1,7 @@
 //! `--keep`: what is kept of each member.
 
 use crate::added::{self, Added};
-use crate::failure::Failure;
-use crate::text::{Piece, refused};
+use crate::text::Piece;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::syntax::suggest::closest;
 
@@ -56,11 +55,13 @@ pub fn added<'a>(kept: &[Kept<'a>]) -> Vec<Added<'a>> {
     kept.iter().enumerate().filter_map(of).collect()
 }
 
-/// Reads the option for runs of this length.
-pub fn read(text: &str, until: f64) -> Result<Vec<Kept<'_>>, Failure> {
-    let wrong = |errors: Vec<Diagnostic>| refused(OPTION, text, &errors);
-    let whole = Piece::of(text).map_err(|error| wrong(vec![error]))?;
+/// Reads the option for runs of this length: items, and what is wrong with others.
+pub fn read(text: &str, until: f64) -> (Vec<Kept<'_>>, Vec<Diagnostic>) {
     let (mut kept, mut errors): (Vec<Kept>, Vec<Diagnostic>) = Default::default();
+    let whole = match Piece::of(text) {
+        Ok(whole) => whole,
+        Err(error) => return (kept, vec![error]),
+    };
     for piece in whole
         .split(';')
         .into_iter()
@@ -78,10 +79,7 @@ pub fn read(text: &str, until: f64) -> Result<Vec<Kept<'_>>, Failure> {
     if kept.is_empty() && errors.is_empty() {
         errors.push(whole.wrong("nothing is kept").help(KNOWN));
     }
-    match errors.is_empty() {
-        true => Ok(kept),
-        false => Err(wrong(errors)),
-    }
+    (kept, errors)
 }
 
 fn item(piece: Piece, until: f64) -> Result<Item, Diagnostic> {
@@ -159,12 +157,14 @@ fn event(inner: Piece) -> Result<Item, Diagnostic> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Item, Of, read};
+    use super::{Item, OPTION, Of, read};
     use crate::sweep::distribution::Distribution;
     use crate::text::{Piece, refused as refused_text};
 
     fn refused(text: &str) -> String {
-        format!("{:?}", read(text, 10.0).expect_err(text))
+        let (_, errors) = read(text, 10.0);
+        assert!(!errors.is_empty(), "{text}");
+        refused_text(OPTION, text, &errors).text()
     }
 
     #[test]
@@ -173,7 +173,8 @@ mod tests {
             "end; max(norm(w)); event(r[3] >= [1, 2][1]);at(2.5,w) ;",
             10.0,
         );
-        let kept = kept.expect("four items");
+        let (kept, errors) = kept;
+        assert!(errors.is_empty(), "{errors:?}");
         let texts: Vec<&str> = kept.iter().map(|(piece, _)| piece.text).collect();
         assert_eq!(
             texts,
@@ -219,9 +220,12 @@ mod tests {
                     }
                 }
             }
-            match read(&text, 10.0) {
-                Ok(_) => good += 1,
-                Err(_) => bad += 1,
+            match read(&text, 10.0).1.as_slice() {
+                [] => good += 1,
+                errors => {
+                    refused_text(OPTION, &text, errors);
+                    bad += 1;
+                }
             }
         }
         assert!(good > 50 && bad > 10_000, "{good} {bad}");

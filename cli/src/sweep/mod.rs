@@ -88,7 +88,7 @@ pub struct Arguments {
     )]
     vary: Option<String>,
     /// How many members there are; by default, the points of all grids.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", value_parser = members, allow_negative_numbers = true)]
     members: Option<u64>,
     #[command(flatten)]
     stepping: Option<Stepping>,
@@ -104,7 +104,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FOLDER", required_unless_present = "status")]
     out: Option<PathBuf>,
     /// Another seed makes other random numbers.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Start and parameters where they are not varied, by coordinates; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
@@ -112,10 +112,10 @@ pub struct Arguments {
     #[command(flatten)]
     inputs: inputs::Asked,
     /// Threads that members run on; by default, one for each core.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     threads: Option<u16>,
     /// Members of a file, which are in memory until it is written; by default, 64 to 10,000.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), allow_negative_numbers = true)]
     shard_size: Option<u64>,
     /// Compute the i-th of N parts of the files, and no other; several machines may do so at once. They all have to have
     /// a fused multiply-add, or none of them: last digits differ, and a machine of the other kind is refused.
@@ -129,7 +129,7 @@ pub struct Arguments {
     #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
     submit: Option<Engine>,
     /// How many tasks --submit makes; by default 16.
-    #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MOST_SHARDS))]
+    #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MOST_SHARDS), allow_negative_numbers = true)]
     tasks: Option<u64>,
     /// With --submit, end when all tasks have.
     #[arg(long, requires = "submit")]
@@ -232,6 +232,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
+/// A number of members.
+fn members(text: &str) -> Result<u64, String> {
+    let number = text.parse::<u64>().ok();
+    let number = number.filter(|number| (1..=i64::MAX as u64).contains(number));
+    number.ok_or_else(|| "a whole number from 1 to 2^63 - 1 is needed".into())
+}
+
+/// A seed.
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| "a whole number from 0 to 2^64 - 1 is needed".into())
+}
+
 /// What members share, and the columns of their rows.
 fn prepared(
     arguments: &Arguments,
@@ -239,27 +252,29 @@ fn prepared(
     vary: &str,
     stepping: &Stepping,
 ) -> Result<(Sweep, Columns), Failure> {
-    let kept = keep::read(&arguments.keep, stepping.until)?;
-    let generated = added::derive(source, (keep::OPTION, &arguments.keep), &keep::added(&kept))?;
+    let varied = |generated: &Generated| -> Result<(Map<String, Value>, State, Vary), Failure> {
+        let (base, state) = start(arguments, source, generated)?;
+        let vary = Vary::read(vary, generated, &state, arguments.seed, arguments.members)?;
+        Ok((base, state, vary))
+    };
+    // What is wrong with --keep, with what is wrong with --vary, too.
+    let both = |failure: Failure, generated: &Generated| match varied(generated) {
+        Err(more) => failure.and(more),
+        Ok(_) => failure,
+    };
+    let (kept, wrong) = keep::read(&arguments.keep, stepping.until);
+    let option = (keep::OPTION, arguments.keep.as_str());
+    let generated = added::derive(source, option, &keep::added(&kept), wrong).map_err(
+        |failure| match source.try_derive_all() {
+            Ok(generated) => both(failure, &generated),
+            Err(_) => failure,
+        },
+    )?;
     let keeping = Keeping::new(&kept, &generated).map_err(|(item, why)| {
         let error = kept[item].0.wrong(why);
-        text::refused(keep::OPTION, &arguments.keep, &[error])
+        both(text::refused(option.0, option.1, &[error]), &generated)
     })?;
-    let file = arguments.at.as_deref().map(|at| File::read(at, source));
-    let (base, state) = match file.transpose()? {
-        None => (Map::new(), State::start(&generated.active)),
-        Some(file) => {
-            let state = file.state(source, &generated)?;
-            match &file.json {
-                Value::Object(members) if !file.is_by_joints() => (members.clone(), state),
-                _ => {
-                    let message = format!("{}: a sweep takes a state by coordinates", file.path);
-                    return Err(Failure::usage(message));
-                }
-            }
-        }
-    };
-    let vary = Vary::read(vary, &generated, &state, arguments.seed, arguments.members)?;
+    let (base, state, vary) = varied(&generated)?;
     let given = Inputs::new(&arguments.inputs, stepping.until, &generated, &state)?;
     let both = vary.inputs(&generated);
     if let Some((_, name)) = both
@@ -307,6 +322,26 @@ fn prepared(
         base,
     };
     Ok((sweep, columns))
+}
+
+/// The start of all members, as --at has it in JSON, and in numbers.
+fn start(
+    arguments: &Arguments,
+    source: &Source,
+    generated: &Generated,
+) -> Result<(Map<String, Value>, State), Failure> {
+    let Some(at) = &arguments.at else {
+        return Ok((Map::new(), State::start(&generated.active)));
+    };
+    let file = File::read(at, source)?;
+    let state = file.state(source, generated)?;
+    match file.json {
+        Value::Object(members) if !file.is_by_joints() => Ok((members, state)),
+        _ => {
+            let message = format!("{}: a sweep takes a state by coordinates", file.path);
+            Err(Failure::usage(message))
+        }
+    }
 }
 
 /// All on which rows depend.
