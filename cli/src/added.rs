@@ -23,6 +23,15 @@ pub struct Added<'a> {
     pub sides: Vec<Piece<'a>>,
 }
 
+impl Added<'_> {
+    /// Whether an error is about it.
+    fn has(&self, error: &Diagnostic) -> bool {
+        let whole = self.whole.start..self.whole.start + self.whole.text.len();
+        let range = error.span.range();
+        range.is_some_and(|range| whole.start <= range.start && range.end <= whole.end)
+    }
+}
+
 /// The output of an item by its place.
 pub fn name(item: usize) -> String {
     format!("{PREFIX}{}", item + 1)
@@ -39,68 +48,106 @@ pub fn derive(
     source: &Source,
     (option, said): (&str, &str),
     added: &[Added],
-    wrong: Vec<Diagnostic>,
+    mut wrong: Vec<Diagnostic>,
 ) -> Result<Generated, Failure> {
     // What is wrong with the description itself, and its warnings.
     source.model()?;
-    let mut more = String::from("\n");
-    // Where expressions stand, and statements around them, with the places in the option that they are of.
-    let mut places: Vec<(Range<usize>, Range<usize>)> = Vec::new();
-    let mut statements = Vec::new();
-    let outputs = Outputs::of(&source.text);
-    for Added { name, whole, sides } in added {
-        let begin = more.len();
-        more.push_str(&format!("output {name} = "));
-        for (number, side) in sides.iter().enumerate() {
-            more.push_str(if number == 0 { "" } else { " - " });
-            more.push_str(if sides.len() > 1 { "(" } else { "" });
-            let written_out = outputs.written_out(side.text);
-            let text = written_out.as_deref().unwrap_or(side.text);
-            if written_out.is_none() {
-                let place = more.len()..more.len() + text.len();
-                places.push((place, side.start..side.start + text.len()));
-            }
-            more.push_str(text);
-            more.push_str(if sides.len() > 1 { ")" } else { "" });
-        }
-        more.push_str(";\n");
-        let whole = whole.start..whole.start + whole.text.len();
-        statements.push((begin..more.len(), whole));
-    }
-    places.extend(statements);
-    let Some((end, text)) = with(&source.text, &more) else {
-        return match wrong.is_empty() {
-            true => source.derive_all(),
-            false => Err(refused(option, said, &wrong)),
+    let of = |added: &[&Added]| {
+        let longer = Longer::of(source, added);
+        let errors = match source.saying(longer.text.clone()).try_derive_all() {
+            Ok(generated) => return Ok(generated),
+            Err(errors) => errors,
         };
+        let own: Vec<Diagnostic> = errors.iter().filter_map(|e| longer.own(e)).collect();
+        Err((own, errors))
     };
-    let errors = match source.saying(text).try_derive_all() {
+    let mut left: Vec<&Added> = added.iter().collect();
+    let (own, errors) = match of(&left) {
         Ok(generated) if wrong.is_empty() => return Ok(generated),
-        Ok(_) => Vec::new(),
+        Ok(_) => Default::default(),
         Err(errors) => errors,
     };
-    let moved = |span: Span| {
+    if !own.is_empty() {
+        // Where one cannot be read, nothing was said of the names in others.
+        left.retain(|added| !own.iter().any(|error| added.has(error)));
+        if !left.is_empty()
+            && let Err((more, _)) = of(&left)
+        {
+            wrong.extend(more);
+        }
+        wrong.extend(own);
+    }
+    if wrong.is_empty() {
+        source.derive_all()?;
+        return Err(source.refused(&errors));
+    }
+    wrong.sort_by_key(|error| error.span.range().map(|range| range.start));
+    Err(refused(option, said, &wrong))
+}
+
+/// A description with more outputs at its end.
+struct Longer {
+    text: String,
+    /// Where these begin.
+    end: usize,
+    /// Where expressions stand, and statements around them, with the places in the option that they are of.
+    places: Vec<(Range<usize>, Range<usize>)>,
+}
+
+impl Longer {
+    fn of(source: &Source, added: &[&Added]) -> Self {
+        let mut more = String::from("\n");
+        let mut places: Vec<(Range<usize>, Range<usize>)> = Vec::new();
+        let mut statements = Vec::new();
+        let outputs = Outputs::of(&source.text);
+        for Added { name, whole, sides } in added {
+            let begin = more.len();
+            more.push_str(&format!("output {name} = "));
+            for (number, side) in sides.iter().enumerate() {
+                more.push_str(if number == 0 { "" } else { " - " });
+                more.push_str(if sides.len() > 1 { "(" } else { "" });
+                let written_out = outputs.written_out(side.text);
+                let text = written_out.as_deref().unwrap_or(side.text);
+                if written_out.is_none() {
+                    let place = more.len()..more.len() + text.len();
+                    places.push((place, side.start..side.start + text.len()));
+                }
+                more.push_str(text);
+                more.push_str(if sides.len() > 1 { ")" } else { "" });
+            }
+            more.push_str(";\n");
+            let whole = whole.start..whole.start + whole.text.len();
+            statements.push((begin..more.len(), whole));
+        }
+        places.extend(statements);
+        // What was read once has its end.
+        let (end, text) = with(&source.text, &more).unwrap_or_else(|| (0, source.text.clone()));
+        Longer { text, end, places }
+    }
+
+    /// An error that is about the option, at its place there.
+    fn own(&self, error: &Diagnostic) -> Option<Diagnostic> {
+        let notes = error.notes.iter();
+        let notes = notes.filter_map(|(span, label)| Some((self.moved(*span)?, label.clone())));
+        Some(Diagnostic {
+            span: self.moved(error.span)?,
+            notes: notes.collect(),
+            ..error.clone()
+        })
+    }
+
+    fn moved(&self, span: Span) -> Option<Span> {
         let range = span.range()?;
-        let (first, last) = (range.start.checked_sub(end)?, range.end - end);
+        let first = range.start.checked_sub(self.end)?;
+        let last = range.end.checked_sub(self.end)?;
         let inside =
             |(place, _): &&(Range<usize>, Range<usize>)| place.start <= first && last <= place.end;
-        let (place, of) = places.iter().find(inside)?;
+        let (place, of) = self.places.iter().find(inside)?;
         Some(match of.len() == place.len() {
             true => Span::new(first - place.start + of.start..last - place.start + of.start),
             false => Span::new(of.clone()),
         })
-    };
-    let mut own: Vec<Diagnostic> = errors
-        .iter()
-        .filter_map(|error| own(error, &moved))
-        .chain(wrong)
-        .collect();
-    own.sort_by_key(|error| error.span.range().map(|range| range.start));
-    if !own.is_empty() {
-        return Err(refused(option, said, &own));
     }
-    source.derive_all()?;
-    Err(source.refused(&errors))
 }
 
 /// The outputs of a description with their expressions: other expressions have these in their places.
@@ -143,18 +190,6 @@ impl Outputs {
         }
         changed.then_some(text)
     }
-}
-
-/// An error that is about the option.
-fn own(error: &Diagnostic, moved: &dyn Fn(Span) -> Option<Span>) -> Option<Diagnostic> {
-    let span = moved(error.span)?;
-    let notes = error.notes.iter();
-    let notes = notes.filter_map(|(span, label)| Some((moved(*span)?, label.clone())));
-    Some(Diagnostic {
-        span,
-        notes: notes.collect(),
-        ..error.clone()
-    })
 }
 
 /// The description with more statements at its end, and where they stand.

@@ -240,6 +240,19 @@ fn all_that_is_wrong_is_said_at_once() {
             "{message} {place}: {said}"
         );
     }
+    // Names are looked at where another item cannot be read.
+    let said = keep("max(w +); min(k); mean(nrm(z))");
+    for (message, place) in [
+        ("expected an expression", "--keep:1:"),
+        ("nothing is called `k`", "--keep:1:15"),
+        ("no function is called `nrm`", "--keep:1:24"),
+        ("3 errors", ""),
+    ] {
+        assert!(
+            said.contains(message) && said.contains(place),
+            "{message} {place}: {said}"
+        );
+    }
     let said = keep("end; event([y, z] < [0, 0])");
     assert!(
         said.contains("an event compares numbers") && said.contains("--keep:1:6"),

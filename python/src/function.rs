@@ -1,7 +1,7 @@
 //! Generated functions as Python calls them, with arrays.
 
 use crate::failure::{SingularError, raised};
-use crate::rows::{Given, Rows, common, entries_last};
+use crate::rows::{Given, Rows, common, entries_last, given, together, unknown};
 use crate::states::States;
 use hamel_cli::{Function as Compiled, Session};
 use hamel_codegen::program::{Argument, Cause, Shape};
@@ -89,7 +89,7 @@ impl Function {
                 return Err(PyTypeError::new_err(message));
             }
         }
-        let mut given = Vec::new();
+        let (mut all, mut errors) = (Vec::new(), Vec::new());
         for (place, &argument) in wanted.iter().enumerate() {
             let length = self.compiled.length(argument);
             let value = match (args.get_item(place), kwargs) {
@@ -97,34 +97,26 @@ impl Function {
                 (Err(_), Some(kwargs)) => kwargs.get_item(name(argument))?,
                 (Err(_), None) => None,
             };
-            let array: Given<'py> = match value {
-                Some(value) => value.extract()?,
+            let what = format!("`{}` of {}", name(argument), signature());
+            match value.map(|value| given(&what, length, &value)) {
+                Some(Ok(array)) => all.push((argument, array)),
+                Some(Err(error)) => errors.push(error),
                 // There is nothing to say.
-                None if length == 0 => continue,
+                None if length == 0 => {}
                 None => {
                     let message = format!(
                         "{} was called without `{}`, {length} numbers",
                         signature(),
                         name(argument)
                     );
-                    return Err(PyTypeError::new_err(message));
+                    errors.push(PyTypeError::new_err(message));
                 }
-            };
-            let shape = array.as_array();
-            let last = shape.shape().last().copied();
-            // A number alone is a list of one.
-            if last != Some(length) && !(last.is_none() && length == 1) {
-                let message = format!(
-                    "`{}` of {} has {length} entries along its last axis, this array has the shape {:?}",
-                    name(argument),
-                    signature(),
-                    shape.shape()
-                );
-                return Err(PyValueError::new_err(message));
             }
-            given.push((argument, array));
         }
-        Ok(given)
+        match errors.is_empty() {
+            true => Ok(all),
+            false => Err(together(args.py(), errors)),
+        }
     }
 }
 
@@ -190,7 +182,7 @@ impl Function {
         &self,
         py: Python<'py>,
         args: &Bound<'py, PyTuple>,
-        parameters: Option<Given<'py>>,
+        parameters: Option<Bound<'py, PyAny>>,
         singular: &str,
         kwargs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -202,32 +194,25 @@ impl Function {
                 return Err(PyValueError::new_err(message));
             }
         };
-        let given = self.given(args, kwargs)?;
+        let own = self.given(args, kwargs)?;
         let mut arrays: Vec<ArrayViewD<'_, f64>> = Vec::new();
-        for (_, array) in &given {
+        for (_, array) in &own {
             arrays.push(entries_last(array.as_array()));
         }
+        let count = self.session.parameters().entries.len();
+        let parameters = parameters.map(|array| given("`parameters`", count, &array));
+        let parameters = parameters.transpose()?;
         if let Some(params) = &parameters {
-            let count = self.session.parameters().entries.len();
-            let array = entries_last(params.as_array());
-            if array.shape().last() != Some(&count) {
-                let message = format!(
-                    "parameters have {count} entries along their last axis, this array has the shape {:?}",
-                    array.shape()
-                );
-                return Err(PyValueError::new_err(message));
-            }
-            arrays.push(array);
+            arrays.push(entries_last(params.as_array()));
         }
         let lead = common(arrays.iter().map(|array| array.shape()))?;
         let mut rows: Vec<Rows<'_>> = Vec::new();
         for array in &arrays {
             rows.push(Rows::new(array, &lead)?);
         }
-        let taken: Vec<Argument> = given.iter().map(|(argument, _)| *argument).collect();
+        let taken: Vec<Argument> = own.iter().map(|(argument, _)| *argument).collect();
         let entries = self.compiled.shape.entries();
-        let states: usize = lead.iter().product();
-        let mut out = vec![f64::NAN; states * entries];
+        let mut out = unknown(&lead, entries)?;
         let constants = &self.constants;
         let mut all = States::new(&self.compiled, constants, taken, rows, &lead);
         let failed = py.detach(|| all.evaluate(&mut out, raise));

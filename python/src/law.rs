@@ -1,8 +1,9 @@
 //! Functions of (t, x, ξ) in Python: those that give inputs, and those that are watched for events.
 
+use crate::rows::numbers;
 use hamel_cli::{Control, Gauge, Law};
-use numpy::{AllowTypeChange, PyArray1, PyArrayLike1};
-use pyo3::exceptions::PyValueError;
+use numpy::{PyArray1, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -53,8 +54,8 @@ pub fn law(function: Py<PyAny>, raised: &Raised) -> Law {
 
 /// A function in Python that gives a number. Where it raises an exception, it has no value from then on, which ends the run,
 /// and the exception is kept.
-pub fn gauge(function: Py<PyAny>, raised: &Raised) -> Arc<Gauge> {
-    let raised = raised.clone();
+pub fn gauge(name: &str, function: Py<PyAny>, raised: &Raised) -> Arc<Gauge> {
+    let (name, raised) = (name.to_string(), raised.clone());
     Arc::new(move |t: f64, x: &[f64], xi: &[f64]| {
         if raised.is_set() {
             return f64::NAN;
@@ -63,7 +64,11 @@ pub fn gauge(function: Py<PyAny>, raised: &Raised) -> Arc<Gauge> {
             let number = |x, xi| -> PyResult<f64> {
                 py.check_signals()?;
                 let (x, xi) = (PyArray1::from_slice(py, x), PyArray1::from_slice(py, xi));
-                function.bind(py).call1((t, x, xi))?.extract()
+                let given = function.bind(py).call1((t, x, xi))?;
+                given.extract().map_err(|why: PyErr| {
+                    let why = why.value(py);
+                    PyTypeError::new_err(format!("the event `{name}` is a number: {why}"))
+                })
             };
             number(x, xi).unwrap_or_else(|error| {
                 raised.set(error);
@@ -86,13 +91,13 @@ fn called(
     if let (1, Ok(number)) = (length, given.extract::<f64>()) {
         return Ok(vec![number]);
     }
-    let given: PyArrayLike1<'_, f64, AllowTypeChange> = given.extract()?;
-    let given: Vec<f64> = given.as_array().to_vec();
-    if given.len() != length {
+    let array = numbers("what the function gives as inputs", &given)?;
+    let list: Vec<f64> = array.as_array().iter().copied().collect();
+    if array.ndim() != 1 || list.len() != length {
         return Err(PyValueError::new_err(format!(
             "inputs are {length} numbers, the function has given {}",
-            given.len()
+            given.repr()?
         )));
     }
-    Ok(given)
+    Ok(list)
 }

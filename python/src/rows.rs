@@ -1,12 +1,96 @@
 //! Arrays of states: the last axis has the entries of one, those before it are looped over.
 
 use numpy::ndarray::{ArrayViewD, Axis, IxDyn};
-use numpy::{AllowTypeChange, PyArrayLikeDyn};
-use pyo3::exceptions::PyValueError;
+use numpy::{AllowTypeChange, PyArrayLikeDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyMemoryError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+
+/// Most axes of an array.
+const AXES: usize = 32;
 
 /// Numbers as they were given: an array, or what NumPy makes one of.
 pub type Given<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
+
+/// The numbers that were given as `what`.
+pub fn numbers<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+    // NumPy would leave out imaginary parts, and make numbers of dates.
+    if let Ok(kind) = value.getattr("dtype").and_then(|kind| kind.getattr("kind"))
+        && !"biufO".contains(&kind.str()?.to_string())
+    {
+        let kind = value.getattr("dtype")?.str()?;
+        let message = format!("{what} has real numbers, this array has the dtype {kind}");
+        return Err(PyTypeError::new_err(message));
+    }
+    let array: Given<'py> = value.extract().map_err(|why: PyErr| {
+        let message = format!("{what}: {}", why.value(value.py()));
+        match why.is_instance_of::<PyTypeError>(value.py()) {
+            true => PyTypeError::new_err(message),
+            false => PyValueError::new_err(message),
+        }
+    })?;
+    if array.ndim() > AXES {
+        let message = format!(
+            "{what} has {AXES} axes at most, this array has {}",
+            array.ndim()
+        );
+        return Err(PyValueError::new_err(message));
+    }
+    Ok(array)
+}
+
+/// The numbers that were given as `what`, with so many entries along the last axis.
+pub fn given<'py>(what: &str, length: usize, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
+    let array = numbers(what, value)?;
+    let shape = array.shape();
+    // A number alone is a list of one.
+    match shape.last() {
+        Some(last) if *last == length => Ok(array),
+        None if length == 1 => Ok(array),
+        _ => Err(PyValueError::new_err(format!(
+            "{what} has {length} entries along its last axis, this array has the shape {shape:?}"
+        ))),
+    }
+}
+
+/// All of several errors as one.
+pub fn together(py: Python<'_>, mut errors: Vec<PyErr>) -> PyErr {
+    if errors.len() == 1 {
+        return errors.remove(0);
+    }
+    let said: Vec<String> = errors
+        .iter()
+        .map(|error| error.value(py).to_string())
+        .collect();
+    let said = said.join("\n");
+    match errors
+        .iter()
+        .any(|error| error.is_instance_of::<PyTypeError>(py))
+    {
+        true => PyTypeError::new_err(said),
+        false => PyValueError::new_err(said),
+    }
+}
+
+/// So many entries for each of the states along axes, NaN until they are computed.
+pub fn unknown(axes: &[usize], entries: usize) -> PyResult<Vec<f64>> {
+    let mut all = Vec::new();
+    let states = axes
+        .iter()
+        .try_fold(1_usize, |count, axis| count.checked_mul(*axis));
+    match states.and_then(|states| states.checked_mul(entries)) {
+        Some(count) if all.try_reserve_exact(count).is_ok() => {
+            all.resize(count, f64::NAN);
+            Ok(all)
+        }
+        _ => Err(too_many(axes, entries)),
+    }
+}
+
+fn too_many(axes: &[usize], entries: usize) -> PyErr {
+    PyMemoryError::new_err(format!(
+        "there is no memory for {entries} numbers at each of the states of {axes:?}"
+    ))
+}
 
 /// An array whose last axis has the entries: a number alone is a list of one.
 pub fn entries_last(array: ArrayViewD<'_, f64>) -> ArrayViewD<'_, f64> {
@@ -32,8 +116,10 @@ impl<'a> Rows<'a> {
     pub fn new(array: &'a ArrayViewD<'_, f64>, axes: &[usize]) -> PyResult<Self> {
         let length = array.shape().last().copied().unwrap_or(1);
         let shape = [axes, &[length]].concat();
-        let array = array.broadcast(IxDyn(&shape));
-        let array = array.ok_or_else(|| PyValueError::new_err("arrays do not fit together"))?;
+        // Axes are common to all arrays, and there may be more entries than can be counted.
+        let array = array
+            .broadcast(IxDyn(&shape))
+            .ok_or_else(|| too_many(axes, length))?;
         Ok(Rows {
             flat: array.to_slice(),
             array,

@@ -19,7 +19,7 @@ fn watched(py: Python<'_>, given: Vec<Given>, raised: &Raised) -> PyResult<Vec<E
     let event = |(name, of, direction, terminal): Given| {
         let of = match of.extract::<String>(py) {
             Ok(text) => Watched::Expression(text),
-            Err(_) => Watched::Function(gauge(of, raised)),
+            Err(_) => Watched::Function(gauge(&name, of, raised)),
         };
         Ok(Event {
             name,

@@ -2,7 +2,7 @@
 
 use crate::failure::{HamelError, SingularError, raised};
 use crate::function::Function;
-use crate::rows::{Given, Rows, common, entries_last, next};
+use crate::rows::{Rows, common, entries_last, given, next, together, unknown};
 use crate::run;
 use hamel_cli::{Format, Mimic, Names, RobotOptions, State};
 use numpy::ndarray::{ArrayViewD, IxDyn};
@@ -78,7 +78,7 @@ fn length(h: f64) -> PyResult<()> {
     match h.is_finite() && h != 0.0 {
         true => Ok(()),
         false => Err(HamelError::new_err(format!(
-            "a step of the length {h} is none"
+            "a step of the length {h} is none: `h` is a finite number other than 0"
         ))),
     }
 }
@@ -97,23 +97,28 @@ impl Session {
     /// A state of arrays of the right lengths.
     fn of(&self, (x, xi, u, params): Numbers<'_>) -> PyResult<State> {
         let start = self.0.start();
-        let list = |what: &str, array: PyReadonlyArray1<'_, f64>, like: &[f64]| {
+        let parts = [
+            ("x", x, start.x.len()),
+            ("xi", xi, start.xi.len()),
+            ("u", u, start.u.len()),
+            ("the list of parameters", params, start.params.len()),
+        ];
+        let mut wrong = Vec::new();
+        let mut list = |(what, array, length): (&str, PyReadonlyArray1<'_, f64>, usize)| {
             let numbers = array.as_array().to_vec();
-            match numbers.len() == like.len() {
-                true => Ok(numbers),
-                false => Err(PyValueError::new_err(format!(
-                    "{what} has {} entries, {} of these were given",
-                    like.len(),
+            if numbers.len() != length {
+                wrong.push(format!(
+                    "{what} has {length} entries, {} of these were given",
                     numbers.len()
-                ))),
+                ));
             }
+            numbers
         };
-        Ok(State {
-            x: list("x", x, &start.x)?,
-            xi: list("xi", xi, &start.xi)?,
-            u: list("u", u, &start.u)?,
-            params: list("the list of parameters", params, &start.params)?,
-        })
+        let [x, xi, u, params] = parts.map(&mut list);
+        match wrong.is_empty() {
+            true => Ok(State { x, xi, u, params }),
+            false => Err(PyValueError::new_err(wrong.join("\n"))),
+        }
     }
 }
 
@@ -267,26 +272,28 @@ impl Session {
         &self,
         py: Python<'py>,
         state: Numbers<'py>,
-        x: Given<'py>,
-        xi: Given<'py>,
-        u: Given<'py>,
+        x: Bound<'py, PyAny>,
+        xi: Bound<'py, PyAny>,
+        u: Bound<'py, PyAny>,
         h: f64,
         method: &str,
     ) -> PyResult<Ends<'py>> {
         let state = self.of(state)?;
         length(h)?;
         let lengths = [state.x.len(), state.xi.len(), state.u.len()];
-        let given = [("x", &x), ("xi", &xi), ("u", &u)];
-        let mut arrays: Vec<ArrayViewD<'_, f64>> = Vec::new();
-        for ((name, array), length) in given.into_iter().zip(lengths) {
-            let array = entries_last(array.as_array());
-            if array.shape().last() != Some(&length) {
-                return Err(PyValueError::new_err(format!(
-                    "`{name}` has {length} entries along its last axis, this array has the shape {:?}",
-                    array.shape()
-                )));
+        let (mut all, mut errors) = (Vec::new(), Vec::new());
+        for ((name, array), length) in [("`x`", x), ("`xi`", xi), ("`u`", u)].iter().zip(lengths) {
+            match given(name, length, array) {
+                Ok(array) => all.push(array),
+                Err(error) => errors.push(error),
             }
-            arrays.push(array);
+        }
+        if !errors.is_empty() {
+            return Err(together(py, errors));
+        }
+        let mut arrays: Vec<ArrayViewD<'_, f64>> = Vec::new();
+        for array in &all {
+            arrays.push(entries_last(array.as_array()));
         }
         let lead = common(arrays.iter().map(|array| array.shape()))?;
         let mut rows: Vec<Rows<'_>> = Vec::new();
@@ -296,12 +303,14 @@ impl Session {
         let [x_rows, xi_rows, u_rows] = rows.as_mut_slice() else {
             return Err(PyTypeError::new_err("x, xi and u are needed"));
         };
-        let states: usize = lead.iter().product();
-        let (mut all_x, mut all_xi) = (Vec::new(), Vec::new());
+        let (mut all_x, mut all_xi) = (unknown(&lead, lengths[0])?, unknown(&lead, lengths[1])?);
         let stepped = py.detach(|| -> PyResult<()> {
             let stepped = self.0.stepped(&state, method).map_err(raised)?;
             let mut place = vec![0; lead.len()];
-            for number in 0..states {
+            let ends = all_x
+                .chunks_exact_mut(lengths[0].max(1))
+                .zip(all_xi.chunks_exact_mut(lengths[1].max(1)));
+            for (number, (end_x, end_xi)) in ends.enumerate() {
                 let mut x = x_rows.at(number, &place).to_vec();
                 let mut xi = xi_rows.at(number, &place).to_vec();
                 let ended = stepped.step(&mut x, &mut xi, u_rows.at(number, &place), h);
@@ -309,8 +318,8 @@ impl Session {
                     [] => SingularError::new_err(why),
                     place => SingularError::new_err(format!("{why}, at the index {place:?}")),
                 })?;
-                all_x.append(&mut x);
-                all_xi.append(&mut xi);
+                end_x.copy_from_slice(&x);
+                end_xi.copy_from_slice(&xi);
                 next(&mut place, &lead);
             }
             Ok(())

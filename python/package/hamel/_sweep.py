@@ -33,10 +33,15 @@ def sweep(
     """
     if options.get("submit") is not None:
         raise HamelError("tasks of an engine are commands: submit them with `hamel sweep --submit`")
-    words = ["hamel", "sweep", os.fspath(description), "--vary", vary, "--out", os.fspath(out), "--until", repr(until)]
+    for name, text in {"vary": vary, "keep": keep}.items():
+        if not isinstance(text, str | None):
+            raise HamelError(f"`{name}` is a text, written as for the command, not {text!r}")
+    words = ["hamel", "sweep", os.fspath(description), "--vary", vary, "--out", os.fspath(out), "--until", str(until)]
     if keep is not None:
         words += ["--keep", keep]
     if shard is not None:
+        if not isinstance(shard, tuple | list) or len(shard) != 2:
+            raise HamelError(f"`shard` is (i, n) with 1 ≤ i ≤ n, as in (3, 16), not {shard!r}")
         words += ["--shard", f"{shard[0]}/{shard[1]}"]
     for name, value in options.items():
         option = "--" + name.replace("_", "-")

@@ -33,10 +33,17 @@ class RunError(HamelError):
         super().__init__(why)
         self.run = run
 
+    def __reduce__(self) -> Any:
+        return (RunError, (str(self), self.run))
+
 
 @dataclass(frozen=True)
 class State:
-    """Coordinates x, velocities xi with the states of first order behind them, inputs u and parameters."""
+    """Coordinates x, velocities xi with the states of first order behind them, inputs u and parameters.
+
+    Arrays of one axis, as long as `coordinates`, `velocities`, `inputs` and `parameters` of the system, in the units of the
+    description: all of hamel computes with numbers as they are given, in SI where lengths are in m, masses in kg, times in s.
+    """
 
     x: Array
     xi: Array
@@ -107,7 +114,12 @@ class Happened:
 
 @dataclass(frozen=True)
 class Run:
-    """A run: arrays with a row for each sample."""
+    """A run: arrays with a row for each of k samples.
+
+    `t` (k,) are the times (s), `x` (k, coordinates) and `xi` (k, velocities) the states, `energy` (k,) is T + V (J); `outputs`
+    and `invariants` have arrays (k,) of numbers, (k, n) of vectors and (k, m, n) of matrices, by their names. `steps` and
+    `evaluations` count steps and evaluations of forces.
+    """
 
     t: Array
     x: Array
@@ -142,13 +154,18 @@ class Run:
         elif name in self.outputs:
             return self.outputs[name]
         else:
-            raise KeyError(name)
+            there = [*self.coordinates.groups, *self.velocities.groups, *self.outputs]
+            raise KeyError(f"no `{name}` in this run: there are {', '.join(there)}")
         return part[:, 0] if part.shape[1] == 1 else part
 
 
 @dataclass(frozen=True)
 class Linearization:
-    """d/dt (h, δξ) = A (h, δξ) + B δu and δy = C (h, δξ) + D δu: displacements h along the columns of A(x), changes δξ."""
+    """d/dt (h, δξ) = A (h, δξ) + B δu and δy = C (h, δξ) + D δu: displacements h along the columns of A(x), changes δξ.
+
+    A is (n, n), B (n, m), C (p, n), D (p, m) for the n names of `states`, m of `inputs` and p of `outputs`; `eigenvalues` (n,)
+    in 1/s.
+    """
 
     A: Array
     B: Array
@@ -165,7 +182,11 @@ class Linearization:
 
 @dataclass(frozen=True)
 class StepSlopes:
-    """The state x, xi after a step, and (η, δξ)' = A (η, δξ) + B δu of displacements δx = A(x) η before and after it."""
+    """The state x, xi after a step, and (η, δξ)' = A (η, δξ) + B δu of displacements δx = A(x) η before and after it.
+
+    With n velocities, of which displacements have as many as the description has columns of A(x): x (coordinates,), xi (n,),
+    A square with a row for each displacement and each velocity, and B as high, with a column for each input.
+    """
 
     x: Array
     xi: Array
@@ -234,10 +255,14 @@ def _plain(value: Any, place: str = "state") -> Any:
         return [_plain(part, place) for part in value]
     if isinstance(value, float) and not np.isfinite(value):
         raise HamelError(f"{place}: a finite number is needed, {value} was given")
+    if not isinstance(value, str | int | float | None):
+        raise HamelError(f"{place}: a number, a list or names with numbers are needed, {value!r} was given")
     return value
 
 
 def _array(value: ArrayLike) -> Array:
+    if np.iscomplexobj(value):
+        raise HamelError("real numbers are needed, complex ones were given")
     return np.ascontiguousarray(value, dtype=np.float64)
 
 
@@ -342,27 +367,27 @@ class System:
 
     @property
     def coordinates(self) -> Names:
-        """The entries of x."""
+        """The names of the entries of x, in the order of arrays."""
         return Names(*self._session.coordinates())
 
     @property
     def velocities(self) -> Names:
-        """The entries of xi, and of the states of first order behind them."""
+        """The names of the entries of xi, and of the states of first order behind them, in the order of arrays."""
         return Names(*self._session.velocities())
 
     @property
     def inputs(self) -> Names:
-        """The entries of u."""
+        """The names of the entries of u, in the order of arrays."""
         return Names(*self._session.inputs())
 
     @property
     def parameters(self) -> Names:
-        """The entries of the parameters, whose values are `parameter_values`."""
+        """The names of the entries of the parameters, whose values are `parameter_values`."""
         return Names(*self._session.parameters())
 
     @property
     def parameter_values(self) -> Array:
-        """The values of the parameters."""
+        """The values of the parameters, (parameters,), in the units of the description."""
         return self._parameters.copy()
 
     @property
@@ -382,11 +407,11 @@ class System:
 
     @property
     def functions(self) -> list[str]:
-        """The names of all functions."""
+        """The names of all functions; one that this system cannot have, such as `regressor`, says why when it is asked for."""
         return self._session.functions()
 
     def function(self, name: str) -> Function:
-        """A function by its name; it is compiled when it is first asked for."""
+        """A function by its name; it is compiled when it is first asked for. Its docstring has the shapes of its arrays."""
         found = self._functions.get(name)
         if found is None:
             found = self._functions[name] = self._session.function(name, self._parameters)
@@ -427,12 +452,17 @@ class System:
             at = self._start
         elif isinstance(at, Mapping):
             at = self.state(**at)
+        elif not isinstance(at, State):
+            raise HamelError(f"a state is a `hamel.State`, or a dictionary of what `System.state` takes, not {at!r}")
         return tuple(map(_array, at._numbers()))  # type: ignore[return-value]
 
     # --- what is asked ----------------------------------------------------------------------------------------------
 
     def evaluate(self, at: State | Mapping[str, Any] | None = None) -> dict[str, Any]:
-        """Numbers of everything at a state, as `hamel eval` prints them: A, Y, gamma, M, Gamma, forces, energies."""
+        """Numbers of everything at a state, as `hamel eval` prints them: A, Y, gamma, M, Gamma, forces, energies.
+
+        With n velocities, M is (n, n), gamma and Gamma are (n, n, n), forces (n,), and energies are numbers (J).
+        """
         values: dict[str, Any] = json.loads(self._session.evaluate(self._at(at)))
         return {name: _numeric(value) for name, value in values.items()}
 
@@ -460,13 +490,14 @@ class System:
 
         Parameters
         ----------
-        until : length of the run.
+        until : length of the run (s).
         method : one of `hamel simulate --help`; `"auto"` takes what fits the system.
-        step : length of a step; `tol`: the error that a step may make, where steps are chosen by it.
-        rate : the rate at which the method `rk4` leads back to the constraint.
-        every : a sample after so many steps; `spacing`: at multiples of this time; `times`: at these times.
+        step : length of a step (s); `tol`: the error that a step may make, where steps are chosen by it.
+        rate : the rate at which the method `rk4` leads back to the constraint (1/s).
+        every : a sample after so many steps; `spacing`: at multiples of this time (s); `times`: at these times (s), (k,). One of
+            the three, or none for some thousand samples at most.
         inputs : `{"F": 2.0, "tau": "-k * q"}` with numbers, or expressions of `t`, parameters, coordinates and velocities; or
-            a function of (t, x, xi) that returns u; or a file of CSV, whose values `hold` until the next row.
+            a function of (t, x, xi) that returns u, (inputs,); or a file of CSV, whose values `hold` until the next row.
         events : `{"ground": hamel.Event("foot.p[3]", direction=-1, terminal=True)}`, by names of your choice: where an
             expression or a function of (t, x, xi) changes its sign. An expression or a function alone will do, too; `terminal`
             and `direction` of a function are read as SciPy's `solve_ivp` reads them. `run.events["ground"].t` are the times,
@@ -476,6 +507,14 @@ class System:
         Raises RunError where a run ends early, with what there was until then.
         """
         state = self._at(at)
+        spaced = {"every": every, "spacing": spacing, "times": times}
+        given = [f"`{name}`" for name, value in spaced.items() if value is not None]
+        if len(given) > 1:
+            raise HamelError(f"samples are taken in one way, {' and '.join(given)} were given")
+        if rate is not None and method != "rk4":
+            raise HamelError("`rate` goes with the method rk4 alone: the other methods keep the constraint by themselves")
+        if hold and not isinstance(inputs, str | os.PathLike):
+            raise HamelError("`hold` goes with a file of inputs, whose values it holds until the next row")
         options: dict[str, Any] = {
             "until": float(until),
             "method": method,
@@ -484,7 +523,7 @@ class System:
             "rate": rate,
             "every": every,
             "spacing": spacing,
-            "times": None if times is None else _array(times).tolist(),
+            "times": None if times is None else _array(times).ravel().tolist(),
         }
         if callable(inputs):
             options["law"] = inputs
@@ -497,18 +536,25 @@ class System:
                 elif name in names.groups or name in names:
                     first = names.index(name) if name in names else names.groups[name].start
                     places = names.groups.get(name, slice(first, first + 1))
-                    entries = np.ravel(np.asarray(value, dtype=np.float64))
+                    entries = np.ravel(_array(value))
                     if entries.size != places.stop - places.start:
                         wanted = places.stop - places.start
                         raise HamelError(f"the input `{name}` has {wanted} entries, {entries.size} were given")
+                    if not np.isfinite(entries).all():
+                        raise HamelError(f"the input `{name}` is finite, {value!r} was given")
                     fixed[places] = entries
                 else:
-                    raise HamelError(f"{self.name} has no input `{name}`: there are {', '.join(names)}")
+                    there = f"there are {', '.join(names)}" if names else "it has no inputs"
+                    raise HamelError(f"{self.name} has no input `{name}`: {there}")
             state = (state[0], state[1], fixed, state[3])
             options["expressions"] = expressions
+        elif not isinstance(inputs, str | os.PathLike | None):
+            raise HamelError(f"inputs are a dictionary, a function of (t, x, xi) or a file, not {inputs!r}")
         elif inputs is not None:
             options["file"] = os.fspath(inputs)
             options["hold"] = True if hold else None
+        if not isinstance(events, Mapping | None):
+            raise HamelError(f"events have names: a dictionary is needed, as in {{'top': 'w[1]'}}, not {events!r}")
         options["events"] = [_watched(name, event) for name, event in (events or {}).items()]
         found = self._session.simulate(state, options)
         found["events"] = {name: Happened(*parts) for name, parts in found["events"].items()}
@@ -526,7 +572,11 @@ class System:
         h: float,
         method: str = "auto",
     ) -> tuple[Array, Array]:
-        """x and xi after a step of length h with constant inputs, of one state or of many along the first axes."""
+        """x and xi after a step of length h (s) with constant inputs, of one state or of many along the first axes.
+
+        x is (…, coordinates), xi (…, velocities), u (…, inputs), and the results are as x and xi. h may be negative. Raises
+        SingularError where a state has no step, with the index of the state.
+        """
         state = self._at(None)
         held = state[2] if u is None else u
         return self._session.step(state, x, xi, held, h, method)
@@ -538,7 +588,7 @@ class System:
         h: float,
         method: str = "rkmk4",
     ) -> StepSlopes:
-        """A step of length h from a state with constant inputs, and its slopes [A B]: rows and columns as in `linearize`.
+        """A step of length h (s) from a state with constant inputs, and its slopes [A B]: rows and columns as in `linearize`.
 
         They are those of the step itself, to rounding, not of the motion; with `full` displacements where constraints act.
         """
@@ -552,7 +602,7 @@ class System:
         return Linearization(**self._session.linearize(self._at(at), full))
 
     def base_parameters(self) -> BaseParameters:
-        """The base parameters, those that the columns of `regressor` belong to."""
+        """The base parameters beta (p,), those that the p columns of `regressor` belong to."""
         found = self._session.base_parameters()
         return BaseParameters(json.loads(found["json"]), found["text"], found["latex"], found["markdown"])
 
@@ -563,6 +613,10 @@ def _watched(name: str, event: Event | Watched) -> tuple[str, Watched, int, bool
         event = Event(event, getattr(event, "direction", 0), getattr(event, "terminal", False))
     if not isinstance(event.of, str) and not callable(event.of):
         raise HamelError(f"the event `{name}` is an expression or a function of (t, x, xi), not {event.of!r}")
+    if not isinstance(name, str):
+        raise HamelError(f"the name of an event is a text, not {name!r}")
+    if not isinstance(event.direction, int | float | np.number) or np.isnan(event.direction):
+        raise HamelError(f"`direction` of the event `{name}` is 1, -1 or 0, not {event.direction!r}")
     if event.terminal not in (False, True):
         raise HamelError(f"`terminal` of the event `{name}` is True or False: a run ends at the first event, not after some of them")
     return name, event.of, int(np.sign(event.direction)), bool(event.terminal)

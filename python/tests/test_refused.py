@@ -1,0 +1,142 @@
+"""What is asked wrongly is refused with all that is wrong, and never ends Python."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import hamel
+
+
+@pytest.fixture
+def top(models):
+    return hamel.System.from_file(models / "heavy_top.eom")
+
+
+@pytest.fixture
+def cart(models):
+    return hamel.System.from_file(models / "cart_pole.eom")
+
+
+XI = np.array([0.3, 0.2, 5.0])
+
+
+def test_arrays_of_any_layout_and_of_any_real_type(top):
+    x = top.start().x
+    expected = top.accel(x, XI)
+    many = np.tile(XI, (8, 1))
+    for found in (
+        top.accel(np.tile(x, (16, 1))[::2], many[::-1]),
+        top.accel(np.asfortranarray(np.tile(x, (8, 1))), np.asfortranarray(many)),
+        top.accel(np.broadcast_to(x, (8, 9)), many),
+        top.accel(x.astype(">f8"), many.astype(object)),
+        top.accel(x.astype(np.float32), many.tolist()),
+        top.accel(x.astype(int), many.astype(np.longdouble)),
+    ):
+        assert found.dtype == np.float64 and np.array_equal(found, np.tile(expected, (8, 1)))
+    assert top.accel(np.zeros((5, 0, 9)), XI).shape == (5, 0, 3)
+    assert top.mass_matrix(np.ones((0, 9))).shape == (0, 3, 3)
+    assert np.isnan(top.accel(x, XI * np.nan)).all()
+    end = top.step(np.zeros((0, 9)), np.zeros((0, 3)), h=0.1)
+    assert [part.shape for part in end] == [(0, 9), (0, 3)]
+
+
+def test_numbers_that_are_not_real_are_refused(top):
+    x = top.start().x
+    for wrong in (x.astype(complex), x.astype("datetime64[s]"), x.astype(str)):
+        with pytest.raises(TypeError, match="`x` of accel.* has real numbers, this array has the dtype"):
+            top.accel(wrong, XI)
+        with pytest.raises(TypeError, match="`x` has real numbers"):
+            top.step(wrong, XI, h=0.1)
+    with pytest.raises(ValueError, match="`x` of accel.*could not convert"):
+        top.accel("abc", XI)
+    with pytest.raises(hamel.HamelError, match="real numbers are needed"):
+        top.linearize(hamel.State(x * 1j, XI, [], top.parameter_values))
+    with pytest.raises(hamel.HamelError, match=r"state.velocity.w: a number, a list"):
+        top.state(velocity={"w": XI * 1j})
+
+
+def test_all_arrays_that_are_wrong_are_named(top):
+    with pytest.raises(ValueError, match=r"(?s)`x` of accel.*\[2\].*`xi` of accel.*\[1\]"):
+        top.accel(np.zeros(2), np.zeros(1))
+    with pytest.raises(TypeError, match="(?s)`x` of accel.*complex128.*without `xi`"):
+        top.accel(np.zeros(9, complex))
+    with pytest.raises(ValueError, match="(?s)`x` has 9 entries.*`xi` has 3 entries"):
+        top.step(np.zeros(2), np.zeros(1), h=0.1)
+    with pytest.raises(ValueError, match="(?s)x has 9 entries, 1 .*xi has 3 entries, 2 .*parameters"):
+        top.simulate(0.1, at=hamel.State([1.0], [1.0, 2.0], [], []))
+
+
+def test_results_that_are_too_large_leave_python_alive(top):
+    x = top.start().x
+    with pytest.raises(MemoryError, match=r"3 numbers at each of the states of \[1000000000000\]"):
+        top.accel(np.broadcast_to(x, (10**12, 9)), XI)
+    with pytest.raises(MemoryError):
+        top.accel(np.broadcast_to(x, (2**40, 1, 9)), np.broadcast_to(XI, (2**40, 3)))
+    with pytest.raises(MemoryError):
+        top.step(np.broadcast_to(x, (10**12, 9)), XI, h=0.1)
+    with pytest.raises(ValueError, match="32 axes at most, this array has 61"):
+        top.accel(np.ones((1,) * 60 + (9,)), XI)
+    assert top.mass_matrix(np.ones((1,) * 31 + (9,))).shape == (1,) * 31 + (3, 3)
+
+
+def test_what_a_run_cannot_be(top, cart):
+    for options, why in (
+        ({"at": 3}, "a dictionary of what `System.state` takes"),
+        ({"every": 2, "times": [0.05]}, "`every` and `times` were given"),
+        ({"hold": True}, "goes with a file of inputs"),
+        ({"rate": 3.0}, "`rate` goes with the method rk4 alone"),
+        ({"tol": 1e-6, "method": "rkmk4"}, "rkmk54 and rkmk8, which choose their steps"),
+        ({"inputs": {"F": 1.0}}, "it has no inputs"),
+        ({"inputs": 3}, "a dictionary, a function"),
+        ({"events": ["w[1]"]}, "a dictionary is needed"),
+        ({"events": {3: "w[1]"}}, "is a text, not 3"),
+        ({"events": {"a": hamel.Event("w[1]", direction="up")}}, "is 1, -1 or 0"),
+        ({"events": {"a": hamel.Event("w[1]", direction=np.nan)}}, "is 1, -1 or 0"),
+        ({"events": {"a": "q[3]", "b": "w[1] +", "c": "zz"}}, r"(?s)called `q`.*expected.*called `zz`.*3 errors"),
+    ):
+        with pytest.raises(hamel.HamelError, match=why):
+            top.simulate(0.1, **options)
+    for value in (np.nan, np.inf, None):
+        with pytest.raises(hamel.HamelError, match="the input `F` is finite"):
+            cart.simulate(0.1, inputs={"F": value})
+    for given in (None, "a", [1.0, 2.0], [[1.0]]):
+        with pytest.raises(ValueError, match="function (has given|gives)"):
+            cart.simulate(0.1, inputs=lambda t, x, xi: given)
+    with pytest.raises(TypeError, match="real numbers"):
+        cart.simulate(0.1, inputs=lambda t, x, xi: np.array([1j]))
+    for number in (None, XI):
+        with pytest.raises(TypeError, match="the event `up` is a number"):
+            top.simulate(0.1, events={"up": lambda t, x, xi: number})
+    with pytest.raises(KeyError, match="no `q` in this run: there are R, w"):
+        top.simulate(0.1)["q"]
+
+
+def test_a_run_that_failed_goes_to_other_processes(cart):
+    with pytest.raises(hamel.RunError) as failed:
+        cart.simulate(0.1, inputs=lambda t, x, xi: np.nan)
+    again = pickle.loads(pickle.dumps(failed.value))
+    assert str(again) == str(failed.value) and np.array_equal(again.run.x, failed.value.run.x)
+
+
+def test_what_a_sweep_cannot_be(models, tmp_path):
+    def sweep(**options):
+        hamel.sweep(models / "heavy_top.eom", **{"vary": "m = normal(1, 0.1)", "out": tmp_path / "runs", "until": 0.1, **options})
+
+    for options, why in (
+        ({"vary": 3}, "`vary` is a text"),
+        ({"members": 2, "keep": ["end"]}, "`keep` is a text"),
+        ({"members": 2, "shard": 3}, r"`shard` is \(i, n\)"),
+        ({"members": 2, "shard": (3, 2)}, "1 ≤ i ≤ N"),
+        ({"members": -2}, "a whole number from 1"),
+        ({"members": 2.5}, "a whole number from 1"),
+        ({"members": 2, "seed": -1}, "a whole number from 0"),
+        ({"members": 2, "until": "soon"}, "invalid value 'soon'"),
+        ({"members": 2, "keep": "max(q)", "vary": "n = normal(1, -1)"}, "(?s)called `q`.*called `n`"),
+    ):
+        with pytest.raises(hamel.HamelError, match=why):
+            sweep(**options)
+        assert not (tmp_path / "runs").exists()
+    # Numbers of NumPy are numbers.
+    sweep(members=np.int64(2), until=np.float64(0.1), step=np.float64(0.05), seed=np.uint8(3))
+    assert (tmp_path / "runs" / "shard-000000.parquet").exists()
