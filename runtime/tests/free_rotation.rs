@@ -255,7 +255,8 @@ fn very_unequal_moments_keep_all_digits() -> Result<(), StepError> {
 }
 
 /// Long times against many short ones, which are summed by Gauss points: momenta without a component
-/// along one axis start where the angle is folded. At full size with `HAMEL_ATTACK=full`.
+/// along one axis start where the angle is folded. Quaternions go on without a jump, so that −q in the place of
+/// q is an error. At full size with `HAMEL_ATTACK=full`.
 #[test]
 fn long_times_are_many_short_ones_wherever_the_motion_starts() -> Result<(), StepError> {
     let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
@@ -281,16 +282,34 @@ fn long_times_are_many_short_ones_wherever_the_motion_starts() -> Result<(), Ste
         let t = 10.0 * number() / rate;
         let start = State::start(&top);
         let end = free::at(&top, &start, t)?;
+        let lifted = Spin(QuaternionTop(top.0.0.clone()));
+        let mut quaternion = State::start(&lifted);
+        let on_the_same_sheet = free::at(&lifted, &quaternion, t)?;
         let steps = (4.0 * fastest * t).ceil().max(1.0);
         let mut by_steps = start.clone();
         for step in 1..=steps as u64 {
-            by_steps = free::at(&top, &by_steps, t * (step as f64 / steps))?;
+            let time = t * (step as f64 / steps);
+            by_steps = free::at(&top, &by_steps, time)?;
+            let next = free::at(&lifted, &quaternion, time)?;
+            let along: f64 = std::iter::zip(next.x, quaternion.x)
+                .map(|(a, b)| a * b)
+                .sum();
+            assert!(
+                along > 0.0,
+                "q jumps to another sheet: {moments:?} {w0:?} {time}"
+            );
+            quaternion = next;
         }
         let error = distance(end.x, by_steps.x);
         let allowed = 1e-14 * (10.0 + steps) * (1.0 + fastest * t);
         assert!(
             error <= allowed.min(1e-3),
             "{moments:?} {w0:?} {t}: {error:e} of {allowed:e}"
+        );
+        let error = distance(on_the_same_sheet.x, quaternion.x);
+        assert!(
+            error <= allowed.min(1e-3),
+            "{moments:?} {w0:?} {t}: q {error:e} of {allowed:e}"
         );
     }
     Ok(())

@@ -17,9 +17,6 @@ pub trait Attitude<S: Scalar>: Copy {
     /// Turned by a unit quaternion.
     fn turned_by(self, f: s3::Quaternion<S>) -> Self;
 
-    /// Turned by a rotation matrix.
-    fn turned_by_matrix(self, f: Matrix<S>) -> Self;
-
     /// Turned by cay(f): by 2 atan|f| about f.
     fn turned_by_cayley(self, f: Vector<S>) -> Self;
 
@@ -99,11 +96,6 @@ impl<S: Scalar> Attitude<S> for Matrix<S> {
     }
 
     #[inline(always)]
-    fn turned_by_matrix(self, f: Matrix<S>) -> Self {
-        so3::product(self, f)
-    }
-
-    #[inline(always)]
     fn turned_by_cayley(self, f: Vector<S>) -> Self {
         so3::product(self, so3::cayley(f))
     }
@@ -138,11 +130,6 @@ impl<S: Scalar> Attitude<S> for s3::Quaternion<S> {
     #[inline(always)]
     fn turned_by(self, f: s3::Quaternion<S>) -> Self {
         s3::product(self, f)
-    }
-
-    #[inline(always)]
-    fn turned_by_matrix(self, f: Matrix<S>) -> Self {
-        s3::product(self, s3::from_matrix(f))
     }
 
     #[inline(always)]

@@ -15,11 +15,12 @@
 
 use core::array::from_fn;
 
-use crate::flows::attitude::Attitude;
+use crate::flows::attitude::{Attitude, SineCosine};
 use crate::flows::jacobi::{Jacobi, Mean};
 use crate::flows::nodes::{self, Angle};
+use crate::s3;
 use crate::scalar::Scalar;
-use crate::so3::{self, Matrix, Vector};
+use crate::so3::{self, Vector};
 
 /// One torque-free motion: constants and start.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +53,8 @@ pub(crate) struct FreeRotation<S> {
     pub(crate) per_factor: S,
     /// Whether the angle is that of the first axis (1) or of the third (0).
     by_first: S,
+    /// Whether names[0], names[1], σ names[2] are right-handed (1) or left-handed (−1).
+    turning: S,
 }
 
 /// A principal axis with its moment.
@@ -121,7 +124,7 @@ impl<S: Scalar> FreeRotation<S> {
         let (x, y) = (root * p3.abs(), q.sqrt() * p1.abs());
         let sigma = p3.select_lt(zero, -one, one);
         let parity = so3::dot(names[0], so3::cross(names[1], names[2]));
-        let turning = zero.select_lt(a, one, zero);
+        let circling = zero.select_lt(a, one, zero);
         let start = Jacobi {
             sn: zero.select_lt(a, p2 * root / a, zero),
             cn: zero.select_lt(a, p1 / a, one),
@@ -140,7 +143,7 @@ impl<S: Scalar> FreeRotation<S> {
             steady_rate: (p1 * p1) / axes[0].moment
                 + (p2 * p2) / axes[1].moment
                 + (p3 * p3) / axes[2].moment,
-            moving: turning * off_axis * zero.select_lt(whole.abs(), one, zero),
+            moving: circling * off_axis * zero.select_lt(whole.abs(), one, zero),
             m: a2 * q / (b2 * r),
             complement: (x - y) * (x + y) / (r * b2),
             start,
@@ -148,50 +151,110 @@ impl<S: Scalar> FreeRotation<S> {
             n: by_first.select_lt(one, q / r, a2 / b2),
             per_factor,
             by_first,
+            turning: sigma * parity,
         }
     }
 
-    /// The rotation F of the body in time `h`, R₁ = R₀ F, and P = Fᵀ P₀.
-    pub(crate) fn after(&self, h: S) -> (Matrix<S>, Vector<S>) {
-        let zero = S::default();
-        let Angle { end, integral } = nodes::advance(self, h);
-        let named = [
-            self.amplitudes[0] * end.cn,
-            self.amplitudes[1] * end.sn,
-            self.amplitudes[2] * end.dn,
-        ];
-        let mut unit: Vector<S> =
+    /// The rotation F of the body in time `h` as a unit quaternion, R₁ = R₀ F, and P = Fᵀ P₀.
+    ///
+    /// F = G(p₀) exp(e ψ) G(p)ᵀ with e = σ names[2], where e · p is never negative and G(p) turns e to p
+    /// on the shortest way. ψ is the angle about R P, less the azimuth about e that the node gains beside
+    /// G: a continuous one, since F and −F are the same rotation and not the same quaternion.
+    pub(crate) fn after(&self, h: S) -> (s3::Quaternion<S>, Vector<S>) {
+        let (zero, half) = (S::default(), S::from_f64(0.5));
+        let Angle {
+            end,
+            integral,
+            folds,
+        } = nodes::advance(self, h);
+        let pick = |moving: S, steady: S| zero.select_lt(self.moving, moving, steady);
+        let [a, b, c] = self.amplitudes;
+        let named = [a * end.cn, b * end.sn, c * end.dn];
+        let unit: Vector<S> =
             from_fn(|i| (0..3).fold(zero, |sum, k| self.names[k][i].mul_add(named[k], sum)));
         let norm = so3::dot(unit, unit).sqrt();
-        unit = from_fn(|i| zero.select_lt(self.moving, unit[i] / norm, self.unit[i]));
+        let unit = from_fn(|i| pick(unit[i] / norm, self.unit[i]));
 
         let part = self.n * integral;
         let time = self.length * h;
         let by_first = self.inverses[1] * time + part;
         let by_third = self.inverses[0] * time - part;
         let angle = zero.select_lt(self.by_first, by_first, by_third);
-        let angle = zero.select_lt(self.moving, angle, self.steady_rate * time);
-        let reference: Vector<S> =
-            from_fn(|i| zero.select_lt(self.by_first, self.names[0][i], self.names[2][i]));
-        let (before, after) = (frame(reference, self.unit), frame(reference, unit));
-        let (turned, _) = before.turned_about(2, angle);
-        let transposed: Matrix<S> = from_fn(|k| after[3 * (k % 3) + k / 3]);
-        let f = so3::product(turned, transposed);
-        (f, unit.map(|component| self.length * component))
+        let angle = pick(angle, self.steady_rate * time);
+        // α/2 goes on by a quarter of a turn where cn changes its sign.
+        let quarters = pick(self.by_first.select_lt(half, folds, zero), zero);
+        let side = nodes::side(self.start);
+        let twist = by_angle(half * angle);
+        let twist = times(twist, self.half_azimuth(self.unit, side));
+        let side = side * nodes::parity(quarters);
+        let twist = times(twist, conjugate(self.half_azimuth(unit, side)));
+        let twist = times(twist, by_quarters(-(quarters * self.turning)));
+
+        let axis = self.third();
+        let (before, after) = (shortest(axis, self.unit), shortest(axis, unit));
+        let [x, y, z] = axis.map(|component| component * twist[1]);
+        let back = [after[0], -after[1], -after[2], -after[3]];
+        let f = s3::product(s3::product(before, [twist[0], x, y, z]), back);
+        let norm = f.iter().fold(zero, |sum, &k| k.mul_add(k, sum)).sqrt();
+        let momentum = unit.map(|component| self.length * component);
+        (f.map(|entry| entry / norm), momentum)
+    }
+
+    /// e = σ names[2], along which p keeps its sign.
+    fn third(&self) -> Vector<S> {
+        let zero = S::default();
+        let minus = self.amplitudes[2].select_lt(zero, -S::from_f64(1.0), S::from_f64(1.0));
+        self.names[2].map(|component| minus * component)
+    }
+
+    /// The node of names[0] or names[2] beside the frame G(p): half its azimuth about e, as cosine and sine.
+    /// About names[2] p is taken to where cn is positive by its `side`, 1 or −1.
+    fn half_azimuth(&self, p: Vector<S>, side: S) -> [S; 2] {
+        let (zero, one) = (S::default(), S::from_f64(1.0));
+        let along = so3::dot(self.names[0], p);
+        let across = self.turning * so3::dot(self.names[1], p);
+        let height = so3::dot(self.third(), p);
+        let cosine = zero.select_lt(self.by_first, one + height - along * along, along.abs());
+        let sine = zero.select_lt(self.by_first, -(along * across), side * across);
+        let length = (cosine * cosine + sine * sine).sqrt();
+        let (cosine, sine) = (cosine / length, sine / length);
+        let cosine = cosine + one;
+        let length = (cosine * cosine + sine * sine).sqrt();
+        [cosine / length, sine / length]
     }
 }
 
-/// Columns: the node reference × p, p × node, p, for a unit vector p.
-fn frame<S: Scalar>(reference: Vector<S>, p: Vector<S>) -> Matrix<S> {
-    let node = so3::cross(reference, p);
-    let length = so3::dot(node, node).sqrt();
-    let node = node.map(|component| component / length);
-    let third = so3::cross(p, node);
-    from_fn(|k| match k % 3 {
-        0 => node[k / 3],
-        1 => third[k / 3],
-        _ => p[k / 3],
-    })
+/// The turn on the shortest way from one unit vector to another less than half a turn away.
+fn shortest<S: Scalar>(from: Vector<S>, to: Vector<S>) -> s3::Quaternion<S> {
+    let [x, y, z] = so3::cross(from, to);
+    let cosine = S::from_f64(1.0) + so3::dot(from, to);
+    let length = (cosine * cosine + x * x + y * y + z * z).sqrt();
+    [cosine, x, y, z].map(|entry| entry / length)
+}
+
+/// Cosine and sine of an angle in rad.
+fn by_angle<S: Scalar>(angle: S) -> [S; 2] {
+    let SineCosine { sine, cosine } = SineCosine::of(angle);
+    [cosine, sine]
+}
+
+/// Cosine and sine of a whole number of quarters of a turn.
+fn by_quarters<S: Scalar>(count: S) -> [S; 2] {
+    let (one, two, four) = (S::from_f64(1.0), S::from_f64(2.0), S::from_f64(4.0));
+    let turns = count / four;
+    let rest = turns - nodes::round(turns);
+    let size = four * rest.abs();
+    [one - size, four * rest * (two - size)]
+}
+
+/// The sum of two angles, given by cosine and sine.
+fn times<S: Scalar>(a: [S; 2], b: [S; 2]) -> [S; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+/// The opposite angle.
+fn conjugate<S: Scalar>(a: [S; 2]) -> [S; 2] {
+    [a[0], -a[1]]
 }
 
 /// Three different moments, any others too: the attitude and P after `h`. Exact.
@@ -204,7 +267,7 @@ pub fn exact<S: Scalar, A: Attitude<S>>(
 ) -> A {
     let (f, after) = FreeRotation::new(moments, *p).after(h);
     *p = after;
-    attitude.turned_by_matrix(f)
+    attitude.turned_by(f)
 }
 
 /// The time between two flips of a torque-free rotor, half a period of its angular velocity: 2K/|u̇|;

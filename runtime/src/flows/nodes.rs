@@ -17,6 +17,8 @@ pub(crate) struct Angle<S> {
     pub(crate) end: Jacobi<S>,
     /// |P| (κ₁ − κ₃) ∫ sn²/(1 + n sn²) dt
     pub(crate) integral: S,
+    /// How often cn has changed its sign, negative for negative u.
+    pub(crate) folds: S,
 }
 
 /// Gauss points on [0, 1] and their weights.
@@ -47,6 +49,7 @@ pub(crate) fn advance<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
             dn: pick(short.end.dn, long.end.dn),
         },
         integral: pick(short.integral, long.integral),
+        folds: pick(short.folds, long.folds),
     }
 }
 
@@ -73,6 +76,7 @@ fn panels<S: Scalar>(motion: &FreeRotation<S>, h: S, count: u32) -> Angle<S> {
     Angle {
         end: here,
         integral: motion.factor * h * sum,
+        folds: crossed(motion.start, here, width),
     }
 }
 
@@ -106,20 +110,24 @@ fn long<S: Scalar>(motion: &FreeRotation<S>, h: S) -> Angle<S> {
     let beyond = endless.select_lt(floor, beyond, zero);
     let rest = beyond.select_lt(floor, rest, sign * far);
 
-    let half = periods * S::from_f64(0.5);
-    let parity = one - S::from_f64(4.0) * (half - round(half)).abs();
     let near = motion.start.plus(mean.at(rest), motion.m);
     // By the same sides as in `folded`, also where cn is 0 at the start.
-    let crossed = (one - side(motion.start) * side(near)) * S::from_f64(0.5);
-    let direction = rest.select_lt(zero, -one, one);
-    let folds = periods + crossed * direction;
+    let folds = periods + crossed(motion.start, near, rest);
 
     let integral = folded(near, motion.n) - folded(motion.start, motion.n);
     let integral = integral + two * folds * at_quarter + sign * beyond / (one + motion.n);
     Angle {
-        end: near.shifted(parity),
+        end: near.shifted(parity(periods)),
         integral: integral / motion.per_factor,
+        folds,
     }
+}
+
+/// Whether cn has another sign at the end of less than 2K, with the sign of the way u.
+fn crossed<S: Scalar>(start: Jacobi<S>, end: Jacobi<S>, u: S) -> S {
+    let one = S::from_f64(1.0);
+    let crossed = (one - side(start) * side(end)) * S::from_f64(0.5);
+    crossed * u.select_lt(S::default(), -one, one)
 }
 
 /// ∫₀ᵘ sn²/(1 + n sn²) with u moved by multiples of 2K to |u| ≤ K.
@@ -130,15 +138,21 @@ fn folded<S: Scalar>(at: Jacobi<S>, n: S) -> S {
     side(at) * at.sn * square * integral / S::from_f64(3.0)
 }
 
+/// (−1)ʲ for a whole number j.
+pub(crate) fn parity<S: Scalar>(j: S) -> S {
+    let half = j * S::from_f64(0.5);
+    S::from_f64(1.0) - S::from_f64(4.0) * (half - round(half)).abs()
+}
+
 /// −1 where cn is negative, else 1.
-fn side<S: Scalar>(at: Jacobi<S>) -> S {
+pub(crate) fn side<S: Scalar>(at: Jacobi<S>) -> S {
     let one = S::from_f64(1.0);
     at.cn.select_lt(S::default(), -one, one)
 }
 
 /// The nearest whole number, as long as whole numbers are exact.
 #[inline]
-fn round<S: Scalar>(value: S) -> S {
+pub(crate) fn round<S: Scalar>(value: S) -> S {
     let large = S::from_f64(1.5) / epsilon::<S>();
     value + large - large
 }
