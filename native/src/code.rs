@@ -1,8 +1,9 @@
 //! Memory that can be executed, and calls of it: all that is `unsafe` in this project.
 //!
 //! What makes a call sound:
-//! - The code of a function is made by [`lower`] alone, of a tape whose steps read nothing that comes after them. It
+//! - The code of a function is made by [`Lowering`] alone, of a tape whose steps read nothing that comes after them. It
 //!   reads, at whole places, from the constants and the five arguments, and writes to the result and to its own stack.
+//!   Parts of a long one are called by it alone, with the address of its own stack, which has places for all of them.
 //!   The greatest place that it can touch in each of the seven is known from the tape (`Reach`), before the code is made,
 //!   and every call compares lengths with it. Places are less than `LARGEST`, so that no offset is too large for an
 //!   instruction.
@@ -18,9 +19,10 @@
 #![allow(unsafe_code)]
 
 use crate::evaluate::apply;
-use crate::lower::{Callee, UNDONE, WELL, callee, lower, signature};
+use crate::lower::{Callee, Lowering, UNDONE, WELL, callee, signature, signature_of_part};
 use crate::target::{Pool, Target};
-use cranelift_codegen::ir::{AbiParam, types};
+use cranelift_codegen::Context;
+use cranelift_codegen::ir::{AbiParam, FuncRef, Signature, types};
 use cranelift_codegen::settings::{Configurable, Flags, builder};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
@@ -402,15 +404,45 @@ impl Making {
             return Err(format!("`{}` is too long", tape.name));
         }
         let pointer = self.module.target_config().pointer_type();
-        let mut context = self.module.make_context();
-        context.func.signature = signature(self.module.make_signature(), pointer);
+        let whole = signature(self.module.make_signature(), pointer);
+        let mut lowering = Lowering::new(tape, self.target);
         let name = format!("hamel_{index}");
-        let id = self
-            .module
-            .declare_function(&name, Linkage::Local, &context.func.signature)
-            .map_err(|error| error.to_string())?;
+        if lowering.parts() == 1 {
+            let id = self.part(&name, whole, &mut lowering, 0)?;
+            return Ok((id, lowering.causes));
+        }
+        let parts: Result<Vec<FuncId>, String> = (0..lowering.parts())
+            .map(|part| {
+                let signature = signature_of_part(whole.clone(), pointer);
+                self.part(&format!("{name}_{part}"), signature, &mut lowering, part)
+            })
+            .collect();
+        let parts = parts?;
+        let mut context = self.module.make_context();
+        context.func.signature = whole;
+        let parts: Vec<FuncRef> = parts
+            .into_iter()
+            .map(|part| self.module.declare_func_in_func(part, &mut context.func))
+            .collect();
+        let mut builder = FunctionBuilder::new(&mut context.func, &mut self.context);
+        lowering.whole(&mut builder, &parts, pointer);
+        builder.finalize();
+        let id = self.defined(&name, context)?;
+        Ok((id, lowering.causes))
+    }
+
+    /// A part of a tape as a function.
+    fn part(
+        &mut self,
+        name: &str,
+        signature: Signature,
+        lowering: &mut Lowering,
+        part: usize,
+    ) -> Result<FuncId, String> {
+        let mut context = self.module.make_context();
+        context.func.signature = signature;
         let mut callees = HashMap::new();
-        for callee in tape.steps.iter().filter_map(callee) {
+        for callee in lowering.calls(part) {
             let Some((name, _)) = known(callee) else {
                 continue;
             };
@@ -431,13 +463,22 @@ impl Making {
             callees.insert(callee, here);
         }
         let mut builder = FunctionBuilder::new(&mut context.func, &mut self.context);
-        let causes = lower(&mut builder, &mut self.pool, tape, &callees, self.target);
+        lowering.part(part, &mut builder, &mut self.pool, &callees);
         builder.finalize();
+        self.defined(name, context)
+    }
+
+    /// Compiles a function.
+    fn defined(&mut self, name: &str, mut context: Context) -> Result<FuncId, String> {
+        let id = self
+            .module
+            .declare_function(name, Linkage::Local, &context.func.signature)
+            .map_err(|error| error.to_string())?;
         self.module
             .define_function(id, &mut context)
             .map_err(|error| format!("{error:?}"))?;
         let compiled = context.compiled_code();
         self.size += compiled.map_or(0, |code| code.code_info().total_size as usize);
-        Ok((id, causes))
+        Ok(id)
     }
 }

@@ -45,8 +45,8 @@ pub enum Home {
 /// The plan of a tape.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What is done.
-    pub actions: Vec<Action>,
+    /// What is done, part by part: no value stays in a register from one part to the next.
+    pub parts: Vec<Vec<Action>>,
     /// Where values are, once they are in memory.
     pub homes: Vec<Home>,
     /// How many places of the stack are used.
@@ -70,10 +70,10 @@ pub fn is_call(step: &Step) -> bool {
     }
 }
 
-/// Plans a tape.
-pub fn plan(tape: &Tape) -> Plan {
+/// Plans a tape, in equal parts of at most so many steps.
+pub fn plan(tape: &Tape, longest: usize) -> Plan {
     let mut plan = Plan {
-        actions: Vec::with_capacity(2 * tape.steps.len()),
+        parts: vec![Vec::new()],
         homes: homes(tape),
         slots: 0,
         operands: Vec::with_capacity(tape.steps.len()),
@@ -93,7 +93,8 @@ pub fn plan(tape: &Tape) -> Plan {
         }
         plan.operands.push(ids);
     }
-    Planner::new(plan).run(tape)
+    let parts = tape.steps.len().div_ceil(longest).max(1);
+    Planner::new(plan).run(tape, tape.steps.len().div_ceil(parts))
 }
 
 /// Results are in memory once they are there.
@@ -150,15 +151,19 @@ impl Planner {
         }
     }
 
-    fn run(mut self, tape: &Tape) -> Plan {
+    fn run(mut self, tape: &Tape, length: usize) -> Plan {
         let mut next = 0;
         for (index, step) in tape.steps.iter().enumerate() {
+            if index > 0 && index % length == 0 {
+                self.leave(0, &[]);
+                self.plan.parts.push(Vec::new());
+            }
             let ids = self.plan.operands[index];
             let reads = || ids.into_iter().filter(|&id| id != usize::MAX);
             for id in reads() {
                 if !self.held.contains(&id) {
                     self.leave(REGISTERS - 1, &ids);
-                    self.plan.actions.push(Action::Load(id));
+                    self.act(Action::Load(id));
                     self.held.push(id);
                 }
             }
@@ -176,7 +181,7 @@ impl Planner {
                 step if is_call(step) => self.leave(0, &[]),
                 _ => {}
             }
-            self.plan.actions.push(Action::Step(index));
+            self.act(Action::Step(index));
             for id in next..next + step.results() {
                 if !self.uses[id].is_empty() {
                     self.leave(REGISTERS - 1, &[]);
@@ -186,6 +191,12 @@ impl Planner {
             next += step.results();
         }
         self.plan
+    }
+
+    fn act(&mut self, action: Action) {
+        if let Some(part) = self.plan.parts.last_mut() {
+            part.push(action);
+        }
     }
 
     /// Lets values go until so many are left; these stay.
@@ -203,7 +214,7 @@ impl Planner {
                     self.plan.slots - 1
                 });
                 self.plan.homes[id] = Home::Slot(slot);
-                self.plan.actions.push(Action::Store(id));
+                self.act(Action::Store(id));
             }
         }
     }

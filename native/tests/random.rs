@@ -256,3 +256,97 @@ fn sine_and_cosine_are_those_of_the_runtime() {
         }
     }
 }
+
+/// A tape that is too long for one function; its numbers stay near 1. It ends well where the first input is positive.
+fn long_tape(random: &mut Random, steps: usize) -> Tape {
+    let positive = |source| Operand {
+        source,
+        negative: false,
+    };
+    let mut tape = Tape {
+        name: "long".into(),
+        steps: Vec::with_capacity(steps + 4),
+        outputs: Vec::new(),
+    };
+    let mut values = 0;
+    let mut known: Vec<Source> = vec![Source::Number(0.75), Source::Constant(0)];
+    for (&argument, length) in ARGUMENTS.iter().zip(LENGTHS) {
+        known.extend((0..length).map(|place| Source::Argument(argument, place)));
+    }
+    while tape.steps.len() < steps {
+        // Something of the last part, or of any before it.
+        let mut of = || Operand {
+            source: match random.below(3) {
+                0 => known[known.len() - 1 - random.below(20)],
+                _ => known[random.below(known.len())],
+            },
+            negative: random.below(3) == 0,
+        };
+        let (a, b, c) = (of(), of(), of());
+        tape.steps.push(match random.below(4) {
+            0 => Step::Add(a, b),
+            1 => Step::Multiply(a, b),
+            _ => Step::Fused(a, b, c),
+        });
+        let size = positive(Source::Value(values));
+        values += 1;
+        tape.steps.push(match random.below(9) {
+            0 => Step::Apply(Function::Tanh, size),
+            1 => Step::Check(Cause::Velocity(1), positive(Source::Number(0.5))),
+            _ => Step::SinCos(size),
+        });
+        let results = tape.steps.last().map_or(0, Step::results);
+        known.extend((values..values + results).map(Source::Value));
+        values += results;
+    }
+    let last = positive(Source::Argument(ARGUMENTS[2], 0));
+    tape.steps.push(Step::Check(Cause::Velocity(2), last));
+    tape.outputs = (0..500)
+        .map(|_| Operand {
+            source: known[random.below(known.len())],
+            negative: random.below(2) == 0,
+        })
+        .collect();
+    tape
+}
+
+#[test]
+fn long_tapes_are_several_functions_with_the_same_bits() {
+    let mut random = Random(5);
+    let tapes = Tapes {
+        parameters: PARAMETERS,
+        lengths: LENGTHS,
+        constants: tape(&mut random, "constants", 0, 0, false),
+        pivots: Vec::new(),
+        functions: vec![long_tape(&mut random, 20_001)],
+    };
+    let code = Compiled::of(tapes.clone());
+    assert_eq!(code.interpreted_because(), None);
+    let steps = Compiled::interpreted(tapes);
+    let paired = Paired::new(&code).expect("code for two lanes");
+    let lanes = [0, 1].map(|_| -> Lane {
+        let parameters = [0.0; PARAMETERS].map(|_| random.next() as f64 / 1e10);
+        let lists =
+            LENGTHS.map(|length| (0..length).map(|_| random.next() as f64 / 1e10).collect());
+        let arguments: [&[f64]; 5] = std::array::from_fn(|i| Vec::as_slice(&lists[i]));
+        let (own, others) = (code.constants(&parameters), steps.constants(&parameters));
+        let (mut out, mut expected) = (vec![1.0; 500], vec![1.0; 500]);
+        assert_eq!(code.call(0, &own, arguments, &mut out), Ok(()));
+        assert_eq!(steps.call(0, &others, arguments, &mut expected), Ok(()));
+        assert!(expected.iter().all(|value| value.abs() < 10.0));
+        assert_eq!(bits(&out), bits(&expected));
+        // What fails is in the last part.
+        let failing = [
+            arguments[0],
+            arguments[1],
+            &[-1.0, 0.0],
+            arguments[3],
+            arguments[4],
+        ];
+        let failed = code.call(0, &own, failing, &mut vec![1.0; 500]);
+        assert_eq!(failed, steps.call(0, &others, failing, &mut expected));
+        assert!(failed.is_err());
+        (own, lists, vec![Some(out)])
+    });
+    assert_eq!(together(&paired, &lanes[0], &lanes[1]), 1);
+}

@@ -19,6 +19,10 @@ use std::time::Instant;
 /// Where rounding differs, relative to the largest result.
 const CLOSE: f64 = 1e-13;
 
+/// What is allocated now, and was at most.
+#[global_allocator]
+static HEAP: peak_alloc::PeakAlloc = peak_alloc::PeakAlloc;
+
 mod code {
     include!(concat!(env!("OUT_DIR"), "/free_body.rs"));
     include!(concat!(env!("OUT_DIR"), "/heavy_top.rs"));
@@ -216,17 +220,6 @@ macro_rules! row {
     }};
 }
 
-/// Bytes of memory that this process has been given, where the system says so.
-fn memory() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    line.trim()
-        .trim_end_matches(" kB")
-        .parse::<f64>()
-        .ok()
-        .map(|kilo| kilo * 1024.0)
-}
-
 /// The largest function here, too large for a compiler in a bench: [A B] of Talos. How long it takes, and what memory.
 fn humanoid() {
     let text = text!("talos_reduced").replace("generate accel;", "generate linearize;");
@@ -234,18 +227,14 @@ fn humanoid() {
     let function = program.function("linearize").expect("asked for");
     let tapes = Tapes::new(&program, &[function]).expect("it calls nothing");
     let steps = tapes.functions[0].steps.len();
-    let before = memory();
+    let before = HEAP.current_usage();
+    HEAP.reset_peak_usage();
     let start = Instant::now();
     let compiled = Compiled::of(tapes);
     let taken = start.elapsed().as_secs_f64();
+    let most = HEAP.peak_usage().saturating_sub(before) as f64 / 1e6;
     assert_eq!(compiled.interpreted_because(), None);
-    let more = before
-        .zip(memory())
-        .map(|(before, after)| (after - before) / 1e6);
-    let more = more.map_or_else(String::new, |more| {
-        format!(", with {more:.0} MB more than before")
-    });
-    println!("\nTalos, [A B], {steps} steps: made in {taken:.2} s{more}");
+    println!("\nTalos, [A B], {steps} steps: made in {taken:.2} s, with at most {most:.0} MB of the heap");
 }
 
 fn main() {
