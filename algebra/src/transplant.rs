@@ -58,6 +58,27 @@ pub fn substitute(graph: &mut Graph, edges: &[Edge], set: &[(usize, Edge)]) -> V
     edges.iter().map(|&edge| read(&image, edge)).collect()
 }
 
+/// The same in what stands under square roots alone.
+pub fn substitute_under_roots(
+    graph: &mut Graph,
+    edges: &[Edge],
+    set: &[(usize, Edge)],
+) -> Vec<Edge> {
+    if set.is_empty() {
+        return edges.to_vec();
+    }
+    let mut image = vec![Edge::of(0); graph.len()];
+    for id in graph.reachable(edges) {
+        let made = match graph.node(id) {
+            Node::Constant(_) | Node::Symbol(_) => Edge::of(id),
+            node if node.is_root() => substitute(graph, &[Edge::of(id)], set)[0],
+            node => merged(graph, node.over(|child| read(&image, child))),
+        };
+        image[id as usize] = made;
+    }
+    edges.iter().map(|&edge| read(&image, edge)).collect()
+}
+
 /// Copies the expressions node by node without merging: for functions that are wanted off the
 /// variety, such as φ itself, whose value on X would make it the number 0.
 pub fn copy(from: &Graph, into: &mut Graph, edges: &[Edge]) -> Vec<Edge> {

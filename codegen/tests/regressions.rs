@@ -437,3 +437,43 @@ fn violations_decay_at_the_rate_that_is_given() {
     let twice = 2.0 * (x[0] * found[0] + x[1] * found[1] + xi[0] * xi[0] + xi[1] * xi[1]);
     assert!((twice + 10.0 * 2.0 * s + 25.0 * phi).abs() < 1e-13);
 }
+
+/// Roots of a velocity that follows from another by a factor whose primes are no squares of the proof's fields.
+#[test]
+fn roots_of_velocities_that_follow_from_others_are_proved() {
+    let text = |law: &str| {
+        format!(
+            "system A {{ coord x, y; velocity u, v; rate x = u, y = v; kinetic u^2 / 2 + v^2;
+                nonholonomic 53 * v + 2 * u = 0; independent u; generalized force u = {law}; }}"
+        )
+    };
+    let (u, ratio) = (0.7_f64, -2.0 / 53.0);
+    let v = ratio * u;
+    for (law, force) in [
+        ("sqrt(v^2 + 1)", (v * v + 1.0).sqrt()),
+        ("norm([v, u]) * v", v.hypot(u) * v),
+        ("norm([v, v]) * v", 2.0_f64.sqrt() * v.abs() * v),
+    ] {
+        let of = generated(&text(law));
+        let found = value(&of, "accel", [&[0.0; 2], &[u], &[], &[]])[0];
+        // (1 + 2 r²) u̇ = f with v = r u.
+        let expected = force / (1.0 + 2.0 * ratio * ratio);
+        assert!(
+            (found - expected).abs() < 1e-14,
+            "{law}: {found}, {expected}"
+        );
+    }
+}
+
+/// An angle on a circle that is given: what moves it away changes nothing, since it is not read.
+#[test]
+fn given_circles_have_a_linearisation() {
+    let of = generated(
+        "system A { time t; coord q, c: S1; velocity u, w; rate q = u, c = w; kinetic u^2 / 2 + w^2 / 2;
+            prescribe c = 0.3 * t; generalized force u = c.s - 3 * q - 2 * u; generate linearize; }",
+    );
+    let x = [0.5, 0.7, 0.15_f64.cos(), 0.15_f64.sin()];
+    let found = value(&of, "linearize", [&x, &[0.2], &[], &[]]);
+    // ḣ of q is δu, that of c is 0; δu̇ = −3 h − 2 δu.
+    assert_eq!(found, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -3.0, 0.0, -2.0]);
+}

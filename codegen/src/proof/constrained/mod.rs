@@ -11,10 +11,10 @@ use super::reference::Reference;
 use super::verdict::{Identity, Verdict, failure};
 use super::{centroidal, derivatives, frames, outputs, states};
 use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Function};
+use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
-use crate::algebra::transplant::substitute;
+use crate::algebra::transplant::{substitute, substitute_under_roots};
 use crate::derive::accel::saddle;
 use crate::derive::calculus::Calculus;
 use crate::derive::reduction::{Reduction, drift};
@@ -142,12 +142,18 @@ impl Full {
     }
 
     /// Puts prescribed coordinates and ξ⁰ = 1 in, now that all derivatives are taken: at a point, sin q of a symbol q
-    /// and sin f of a sum f with the same value would differ.
+    /// and sin f of a sum f with the same value would differ. So would the roots of v² + 1 and of (4/9) u² + 1 where
+    /// 3 v = 2 u, by their sign: under roots, velocities that were solved away are put in as well.
     fn prescribe(&mut self) {
         let reference = &mut self.reference;
         let model = &mut reference.model;
-        let set = given(model);
-        let graph = &mut model.graph;
+        let (set, graph) = (given(model), &mut model.graph);
+        let solved = self.solved.iter_mut();
+        solved.for_each(|(_, edge)| *edge = substitute(graph, &[*edge], &set)[0]);
+        let put = |graph: &mut Graph, edges: &[Edge]| {
+            let edges = substitute(graph, edges, &set);
+            substitute_under_roots(graph, &edges, &self.solved)
+        };
         let rows = [&mut reference.mass, &mut model.a];
         let rows = rows.into_iter().flatten();
         let lists = [
@@ -159,7 +165,7 @@ impl Full {
             &mut self.rows,
         ];
         for list in rows.chain(lists) {
-            *list = substitute(graph, list, &set);
+            *list = put(graph, list);
         }
         let single = [
             &mut reference.kinetic,
@@ -167,11 +173,8 @@ impl Full {
             &mut reference.dissipation,
             &mut self.change,
         ];
-        let single = single
-            .into_iter()
-            .chain(self.solved.iter_mut().map(|(_, edge)| edge));
         for edge in single {
-            *edge = substitute(graph, &[*edge], &set)[0];
+            *edge = put(graph, &[*edge])[0];
         }
     }
 }

@@ -240,6 +240,7 @@ impl<'a> At<'a> {
         let mut moving = vec![Fp::ZERO; full.graph.symbols().len()];
         moving[x.clone()].copy_from_slice(&rate);
         let swept = tangent_at(&full.graph, &a_edges, &mut self.point.clone(), &moving)?;
+        let given = |alpha: usize| full.prescribed.iter().any(|(place, _)| *place == alpha);
         for column in 0..width {
             let mut direction = vec![Fp::ZERO; size];
             if column < n {
@@ -258,7 +259,7 @@ impl<'a> At<'a> {
                 &direction,
             )?;
             let bent = (0..na + n_z).any(|row| entry(n + row, column) != slopes[row].1);
-            let moved = (0..nu).all(|alpha| {
+            let left = (0..nu).map(|alpha| {
                 let sum = (0..n).fold(Fp::ZERO, |sum, k| {
                     sum + a[alpha * all + displaced[k]] * entry(k, column)
                 });
@@ -266,8 +267,17 @@ impl<'a> At<'a> {
                     true => swept[alpha * all + displaced[column]].1,
                     false => Fp::ZERO,
                 };
-                sum == ahead[alpha].1 - swept
+                sum + swept - ahead[alpha].1
             });
+            let left: Vec<Fp> = left.collect();
+            // A prescribed coordinate is not read where it is displaced: its ẋ stays what it was, which is tangent no more where
+            // the coordinate is on a circle. Along the columns of A it is what ḣ says.
+            let moved = (0..nu).all(|alpha| given(alpha) || left[alpha].is_zero())
+                && displaced.iter().all(|&j| {
+                    let along = (0..nu).filter(|&alpha| given(alpha));
+                    let along = along.map(|alpha| a[alpha * all + j] * left[alpha]);
+                    along.fold(Fp::ZERO, |sum, part| sum + part).is_zero()
+                });
             let rates: Vec<Fp> = slopes[..na].iter().map(|slope| slope.0).collect();
             let changes: Vec<Fp> = slopes[..na].iter().map(|slope| slope.1).collect();
             let mut unit = vec![Fp::ZERO; width];
