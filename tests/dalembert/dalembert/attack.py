@@ -1,4 +1,4 @@
-"""python -m dalembert.attack HAMEL FOLDER [--what KIND …] [--seeds FIRST COUNT] [--largest N] [--hard] [--jobs N]: random
+"""python -m dalembert.attack HAMEL FOLDER [--what KIND …] [--seeds FIRST COUNT] [--largest N] [--hard] [--rust FIRST COUNT] [--jobs N]: random
 mechanisms by their kinds and seeds.
 
 Ends with status 1 where hamel says something else than the definitions, or refuses without a reason that is known here, and
@@ -12,25 +12,28 @@ import sys
 import time
 
 from . import wrong
+from .awkward import AwkwardDriven, AwkwardLoops, AwkwardTrees, Platforms
 from .compare import Comparison, Errors
 from .doors import Doors, Refused
 from .driven import Driven
 from .loops import Loops, Open
+from .rust import Crate
+from .spoken import External, Spoken
 from .trees import Forest
 from .written import Written
 
 # What hamel cannot do and says so, with what is left out of `generate` then.
 LEFT_OUT = {"has no regressor": ", regressor", "`centroidal_map` is not known": ", centroidal_map"}
 # What a random mechanism should not have been.
-MEANINGLESS = ["can coincide", "its points keep their distance", "the velocity by others"]
+MEANINGLESS = ["can coincide", "its points keep their distance", "the velocity by others", "leave it none of its own"]
 
 
-def settled(doors, text):
+def settled(doors, text, language="c"):
     """Takes out of the list of functions what hamel says that it has not; whether there is anything to compare."""
     while True:
         try:
             doors.write(text)
-            doors.run("emit", doors.file, "--language", "c", "-o", os.path.join(doors.folder, "double"))
+            doors.run("emit", doors.file, "--language", language, "-o", os.path.join(doors.folder, "double"))
             return True
         except Refused as why:
             known = next((wanted for said, wanted in LEFT_OUT.items() if said in str(why)), None)
@@ -41,11 +44,11 @@ def settled(doors, text):
             text = text.replace(known, "")
 
 
-def tree(seed, largest, hard):
+def tree(seed, largest, hard, kind=Forest):
     """A random tree that is neither too large nor hardly one."""
     r = random.Random(seed)
     while True:
-        made = Forest(r, 1 + r.randrange(5), hard=hard)
+        made = kind(r, 1 + r.randrange(5), hard=hard)
         if 2 <= made.m.n <= largest:
             made.state = made.configuration()
             return made
@@ -80,15 +83,39 @@ def written(seed, largest, hard):
             return made
 
 
+def awkward(seed, largest, hard):
+    """A tree, loops or a motion that is given, with awkward geometry."""
+    if seed % 3 == 0:
+        return tree(seed, largest, hard, AwkwardTrees)
+    return loop(seed, largest, hard, (AwkwardLoops, AwkwardDriven)[seed % 3 - 1])
+
+
+def platform(seed, largest, hard):
+    """One on more cranks than it needs."""
+    return loop(seed, largest, hard, Platforms)
+
+
+def spoken(seed, largest, hard):
+    """A tree in other words."""
+    return tree(seed, largest, hard, Spoken)
+
+
+def external(seed, largest, hard):
+    """The same with a function in Rust, perhaps."""
+    return tree(seed, largest, hard, External)
+
+
 # What is compared, by name.
-WHAT = {"trees": tree, "loops": loop, "written": written, "driven": driven}
+WHAT = {"trees": tree, "loops": loop, "written": written, "driven": driven, "awkward": awkward, "spoken": spoken}
+# And what is only on demand.
+ASKED = WHAT | {"platforms": platform}
 
 
 def one(job):
     """Compares the mechanism of a seed; what was found, and whether there was anything to compare."""
     asked, what, seed = job
     begin, errors, where = time.time(), Errors(), f"{what} {seed}"
-    made = WHAT[what](seed, asked.largest, asked.hard)
+    made = ASKED[what](seed, asked.largest, asked.hard)
     doors = Doors(asked.hamel, os.path.join(asked.folder, f"{what}{seed}"))
     compared = False
     try:
@@ -104,14 +131,41 @@ def one(job):
     return errors, compared
 
 
+def emitted(asked, first, count):
+    """Some small mechanisms of three kinds as Rust, in one crate; what was found."""
+    errors, made = Errors(), []
+    crate = Crate(asked.hamel, os.path.join(asked.folder, "rust"), asked.root)
+    makers = [("spoken", external), ("written", written), ("loops", loop)]
+    for seed in range(first, first + count):
+        name, maker = makers[seed % 3]
+        one, doors = maker(seed, 3, asked.hard), Doors(asked.hamel, os.path.join(asked.folder, f"rust_{name}{seed}"))
+        try:
+            if settled(doors, one.m.text(), "rust"):
+                made.append((f"rust {name} {seed}", one, doors, crate.add(doors, one.m.externals)))
+        except Refused as why:
+            errors.found.append((f"rust {name} {seed}", "refused", str(why)))
+    try:
+        crate.build()
+        for where, one, doors, system in made:
+            Comparison(one.m, doors, errors, where).run(one.state, c=system, kind="rust ")
+            print(where, flush=True)
+    except Refused as why:
+        errors.found.append(("rust", "refused", str(why)))
+    crate.close()
+    print(*errors.found, sep="\n")
+    return errors
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("hamel")
     parser.add_argument("folder")
-    parser.add_argument("--what", nargs="+", choices=WHAT, default=list(WHAT))
+    parser.add_argument("--what", nargs="+", choices=ASKED, default=list(WHAT))
     parser.add_argument("--seeds", nargs=2, type=int, default=(0, 12))
     parser.add_argument("--largest", type=int, default=6)
     parser.add_argument("--hard", action="store_true")
+    parser.add_argument("--rust", nargs=2, type=int, default=(0, 0))
+    parser.add_argument("--root", default=".")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     asked = parser.parse_args()
     unseen = wrong.unseen(asked.hamel, asked.folder)
@@ -124,6 +178,7 @@ def main():
         for found, done in pool.imap(one, jobs, chunksize=1):
             errors.join(found)
             compared += done
+    errors.join(emitted(asked, *asked.rust) if asked.rust[1] else Errors())
     for name, (error, where) in sorted(errors.worst.items(), key=lambda e: -e[1][0]):
         print(f"{name:34} {float(error):9.2g}   {where}")
     print(f"{compared} mechanisms of {len(jobs)} compared, {len(errors.found)} differences")

@@ -1,6 +1,6 @@
 """One mechanism at one state: every function of generated C, and what `eval` and `linearize` print, beside the definitions."""
 
-from . import kinematics, left, tied
+from . import further, kinematics, left, tied
 from .definitions import Definitions, independent
 from .doors import Refused
 from .vectors import mpf, on, times, transposed
@@ -139,10 +139,10 @@ class Comparison:
         s = d.held(s)
         return s.but(a=d.wide(s, [s.a[i] for i in d.active]))
 
-    def run(self, s, single=False):
-        """All functions of the generated C, and what is printed."""
-        m, kind = self.m, "f32 " if single else ""
-        c = self.doors.compiled(single)
+    def run(self, s, single=False, c=None, kind=""):
+        """All functions of the generated C, or of what else has them, and what is printed."""
+        m, kind = self.m, "f32 " if single else kind
+        c = c or self.doors.compiled(single)
         if m.default or "set_parameters" in c:
             c.set([float(p) for p in s.p])
         s = self.start(c, s, single)
@@ -177,6 +177,7 @@ class Comparison:
         if "velocity_from_momentum" in c:
             p = mine["momentum"]
             self.note(kind + "velocity_from_momentum", [s.xi[i] for i in d.active], c.call("velocity_from_momentum", len(d.active), momentum=[float(e) for e in p], **given), 1e-3 if single else 1e-7)
+        further.compare(self, c, s, given, kind, 1e-3 if single else None)
         self.regressor(c, s, given, kind)
         if self.rows:
             self.ties(c, s, given, kind, 1e-3 if single else None)
@@ -202,6 +203,9 @@ class Comparison:
             self.note(kind + "constraint", [e.at(beside) for e in closures], said, tolerance)
         if not self.unique:
             return
+        if "accel" in c and not m.driven:
+            # Where loops are off, they come back as fast as they are said to.
+            self.note(kind + "accel beside", d.accel(beside), c.call("accel", len(d.active) + m.nz, **given), tolerance)
         if "project_position" in c:
             step = tied.project_position(d, beside)
             # States of first order stand behind the velocities, and do not move.

@@ -53,14 +53,44 @@ def choice(left, sign, right, then, other):
     return Ex(f"(if {left.text} {sign} {right.text} {{ {then.text} }} else {{ {other.text} }})", at)
 
 
+def butland(xs, ys):
+    """The slopes of Fritsch and Butland (1984) at points, with those of SciPy at the ends."""
+    h = [b - a for a, b in zip(xs, xs[1:])]
+    d = [(b - a) / step for a, b, step in zip(ys, ys[1:], h)]
+
+    def end(h0, h1, d0, d1):
+        slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
+        if slope * d0 <= 0:
+            return mpf(0)
+        return 3 * d0 if d0 * d1 <= 0 and abs(slope) > 3 * abs(d0) else slope
+
+    found = [end(h[0], h[1], d[0], d[1])]
+    for k in range(1, len(d)):
+        p, q = 2 * h[k] + h[k - 1], h[k] + 2 * h[k - 1]
+        found.append((p + q) / (p / d[k - 1] + q / d[k]) if d[k - 1] * d[k] > 0 else mpf(0))
+    return found + [end(h[-1], h[-2], d[-1], d[-2])]
+
+
+def cubic(x, xs, ys, slopes):
+    """Hermite's cubic between two points; beyond them the straight line of the slope there."""
+    h = xs[1] - xs[0]
+    for end, before in ((0, x < xs[0]), (1, x > xs[1])):
+        if before:
+            return ys[end] + slopes[end] * (x - xs[end])
+    t = (x - xs[0]) / h
+    one, two = (1 + 2 * t) * (1 - t) ** 2 * ys[0], t**2 * (3 - 2 * t) * ys[1]
+    return one + two + h * (t * (1 - t) ** 2 * slopes[0] - t**2 * (1 - t) * slopes[1])
+
+
 def table(forest, name):
     """Straight lines through points."""
     r = forest.r
     xs = [mpf(k) / 4 - 1 for k in range(5)] if r.random() < 0.5 else [mpf("-0.9"), mpf("-0.2"), mpf("0.15"), mpf("1.1")]
     ys = [mpf(forest.number()) for _ in xs]
-    beyond = forest.pick(["hold", "linear"])
+    beyond, between = forest.pick(["hold", "linear"]), forest.pick(["linear", "pchip"])
     points = ", ".join(f"({vectors.mp.nstr(x, 6)}, {vectors.mp.nstr(y, 6)})" for x, y in zip(xs, ys))
-    forest.m.say(f"table {name} = [{points}] linear extrapolate {beyond};")
+    forest.m.say(f"table {name} = [{points}] {between} extrapolate {beyond};")
+    slopes = butland(xs, ys)
 
     def of(argument):
         def at(s):
@@ -68,6 +98,8 @@ def table(forest, name):
             if beyond == "hold":
                 x = min(max(x, xs[0]), xs[-1])
             k = max(j for j in range(len(xs) - 1) if j == 0 or x >= xs[j])
+            if between == "pchip":
+                return cubic(x, xs[k : k + 2], ys[k : k + 2], slopes[k : k + 2])
             return ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k])
 
         return Ex(f"{name}({argument.text})", at)

@@ -255,11 +255,14 @@ def closed(m, s):
     d = Definitions(m)
     for _ in range(60):
         off = [e.at(s) for e in m.closures]
-        if max(abs(e) for e in off) < mpf(10) ** -40:
+        if max((abs(e) for e in off), default=0) < mpf(10) ** -40:
             break
         columns = d.columns(s)[d.first :]
-        rows = vectors.transposed([d.along(lambda q: [e.at(q) for e in m.closures], s, column) for column in columns])
+        rows = closing(d, m, s)
         kept = independent(rows, mpf(10) ** -9)
+        if not kept:
+            # Nothing that moves can close them.
+            raise Open
         b = [rows[i] for i in kept]
         h = vectors.on(vectors.transposed(b), vectors.solve([[vectors.dot(p, q) for q in b] for p in b], [off[i] for i in kept]))
         size = max(abs(e) for e in h)
@@ -270,7 +273,16 @@ def closed(m, s):
         s = s.but(x=on_kinds(m, x))
     else:
         raise Open
+    if m.closures and any(mpf(10) ** -30 < max(map(abs, row)) < mpf(10) ** -5 for row in closing(d, m, s)):
+        # A rod that is stretched out: what doubles say of the rate of its length is nothing but rounding.
+        raise Open
     return s.but(x=[mpf(float(e)) for e in s.x])
+
+
+def closing(d, m, s):
+    """The slopes of the closures along A, by rows."""
+    columns = d.columns(s)[d.first :]
+    return vectors.transposed([d.along(lambda q: [e.at(q) for e in m.closures], s, column) for column in columns])
 
 
 __all__ = ["Loops", "Open"]

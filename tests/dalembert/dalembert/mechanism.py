@@ -32,6 +32,7 @@ class Mechanism:
         self.inerters = []  # inertance, ends
         self.generalized = []  # place of the velocity, expression
         self.dampers = []  # place of the velocity, its force
+        self.line_dampers = []  # coefficient, ends; their force stands in lines_of_force
         self.dissipation = []  # expressions
         self.onto = []  # place in x, size, what leads these numbers back to the constraints that are written of them
         self.closures = []  # scalars of the configuration that are zero
@@ -41,6 +42,7 @@ class Mechanism:
         self.driven = []  # place of a coordinate that is given, kind, its value
         self.outputs = []  # name, expression or vector
         self.jacobians = []  # frame, own
+        self.externals = []  # functions in Rust, which C does not have
         self.time = None
 
     # What a text says, and what it means.

@@ -314,6 +314,7 @@ class Forest:
                 m.springs.append((k, l, ends))
             elif kind == 1:
                 m.say(f"damper coefficient {k.text} {tail}")
+                m.line_dampers.append((k, ends))
                 m.lines_of_force.append((ends, (lambda k: lambda s, length, rate: -k.at(s) * rate)(k)))
             elif kind == 2:
                 m.say(f"inerter inertance {k.text} {tail}")

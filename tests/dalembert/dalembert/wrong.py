@@ -13,6 +13,7 @@ from .tied import allowed_velocities
 from .trees import Output, random_state
 from .vectors import mp, mpf
 from .wrong_driven import DRIVEN, driven_one, driven_state
+from .wrong_written import WRITTEN, written_one, written_state
 
 # What is replaced in the texts, and by what.
 SMALL = [
@@ -100,7 +101,12 @@ def on_loops(m, random_):
 
 
 # Texts with what is replaced in them, how a state is found, and whether slopes are needed.
-CASES = [(small, SMALL, random_state, False), (closed_one, CLOSED, on_loops, True), (driven_one, DRIVEN, driven_state, False)]
+CASES = [
+    (small, SMALL, random_state, False),
+    (closed_one, CLOSED, on_loops, True),
+    (driven_one, DRIVEN, driven_state, False),
+    (written_one, WRITTEN, written_state, False),
+]
 
 
 def unseen(hamel, folder):
