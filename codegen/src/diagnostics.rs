@@ -63,7 +63,18 @@ impl Diagnostic {
         self.notes.push((span, label.into()));
         self
     }
+
+    /// Adds the call of the function that it is in.
+    pub(crate) fn in_call(self, span: Span) -> Self {
+        match self.notes.len() < MOST_CALLS {
+            true => self.note(span, "in this call"),
+            false => self,
+        }
+    }
 }
+
+/// Calls around an error that are shown with it.
+const MOST_CALLS: usize = 4;
 
 /// The errors of one description, in the order they were found.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@
 //!
 //! # The stages
 //!
-//! `text or tokens → ast → names → model → derivation → program → proof → Rust, C | tables | machine code | interpreter`,
+//! `text or tokens → ast → names → shapes → model → derivation → program → proof → Rust, C | tables | machine code | interpreter`,
 //! one module for each stage. Dependencies point one way:
 //!
 //! | module | what it owns |
@@ -13,7 +13,8 @@
 //! | [`reuse`] | components, parts and repetition, which are written out here |
 //! | [`algebra`] | expression graph, polynomials and normal forms, without mechanics |
 //! | `symbols` | what names stand for, and every error about them |
-//! | [`mod@lower`] | from a description to a model: shapes, and every other semantic error |
+//! | `shapes` | the shapes of all expressions, and every error about them |
+//! | [`mod@lower`] | from a description to a model, and every other semantic error |
 //! | [`model`] | a mechanical system as expressions of a graph |
 //! | [`mod@derive`] | the symbols of the formalism, and ξ̇ by the cheapest route |
 //! | [`proof`] | everything derived once more by other routes, and compared |
@@ -53,6 +54,7 @@ pub mod render;
 pub mod reuse;
 #[cfg(feature = "files")]
 pub mod scene;
+mod shapes;
 mod symbols;
 pub mod syntax;
 pub mod tables;

@@ -94,6 +94,30 @@ fn names_are_resolved_without_a_graph() {
 }
 
 #[test]
+fn shapes_are_inferred_without_a_graph() {
+    forbid(
+        "codegen/src/shapes",
+        &[
+            "crate::lower",
+            "crate::model",
+            "crate::derive",
+            "crate::scene",
+            "algebra::graph",
+        ],
+    );
+    // What comes before knows nothing of shapes; what comes after reads a model, whose values have theirs.
+    for (path, text) in sources("codegen/src") {
+        let user = ["shapes", "lower"].iter().any(|folder| {
+            let folder = root().join("codegen/src").join(folder);
+            path.starts_with(folder)
+        });
+        let uses =
+            code_of(&text).any(|line| line.contains("crate::shapes") || line.contains("{shapes,"));
+        assert!(user || !uses, "{} must not know shapes", path.display());
+    }
+}
+
+#[test]
 fn the_model_knows_no_text() {
     forbid(
         "codegen/src/model",

@@ -6,6 +6,7 @@ use crate::algebra::graph::{Edge, Function};
 use crate::algebra::linear::{add3, apply3, multiply, multiply3};
 use crate::diagnostics::Diagnostic;
 use crate::model::value::Value;
+use crate::shapes::LARGEST_PRODUCT;
 use crate::syntax::ast::{BinaryOp, Expr, Span};
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -16,8 +17,6 @@ const LARGEST_NUMBER: u64 = 20_000;
 const LARGEST_POWER: u64 = 1023;
 /// Largest whole exponent.
 const LARGEST_EXPONENT: u64 = 1000;
-/// Largest number of multiplications of one matrix product.
-const LARGEST_PRODUCT: usize = 40 * 40 * 40;
 
 impl Evaluator<'_> {
     pub(super) fn binary(
@@ -30,17 +29,12 @@ impl Evaluator<'_> {
         span: Span,
     ) -> Option<Value> {
         let result = match op {
-            BinaryOp::Add | BinaryOp::Sub => self.sum(op, &a, &b, span)?,
-            BinaryOp::Mul => self.product(&a, &b, span)?,
+            BinaryOp::Add | BinaryOp::Sub => self.sum(op, &a, &b)?,
+            BinaryOp::Mul => self.product(&a, &b)?,
             BinaryOp::Div => {
-                let Value::Scalar(divisor) = b else {
-                    let message = format!("cannot divide by {}", b.shape());
-                    let error = Diagnostic::new(right.span, message);
-                    return self.error(error.help("divide by a scalar"));
-                };
+                let divisor = b.as_scalar()?;
                 if matches!(a, Value::Pose(..)) {
-                    let error = Diagnostic::new(left.span, "cannot divide a pose");
-                    return self.error(error.help("its parts are `.R` and `.p`"));
+                    return None;
                 }
                 let graph = &mut *self.graph;
                 let mut whole = divisor != graph.zero();
@@ -67,22 +61,9 @@ impl Evaluator<'_> {
         )
     }
 
-    fn sum(&mut self, op: BinaryOp, a: &Value, b: &Value, span: Span) -> Option<Value> {
-        if matches!((a, b), (Value::Pose(..), Value::Pose(..))) {
-            return self.error(
-                Diagnostic::new(span, "poses cannot be added or subtracted")
-                    .help("poses are composed by `P * Q`; positions are `.p`"),
-            );
-        }
-        if !a.same_shape(b) {
-            let (first, second) = (a.shape(), b.shape());
-            let message = if op == BinaryOp::Add {
-                format!("cannot add {first} and {second}")
-            } else {
-                format!("cannot subtract {second} from {first}")
-            };
-            return self
-                .error(Diagnostic::new(span, message).help("both sides need the same shape"));
+    fn sum(&mut self, op: BinaryOp, a: &Value, b: &Value) -> Option<Value> {
+        if !a.same_shape(b) || matches!(a, Value::Pose(..)) {
+            return None;
         }
         let graph = &mut *self.graph;
         Some(if op == BinaryOp::Add {
@@ -115,7 +96,7 @@ impl Evaluator<'_> {
         Some(value)
     }
 
-    fn product(&mut self, a: &Value, b: &Value, span: Span) -> Option<Value> {
+    fn product(&mut self, a: &Value, b: &Value) -> Option<Value> {
         let graph = &mut *self.graph;
         let columns = |m: &[Vec<Edge>]| m.first().map_or(0, Vec::len);
         Some(match (a, b) {
@@ -130,10 +111,7 @@ impl Evaluator<'_> {
             }
             (Value::Matrix(m), Value::Matrix(n)) if columns(m) == n.len() => {
                 if m.len() * n.len() * columns(n) > LARGEST_PRODUCT {
-                    return self.error(
-                        Diagnostic::new(span, "this product of matrices is too large to unroll")
-                            .help("use smaller matrices, or write out the entries that matter"),
-                    );
+                    return None;
                 }
                 Value::Matrix(multiply(graph, m, n))
             }
@@ -145,36 +123,13 @@ impl Evaluator<'_> {
                 let moved = apply3(graph, r, b.as_vec3()?);
                 Value::Vector(add3(graph, *p, moved).to_vec())
             }
-            _ => {
-                let help = match (a, b) {
-                    (Value::Vector(_), Value::Vector(_)) => {
-                        "write `dot(a, b)`, `cross(a, b)` or `outer(a, b)`"
-                    }
-                    (Value::Vector(_), Value::Matrix(_)) => {
-                        "write the matrix first, transposed: `M.T * v`"
-                    }
-                    (Value::Pose(..), _) | (_, Value::Pose(..)) => {
-                        "a pose is multiplied by a pose or, on its right, by a vector of 3"
-                    }
-                    _ => "the left needs as many columns as the right has rows",
-                };
-                let message = format!("cannot multiply {} by {}", a.shape(), b.shape());
-                return self.error(Diagnostic::new(span, message).help(help));
-            }
+            _ => return None,
         })
     }
 
     fn power(&mut self, a: Value, b: Value, left: &Expr, right: &Expr) -> Option<Value> {
-        let Value::Scalar(base) = a else {
-            let message = format!("cannot raise {} to a power", a.shape());
-            let error = Diagnostic::new(left.span, message);
-            return self.error(error.help("powers are of scalars; write `dot(v, v)` or `M * M`"));
-        };
-        let exponent = match &b {
-            Value::Scalar(edge) => self.graph.as_rational(*edge),
-            _ => None,
-        };
-        let Some(exponent) = exponent else {
+        let (base, exponent) = (a.as_scalar()?, b.as_scalar()?);
+        let Some(exponent) = self.graph.as_rational(exponent) else {
             return self.error(
                 Diagnostic::new(
                     right.span,

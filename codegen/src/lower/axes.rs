@@ -5,18 +5,12 @@ use crate::algebra::linear::{Mat3, Vec3, identity3};
 use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::value::Value;
+use crate::symbols::words::{AXIS, PLACE, PLANE};
 use crate::syntax::ast::Span;
 use num_rational::BigRational;
 use num_traits::Signed;
 
-/// What a joint calls for its axis; no name of the language has blanks.
-pub const AXIS: &str = "the axis of a joint";
-/// What a joint calls for its place.
-pub const PLACE: &str = "the place of a joint";
-/// What a planar joint calls for the two directions of its plane, as the columns of a 3×2 matrix.
-pub const PLANE: &str = "the plane of a joint";
-
-/// All of them.
+/// What joints call.
 pub const CALLS: [&str; 3] = [AXIS, PLACE, PLANE];
 
 /// Why a joint cannot have an axis or place: a reason, and what to do.
@@ -30,33 +24,31 @@ impl Refused {
     }
 }
 
-/// The value of one of the [`CALLS`].
-pub fn call(graph: &mut Graph, name: &str, value: &Value) -> Result<Value, Refused> {
-    match name {
-        AXIS => unit(graph, value).map(|axis| Value::Vector(axis.to_vec())),
-        PLANE => unit(graph, value).map(|normal| plane(graph, normal)),
-        _ => place(graph, value),
+/// The value of one of the [`CALLS`]; `None` where its argument is in error.
+pub fn call(graph: &mut Graph, name: &str, value: &Value) -> Option<Result<Value, Refused>> {
+    if name == PLACE {
+        return place(graph, value);
     }
+    let axis = unit(graph, value.as_vec3()?);
+    Some(axis.map(|axis| match name {
+        PLANE => plane(graph, axis),
+        _ => Value::Vector(axis.to_vec()),
+    }))
 }
 
 /// A pose that does not depend on the motion.
-fn place(graph: &Graph, value: &Value) -> Result<Value, Refused> {
-    if !matches!(value, Value::Pose(..)) && value.as_vec3().is_none() {
-        return Err(Refused(
-            "the place of a joint has to be a pose or a point",
-            "write `at pose(R, p)`, or `at p` for a place without a turn",
-        ));
-    }
+fn place(graph: &Graph, value: &Value) -> Option<Result<Value, Refused>> {
+    let place = match (value, value.as_vec3()) {
+        (Value::Pose(..), _) => value.clone(),
+        (_, point) => Value::Pose(identity3(graph), point?),
+    };
     if class_of(graph, value) & !class::PARAM != 0 {
-        return Err(Refused(
+        return Some(Err(Refused(
             "the place of a joint has to be constant",
             "it may depend on parameters and constants alone; what moves is a joint or a `frame`",
-        ));
+        )));
     }
-    Ok(match value.as_vec3() {
-        Some(point) => Value::Pose(identity3(graph), point),
-        None => value.clone(),
-    })
+    Some(Ok(place))
 }
 
 fn class_of(graph: &Graph, value: &Value) -> u8 {
@@ -65,14 +57,8 @@ fn class_of(graph: &Graph, value: &Value) -> u8 {
 }
 
 /// The unit vector of a constant direction.
-pub fn unit(graph: &mut Graph, value: &Value) -> Result<Vec3, Refused> {
-    let Some(axis) = value.as_vec3() else {
-        return Err(Refused(
-            "the axis of a joint has to be a vector of 3",
-            "write a direction, such as `[0, 0, 1]`",
-        ));
-    };
-    if class_of(graph, value) != 0 {
+pub fn unit(graph: &mut Graph, axis: Vec3) -> Result<Vec3, Refused> {
+    if class_of(graph, &Value::Vector(axis.to_vec())) != 0 {
         return Err(Refused(
             "the axis of a joint has to be made of numbers and constants",
             "turn the joint by its place, `at pose(R, p)`, where its direction is a parameter",
@@ -188,7 +174,7 @@ mod tests {
             let mut graph = Graph::new(7, class::PARAM);
             graph.symbol("pi", 0, Fp::from_i64(11));
             let given = axis.map(|entry| number(&mut graph, entry));
-            let Ok(unit) = unit(&mut graph, &Value::Vector(given.to_vec())) else {
+            let Ok(unit) = unit(&mut graph, given) else {
                 panic!("{axis:?} has a direction");
             };
             assert_eq!(graph.dot(&unit, &unit), graph.one(), "{axis:?}");

@@ -59,16 +59,7 @@ impl Reader<'_, '_> {
 
     fn inertia(&mut self, expr: &Expr) -> Option<Mat3> {
         let value = self.evaluator.value(expr)?;
-        let Some(matrix) = value.as_mat3() else {
-            let message = format!(
-                "an inertia has to be a 3×3 matrix, this is {}",
-                value.shape()
-            );
-            return self.evaluator.error(
-                Diagnostic::new(expr.span, message)
-                    .help("write `diag(Ix, Iy, Iz)`, or name a parameter of shape sym3"),
-            );
-        };
+        let matrix = value.as_mat3()?;
         self.constant(&value, expr.span, "an inertia")?;
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if matrix[i][j] != matrix[j][i] {
@@ -89,7 +80,7 @@ impl Reader<'_, '_> {
     pub fn particle(&mut self, mass: &Expr, at: &Expr, on: Option<&Ident>) -> Option<Particle> {
         const WHAT: &str = "the position of a particle";
         let mass = self.constant_scalar(mass, "a mass");
-        let position = self.evaluator.vec3(at, WHAT).and_then(|position| {
+        let position = self.evaluator.vec3(at).and_then(|position| {
             let help = "a particle moves by the coordinates in its position";
             let value = Value::Vector(position.to_vec());
             self.configuration(&value, at.span, WHAT, help)?;
@@ -111,7 +102,7 @@ impl Reader<'_, '_> {
 
     /// T = ½ ξᵀ M(x) ξ.
     pub fn kinetic(&mut self, expr: &Expr) -> Option<Edge> {
-        let energy = self.evaluator.scalar(expr, "a kinetic energy")?;
+        let energy = self.evaluator.scalar(expr)?;
         let class = self.evaluator.graph.class(energy.node());
         if class & !(class::PARAM | class::CONFIGURATION | class::VELOCITY) != 0 {
             return self.evaluator.error(
@@ -142,7 +133,7 @@ impl Reader<'_, '_> {
     }
 
     pub fn potential(&mut self, expr: &Expr) -> Option<Edge> {
-        let edge = self.evaluator.scalar(expr, "a potential")?;
+        let edge = self.evaluator.scalar(expr)?;
         let help = "what depends on velocities, inputs or states is a load: `generalized force`, `force`, `torque` or `wrench`";
         let value = Value::Scalar(edge);
         self.configuration(&value, expr.span, "a potential", help)?;

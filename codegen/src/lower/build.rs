@@ -16,8 +16,8 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::closure::Closure;
 use crate::model::{Model, class, samples};
 use crate::reuse;
-use crate::symbols;
 use crate::syntax::ast::{ItemKind, Origins, System};
+use crate::{shapes, symbols};
 use std::collections::BTreeSet;
 
 /// Points are chosen anew this often when a square root has no value there.
@@ -51,6 +51,7 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
     let system = &joints::expand(system, &mut first);
     let system = &time::expand(system, &mut first);
     let names = symbols::resolve(system, &mut first);
+    shapes::check(system, &names, &mut first);
     let mut variety = Variety::read(system, &names, own, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     let mut branches = false;

@@ -12,22 +12,11 @@ impl Evaluator<'_> {
     /// Both branches have a value; which of the two it is turns out where the program runs, or here where numbers
     /// are compared.
     pub(super) fn choice(&mut self, choice: &Choice) -> Option<Value> {
-        let mut side = |side| self.scalar(side, "what is compared");
-        let (left, right) = (side(&choice.left), side(&choice.right));
+        let (left, right) = (self.scalar(&choice.left), self.scalar(&choice.right));
         let (then, otherwise) = (self.value(&choice.then), self.value(&choice.otherwise));
         let (left, right, then, otherwise) = (left?, right?, then?, otherwise?);
         if !then.same_shape(&otherwise) {
-            let message = format!(
-                "this branch is {}, the one before is {}",
-                otherwise.shape(),
-                then.shape()
-            );
-            let error = Diagnostic::new(choice.otherwise.span, message);
-            return self.error(
-                error
-                    .help("both branches need the same shape")
-                    .note(choice.then.span, "the one before"),
-            );
+            return None;
         }
         let graph = &mut *self.graph;
         // a <= b is where a > b is not.

@@ -6,7 +6,7 @@
 
 use super::declare::{Declared, size};
 use super::definitions::Row;
-use super::rate::{rate_help, velocity_for};
+use super::rate::advised;
 use super::variety::Variety;
 use crate::algebra::blocks::{AtStart, Failure, solve};
 use crate::algebra::fp::Fp;
@@ -214,7 +214,7 @@ fn undetermined(
         let message = format!(
             "coordinate `{name}` has no rate, and the definitions of velocities and the constraints do not give one"
         );
-        let help = rate_help(coordinate, &velocity_for(coordinate, None, declared));
+        let help = advised(coordinate, None, declared);
         let help = format!("{help}, or define a velocity by `rate({name})`");
         report.push(Diagnostic::new(coordinate.span, message).help(help));
     }

@@ -6,7 +6,7 @@ use super::scope::Scope;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{Expr, ItemKind, Source, Span, System, Table};
+use crate::syntax::ast::{Expr, ItemKind, Source, System, Table};
 use num_rational::BigRational;
 
 /// The most points of a table.
@@ -79,7 +79,7 @@ impl Evaluator<'_> {
 
     /// An entry of a table.
     fn number_of(&mut self, expr: &Expr) -> Option<BigRational> {
-        let edge = self.scalar(expr, "an entry of a table")?;
+        let edge = self.scalar(expr)?;
         match self.graph.as_rational(edge) {
             Some(number) => Some(number),
             None => self.error(
@@ -100,28 +100,9 @@ impl Evaluator<'_> {
         name: &str,
         curve: Option<&Curve>,
         arguments: &[Expr],
-        span: Span,
     ) -> Option<Value> {
-        let values: Vec<Option<Value>> = arguments.iter().map(|a| self.value(a)).collect();
-        let [argument] = arguments else {
-            let message = format!(
-                "the table `{name}` takes 1 argument, not {}",
-                arguments.len()
-            );
-            let help = format!("write `{name}(a)`");
-            return self.error(Diagnostic::new(span, message).help(help));
-        };
-        let at = match values.into_iter().next()?? {
-            Value::Scalar(edge) => edge,
-            other => {
-                return self.wrong_shape(
-                    argument.span,
-                    "the argument of a table",
-                    "a scalar",
-                    &other,
-                );
-            }
-        };
+        let [argument] = arguments else { return None };
+        let at = self.scalar(argument)?;
         let curve = curve?;
         let number = self.graph.as_rational(at);
         if number.is_some_and(|number| !curve.reaches(&number)) {

@@ -239,7 +239,8 @@ pub fn declared_value(
     value.filter(|value| shape_fits(declaration, value, report))
 }
 
-/// Whether a value has the declared shape; a declaration without a shape takes any.
+/// Whether a value has the declared shape, and is symmetric where that is declared; reports it where it is not. A
+/// declaration without a shape takes any.
 pub fn shape_fits(declaration: &Declaration, value: &Value, report: &mut Report) -> bool {
     let (name, shape) = (&declaration.name.name, declaration.shape);
     let fits = match shape.kind {
@@ -249,32 +250,17 @@ pub fn shape_fits(declaration: &Declaration, value: &Value, report: &mut Report)
             matches!(value, Value::Matrix(m) if m.len() == n && m.iter().all(|row| row.len() == n))
         }
     };
-    let span = declaration
-        .value
-        .as_ref()
-        .map_or(declaration.name.span, |value| value.span);
     if !fits {
-        let wanted = shape.kind.describe();
-        report.push(
-            Diagnostic::new(
-                span,
-                format!(
-                    "`{name}` was declared as {wanted}, its value is {}",
-                    value.shape()
-                ),
-            )
-            .help("make the shape and the value agree")
-            .note(shape.span, "declared here"),
-        );
         return false;
     }
     if let (ShapeKind::Symmetric(n), Value::Matrix(m)) = (shape.kind, value) {
         let mut pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
         if let Some((i, j)) = pairs.find(|&(i, j)| m[i][j] != m[j][i]) {
             let (i, j) = (i + 1, j + 1);
+            let value = declaration.value.as_ref();
             report.push(
                 Diagnostic::new(
-                    span,
+                    value.map_or(declaration.name.span, |value| value.span),
                     format!("`{name}` is not symmetric: entries [{i},{j}] and [{j},{i}] differ"),
                 )
                 .help(format!(

@@ -61,23 +61,11 @@ fn default_of(
         );
         return None;
     }
-    if declaration.shape.kind == ShapeKind::Scalar && !matches!(value, Value::Scalar(_)) {
-        let message = format!(
-            "`{name}` was declared as a scalar, its value is {}",
-            value.shape()
-        );
-        let help = match &value {
-            Value::Vector(v) => format!("write `{name}: vec{}`", v.len()),
-            Value::Matrix(m) if m.len() == m.first().map_or(0, Vec::len) => {
-                format!("write `{name}: mat{0}` or `{name}: sym{0}`", m.len())
-            }
-            _ => "parameters are scalars, vectors and square matrices".into(),
-        };
-        report.push(Diagnostic::new(expr.span, message).help(help));
-        return None;
-    }
     if !shape_fits(declaration, &value, report) {
         return None;
+    }
+    if declaration.shape.kind == ShapeKind::Scalar {
+        value.as_scalar()?;
     }
     let entries = match (&value, declaration.shape.kind) {
         (Value::Matrix(m), ShapeKind::Symmetric(n)) => {

@@ -109,25 +109,7 @@ fn define(
     let name = &declaration.name.name;
     let entries = match (declaration.shape.kind, &value) {
         (ShapeKind::Scalar, Value::Scalar(edge)) => vec![*edge],
-        (ShapeKind::Scalar, _) => {
-            let message = format!(
-                "velocity `{name}` is a scalar, its definition is {}",
-                value.shape()
-            );
-            let help = match &value {
-                Value::Vector(v) => {
-                    format!("declare its shape: `velocity {name}: vec{} = …;`", v.len())
-                }
-                _ => "take an entry of it, or its `vee(…)` where it is a skew matrix".into(),
-            };
-            return evaluator.error(Diagnostic::new(expr.span, message).help(help));
-        }
-        (ShapeKind::Symmetric(_), _) => {
-            let message =
-                format!("a symmetric velocity such as `{name}` has no definition by rates");
-            let help = "declare it `vecN` and define its entries one by one";
-            return evaluator.error(Diagnostic::new(expr.span, message).help(help));
-        }
+        (ShapeKind::Scalar | ShapeKind::Symmetric(_), _) => return None,
         _ if shape_fits(declaration, &value, evaluator.report) => value.entries(),
         _ => return None,
     };

@@ -88,7 +88,7 @@ impl Reader<'_, '_> {
                 dynamics.kinetic = self.evaluator.graph.add(dynamics.kinetic, energy);
             }
             ItemKind::Push { force, from, to } => {
-                let value = self.evaluator.scalar(force, "a force along a line");
+                let value = self.evaluator.scalar(force);
                 let line = self.line("force", span, from, to);
                 let (value, line) = (value?, line?);
                 self.no_acceleration(&Value::Scalar(value), force.span, "a force")?;
@@ -193,7 +193,7 @@ impl Reader<'_, '_> {
 
     fn spring_scalar(&mut self, expr: &Expr) -> Option<Edge> {
         const WHAT: &str = "what a spring acts on";
-        let scalar = self.evaluator.scalar(expr, WHAT)?;
+        let scalar = self.evaluator.scalar(expr)?;
         let help = "it is a length or an angle; on a rate acts a `damper`";
         self.configuration(&Value::Scalar(scalar), expr.span, WHAT, help)?;
         self.evaluator
@@ -271,7 +271,7 @@ impl Reader<'_, '_> {
     /// A rate that an element acts on, whose statement begins with `written`.
     fn acted_rate(&mut self, what: &str, written: &str, expr: &Expr) -> Option<Edge> {
         let on = format!("what {what} acts on");
-        let rate = self.evaluator.scalar(expr, &on)?;
+        let rate = self.evaluator.scalar(expr)?;
         let graph = &mut *self.evaluator.graph;
         let rate = time::linear(graph, self.declared, rate);
         let known = class::PARAM | class::CONFIGURATION | class::VELOCITY;
@@ -310,7 +310,7 @@ impl Reader<'_, '_> {
     }
 
     fn dissipation(&mut self, expr: &Expr) -> Option<Edge> {
-        let energy = self.evaluator.scalar(expr, "a dissipation")?;
+        let energy = self.evaluator.scalar(expr)?;
         let graph = &mut *self.evaluator.graph;
         if graph.class(energy.node()) & (class::INPUT | class::ACCEL) != 0 {
             return self.evaluator.error(

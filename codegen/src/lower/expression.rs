@@ -5,7 +5,8 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{identity3, transpose};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
-use crate::syntax::ast::{Expr, ExprKind, Ident, Span};
+use crate::shapes::{MOST_ENTRIES, MOST_LEVELS};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
 use num_traits::ToPrimitive;
 use std::collections::BTreeMap;
 
@@ -13,13 +14,7 @@ use std::collections::BTreeMap;
 /// matrices of parameters.
 const MOST_NODES: usize = 200_000;
 
-/// The deepest nesting of expressions, functions written out: one expression alone is never so deep.
-const MOST_LEVELS: usize = 640;
-
-/// Largest number of entries of an array.
-const MOST_ENTRIES: usize = 64;
-
-/// Evaluates expressions; `None` means that an error has been reported.
+/// Evaluates expressions whose shapes are checked; `None` means that an error has been reported, here or before.
 pub struct Evaluator<'a> {
     /// The graph that values live in.
     pub graph: &'a mut Graph,
@@ -92,7 +87,7 @@ impl<'a> Evaluator<'a> {
             }
             ExprKind::Name(name) => self.name(name),
             ExprKind::Field(base, field) => self.field(base, field),
-            ExprKind::Index(base, indices) => self.index(base, indices, expr.span),
+            ExprKind::Index(base, indices) => self.index(base, indices),
             ExprKind::Call(function, arguments) => self.call(function, arguments, expr.span),
             ExprKind::InAxes(call, frame) => self.in_axes(call, frame),
             ExprKind::Neg(inner) => Some(self.value(inner)?.map(|edge| -edge)),
@@ -101,49 +96,23 @@ impl<'a> Evaluator<'a> {
                 self.binary(*op, a?, b?, left, right, expr.span)
             }
             ExprKind::If(choice) => self.choice(choice),
-            ExprKind::Array(items) => self.array(items, expr.span),
+            ExprKind::Array(items) => self.array(items),
         }
     }
 
-    /// The value of an expression that has to be a scalar.
-    pub fn scalar(&mut self, expr: &Expr, what: &str) -> Option<Edge> {
-        match self.value(expr)? {
-            Value::Scalar(edge) => Some(edge),
-            other => self.wrong_shape(expr.span, what, "a scalar", &other),
-        }
+    /// The value of an expression that is a scalar.
+    pub fn scalar(&mut self, expr: &Expr) -> Option<Edge> {
+        self.value(expr)?.as_scalar()
     }
 
-    /// The value of an expression that has to be a vector of three.
-    pub fn vec3(&mut self, expr: &Expr, what: &str) -> Option<[Edge; 3]> {
-        let value = self.value(expr)?;
-        match value.as_vec3() {
-            Some(v) => Some(v),
-            None => self.wrong_shape(expr.span, what, "a vector of 3", &value),
-        }
+    /// The value of an expression that is a vector of three.
+    pub fn vec3(&mut self, expr: &Expr) -> Option<[Edge; 3]> {
+        self.value(expr)?.as_vec3()
     }
 
-    /// Reports a wrong shape.
-    pub fn wrong_shape<T>(
-        &mut self,
-        span: Span,
-        what: &str,
-        wanted: &str,
-        found: &Value,
-    ) -> Option<T> {
-        let help = match (wanted, found) {
-            ("a scalar", Value::Vector(_)) => {
-                "an entry is written `v[1]`, a length `norm(v)`, a product `dot(a, b)`"
-            }
-            ("a scalar", Value::Matrix(_)) => "an entry is written `M[1, 2]`",
-            ("a vector of 3", Value::Scalar(_)) => "a vector is written `[a, b, c]`",
-            ("a vector of 3", Value::Vector(v)) if v.len() == 2 => {
-                "in the plane, write `[v[1], v[2], 0]`"
-            }
-            (_, Value::Pose(..)) => "its parts are `.R` and `.p`",
-            _ => "a vector is written `[a, b, c]`, a matrix by rows `[[a, b], [c, d]]`",
-        };
-        let message = format!("{what} has to be {wanted}, this is {}", found.shape());
-        self.error(Diagnostic::new(span, message).help(help))
+    /// Whether an expression is the name of an S1 coordinate.
+    pub fn is_circle(&self, expr: &Expr) -> bool {
+        matches!(&expr.kind, ExprKind::Name(name) if self.scope.symbols.is_circle(name) && !self.locals.contains_key(name.as_str()))
     }
 
     /// Reports an error.
@@ -181,129 +150,49 @@ impl<'a> Evaluator<'a> {
     }
 
     fn field(&mut self, base: &Expr, field: &Ident) -> Option<Value> {
-        let value = self.value(base)?;
-        let circle =
-            matches!(&base.kind, ExprKind::Name(name) if self.scope.symbols.is_circle(name));
-        let help = match (&value, field.name.as_str()) {
-            (Value::Vector(v), "c") if circle => return v.first().copied().map(Value::Scalar),
-            (Value::Vector(v), "s") if circle => return v.get(1).copied().map(Value::Scalar),
-            (Value::Matrix(m), "T") => return Some(Value::Matrix(transpose(m))),
-            (Value::Pose(r, _), "R") => return Some(Value::from_mat3(r)),
-            (Value::Pose(_, p), "p") => return Some(Value::Vector(p.to_vec())),
-            (Value::Vector(_), _) if circle => {
-                "an S1 coordinate has `.c` and `.s`, its cosine and sine"
-            }
-            (Value::Vector(_), "T") => "write `dot(a, b)` or `outer(a, b)`",
-            (Value::Vector(_), _) => "entries are written `v[1]`, `v[2]`, …",
-            (Value::Matrix(_), _) => {
-                "a matrix has `.T`, its transpose; entries are written `M[1, 2]`"
-            }
-            (Value::Pose(..), _) => "a pose has `.R` and `.p`",
-            (Value::Scalar(_), _) => "a scalar has no parts",
-        };
-        let message = format!("{} has no part `.{}`", value.shape(), field.name);
-        self.error(Diagnostic::new(field.span, message).help(help))
+        match (self.value(base)?, field.name.as_str()) {
+            (Value::Vector(v), "c") => v.first().copied().map(Value::Scalar),
+            (Value::Vector(v), "s") => v.get(1).copied().map(Value::Scalar),
+            (Value::Matrix(m), "T") => Some(Value::Matrix(transpose(&m))),
+            (Value::Pose(r, _), "R") => Some(Value::from_mat3(&r)),
+            (Value::Pose(_, p), "p") => Some(Value::Vector(p.to_vec())),
+            _ => None,
+        }
     }
 
-    fn index(&mut self, base: &Expr, indices: &[Expr], span: Span) -> Option<Value> {
+    fn index(&mut self, base: &Expr, indices: &[Expr]) -> Option<Value> {
         let value = self.value(base);
         let places: Vec<Option<usize>> = indices.iter().map(|index| self.place(index)).collect();
-        let value = value?;
         let places = places.into_iter().collect::<Option<Vec<usize>>>()?;
-        let entry = |this: &mut Self, length: usize, which: usize| {
-            let place = places[which];
-            if (1..=length).contains(&place) {
-                return Some(place - 1);
+        match (value?, places.as_slice()) {
+            (Value::Vector(v), [entry]) => v.get(*entry).copied().map(Value::Scalar),
+            (Value::Matrix(m), [row]) => m.get(*row).cloned().map(Value::Vector),
+            (Value::Matrix(m), [row, column]) => {
+                m.get(*row)?.get(*column).copied().map(Value::Scalar)
             }
-            let message = format!(
-                "index {place} is out of range, {} has {length}",
-                value.shape()
-            );
-            let what = match (&value, which) {
-                (Value::Matrix(_), 0) => " rows",
-                (Value::Matrix(_), _) => " columns",
-                _ => " entries",
-            };
-            this.error(
-                Diagnostic::new(indices[which].span, message + what)
-                    .help(format!("indices run from 1 to {length}")),
-            )
-        };
-        match (&value, places.len()) {
-            (Value::Vector(v), 1) => Some(Value::Scalar(v[entry(self, v.len(), 0)?])),
-            (Value::Matrix(m), 1) => Some(Value::Vector(m[entry(self, m.len(), 0)?].clone())),
-            (Value::Matrix(m), 2) => {
-                let row = entry(self, m.len(), 0);
-                let column = entry(self, m.first().map_or(0, Vec::len), 1);
-                Some(Value::Scalar(m[row?][column?]))
-            }
-            (Value::Pose(..), _) => self.error(
-                Diagnostic::new(span, "a pose cannot be indexed")
-                    .help("its parts are `.R` and `.p`, as in `f.p[1]`"),
-            ),
-            (_, count) => {
-                let plural = if count == 1 { "index" } else { "indices" };
-                let message = format!("{} cannot take {count} {plural}", value.shape());
-                self.error(
-                    Diagnostic::new(span, message)
-                        .help("a vector takes one index, a matrix one (for a row) or two"),
-                )
-            }
+            _ => None,
         }
     }
 
+    /// The place of an index, from 0.
     fn place(&mut self, index: &Expr) -> Option<usize> {
-        let edge = self.scalar(index, "an index")?;
-        let number = self.graph.as_rational(edge).filter(|n| n.is_integer());
-        match number.and_then(|n| n.to_integer().to_usize()) {
-            Some(place) => Some(place),
-            None => self.error(
-                Diagnostic::new(
-                    index.span,
-                    "an index has to be a whole number known at build time",
-                )
-                .help("indices start at 1"),
-            ),
-        }
+        let edge = self.scalar(index)?;
+        let number = self.graph.as_rational(edge)?;
+        number.to_integer().to_usize()?.checked_sub(1)
     }
 
-    fn array(&mut self, items: &[Expr], span: Span) -> Option<Value> {
-        const HELP: &str =
-            "entries of a vector are scalars, entries of a matrix are rows of equal length";
+    fn array(&mut self, items: &[Expr]) -> Option<Value> {
         let values: Vec<Option<Value>> = items.iter().map(|item| self.value(item)).collect();
         let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
         let first = values.first()?;
-        if items.len() > MOST_ENTRIES {
-            return self.error(
-                Diagnostic::new(span, format!("an array of {} entries", items.len())).help(
-                    format!("vectors and matrices reach to {MOST_ENTRIES} rows and columns"),
-                ),
-            );
+        if values.len() > MOST_ENTRIES || !values.iter().all(|value| value.same_shape(first)) {
+            return None;
         }
-        let other = items
-            .iter()
-            .zip(&values)
-            .find(|(_, v)| !v.same_shape(first));
-        if let Some((item, other)) = other {
-            let message = format!(
-                "this entry is {}, the first is {}",
-                other.shape(),
-                first.shape()
-            );
-            return self.error(Diagnostic::new(item.span, message).help(HELP));
-        }
+        let rows = values.iter().map(Value::entries);
         match first {
-            Value::Scalar(_) => Some(Value::Vector(
-                values.iter().flat_map(Value::entries).collect(),
-            )),
-            Value::Vector(_) => Some(Value::Matrix(values.iter().map(Value::entries).collect())),
-            Value::Matrix(_) | Value::Pose(..) => self.error(
-                Diagnostic::new(
-                    span,
-                    format!("an array whose entries are each {}", first.shape()),
-                )
-                .help(HELP),
-            ),
+            Value::Scalar(_) => Some(Value::Vector(rows.flatten().collect())),
+            Value::Vector(_) => Some(Value::Matrix(rows.collect())),
+            Value::Matrix(_) | Value::Pose(..) => None,
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::algebra::graph::{Component, Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::value::Value;
 use crate::model::{Model, class};
-use crate::syntax::ast::{Expr, External, Function, ItemKind, Shape, ShapeKind, Span, System};
+use crate::syntax::ast::{Expr, External, ItemKind, Span, System};
 
 fn all(system: &System) -> impl Iterator<Item = &External> {
     system.items.iter().filter_map(|item| match &item.kind {
@@ -113,32 +113,16 @@ impl Evaluator<'_> {
         arguments: &[Expr],
         span: Span,
     ) -> Option<Value> {
-        let values: Vec<Option<Value>> = arguments.iter().map(|a| self.value(a)).collect();
-        let name = &function.name;
-        let (wanted, given) = (function.parameters.len(), arguments.len());
-        if wanted != given {
-            let plural = if wanted == 1 { "" } else { "s" };
-            let message = format!(
-                "`{}` takes {wanted} argument{plural}, not {given}",
-                name.name
-            );
-            let parameters = function.parameters.iter().map(|name| name.name.as_str());
-            let parameters: Vec<&str> = parameters.collect();
-            let usage = format!("write `{}({})`", name.name, parameters.join(", "));
-            let error = Diagnostic::new(span, message).help(usage);
-            return self.error(error.note(name.span, "declared here"));
+        let (name, given) = (&function.name, arguments.len());
+        let edges: Vec<Option<Edge>> = arguments.iter().map(|a| self.scalar(a)).collect();
+        let edges = edges.into_iter().collect::<Option<Vec<Edge>>>()?;
+        if given != function.parameters.len() {
+            return None;
         }
-        let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
-        let mut edges = Vec::new();
-        for (value, argument) in values.iter().zip(arguments) {
-            let Value::Scalar(edge) = value else {
-                let what = "an argument of a function in Rust";
-                return self.wrong_shape(argument.span, what, "a scalar", value);
-            };
-            edges.push(*edge);
-        }
+        let names = function.parameters.iter().map(|name| name.name.as_str());
+        let values = edges.iter().map(|edge| Value::Scalar(*edge));
         let stand_in = match &function.stand_in {
-            Some(value) => Some(self.stand_in(function, value, arguments, span)?),
+            Some(value) => Some(self.written_out(names.zip(values).collect(), value, span)?),
             None => None,
         };
         if function.evaluated {
@@ -162,52 +146,6 @@ impl Evaluator<'_> {
         })
     }
 
-    /// The value of the stand-in of a function, which has to have its shape.
-    fn stand_in(
-        &mut self,
-        function: &External,
-        value: &Expr,
-        arguments: &[Expr],
-        span: Span,
-    ) -> Option<Value> {
-        let shape = |span| Shape {
-            kind: ShapeKind::Scalar,
-            span,
-        };
-        let parameters = function.parameters.iter();
-        let written = Function {
-            name: function.name.clone(),
-            parameters: parameters
-                .map(|name| (name.clone(), shape(name.span)))
-                .collect(),
-            value: value.clone(),
-        };
-        let found = self.applied(&written, arguments, span)?;
-        let (count, place) = function.components;
-        let fits = match &found {
-            Value::Scalar(_) => count == 1,
-            Value::Vector(entries) => count > 1 && entries.len() == count,
-            _ => false,
-        };
-        if fits {
-            return Some(found);
-        }
-        let wanted = match count {
-            1 => "a scalar".into(),
-            _ => format!("a vector of {count}"),
-        };
-        let name = &function.name.name;
-        let message = format!(
-            "the stand-in of `{name}` has to be {wanted}, this is {}",
-            found.shape()
-        );
-        let error = Diagnostic::new(value.span, message).help("make the shapes agree");
-        self.report.push_once(error.note(place, "declared here"));
-        None
-    }
-}
-
-impl Evaluator<'_> {
     /// Whether a value depends on no function in Rust; reports it where it does.
     pub(super) fn inside(&mut self, value: &Value, span: Span, what: &str) -> Option<()> {
         let Some((component, _)) = self.graph.find_external(&value.entries(), 0) else {

@@ -63,12 +63,7 @@ pub fn relative_pose(
         value = Value::Pose(identity3(evaluator.graph), point);
     }
     let Value::Pose(rotation, position) = value else {
-        let message = format!("a frame has to be a pose, this is {}", value.shape());
-        let help = match value.shape().as_str() {
-            "a 3×3 matrix" => format!("write `frame {} = pose(R, [0, 0, 0]);`", name.name),
-            _ => format!("write `frame {} = pose(R, p);`", name.name),
-        };
-        return evaluator.error(Diagnostic::new(pose.span, message).help(help));
+        return None;
     };
     let all = Value::Pose(rotation, position).entries();
     let class = all

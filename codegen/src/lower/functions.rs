@@ -9,33 +9,30 @@ use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::rotations::{axis_angle, hat, quaternion_matrix, turn};
 use crate::model::value::Value;
-use crate::symbols::words::usage;
-use crate::syntax::ast::{Expr, ExprKind, Ident, Span};
+use crate::shapes::MOST_ENTRIES;
+use crate::syntax::ast::{Expr, Ident, Span};
 use num_traits::Signed;
 use rustc_hash::FxHashSet;
 
-/// Largest number of rows that a function makes.
-const MOST_ROWS: usize = 64;
-
 impl Evaluator<'_> {
-    /// A call; wrong names, counts and shapes are reported.
+    /// The value of a call.
     pub fn call(&mut self, function: &Ident, arguments: &[Expr], span: Span) -> Option<Value> {
         let scope = self.scope;
         if let Some(own) = scope.symbols.functions.get(function.name.as_str()) {
             return self.applied(own, arguments, span);
         }
         if let Some(curve) = scope.tables.get(&function.name) {
-            return self.table(&function.name, curve.as_ref(), arguments, span);
+            return self.table(&function.name, curve.as_ref(), arguments);
         }
         if let Some((place, external)) = self.scope.externals.get(&function.name) {
             return self.external(*place, external, arguments, span);
         }
         if function.name == "rate" {
-            return self.rate(arguments, span);
+            return self.rate(arguments.first()?, span);
         }
         if let (true, [argument]) = (axes::CALLS.contains(&function.name.as_str()), arguments) {
             let value = self.value(argument)?;
-            return match axes::call(self.graph, &function.name, &value) {
+            return match axes::call(self.graph, &function.name, &value)? {
                 Ok(value) => Some(value),
                 Err(refused) => self.error(refused.at(argument.span)),
             };
@@ -44,67 +41,25 @@ impl Evaluator<'_> {
             .iter()
             .map(|argument| self.value(argument))
             .collect();
-        // A name that is no function is an error already.
-        let usage = usage(&function.name)?;
         let values = values.into_iter().collect::<Option<Vec<Value>>>()?;
         if let Some(value) = self.motion(function, arguments, &values, span) {
             return value;
         }
         match evaluate(self.graph, &function.name, &values, self.scope.free) {
             Ok(value) => Some(value),
-            Err(Fault::Usage) => {
-                let found: Vec<String> = values.iter().map(Value::shape).collect();
-                let found = match found.as_slice() {
-                    [] => "no argument".into(),
-                    [one] => one.clone(),
-                    [first @ .., last] => format!("{} and {last}", first.join(", ")),
-                };
-                let message = format!("`{}` cannot take {found}", function.name);
-                let help = match self.circle_part(&function.name, arguments) {
-                    Some(part) => format!("write `{part}`"),
-                    None => format!("write {usage}"),
-                };
-                self.error(Diagnostic::new(span, message).help(help))
-            }
-            Err(Fault::Why(message, help)) => self.error(Diagnostic::new(span, message).help(help)),
-        }
-    }
-
-    /// The part of an S1 coordinate that stands for its sine or cosine.
-    fn circle_part(&self, function: &str, arguments: &[Expr]) -> Option<String> {
-        let [
-            Expr {
-                kind: ExprKind::Name(name),
-                ..
-            },
-        ] = arguments
-        else {
-            return None;
-        };
-        if !self.scope.symbols.is_circle(name) {
-            return None;
-        }
-        match function {
-            "sin" => Some(format!("{name}.s")),
-            "cos" => Some(format!("{name}.c")),
-            "tan" => Some(format!("{name}.s / {name}.c")),
-            _ => None,
+            Err(None) => None,
+            Err(Some((message, help))) => self.error(Diagnostic::new(span, message).help(help)),
         }
     }
 }
 
-/// Why a call has no value.
-enum Fault {
-    /// Number or shapes of the arguments.
-    Usage,
-    /// A mathematical reason, and what to do.
-    Why(&'static str, &'static str),
-}
+/// Why a call has no value: a mathematical reason, and what to do; nothing where the arguments are in error.
+type Fault = Option<(&'static str, &'static str)>;
 
-const ZERO_DIVISOR: Fault = Fault::Why(
+const ZERO_DIVISOR: Fault = Some((
     "division by something that is identically zero",
     "this is 0 for every configuration that satisfies the constraints",
-);
+));
 
 /// The value of a call; `free` where points are off the variety.
 fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Result<Value, Fault> {
@@ -131,19 +86,19 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
         ("log", [Scalar(a)]) => {
             let number = graph.as_rational(*a);
             if number.is_some_and(|n| !n.is_positive()) {
-                return Err(Fault::Why(
+                return Err(Some((
                     "the logarithm of a number that is not positive",
                     "check the argument: it is this number for every configuration",
-                ));
+                )));
             }
             Scalar(graph.apply(Function::Log, *a))
         }
         ("sqrt", [Scalar(a)]) => Scalar(real_root(graph, *a)?),
         ("atan2", [Scalar(y), Scalar(x)]) if *y == graph.zero() && *x == graph.zero() => {
-            return Err(Fault::Why(
+            return Err(Some((
                 "the angle of a zero vector",
                 "one of the arguments has to differ from 0",
-            ));
+            )));
         }
         ("atan2", [Scalar(y), Scalar(x)]) => Scalar(graph.atan2(*y, *x)),
         ("min", [Scalar(a), Scalar(b)]) => Scalar(lesser(graph, *a, *b)),
@@ -152,10 +107,10 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             if let (Some(low), Some(high)) = (graph.as_rational(*low), graph.as_rational(*high))
                 && low > high
             {
-                return Err(Fault::Why(
+                return Err(Some((
                     "the bounds of `clamp` are in the wrong order",
                     "write the lower one first: `clamp(a, low, high)`",
-                ));
+                )));
             }
             let above = greater(graph, *a, *low);
             Scalar(lesser(graph, above, *high))
@@ -175,7 +130,7 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
         }
         ("diag", [Vector(v)]) => diagonal(graph, v),
         ("diag", scalars)
-            if (1..=MOST_ROWS).contains(&scalars.len())
+            if (1..=MOST_ENTRIES).contains(&scalars.len())
                 && scalars.iter().all(|v| matches!(v, Scalar(_))) =>
         {
             let entries: Vec<Edge> = scalars.iter().flat_map(Value::entries).collect();
@@ -188,12 +143,12 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
                 .map(|n| n.to_integer());
             let size = size
                 .and_then(|n| usize::try_from(n).ok())
-                .filter(|n| (1..=MOST_ROWS).contains(n))
-                .ok_or(Fault::Usage)?;
+                .filter(|n| (1..=MOST_ENTRIES).contains(n))
+                .ok_or(None)?;
             diagonal(graph, &vec![graph.one(); size])
         }
         ("rotx" | "roty" | "rotz", _) => {
-            let (c, s) = cosine_sine(graph, values).ok_or(Fault::Usage)?;
+            let (c, s) = cosine_sine(graph, values).ok_or(None)?;
             let axis = match name {
                 "rotx" => 0,
                 "roty" => 1,
@@ -213,15 +168,15 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             Value::from_mat3(&multiply3(graph, &last, &turns[0]))
         }
         ("axis_angle", [axis, turn @ ..]) => {
-            let given = axis.as_vec3().ok_or(Fault::Usage)?;
-            let (c, s) = cosine_sine(graph, turn).ok_or(Fault::Usage)?;
+            let given = axis.as_vec3().ok_or(None)?;
+            let (c, s) = cosine_sine(graph, turn).ok_or(None)?;
             // A direction in numbers has an exact unit vector.
-            let axis = axes::unit(graph, axis).unwrap_or(given);
+            let axis = axes::unit(graph, given).unwrap_or(given);
             if !free && graph.dot(&axis, &axis) != graph.one() {
-                return Err(Fault::Why(
+                return Err(Some((
                     "the axis of `axis_angle` is no unit vector",
                     "divide it by its length: `axis_angle(a / norm(a), angle)`",
-                ));
+                )));
             }
             axis_angle(graph, axis, c, s)
         }
@@ -242,9 +197,9 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
         }
         ("pose", [r, p]) => match (r.as_mat3(), p.as_vec3()) {
             (Some(r), Some(p)) => Pose(r, p),
-            _ => return Err(Fault::Usage),
+            _ => return Err(None),
         },
-        ("translation", [p]) => Pose(identity3(graph), p.as_vec3().ok_or(Fault::Usage)?),
+        ("translation", [p]) => Pose(identity3(graph), p.as_vec3().ok_or(None)?),
         ("angle", [Vector(q)]) if q.len() == 2 => Scalar(angle_from(graph, [q[0], q[1]], None)),
         ("inverse", [Pose(r, p)]) => {
             let back = transpose3(r);
@@ -252,11 +207,11 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
         }
         ("cross", [a, b]) => match (a.as_vec3(), b.as_vec3()) {
             (Some(a), Some(b)) => Vector(cross(graph, a, b).to_vec()),
-            _ => return Err(Fault::Usage),
+            _ => return Err(None),
         },
-        ("hat", [w]) => Value::from_mat3(&hat(graph, w.as_vec3().ok_or(Fault::Usage)?)),
+        ("hat", [w]) => Value::from_mat3(&hat(graph, w.as_vec3().ok_or(None)?)),
         ("vee", [w]) => {
-            let w = w.as_mat3().ok_or(Fault::Usage)?;
+            let w = w.as_mat3().ok_or(None)?;
             let half = graph.ratio(1, 2);
             Vector(
                 [(2, 1), (0, 2), (1, 0)]
@@ -270,9 +225,9 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
         }
         (name, [Scalar(a)]) => match Function::named(name) {
             Some(function) => Scalar(graph.apply(function, *a)),
-            None => return Err(Fault::Usage),
+            None => return Err(None),
         },
-        _ => return Err(Fault::Usage),
+        _ => return Err(None),
     };
     Ok(value)
 }
@@ -323,10 +278,10 @@ fn length(graph: &mut Graph, a: &[Edge]) -> Edge {
 
 fn real_root(graph: &mut Graph, square: Edge) -> Result<Edge, Fault> {
     if graph.as_rational(square).is_some_and(|n| n.is_negative()) {
-        return Err(Fault::Why(
+        return Err(Some((
             "the square root of a negative number",
             "check the argument: it is this number for every configuration",
-        ));
+        )));
     }
     Ok(root(graph, square))
 }

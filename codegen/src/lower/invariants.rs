@@ -183,7 +183,7 @@ impl Reader<'_, '_> {
 
     /// A vector in world axes that depends on the configuration at most.
     fn place(&mut self, expr: &Expr, what: &str) -> Option<Vec3> {
-        let value = self.evaluator.vec3(expr, what)?;
+        let value = self.evaluator.vec3(expr)?;
         let help = "it is given in world axes; an axis fixed in a body is `R * [0, 0, 1]`";
         self.configuration(&Value::Vector(value.to_vec()), expr.span, what, help)?;
         Some(value)
@@ -250,13 +250,7 @@ impl Reader<'_, '_> {
         let values = match &value {
             Value::Scalar(edge) if *edge == zero => vec![zero; symbols.len()],
             value if value.same_shape(&target) => value.entries(),
-            _ => {
-                let what = format!("the value of `{}`", written::written(&condition.target));
-                let wanted = target.shape();
-                return self
-                    .evaluator
-                    .wrong_shape(condition.value.span, &what, &wanted, &value);
-            }
+            _ => return None,
         };
         let graph = &self.evaluator.graph;
         let mut set: Vec<(usize, Edge)> = Vec::new();

@@ -3,7 +3,7 @@
 use super::declare::{Declared, size};
 use super::definitions;
 use super::expression::Evaluator;
-use super::rate::{At, Kinematics, Rate, part, rate_help, velocity_for, written};
+use super::rate::{At, Kinematics, Rate, advised, part};
 use super::relations::relate;
 use super::scope::Scope;
 use super::states;
@@ -11,9 +11,9 @@ use super::tangency::linear_part;
 use super::variety::Variety;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
-use crate::model::Coordinate;
 use crate::model::value::Value;
-use crate::syntax::ast::{BinaryOp, CoordKind, Expr, ExprKind, ItemKind, System, Target};
+use crate::syntax::ast::{CoordKind, Expr, ItemKind, System, Target};
+use crate::syntax::written::target as written;
 
 /// Reads all `rate` statements and definitions of velocities, and relates A, Y and φ.
 pub fn read(
@@ -56,7 +56,7 @@ pub fn read(
             } else {
                 format!("coordinate `{name}` has no rate")
             };
-            let help = rate_help(coordinate, &velocity_for(coordinate, None, declared));
+            let help = advised(coordinate, None, declared);
             report.push(Diagnostic::new(coordinate.span, message).help(help));
         }
     }
@@ -81,7 +81,7 @@ fn read_rate(
     rates: &mut [Option<Rate>],
     system: &System,
 ) -> Option<()> {
-    let found = part(target, &mut evaluator, declared);
+    let found = part(target, declared);
     let value_of = evaluator.value(value);
     let (range, wanted) = found?;
     let mut entries = value_of?;
@@ -98,16 +98,7 @@ fn read_rate(
         entries = Value::Vector(turned.to_vec()).unsigned_zeros(graph);
     }
     if !entries.same_shape(&wanted) {
-        let message = format!(
-            "the rate of `{}` has to be {}, this is {}",
-            written(target),
-            wanted.shape(),
-            entries.shape()
-        );
-        let turning = entries.as_vec3().and_then(|_| factor_of(coordinate, value));
-        let velocity = turning.unwrap_or_else(|| velocity_for(coordinate, Some(value), declared));
-        let help = rate_help(coordinate, &velocity);
-        return evaluator.error(Diagnostic::new(value.span, message).help(help));
+        return None;
     }
     let twice = rates[range.clone()]
         .iter()
@@ -128,17 +119,4 @@ fn read_rate(
         rates[place] = Some(Rate { edge, item });
     }
     Some(())
-}
-
-/// The w of a rate `R * w`, which lacks its `hat`.
-fn factor_of(coordinate: &Coordinate, rate: &Expr) -> Option<String> {
-    let ExprKind::Binary(BinaryOp::Mul, left, right) = &rate.kind else {
-        return None;
-    };
-    match (&left.kind, &right.kind) {
-        (ExprKind::Name(left), ExprKind::Name(right)) if *left == coordinate.name => {
-            Some(right.clone())
-        }
-        _ => None,
-    }
 }

@@ -109,14 +109,14 @@ impl Reader<'_, '_> {
     }
 
     fn applied(&mut self, expr: &Expr, what: &str) -> Option<Vec3> {
-        let value = self.evaluator.vec3(expr, what)?;
+        let value = self.evaluator.vec3(expr)?;
         self.no_acceleration(&Value::Vector(value.to_vec()), expr.span, what)?;
         Some(value)
     }
 
     fn point(&mut self, expr: &Expr) -> Option<Vec3> {
         const WHAT: &str = "a point of attack";
-        let point = self.evaluator.vec3(expr, WHAT)?;
+        let point = self.evaluator.vec3(expr)?;
         let help = "it is given in the axes of the frame that the load acts on";
         self.configuration(&Value::Vector(point.to_vec()), expr.span, WHAT, help)?;
         Some(point)
@@ -124,27 +124,11 @@ impl Reader<'_, '_> {
 
     /// The place in ξ of a generalised force, and its entries.
     pub fn generalized(&mut self, target: &Target, value: &Expr) -> Option<(usize, Vec<Edge>)> {
-        let force = self.evaluator.value(value);
-        let name = &target.name;
-        let groups = &self.declared.velocities;
-        let group = groups.iter().find(|group| group.name == name.name)?;
-        if let Some(field) = &target.field {
-            let message = format!("`{}` has no part `.{}`", name.name, field.name);
-            let help = format!(
-                "give the whole of it: `generalized force {} = …;`",
-                name.name
-            );
-            return self
-                .evaluator
-                .error(Diagnostic::new(field.span, message).help(help));
-        }
-        let force = force?;
-        if !force.same_shape(&group.value) {
-            let what = format!("the generalized force of `{}`", group.name);
-            let wanted = group.value.shape();
-            return self
-                .evaluator
-                .wrong_shape(value.span, &what, &wanted, &force);
+        let force = self.evaluator.value(value)?;
+        let mut groups = self.declared.velocities.iter();
+        let group = groups.find(|group| group.name == target.name.name)?;
+        if target.field.is_some() || !force.same_shape(&group.value) {
+            return None;
         }
         self.no_acceleration(&force, value.span, "a generalized force")?;
         Some((group.offset, force.entries()))

@@ -1,7 +1,7 @@
 //! From the description as written to the mechanical system that it means.
 //!
-//! Names are resolved already. Shapes are checked and every other semantic error is found here: stages after
-//! this one cannot fail on user input.
+//! Names are resolved and shapes are checked already; what is wrong with them is no further error here. Every other
+//! semantic error is found here, where arithmetic tells: stages after this one cannot fail on user input.
 
 mod affine;
 mod agreement;
@@ -47,6 +47,8 @@ mod states;
 mod staying;
 mod strange;
 mod tangency;
+#[cfg(test)]
+mod tests;
 mod time;
 mod unused;
 mod variety;

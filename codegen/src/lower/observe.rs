@@ -31,20 +31,19 @@ impl Evaluator<'_> {
         span: Span,
     ) -> Option<Value> {
         let name = &function.name;
-        let (frame, point, other) = match values {
-            [frame] => (frame, None, None),
-            [frame, other @ Value::Pose(..)] => (frame, None, Some(other)),
-            [frame, point] => (frame, Some(point), None),
-            [frame, point, other] => (frame, Some(point), Some(other)),
-            _ => return self.misused(name, span),
+        let (Value::Pose(rotation, position), rest) = values.split_first()? else {
+            return None;
+        };
+        let (point, other) = match rest {
+            [] => (None, None),
+            [Value::Pose(r, p)] => (None, Some((r, p))),
+            [point] => (Some(point), None),
+            [point, Value::Pose(r, p)] => (Some(point), Some((r, p))),
+            _ => return None,
         };
         let point = match point {
-            _ if quantity.is_angular() && point.is_some() => None,
-            Some(point) => point.as_vec3(),
-            None => Some(zero3(self.graph)),
-        };
-        let (Value::Pose(rotation, position), Some(point)) = (frame, point) else {
-            return self.misused(name, span);
+            Some(point) => point.as_vec3()?,
+            None => zero3(self.graph),
         };
         for (value, expr) in values.iter().zip(arguments) {
             let class = |class, edge: &Edge| class | self.graph.class(edge.node());
@@ -61,13 +60,12 @@ impl Evaluator<'_> {
         }
         let (rotation, position) = match other {
             None => (*rotation, *position),
-            Some(Value::Pose(r, p)) => {
+            Some((r, p)) => {
                 let back = transpose3(r);
                 let arm = sub3(self.graph, *position, *p);
                 let arm = apply3(self.graph, &back, arm);
                 (multiply3(self.graph, &back, rotation), arm)
             }
-            Some(_) => return self.misused(name, span),
         };
         let graph = &mut *self.graph;
         if let Some(motion) = &self.scope.motion {
@@ -135,23 +133,8 @@ impl Evaluator<'_> {
 
     /// `velocity(f, p) in g`: the components of a motion in the axes of a frame; `in body` are those of f itself.
     pub fn in_axes(&mut self, call: &Expr, frame: &Expr) -> Option<Value> {
-        let motion = match &call.kind {
-            ExprKind::Call(function, arguments) => Quantity::named(&function.name)
-                .filter(|_| {
-                    !self
-                        .scope
-                        .symbols
-                        .functions
-                        .contains_key(function.name.as_str())
-                })
-                .map(|_| arguments),
-            _ => None,
-        };
-        let Some(arguments) = motion else {
-            let error = Diagnostic::new(call.span, "only the motion of a frame is written in axes");
-            return self.error(error.help(
-                "write `velocity(f, p) in g` or the like; a vector v with components in world axes is `g.R.T * v` in those of g",
-            ));
+        let ExprKind::Call(_, arguments) = &call.kind else {
+            return None;
         };
         let value = self.value(call);
         let own = matches!(&frame.kind, ExprKind::Name(name) if name == "body");
@@ -161,11 +144,7 @@ impl Evaluator<'_> {
         };
         let (value, axes) = (value?.as_vec3()?, axes?);
         let Value::Pose(axes, _) = axes else {
-            let message = format!("this is {}, which has no axes", axes.shape());
-            return self.error(
-                Diagnostic::new(frame.span, message)
-                    .help("write the name of a frame, `world`, or `body` for the frame itself"),
-            );
+            return None;
         };
         // Where it is seen from another frame, its components are in the axes of that one.
         let seen = arguments.last().filter(|_| arguments.len() > 1);
@@ -177,17 +156,5 @@ impl Evaluator<'_> {
         let world = seen.map_or(value, |rotation| apply3(graph, &rotation, value));
         let turned = apply3(graph, &transpose3(&axes), world);
         Some(Value::Vector(turned.to_vec()))
-    }
-
-    fn misused(&mut self, name: &str, span: Span) -> Option<Value> {
-        let help = if Quantity::named(name).is_some_and(Quantity::is_angular) {
-            format!("write `{name}(f)` of a frame, or `{name}(f, g)` as the frame g sees it")
-        } else {
-            format!(
-                "write `{name}(f)` or `{name}(f, p)` of a frame and a point in its axes, or `{name}(f, p, g)` as the frame g sees it"
-            )
-        };
-        let message = format!("`{name}` takes a frame, a point of it, and a frame to look from");
-        self.error(Diagnostic::new(span, message).help(help))
     }
 }

@@ -276,11 +276,7 @@ impl Reader<'_> {
             return Some(a.entries());
         }
         if !a.same_shape(&b) {
-            let message = format!("one side is {}, the other {}", a.shape(), b.shape());
-            return self.evaluator.error(
-                Diagnostic::new(left.span.to(right.span), message)
-                    .help("both sides need the same shape, or 0 on the right"),
-            );
+            return None;
         }
         if let Some(points) = a.as_vec3().zip(b.as_vec3()) {
             self.sides = Some(Sides {
@@ -311,7 +307,7 @@ impl Reader<'_> {
     /// λ, constant at run time. The outer `None` is an error.
     fn rate_of_decay(&mut self, expr: Option<&Expr>) -> Option<Option<Edge>> {
         let Some(expr) = expr else { return Some(None) };
-        let edge = self.evaluator.scalar(expr, "a rate of stabilisation")?;
+        let edge = self.evaluator.scalar(expr)?;
         if self.evaluator.graph.class(edge.node()) & !class::PARAM != 0 {
             return self.evaluator.error(
                 Diagnostic::new(expr.span, "a rate of stabilisation has to be constant")

@@ -8,7 +8,7 @@
 
 use super::declare::Declared;
 use super::expression::Evaluator;
-use super::rate::{Kinematics, part, written};
+use super::rate::{Kinematics, part};
 use super::scope::Scope;
 use super::time;
 use super::variety::{Origin, Variety};
@@ -19,7 +19,7 @@ use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::value::Value;
 use crate::model::{Coordinate, class};
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
-use crate::syntax::written::written as shown;
+use crate::syntax::written::{target as written, written as shown};
 
 /// The rows, the coordinates whose values are given, and the velocities whose rates are.
 type Prescribed = (Vec<Pfaffian>, Vec<(usize, Edge)>, Vec<(usize, Edge)>);
@@ -87,9 +87,7 @@ impl Reader<'_> {
         let group = velocity.filter(|_| target.field.is_none())?;
         let value = value?;
         if !value.same_shape(&group.value) {
-            let what = format!("the rate of `{name}`");
-            let shape = group.value.shape();
-            return self.evaluator.wrong_shape(expr.span, &what, &shape, &value);
+            return None;
         }
         let graph = &*self.evaluator.graph;
         let entries = value.entries();
@@ -120,7 +118,7 @@ impl Reader<'_> {
         let (place, wanted, coordinate) = match velocity {
             Some(group) if target.field.is_none() => (group.offset, group.value.clone(), None),
             _ => {
-                let (range, wanted) = part(target, &mut self.evaluator, self.declared)?;
+                let (range, wanted) = part(target, self.declared)?;
                 let mut coordinates = self.declared.coordinates.iter();
                 let coordinate = coordinates.find(|c| c.name == *name)?;
                 (range.start, wanted, Some(coordinate))
@@ -151,13 +149,7 @@ impl Reader<'_> {
             self.can_be_given(target, coordinate)?;
         }
         if !fits {
-            let what = format!("the motion of `{}`", written(target));
-            let shape = if angle {
-                "an angle".into()
-            } else {
-                wanted.shape()
-            };
-            return self.evaluator.wrong_shape(expr.span, &what, &shape, &value);
+            return None;
         }
         self.known_ahead(name, expr.span, &value)?;
         self.evaluator

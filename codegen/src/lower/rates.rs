@@ -14,16 +14,11 @@ use crate::diagnostics::Diagnostic;
 use crate::model::class;
 use crate::model::motion::{Observed, Quantity};
 use crate::model::value::Value;
-use crate::syntax::ast::{Expr, ExprKind, Span};
+use crate::syntax::ast::{Expr, Span};
 
 impl Evaluator<'_> {
     /// `rate(…)` of an expression.
-    pub fn rate(&mut self, arguments: &[Expr], span: Span) -> Option<Value> {
-        const USAGE: &str = "write `rate(q)` of a coordinate, or `rate(e)` of an expression";
-        let [argument] = arguments else {
-            let message = format!("`rate` takes one expression, not {}", arguments.len());
-            return self.error(Diagnostic::new(span, message).help(USAGE));
-        };
+    pub fn rate(&mut self, argument: &Expr, span: Span) -> Option<Value> {
         let value = self.value(argument)?;
         let scope = self.scope;
         let (motion, known) = match (&scope.rates, &scope.motion) {
@@ -41,11 +36,8 @@ impl Evaluator<'_> {
                 );
             }
         };
-        if let Value::Pose(..) = value {
-            return self.error(
-                Diagnostic::new(argument.span, "the rate of a pose is no pose")
-                    .help("take its parts: `rate(X.p)` and `rate(X.R)`"),
-            );
+        if matches!(value, Value::Pose(..)) {
+            return None;
         }
         let entries = value.entries();
         let found = entries
@@ -77,8 +69,7 @@ impl Evaluator<'_> {
                 .borrow_mut()
                 .extend(noted(self, &entries, &rates));
         }
-        let circle =
-            matches!(&argument.kind, ExprKind::Name(name) if scope.symbols.is_circle(name));
+        let circle = self.is_circle(argument);
         if let (true, Value::Vector(x), [c_dot, s_dot]) = (circle, &value, rates.as_slice()) {
             let graph = &mut *self.graph;
             let (gain, loss) = (graph.mul(x[0], *s_dot), graph.mul(x[1], *c_dot));

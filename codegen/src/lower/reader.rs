@@ -61,13 +61,13 @@ impl Reader<'_, '_> {
     }
 
     pub fn constant_scalar(&mut self, expr: &Expr, what: &str) -> Option<Edge> {
-        let edge = self.evaluator.scalar(expr, what)?;
+        let edge = self.evaluator.scalar(expr)?;
         self.constant(&Value::Scalar(edge), expr.span, what)?;
         Some(edge)
     }
 
     pub fn constant_vec3(&mut self, expr: &Expr, what: &str) -> Option<Vec3> {
-        let value = self.evaluator.vec3(expr, what)?;
+        let value = self.evaluator.vec3(expr)?;
         self.constant(&Value::Vector(value.to_vec()), expr.span, what)?;
         Some(value)
     }

@@ -4,9 +4,8 @@
 //! So a motion knows z as it knows an input, and nothing of its derivation changes. ż is any expression, accelerations
 //! included.
 
-use super::declare::{Declared, shape_fits};
+use super::declare::Declared;
 use super::expression::Evaluator;
-use super::rate::written;
 use super::scope::Scope;
 use super::start;
 use crate::algebra::graph::{Edge, Graph};
@@ -72,12 +71,6 @@ pub fn read(
             continue;
         };
         if !found.same_shape(&group.value) {
-            if shape_fits(declaration, &found, report) {
-                let mut evaluator = Evaluator::new(graph, scope, report);
-                let what = format!("the start of `{}`", name.name);
-                let _: Option<()> =
-                    evaluator.wrong_shape(value.span, &what, &group.value.shape(), &found);
-            }
             continue;
         }
         if let Some(numbers) =
@@ -102,16 +95,9 @@ fn rate(
     mut evaluator: Evaluator,
     rates: &mut [Option<(Edge, Span)>],
 ) -> Option<()> {
-    let value = evaluator.value(expr);
-    if let Some(field) = &target.field {
-        let message = format!("`{}` has no part `.{}`", group.name, field.name);
-        let help = format!("give the whole of it: `rate {} = …;`", group.name);
-        return evaluator.error(Diagnostic::new(field.span, message).help(help));
-    }
-    let value = value?;
-    if !value.same_shape(&group.value) {
-        let what = format!("the rate of `{}`", written(target));
-        return evaluator.wrong_shape(expr.span, &what, &group.value.shape(), &value);
+    let value = evaluator.value(expr)?;
+    if target.field.is_some() || !value.same_shape(&group.value) {
+        return None;
     }
     let places = group.offset..group.offset + group.len;
     if let Some((_, first)) = rates[places.clone()].iter().flatten().next() {

@@ -2,7 +2,7 @@
 
 use super::affine::Affine;
 use super::declare::Declared;
-use super::rate::{Rate, rate_help, velocity_for};
+use super::rate::{Rate, advised};
 use super::time;
 use super::variety::{Origin, Variety};
 use crate::algebra::fp::Fp;
@@ -205,13 +205,12 @@ impl Checker<'_> {
                         "this rate leaves the constraint {text}: a motion along `{velocity}` changes it"
                     ),
                 };
-                let name = velocity_for(coordinate, Some(value), self.declared);
                 let help = match (coordinate.kind, &value.kind) {
                     (CoordKind::S1, _) => format!(
                         "write `rate {0} = w;` with its angular velocity w, which stands for (-{0}.s * w, {0}.c * w)",
                         coordinate.name
                     ),
-                    _ => rate_help(coordinate, &name),
+                    _ => advised(coordinate, Some(value), self.declared),
                 };
                 Diagnostic::new(value.span, message).help(help)
             }

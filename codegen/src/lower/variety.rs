@@ -203,8 +203,8 @@ impl Variety {
         point(&self.points).unwrap_or_else(|| vec![Fp::ONE; self.points.symbols])
     }
 
-    /// Reports what is wrong with names and shapes in the constraints, in the graph with points on X, and why a
-    /// constraint has a value there and nowhere else.
+    /// Reports what is wrong with the constraints in the graph with points on X, and why a constraint has a value there
+    /// and nowhere else.
     pub fn check(&self, system: &System, graph: &mut Graph, scope: &Scope, report: &mut Report) {
         for (index, left, right) in written(system) {
             let mut evaluator = Evaluator::new(graph, scope, report);
@@ -212,13 +212,9 @@ impl Variety {
             let (Some(a), Some(b)) = (a, b) else { continue };
             let span = left.span.to(right.span);
             if !a.same_shape(&b) {
-                let message = format!(
-                    "one side of the constraint is {}, the other {}",
-                    a.shape(),
-                    b.shape()
-                );
-                report.push(Diagnostic::new(span, message).help("both sides need the same shape"));
-            } else if let Some(reasons) = self.unread.get(&index) {
+                continue;
+            }
+            if let Some(reasons) = self.unread.get(&index) {
                 let error = Diagnostic::new(
                     span,
                     "this constraint has no value away from where it holds",

@@ -17,16 +17,6 @@ pub enum Value {
 }
 
 impl Value {
-    /// The shape in words: "a vector of 3".
-    pub fn shape(&self) -> String {
-        match self {
-            Value::Scalar(_) => "a scalar".into(),
-            Value::Vector(v) => format!("a vector of {}", v.len()),
-            Value::Matrix(m) => format!("a {}×{} matrix", m.len(), m.first().map_or(0, Vec::len)),
-            Value::Pose(..) => "a pose".into(),
-        }
-    }
-
     /// Whether two values have the same shape.
     pub fn same_shape(&self, other: &Value) -> bool {
         match (self, other) {
@@ -71,6 +61,14 @@ impl Value {
         let others = other.entries();
         let mut next = others.iter();
         self.map(|edge| next.next().map_or(edge, |&other| f(edge, other)))
+    }
+
+    /// The value as one number.
+    pub fn as_scalar(&self) -> Option<Edge> {
+        match self {
+            Value::Scalar(edge) => Some(*edge),
+            _ => None,
+        }
     }
 
     /// The value as three numbers.

@@ -13,9 +13,6 @@ const LISTED: usize = 12;
 /// Misspelt names for which a close one is looked for.
 const MOST_MISSPELT: usize = 50;
 
-/// Calls around an error that are shown with it.
-const MOST_NOTES: usize = 4;
-
 /// The value of a function, and the names of its parameters.
 #[derive(Clone)]
 struct Body<'a> {
@@ -175,11 +172,7 @@ impl<'a> Checker<'a> {
         let seen = if errors.is_empty() { 0 } else { open };
         self.seen.insert(name, seen);
         for error in errors {
-            let error = match error.notes.len() < MOST_NOTES {
-                true => error.note(span, "in this call"),
-                false => error,
-            };
-            self.error(error);
+            self.error(error.in_call(span));
         }
     }
 

@@ -62,6 +62,13 @@ pub const FUNCTIONS: [&str; 5] = [
     "angular_acceleration",
 ];
 
+/// What a joint calls for its axis; no name of the language has blanks.
+pub const AXIS: &str = "the axis of a joint";
+/// What a joint calls for its place.
+pub const PLACE: &str = "the place of a joint";
+/// What a planar joint calls for the two directions of its plane, as the columns of a 3×2 matrix.
+pub const PLANE: &str = "the plane of a joint";
+
 /// Whether a function is known only once the rates are.
 pub fn needs_rates(function: &str) -> bool {
     function == "rate" || FUNCTIONS.contains(&function) && function != "position"

@@ -1,6 +1,6 @@
 //! Expressions as text: one spelling for all sources of the same tokens.
 
-use super::ast::{BinaryOp, Condition, Expr, ExprKind};
+use super::ast::{BinaryOp, Condition, Expr, ExprKind, Target};
 use num_rational::BigRational;
 use num_traits::Signed;
 
@@ -44,6 +44,14 @@ pub fn written(expr: &Expr) -> String {
             let first = tight(left, own + u8::from(power));
             format!("{first}{sign}{}", tight(right, own + 1))
         }
+    }
+}
+
+/// What a statement is about, as it is written: `X.p`.
+pub fn target(target: &Target) -> String {
+    match &target.field {
+        Some(field) => format!("{}.{}", target.name.name, field.name),
+        None => target.name.name.clone(),
     }
 }
 

@@ -108,7 +108,7 @@ pub(super) fn numbers(
     let values = values(joint, field)?;
     for expr in values {
         let mut evaluator = Evaluator::new(graph, scope, report);
-        let Some(edge) = evaluator.scalar(expr, what) else {
+        let Some(edge) = evaluator.scalar(expr) else {
             complete = false;
             continue;
         };
@@ -164,7 +164,6 @@ pub(crate) fn armature(
     dynamics: &mut Dynamics,
     report: &mut Report,
 ) -> Vec<Edge> {
-    const WHAT: &str = "the armature of a joint";
     let mut all = vec![graph.zero(); declared.xi.len()];
     for item in &system.items {
         let ItemKind::Joint(joint) = &item.kind else {
@@ -174,7 +173,7 @@ pub(crate) fn armature(
             continue;
         };
         let mut evaluator = Evaluator::new(graph, scope, report);
-        let Some(inertia) = evaluator.scalar(expr, WHAT) else {
+        let Some(inertia) = evaluator.scalar(expr) else {
             continue;
         };
         let error = if graph.class(inertia.node()) & !class::PARAM != 0 {

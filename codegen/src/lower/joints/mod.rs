@@ -63,7 +63,7 @@ fn directions(joint: &ast::Joint, graph: &mut Graph, scope: &Scope) -> Vec<[f64;
     let mut reported = Report::default();
     let mut direction = |axis: &ast::Expr| {
         let value = Evaluator::new(graph, scope, &mut reported).value(axis)?;
-        let [a, b, c] = axes::unit(graph, &value)
+        let [a, b, c] = axes::unit(graph, value.as_vec3()?)
             .ok()?
             .map(|entry| fields::number(graph, entry));
         Some([a?, b?, c?])

@@ -1,7 +1,7 @@
 //! One joint as the statements that say the same without it.
 
 use super::fields::has;
-use crate::lower::axes::{AXIS, PLACE, PLANE};
+use crate::symbols::words::{AXIS, PLACE, PLANE};
 use crate::syntax::ast::{
     Acting, BinaryOp, CoordKind, Declaration, Expr, ExprKind, Ident, Item, ItemKind, Joint,
     JointField, JointKind, Shape, ShapeKind, Span, Target,

@@ -4,7 +4,7 @@ use super::Start;
 use crate::algebra::graph::{Edge, Graph};
 use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::declare::Declared;
-use crate::lower::rate::{Kinematics, written};
+use crate::lower::rate::Kinematics;
 use crate::lower::reader::Dynamics;
 use crate::lower::time;
 use crate::model::Frame;
@@ -15,6 +15,7 @@ use crate::model::layout::{Block, constraint};
 use crate::model::pfaffian::Pfaffian;
 use crate::model::twists::Moving;
 use crate::syntax::ast::{ExprKind, ItemKind, Span, System, Target};
+use crate::syntax::written::target as written;
 
 /// The targets of all guesses.
 fn guesses(system: &System) -> impl Iterator<Item = &Target> {

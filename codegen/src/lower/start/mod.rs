@@ -8,7 +8,7 @@ use crate::algebra::numeric::evaluate;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::declare::Declared;
 use crate::lower::expression::Evaluator;
-use crate::lower::rate::{part, written};
+use crate::lower::rate::part;
 use crate::lower::scope::Scope;
 use crate::model::class;
 use crate::model::closure::{Closure, Open};
@@ -16,6 +16,7 @@ use crate::model::layout::{blocks, identity};
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
+use crate::syntax::written::target as written;
 
 /// x and ξ so far, where each entry was given, and where guessed.
 pub struct Start {
@@ -136,7 +137,7 @@ impl Start {
     ) -> Option<()> {
         let name = &target.name.name;
         let value = evaluator.value(expr);
-        let (range, wanted, of_x) = place(target, &mut evaluator, declared)?;
+        let (range, wanted, of_x) = place(target, declared)?;
         let mut value = value?;
         let is_circle =
             |c: &&crate::model::Coordinate| c.kind == CoordKind::S1 && c.offset == range.start;
@@ -153,19 +154,7 @@ impl Start {
             value = Value::Vector(vec![c, s]);
         }
         if !value.same_shape(&wanted) {
-            let what = format!("the start of `{}`", written(target));
-            let kind = declared.coordinates.iter().find(|c| c.name == *name);
-            let help = match kind.map(|coordinate| coordinate.kind) {
-                Some(CoordKind::S1) if range.len() == 2 => "give the angle, as in `start q = 0.3;`",
-                Some(CoordKind::S3) => "give a unit quaternion, scalar first",
-                Some(CoordKind::SO3 | CoordKind::SE3) if range.len() >= 9 => {
-                    "build the rotation by `rotx(angle)`, `rpy(…)`, `axis_angle(…)`, and a pose by `pose(R, p)`"
-                }
-                _ => return evaluator.wrong_shape(expr.span, &what, &wanted.shape(), &value),
-            };
-            let (wanted, found) = (wanted.shape(), value.shape());
-            let message = format!("{what} has to be {wanted}, this is {found}");
-            return evaluator.error(Diagnostic::new(expr.span, message).help(help));
+            return None;
         }
         let numbers = numbers(&mut evaluator, &value, name, expr.span, symbols)?;
         let (into, given, guessed) = if of_x {
@@ -267,30 +256,17 @@ fn violated(constraints: &[Pfaffian], open: Open, given: bool) -> Diagnostic {
 }
 
 /// The entries of x or ξ that a start is about, and their value; whether they are of x.
-fn place(
-    target: &Target,
-    evaluator: &mut Evaluator,
-    declared: &Declared,
-) -> Option<(std::ops::Range<usize>, Value, bool)> {
+fn place(target: &Target, declared: &Declared) -> Option<(std::ops::Range<usize>, Value, bool)> {
     let name = &target.name.name;
-    if let Some(group) = declared.velocities.iter().find(|group| group.name == *name) {
-        if let Some(field) = &target.field {
-            return evaluator.error(
-                Diagnostic::new(
-                    field.span,
-                    format!("`{name}` has no part `.{}`", field.name),
-                )
-                .help(format!("give the whole of it: `start {name} = …;`")),
-            );
-        }
-        return Some((
-            group.offset..group.offset + group.len,
-            group.value.clone(),
-            false,
-        ));
-    }
-    let (range, wanted) = part(target, evaluator, declared)?;
-    Some((range, wanted, true))
+    let Some(group) = declared.velocities.iter().find(|group| group.name == *name) else {
+        let (range, wanted) = part(target, declared)?;
+        return Some((range, wanted, true));
+    };
+    let range = group.offset..group.offset + group.len;
+    target
+        .field
+        .is_none()
+        .then(|| (range, group.value.clone(), false))
 }
 
 impl Declared {
