@@ -59,7 +59,7 @@ impl Reader<'_, '_> {
 
     fn inertia(&mut self, expr: &Expr) -> Option<Mat3> {
         let value = self.evaluator.value(expr)?;
-        let matrix = value.as_mat3()?;
+        let matrix = value.as_mat3().or_else(|| self.evaluator.miss())?;
         self.constant(&value, expr.span, "an inertia")?;
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if matrix[i][j] != matrix[j][i] {

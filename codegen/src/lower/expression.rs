@@ -56,6 +56,19 @@ impl<'a> Evaluator<'a> {
     }
     /// The value of an expression.
     pub fn value(&mut self, expr: &Expr) -> Option<Value> {
+        let value = self.limited(expr);
+        value.or_else(|| self.miss())
+    }
+
+    /// No value where there has to be one. Where no error says why, the description is refused all the same: nothing
+    /// of it is left out in silence.
+    pub fn miss<T>(&self) -> Option<T> {
+        self.scope.missed.set(true);
+        None
+    }
+
+    /// The value, unless expressions are nested too deeply or the graph has grown too large.
+    fn limited(&mut self, expr: &Expr) -> Option<Value> {
         if self.graph.len() > MOST_NODES {
             // Reported where it was crossed.
             return None;
@@ -102,12 +115,12 @@ impl<'a> Evaluator<'a> {
 
     /// The value of an expression that is a scalar.
     pub fn scalar(&mut self, expr: &Expr) -> Option<Edge> {
-        self.value(expr)?.as_scalar()
+        self.value(expr)?.as_scalar().or_else(|| self.miss())
     }
 
     /// The value of an expression that is a vector of three.
     pub fn vec3(&mut self, expr: &Expr) -> Option<[Edge; 3]> {
-        self.value(expr)?.as_vec3()
+        self.value(expr)?.as_vec3().or_else(|| self.miss())
     }
 
     /// Whether an expression is the name of an S1 coordinate.
@@ -131,11 +144,7 @@ impl<'a> Evaluator<'a> {
             return Some(value.clone());
         }
         if self.scope.symbols.get(name).is_some() {
-            let value = self.scope.value(name).cloned();
-            self.scope
-                .missed
-                .set(self.scope.missed.get() || value.is_none());
-            return value;
+            return self.scope.value(name).cloned();
         }
         match name {
             "world" => Some(self.world()),

@@ -63,7 +63,7 @@ pub fn relative_pose(
         value = Value::Pose(identity3(evaluator.graph), point);
     }
     let Value::Pose(rotation, position) = value else {
-        return None;
+        return evaluator.miss();
     };
     let all = Value::Pose(rotation, position).entries();
     let class = all

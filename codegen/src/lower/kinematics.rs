@@ -98,7 +98,7 @@ fn read_rate(
         entries = Value::Vector(turned.to_vec()).unsigned_zeros(graph);
     }
     if !entries.same_shape(&wanted) {
-        return None;
+        return evaluator.miss();
     }
     let twice = rates[range.clone()]
         .iter()

@@ -128,7 +128,7 @@ impl Reader<'_, '_> {
         let mut groups = self.declared.velocities.iter();
         let group = groups.find(|group| group.name == target.name.name)?;
         if target.field.is_some() || !force.same_shape(&group.value) {
-            return None;
+            return self.evaluator.miss();
         }
         self.no_acceleration(&force, value.span, "a generalized force")?;
         Some((group.offset, force.entries()))

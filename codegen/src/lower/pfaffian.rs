@@ -276,7 +276,7 @@ impl Reader<'_> {
             return Some(a.entries());
         }
         if !a.same_shape(&b) {
-            return None;
+            return self.evaluator.miss();
         }
         if let Some(points) = a.as_vec3().zip(b.as_vec3()) {
             self.sides = Some(Sides {

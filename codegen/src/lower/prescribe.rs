@@ -87,7 +87,7 @@ impl Reader<'_> {
         let group = velocity.filter(|_| target.field.is_none())?;
         let value = value?;
         if !value.same_shape(&group.value) {
-            return None;
+            return self.evaluator.miss();
         }
         let graph = &*self.evaluator.graph;
         let entries = value.entries();
@@ -149,7 +149,7 @@ impl Reader<'_> {
             self.can_be_given(target, coordinate)?;
         }
         if !fits {
-            return None;
+            return self.evaluator.miss();
         }
         self.known_ahead(name, expr.span, &value)?;
         self.evaluator

@@ -97,7 +97,7 @@ fn rate(
 ) -> Option<()> {
     let value = evaluator.value(expr)?;
     if target.field.is_some() || !value.same_shape(&group.value) {
-        return None;
+        return evaluator.miss();
     }
     let places = group.offset..group.offset + group.len;
     if let Some((_, first)) = rates[places.clone()].iter().flatten().next() {

@@ -154,7 +154,7 @@ impl Start {
             value = Value::Vector(vec![c, s]);
         }
         if !value.same_shape(&wanted) {
-            return None;
+            return evaluator.miss();
         }
         let numbers = numbers(&mut evaluator, &value, name, expr.span, symbols)?;
         let (into, given, guessed) = if of_x {
