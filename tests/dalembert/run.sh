@@ -13,6 +13,6 @@ if [ -z "${HAMEL_BUILT:-}" ] || [ ! -f "$target/debug/hamel" ]; then
 fi
 export PYTHONPATH=tests/dalembert PYTHONDONTWRITEBYTECODE=1
 if [ $# -eq 0 ]; then
-    set -- --seeds 21 3 --largest 3 --rust 0 2
+    set -- --seeds 21 3 --largest 3 --rust 1 1
 fi
 "$environment/bin/python" -m dalembert.attack "$target/debug/hamel" "$target/dalembert" "$@"

@@ -145,7 +145,8 @@ def emitted(asked, first, count):
         except Refused as why:
             errors.found.append((f"rust {name} {seed}", "refused", str(why)))
     try:
-        crate.build()
+        if made:
+            crate.build()
         for where, one, doors, system in made:
             Comparison(one.m, doors, errors, where).run(one.state, c=system, kind="rust ")
             print(where, flush=True)
