@@ -19,7 +19,8 @@
 #![allow(unsafe_code)]
 
 use crate::evaluate::apply;
-use crate::lower::{Callee, Lowering, UNDONE, WELL, callee, signature, signature_of_part};
+use crate::lower::{Callee, UNDONE, WELL, callee, signature};
+use crate::parts::{Lowering, signature_of_part};
 use crate::target::{Pool, Target};
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::{AbiParam, FuncRef, Signature, types};
