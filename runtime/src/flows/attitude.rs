@@ -17,6 +17,9 @@ pub trait Attitude<S: Scalar>: Copy {
     /// Turned by a unit quaternion.
     fn turned_by(self, f: s3::Quaternion<S>) -> Self;
 
+    /// Turned by a rotation matrix; of its two quaternions by the one that is near another, which need not be exact.
+    fn turned_by_matrix(self, f: Matrix<S>, near: impl FnOnce() -> s3::Quaternion<S>) -> Self;
+
     /// Turned by cay(f): by 2 atan|f| about f.
     fn turned_by_cayley(self, f: Vector<S>) -> Self;
 
@@ -96,6 +99,11 @@ impl<S: Scalar> Attitude<S> for Matrix<S> {
     }
 
     #[inline(always)]
+    fn turned_by_matrix(self, f: Matrix<S>, _: impl FnOnce() -> s3::Quaternion<S>) -> Self {
+        so3::product(self, f)
+    }
+
+    #[inline(always)]
     fn turned_by_cayley(self, f: Vector<S>) -> Self {
         so3::product(self, so3::cayley(f))
     }
@@ -129,6 +137,15 @@ impl<S: Scalar> Attitude<S> for s3::Quaternion<S> {
 
     #[inline(always)]
     fn turned_by(self, f: s3::Quaternion<S>) -> Self {
+        s3::product(self, f)
+    }
+
+    #[inline(always)]
+    fn turned_by_matrix(self, f: Matrix<S>, near: impl FnOnce() -> s3::Quaternion<S>) -> Self {
+        let (zero, f) = (S::default(), s3::from_matrix(f));
+        let along = f.iter().zip(near());
+        let along = along.fold(zero, |sum, (&a, b)| a.mul_add(b, sum));
+        let f = f.map(|entry| along.select_lt(zero, -entry, entry));
         s3::product(self, f)
     }
 

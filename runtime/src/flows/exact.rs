@@ -20,7 +20,7 @@ use crate::flows::jacobi::{Jacobi, Mean};
 use crate::flows::nodes::{self, Angle};
 use crate::s3;
 use crate::scalar::Scalar;
-use crate::so3::{self, Vector};
+use crate::so3::{self, Matrix, Vector};
 
 /// One torque-free motion: constants and start.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +55,20 @@ pub(crate) struct FreeRotation<S> {
     by_first: S,
     /// Whether names[0], names[1], σ names[2] are right-handed (1) or left-handed (−1).
     turning: S,
+}
+
+/// Where a motion gets.
+pub(crate) struct Turned<S> {
+    /// The rotation F of the body, R₁ = R₀ F.
+    f: Matrix<S>,
+    /// P = Fᵀ P₀
+    momentum: Vector<S>,
+    /// P/|P|
+    unit: Vector<S>,
+    /// The angle about R P.
+    angle: S,
+    /// How often cn has changed its sign.
+    folds: S,
 }
 
 /// A principal axis with its moment.
@@ -155,49 +169,66 @@ impl<S: Scalar> FreeRotation<S> {
         }
     }
 
-    /// The rotation F of the body in time `h` as a unit quaternion, R₁ = R₀ F, and P = Fᵀ P₀.
-    ///
-    /// F = G(p₀) exp(e ψ) G(p)ᵀ with e = σ names[2], where e · p is never negative and G(p) turns e to p
-    /// on the shortest way. ψ is the angle about R P, less the azimuth about e that the node gains beside
-    /// G: a continuous one, since F and −F are the same rotation and not the same quaternion.
-    pub(crate) fn after(&self, h: S) -> (s3::Quaternion<S>, Vector<S>) {
-        let (zero, half) = (S::default(), S::from_f64(0.5));
+    /// The motion in time `h`.
+    pub(crate) fn after(&self, h: S) -> Turned<S> {
+        let zero = S::default();
         let Angle {
             end,
             integral,
             folds,
         } = nodes::advance(self, h);
-        let pick = |moving: S, steady: S| zero.select_lt(self.moving, moving, steady);
-        let [a, b, c] = self.amplitudes;
-        let named = [a * end.cn, b * end.sn, c * end.dn];
-        let unit: Vector<S> =
+        let named = [
+            self.amplitudes[0] * end.cn,
+            self.amplitudes[1] * end.sn,
+            self.amplitudes[2] * end.dn,
+        ];
+        let mut unit: Vector<S> =
             from_fn(|i| (0..3).fold(zero, |sum, k| self.names[k][i].mul_add(named[k], sum)));
         let norm = so3::dot(unit, unit).sqrt();
-        let unit = from_fn(|i| pick(unit[i] / norm, self.unit[i]));
+        unit = from_fn(|i| zero.select_lt(self.moving, unit[i] / norm, self.unit[i]));
 
         let part = self.n * integral;
         let time = self.length * h;
         let by_first = self.inverses[1] * time + part;
         let by_third = self.inverses[0] * time - part;
         let angle = zero.select_lt(self.by_first, by_first, by_third);
-        let angle = pick(angle, self.steady_rate * time);
+        let angle = zero.select_lt(self.moving, angle, self.steady_rate * time);
+        let reference: Vector<S> =
+            from_fn(|i| zero.select_lt(self.by_first, self.names[0][i], self.names[2][i]));
+        let (before, after) = (frame(reference, self.unit), frame(reference, unit));
+        let (turned, _) = before.turned_about(2, angle);
+        let transposed: Matrix<S> = from_fn(|k| after[3 * (k % 3) + k / 3]);
+        Turned {
+            f: so3::product(turned, transposed),
+            momentum: unit.map(|component| self.length * component),
+            unit,
+            angle,
+            folds,
+        }
+    }
+
+    /// F as a unit quaternion, where it has a sign: that of the motion, which starts at 1.
+    ///
+    /// F = G(p₀) exp(e ψ) G(p)ᵀ with e = σ names[2], where e · p is never negative and G(p) turns e to p
+    /// on the shortest way. ψ is the angle about R P, less the azimuth about e that the node gains beside
+    /// G: a continuous one, since F and −F are the same rotation and not the same quaternion.
+    fn lift(&self, turned: &Turned<S>) -> s3::Quaternion<S> {
+        let (zero, half) = (S::default(), S::from_f64(0.5));
         // α/2 goes on by a quarter of a turn where cn changes its sign.
-        let quarters = pick(self.by_first.select_lt(half, folds, zero), zero);
+        let quarters = zero.select_lt(self.moving, turned.folds, zero);
+        let quarters = self.by_first.select_lt(half, quarters, zero);
         let side = nodes::side(self.start);
-        let twist = by_angle(half * angle);
+        let twist = by_angle(half * turned.angle);
         let twist = times(twist, self.half_azimuth(self.unit, side));
         let side = side * nodes::parity(quarters);
-        let twist = times(twist, conjugate(self.half_azimuth(unit, side)));
+        let twist = times(twist, conjugate(self.half_azimuth(turned.unit, side)));
         let twist = times(twist, by_quarters(-(quarters * self.turning)));
 
         let axis = self.third();
-        let (before, after) = (shortest(axis, self.unit), shortest(axis, unit));
+        let (before, after) = (shortest(axis, self.unit), shortest(axis, turned.unit));
         let [x, y, z] = axis.map(|component| component * twist[1]);
         let back = [after[0], -after[1], -after[2], -after[3]];
-        let f = s3::product(s3::product(before, [twist[0], x, y, z]), back);
-        let norm = f.iter().fold(zero, |sum, &k| k.mul_add(k, sum)).sqrt();
-        let momentum = unit.map(|component| self.length * component);
-        (f.map(|entry| entry / norm), momentum)
+        s3::product(s3::product(before, [twist[0], x, y, z]), back)
     }
 
     /// e = σ names[2], along which p keeps its sign.
@@ -257,6 +288,19 @@ fn conjugate<S: Scalar>(a: [S; 2]) -> [S; 2] {
     [a[0], -a[1]]
 }
 
+/// Columns: the node reference × p, p × node, p, for a unit vector p.
+fn frame<S: Scalar>(reference: Vector<S>, p: Vector<S>) -> Matrix<S> {
+    let node = so3::cross(reference, p);
+    let length = so3::dot(node, node).sqrt();
+    let node = node.map(|component| component / length);
+    let third = so3::cross(p, node);
+    from_fn(|k| match k % 3 {
+        0 => node[k / 3],
+        1 => third[k / 3],
+        _ => p[k / 3],
+    })
+}
+
 /// Three different moments, any others too: the attitude and P after `h`. Exact.
 #[inline]
 pub fn exact<S: Scalar, A: Attitude<S>>(
@@ -265,9 +309,10 @@ pub fn exact<S: Scalar, A: Attitude<S>>(
     moments: Vector<S>,
     h: S,
 ) -> A {
-    let (f, after) = FreeRotation::new(moments, *p).after(h);
-    *p = after;
-    attitude.turned_by(f)
+    let motion = FreeRotation::new(moments, *p);
+    let turned = motion.after(h);
+    *p = turned.momentum;
+    attitude.turned_by_matrix(turned.f, || motion.lift(&turned))
 }
 
 /// The time between two flips of a torque-free rotor, half a period of its angular velocity: 2K/|u̇|;
