@@ -42,6 +42,7 @@ def small():
     found = add_joint(m, "a", "revolute", axis, WORLD, (rotation("y", "0.4"), place), "f", "damping 0.3; armature 0.2;")
     a, a_dot = found["a"], found["a_dot"]
     m.generalized.append((0, -(lift("0.3") * a_dot)))
+    m.dampers.append((0, lift("0.3") * a_dot))
     m.kinetic.append(lift("0.1") * a_dot**2)
     found = add_joint(m, "b", "continuous", Vec.of([1, 0, 0]), "f", (STILL, Vec.of([0, "0.3", 0])), "g")
     m.bodies = [("f", lift("1.2"), Vec.of(["0.1", "0.2", "0.3"]), inertia, "com"), ("g", lift("0.8"), Vec.of(["0.1", 0, "0.1"]), inertia, "origin")]
