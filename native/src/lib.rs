@@ -37,6 +37,7 @@ mod code;
 mod evaluate;
 #[cfg(feature = "machine")]
 mod lower;
+#[cfg(feature = "machine")]
 mod parts;
 mod repeat;
 #[cfg(feature = "machine")]
