@@ -11,5 +11,6 @@ npm --prefix page run --silent types
 folder="${CARGO_TARGET_DIR:-target}/page"
 page/node_modules/.bin/wasm-opt "$folder/hamel_page.wasm" -o "$folder/hamel_page.small.wasm" --enable-bulk-memory \
     --enable-sign-ext --enable-mutable-globals --enable-nontrapping-float-to-int --enable-multivalue \
-    --enable-reference-types --duplicate-function-elimination --optimize-instructions --code-folding --reorder-locals
+    --enable-reference-types --duplicate-function-elimination --optimize-instructions --code-folding --reorder-locals \
+    --merge-blocks --code-folding --vacuum --duplicate-function-elimination --code-folding --duplicate-function-elimination
 node page/build.mjs

@@ -171,6 +171,7 @@ impl<'a> Degrees<'a> {
                 fraction.degree += 1.0;
                 fraction
             }
+            Law::Linear => self.read(argument),
             Law::Free => Fraction::of_degree(1.0),
         }
     }

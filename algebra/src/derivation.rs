@@ -117,6 +117,7 @@ impl Derivation {
                         let slope = graph.sub(graph.one(), square);
                         graph.mul(slope, da)
                     }
+                    Slope::OfOne => graph.apply(function, da),
                     Slope::Nothing | Slope::Two => zero,
                 }
             }

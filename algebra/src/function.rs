@@ -4,16 +4,18 @@
 //! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
 
 use Cost::{Choice, Other, Quotient, Root, Turn};
-use Law::{Angle, Free, Hyperbola, Power, Radical, Side};
+use Law::{Angle, Free, Hyperbola, Linear, Power, Radical, Side};
 use Parity::{Even, Odd, Plain};
 use Slope::{
-    Half, HalfInverse, Inverse, Is, IsMinus, Itself, MinusSquare, Nothing, OneMinusSquare, Two,
+    Half, HalfInverse, Inverse, Is, IsMinus, Itself, MinusSquare, Nothing, OfOne, OneMinusSquare,
+    Two,
 };
 
 use super::double::Double;
 use super::interval::Interval;
 use super::node::NodeId;
 use super::reals::Real;
+use num_rational::BigRational;
 
 /// f(−a).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +43,8 @@ pub enum Law {
     Side,
     /// Of nothing: any value will do.
     Free,
+    /// Multiples of f(1).
+    Linear,
 }
 
 impl Law {
@@ -69,6 +73,8 @@ pub enum Slope {
     MinusSquare,
     /// 1 − f(a)².
     OneMinusSquare,
+    /// f(1): it is linear.
+    OfOne,
     /// 0.
     Nothing,
     /// It has two arguments, and rules of its own.
@@ -214,7 +220,14 @@ table! {
     External "a component of a function that is given elsewhere: a node of its own over a list"
         "extern" "" "" Other Plain Free [None] [Two]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
+    Raised "a larger by half of its digits, which is 2⁻²⁶ of it in `f64`: a pivot that may be nothing but rounding becomes one that can be divided by"
+        "(1 + √ε) " "raised()" r"(1 + \sqrt{\varepsilon}) " Choice Odd Linear [Some([0, 0])] [OfOne]
+        |a| a * RAISED, |a| a * Double::new(RAISED), |a| a.times(Real::new(RAISED, 0.0)),
+        |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISED)?)));
 }
+
+/// What `Raised` multiplies by in `f64`.
+const RAISED: f64 = 1.0 + 1.0 / (1u32 << 26) as f64;
 
 /// Lengths below this are divided by as if they were this long.
 pub(super) const SHORTEST: f64 = 1e-100;

@@ -162,6 +162,8 @@ impl Lane {
                 let of = |a| self.opaque(function, a, Fp::ZERO);
                 of(argument) - of(-argument)
             }
+            // It is linear.
+            Function::Raised => argument * self.opaque(function, Fp::ONE, Fp::ZERO),
             Function::Log
             | Function::Atan2
             | Function::Select

@@ -122,6 +122,10 @@ pub trait Numbers {
                 );
                 self.make(Step::Sub(&one, &square))
             }
+            Slope::OfOne => {
+                let one = self.make(Step::Whole(1))?;
+                self.make(Step::Apply(function, &one, form))
+            }
             Slope::Nothing => self.make(Step::Whole(0)),
             Slope::Two => None,
         }

@@ -315,6 +315,11 @@ impl<'a, 'b> Writer<'a, 'b> {
                 let by = self.choose((size, FloatCC::LessThan, shortest), shortest, a);
                 self.ins().fdiv(one, by)
             }
+            Step::Apply(Function::Raised, _) => {
+                let factor = (Function::Raised.row().value)(1.0);
+                let (a, factor) = (self.signed(a), self.constant(factor));
+                self.ins().fmul(a, factor)
+            }
             Step::Apply(..) | Step::Atan2(..) => {
                 let (a, b) = (self.signed(a), self.signed(b));
                 let callee = callee(step).and_then(|callee| callees.get(&callee));

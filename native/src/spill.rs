@@ -64,7 +64,12 @@ pub fn is_call(step: &Step) -> bool {
         Step::Atan2(..) => true,
         Step::Apply(function, _) => !matches!(
             function,
-            Function::Sqrt | Function::Norm | Function::Sign | Function::Abs | Function::Inverse
+            Function::Sqrt
+                | Function::Norm
+                | Function::Sign
+                | Function::Abs
+                | Function::Inverse
+                | Function::Raised
         ),
         _ => false,
     }

@@ -285,6 +285,10 @@ impl Scalar for Traced {
         self.apply(Function::Inverse)
     }
 
+    fn raised(self) -> Self {
+        self.apply(Function::Raised)
+    }
+
     fn is_positive(self) -> bool {
         match self.known() {
             Some(number) => Scalar::is_positive(number),

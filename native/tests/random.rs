@@ -39,7 +39,7 @@ impl Random {
     }
 }
 
-const FUNCTIONS: [Function; 10] = [
+const FUNCTIONS: [Function; 11] = [
     Function::Sqrt,
     Function::Exp,
     Function::Log,
@@ -50,6 +50,7 @@ const FUNCTIONS: [Function; 10] = [
     Function::Abs,
     Function::Norm,
     Function::Inverse,
+    Function::Raised,
 ];
 
 fn operand(random: &mut Random, values: usize, kept: usize) -> Operand {

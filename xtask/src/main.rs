@@ -85,6 +85,7 @@ const ATTACK: Task = &[
     "bash tests/dalembert/run.sh --what trees --seeds 1000 60 --largest 6",
     "bash tests/dalembert/run.sh --what loops written driven --seeds 1000 60 --largest 5",
     "bash tests/dalembert/run.sh --seeds 2000 40 --largest 5 --hard",
+    "bash tests/dalembert/run.sh --what platforms --seeds 0 9",
     // As a user installs it.
     "bash tests/python/wheel.sh",
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --allow-dirty --locked",

@@ -60,8 +60,8 @@ class AwkwardTrees(Awkward, Forest):
 
 
 class Platforms(Loops):
-    """A platform on three parallel cranks of one length: a row more than there need be, but only where it is closed. Slopes are
-    known there to 1e-6 alone, and in `float` most configurations are refused: none of this is in the tests."""
+    """A platform on three parallel cranks of one length: a row more than there need be, but only where it is closed.
+    Slopes have half of the digits there."""
 
     def tree(self, size, free):
         zero, z, length = Vec.of([0, 0, 0]), Vec.of([0, 0, 1]), self.length()

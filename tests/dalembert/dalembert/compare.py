@@ -24,14 +24,14 @@ class Errors:
         for name, worst in other.worst.items():
             self.worst[name] = max(self.worst.get(name, (-1, "")), worst)
 
-    def note(self, name, mine, theirs, tolerance, where):
+    def note(self, name, mine, theirs, tolerance, where, least=1e-3):
         mine, theirs = flat(mine), flat(theirs)
         if len(mine) != len(theirs):
             self.found.append((where, name, f"{len(theirs)} numbers in place of {len(mine)}"))
             return
         size = max([abs(a) for a in mine], default=mpf(0))
-        # Numbers that are not there at all are compared with 1.
-        error = max([abs(mpf(b) - a) for a, b in zip(mine, theirs)], default=mpf(0)) / max(size, mpf(10) ** -3)
+        # Of numbers that are hardly there at all.
+        error = max([abs(mpf(b) - a) for a, b in zip(mine, theirs)], default=mpf(0)) / max(size, mpf(least))
         if any(b != b for b in theirs):
             error = mpf("inf")
         if error > self.worst.get(name, (-1, ""))[0]:
@@ -73,8 +73,8 @@ class Comparison:
         # Slopes that mean something along the ties alone, where ties follow from one another.
         self.along = set()
 
-    def note(self, name, mine, theirs, tolerance=None):
-        self.errors.note(name, mine, theirs, tolerance or self.tolerance, self.where)
+    def note(self, name, mine, theirs, tolerance=None, least=1e-3):
+        self.errors.note(name, mine, theirs, tolerance or self.tolerance, self.where, least)
 
     def quantities(self, s):
         """Name, and a function that gives it."""
@@ -168,7 +168,7 @@ class Comparison:
             if name in self.along:
                 basis = tied.allowed(d, s)
                 theirs = c.call(name, len(flat(mine[name])), **given)
-                self.note(kind + name, self.on_ties(mine[name], basis), self.on_ties(square(theirs, len(mine[name])), basis), 1e-3 if single else None)
+                self.note(kind + name, self.on_ties(mine[name], basis), self.on_ties(square(theirs, len(mine[name])), basis), **self.of_slopes(single))
             else:
                 self.note(kind + name, mine[name], c.call(name, len(flat(mine[name])), **given), 1e-3 if single else None)
         if "momentum_rate" in c and "accel" in mine and not d.solved:
@@ -251,7 +251,7 @@ class Comparison:
         said = whole(self.doors.linearize(self.state(s)))
         if "linearize" in self.along:
             basis = tied.allowed(d, s)
-            self.note("printed linearize", self.on_ties(full, basis), self.on_ties(said, basis))
+            self.note("printed linearize", self.on_ties(full, basis), self.on_ties(said, basis), **self.of_slopes(False))
         else:
             self.note("printed linearize", full, said)
         if m.closures or m.kept:
@@ -260,7 +260,13 @@ class Comparison:
             if least is None:
                 self.errors.found.append((self.where, "minimal linearize", f"{lin['states']} are not the freedoms"))
             else:
-                self.note("minimal linearize", least, whole(lin), self.tolerance * 1e2)
+                self.note("minimal linearize", least, whole(lin), self.tolerance * (1e2 if self.unique else 1e3))
+
+    def of_slopes(self, single):
+        """Their tolerance: half of the digits where rows depend on one another, also of what cancels."""
+        if self.unique:
+            return {"tolerance": 1e-3 if single else None}
+        return {"tolerance": 2e-2 if single else 1e-6, "least": 1}
 
     def on_ties(self, rows, basis):
         """What slopes say of what ties allow, and of the inputs."""

@@ -96,9 +96,10 @@ def allowed(d, s):
 
 
 def null_space(rows, size):
-    """Vectors on which rows vanish, by elimination with the largest pivots."""
+    """Vectors on which rows vanish, by elimination with the largest pivots. What rows have of their own because a state is rounded
+    to doubles, and what elimination makes of that, is nothing."""
     reduced = []
-    for row in [rows[i] for i in independent(rows)]:
+    for row in [rows[i] for i in independent(rows, mpf(10) ** -9)]:
         for pivot, other in reduced:
             row = sub(row, scale(row[pivot], other))
         pivot = max(range(size), key=lambda k: abs(row[k]))

@@ -3,7 +3,7 @@
 
 use super::parts::Parts;
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::graph::{Edge, Function, Graph};
 use crate::derive::calculus::Calculus;
 use crate::model::Model;
 
@@ -53,9 +53,8 @@ pub struct Factored {
     refined: usize,
 }
 
-/// Where rows of B depend on one another along the whole motion, S is singular: its diagonal is
-/// raised by this part of itself, and two steps of refinement take the error of that away.
-const RAISED: (i64, i64) = (1, 100_000_000);
+/// Where rows of B depend on one another along the whole motion, S is singular: its diagonal is raised
+/// (`Function::Raised`), by half of the digits that numbers have, and two steps of refinement take the error of that away.
 const REFINED: usize = 2;
 
 /// Factors with an order of elimination of M; `None` where a pivot vanishes identically.
@@ -90,10 +89,8 @@ pub fn factored(
     }
     let mut raised = schur.clone();
     if overconstrained {
-        let part = graph.ratio(RAISED.0, RAISED.1);
         for (i, row) in raised.iter_mut().enumerate() {
-            let more = graph.mul(part, row[i]);
-            row[i] = graph.add(row[i], more);
+            row[i] = graph.apply(Function::Raised, row[i]);
         }
     }
     Some(Factored {
@@ -267,8 +264,14 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
 }
 
 /// ξ̇ of an overconstrained system in numbers modulo p, by plain elimination: what the emitted code
-/// has to agree with. M and B are given by rows.
-pub fn solve_at(mass: &[Fp], force: &[Fp], rows: &[Fp], right: &[Fp]) -> Option<Vec<Fp>> {
+/// has to agree with. M and B are given by rows; `factor` is what the diagonal is raised by.
+pub fn solve_at(
+    mass: &[Fp],
+    force: &[Fp],
+    rows: &[Fp],
+    right: &[Fp],
+    factor: Fp,
+) -> Option<Vec<Fp>> {
     let (n, m) = (force.len(), right.len());
     let mut columns: Vec<Vec<Fp>> = vec![force.to_vec()];
     columns.extend(rows.chunks(n.max(1)).map(<[Fp]>::to_vec));
@@ -279,10 +282,9 @@ pub fn solve_at(mass: &[Fp], force: &[Fp], rows: &[Fp], right: &[Fp]) -> Option<
     let schur: Vec<Fp> = (0..m)
         .flat_map(|i| bonds.iter().map(move |bond| dot(row(i), bond)))
         .collect();
-    let part = Fp::from_i64(RAISED.0) * Fp::from_i64(RAISED.1).inv()?;
     let mut raised = schur.clone();
     for i in 0..m {
-        raised[i * m + i] = raised[i * m + i] * (Fp::ONE + part);
+        raised[i * m + i] = raised[i * m + i] * factor;
     }
     let mut multipliers = vec![Fp::ZERO; m];
     for _ in 0..=REFINED {

@@ -21,6 +21,7 @@ const DOUBLE: &[(&str, &str)] = &[
         "defined(FP_FAST_FMA) || defined(__FMA__) || defined(__aarch64__)",
     ),
     ("@SHORTEST", "1e-100"),
+    ("@RAISED", "(1.0 + 1.0 / 67108864.0)"),
     ("@DIGITS", "DBL_MANT_DIG == 53"),
     ("@BITS", "uint64_t"),
     ("@INFINITY", "UINT64_C(0x7FF0000000000000)"),
@@ -32,6 +33,7 @@ const FLOAT: &[(&str, &str)] = &[
         "defined(FP_FAST_FMAF) || defined(__FMA__) || defined(__aarch64__) || defined(__ARM_FEATURE_FMA)",
     ),
     ("@SHORTEST", "1e-12f"),
+    ("@RAISED", "(1.0f + 1.0f / 4096.0f)"),
     ("@DIGITS", "FLT_MANT_DIG == 24"),
     ("@BITS", "uint32_t"),
     ("@INFINITY", "UINT32_C(0x7F800000)"),
@@ -99,6 +101,16 @@ static inline int @_is_positive(@REAL a)
 static inline @REAL @_inverse_of_length(@REAL a)
 {
     return 1.0@F / (fabs@F(a) < @SHORTEST ? @SHORTEST : a);
+}
+",
+    ),
+    (
+        "raised",
+        "\
+/* a, larger by half of its digits: a pivot that may be nothing but rounding becomes one that can be divided by. */
+static inline @REAL @_raised(@REAL a)
+{
+    return a * @RAISED;
 }
 ",
     ),

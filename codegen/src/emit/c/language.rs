@@ -142,6 +142,7 @@ impl Language for C<'_> {
         let name = match function {
             Function::Sign => self.names.own("sign"),
             Function::Inverse => self.names.own("inverse_of_length"),
+            Function::Raised => self.names.own("raised"),
             Function::Abs => format!("fabs{suffix}"),
             // Names of the others are those of C.
             _ => format!("{}{suffix}", function.name()),

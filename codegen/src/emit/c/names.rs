@@ -68,6 +68,7 @@ const OWN: &[&str] = &[
     "sign",
     "select",
     "inverse_of_length",
+    "raised",
     "is_positive",
     "far",
 ];

@@ -427,7 +427,10 @@ fn at_point(
         None => true,
         Some(xi_dot) if full.reduced.overconstrained => {
             let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - carried[k]).collect();
-            saddle::solve_at(&reduced_mass, &project(&rest), &kept, &right)? == xi_dot
+            let factor = inner
+                .clone()
+                .function(Function::Raised, Fp::ONE, &Vec::new());
+            saddle::solve_at(&reduced_mass, &project(&rest), &kept, &right, factor)? == xi_dot
         }
         Some(xi_dot) => {
             let given: Vec<Edge> = full.reduced.accelerated.iter().map(|(_, e)| *e).collect();
