@@ -388,8 +388,9 @@ def difference(a, b, over):
     return combine(lambda p, q: (p - q) / over, a, b)
 
 
-def independent(rows, least=mpf(10) ** -12):
-    """Which rows do not depend on those before, by elimination: what is left of them is not so small a part."""
+def independent(rows, least=mpf(10) ** -10):
+    """Which rows do not depend on those before, by elimination: what is left of them is not so small a part. States that are
+    differences of slopes apart have the same ones."""
     found, reduced = [], []
     for index, row in enumerate(rows):
         size = max([abs(e) for e in row], default=NIL)
