@@ -3,7 +3,7 @@
 //! A new function is a row here, with its values in numbers of every kind, and its values modulo p
 //! (`Lane::function`): those have to obey the laws by which expressions with it are found equal.
 
-use Cost::{Choice, Other, Quotient, Root, Turn};
+use Cost::{Choice, Other, Product, Quotient, Root, Turn};
 use Law::{Angle, Free, Hyperbola, Linear, Power, Radical, Side};
 use Parity::{Even, Odd, Plain};
 use Slope::{
@@ -90,6 +90,8 @@ pub enum Cost {
     Turn,
     /// A division.
     Quotient,
+    /// A product.
+    Product,
     /// A comparison, as dear as a sum.
     Choice,
     /// Any other function.
@@ -220,8 +222,8 @@ table! {
     External "a component of a function that is given elsewhere: a node of its own over a list"
         "extern" "" "" Other Plain Free [None] [Two]
         |_| f64::NAN, |_| Double::new(f64::NAN), |_| Real::UNKNOWN, |_| None;
-    Raised "a larger by half of its digits, which is 2⁻²⁶ of it in `f64`: a pivot that may be nothing but rounding becomes one that can be divided by"
-        "(1 + √ε) " "raised()" r"(1 + \sqrt{\varepsilon}) " Choice Odd Linear [Some([0, 0])] [OfOne]
+    Raised "a larger by a small part that rounding does not hide, 2⁻²⁶ of it in `f64`: a pivot that may be nothing but rounding becomes one that can be divided by"
+        "(1 + ε) " "raised()" r"(1 + \varepsilon) " Product Odd Linear [Some([0, 0])] [OfOne]
         |a| a * RAISED, |a| a * Double::new(RAISED), |a| a.times(Real::new(RAISED, 0.0)),
         |a| Some(a.times(&Interval::rational(&BigRational::from_float(RAISED)?)));
 }

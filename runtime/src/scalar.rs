@@ -128,16 +128,13 @@ pub trait Scalar:
         one / self.abs().select_lt(shortest, shortest, self)
     }
 
-    /// self (1 + 2⁻²⁶), and self (1 + 2⁻¹²) for `f32`: larger by half of the digits. A pivot that may be nothing but rounding
-    /// becomes one that can be divided by.
+    /// self (1 + 2⁻²⁶), and self (1 + 2⁻¹⁵) for `f32`: larger by a small part that rounding does not hide. A pivot that may
+    /// be nothing but rounding becomes one that can be divided by.
     #[inline]
     fn raised(self) -> Self {
-        let digits = if Self::EPSILON < 1e-10 {
-            1u32 << 26
-        } else {
-            1 << 12
-        };
-        self * Self::from_f64(1.0 + 1.0 / f64::from(digits))
+        let double = Self::EPSILON < 1e-10;
+        let parts = if double { 1u32 << 26 } else { 1 << 15 };
+        self * Self::from_f64(1.0 + 1.0 / f64::from(parts))
     }
 
     /// [`so3::retract`]; numbers with slopes go by the derivative of exp.

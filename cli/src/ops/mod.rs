@@ -180,6 +180,7 @@ fn tree(graph: &Graph, roots: &[Edge]) -> Written {
             Node::Div(..) => Some(2),
             Node::Apply(function, _) => Some(match function.row().cost {
                 Cost::Choice => 0,
+                Cost::Product => 1,
                 Cost::Quotient => 2,
                 Cost::Root => 3,
                 Cost::Turn => 4,

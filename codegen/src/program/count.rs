@@ -53,6 +53,7 @@ pub fn count_nodes(graph: &Graph, nodes: &[NodeId]) -> Count {
                 Cost::Root => count.sqrt += 1,
                 Cost::Turn => angles.push(a.abs()),
                 Cost::Quotient => count.div += 1,
+                Cost::Product => count.mul += 1,
                 Cost::Choice => count.add += 1,
                 Cost::Other => count.other += 1,
             },

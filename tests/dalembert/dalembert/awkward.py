@@ -61,7 +61,7 @@ class AwkwardTrees(Awkward, Forest):
 
 class Platforms(Loops):
     """A platform on three parallel cranks of one length: a row more than there need be, but only where it is closed.
-    Slopes have half of the digits there."""
+    Slopes have half of the digits there, and a third of them in `float`."""
 
     def tree(self, size, free):
         zero, z, length = Vec.of([0, 0, 0]), Vec.of([0, 0, 1]), self.length()

@@ -263,7 +263,7 @@ class Comparison:
                 self.note("minimal linearize", least, whole(lin), self.tolerance * (1e2 if self.unique else 1e3))
 
     def of_slopes(self, single):
-        """Their tolerance: half of the digits where rows depend on one another, also of what cancels."""
+        """Their tolerance: half of the digits where rows depend on one another, a third of them in `float`, also of what cancels."""
         if self.unique:
             return {"tolerance": 1e-3 if single else None}
         return {"tolerance": 2e-2 if single else 1e-6, "least": 1}

@@ -4,6 +4,7 @@
 use super::parts::Parts;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::lane::Lane;
 use crate::derive::calculus::Calculus;
 use crate::model::Model;
 
@@ -54,7 +55,7 @@ pub struct Factored {
 }
 
 /// Where rows of B depend on one another along the whole motion, S is singular: its diagonal is raised
-/// (`Function::Raised`), by half of the digits that numbers have, and two steps of refinement take the error of that away.
+/// (`Function::Raised`), by a small part that rounding does not hide, and two steps of refinement take the error of that away.
 const REFINED: usize = 2;
 
 /// Factors with an order of elimination of M; `None` where a pivot vanishes identically.
@@ -264,13 +265,13 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
 }
 
 /// ξ̇ of an overconstrained system in numbers modulo p, by plain elimination: what the emitted code
-/// has to agree with. M and B are given by rows; `factor` is what the diagonal is raised by.
+/// has to agree with. M and B are given by rows; of the lane is what `Raised` multiplies by.
 pub fn solve_at(
     mass: &[Fp],
     force: &[Fp],
     rows: &[Fp],
     right: &[Fp],
-    factor: Fp,
+    lane: &Lane,
 ) -> Option<Vec<Fp>> {
     let (n, m) = (force.len(), right.len());
     let mut columns: Vec<Vec<Fp>> = vec![force.to_vec()];
@@ -282,6 +283,9 @@ pub fn solve_at(
     let schur: Vec<Fp> = (0..m)
         .flat_map(|i| bonds.iter().map(move |bond| dot(row(i), bond)))
         .collect();
+    let factor = lane
+        .clone()
+        .function(Function::Raised, Fp::ONE, &Vec::new());
     let mut raised = schur.clone();
     for i in 0..m {
         raised[i * m + i] = raised[i * m + i] * factor;

@@ -33,7 +33,7 @@ const FLOAT: &[(&str, &str)] = &[
         "defined(FP_FAST_FMAF) || defined(__FMA__) || defined(__aarch64__) || defined(__ARM_FEATURE_FMA)",
     ),
     ("@SHORTEST", "1e-12f"),
-    ("@RAISED", "(1.0f + 1.0f / 4096.0f)"),
+    ("@RAISED", "(1.0f + 1.0f / 32768.0f)"),
     ("@DIGITS", "FLT_MANT_DIG == 24"),
     ("@BITS", "uint32_t"),
     ("@INFINITY", "UINT32_C(0x7F800000)"),
@@ -107,7 +107,7 @@ static inline @REAL @_inverse_of_length(@REAL a)
     (
         "raised",
         "\
-/* a, larger by half of its digits: a pivot that may be nothing but rounding becomes one that can be divided by. */
+/* a, larger by a part that rounding does not hide: a pivot that may be nothing but rounding becomes one that can be divided by. */
 static inline @REAL @_raised(@REAL a)
 {
     return a * @RAISED;

@@ -427,10 +427,7 @@ fn at_point(
         None => true,
         Some(xi_dot) if full.reduced.overconstrained => {
             let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - carried[k]).collect();
-            let factor = inner
-                .clone()
-                .function(Function::Raised, Fp::ONE, &Vec::new());
-            saddle::solve_at(&reduced_mass, &project(&rest), &kept, &right, factor)? == xi_dot
+            saddle::solve_at(&reduced_mass, &project(&rest), &kept, &right, inner)? == xi_dot
         }
         Some(xi_dot) => {
             let given: Vec<Edge> = full.reduced.accelerated.iter().map(|(_, e)| *e).collect();
