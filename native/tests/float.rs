@@ -87,7 +87,8 @@ fn errors<S: Scalar>() -> Result<[f64; 2], String> {
     Ok(worst.map(|error| error * INERTIA / (9.81 * along.hypot(across))))
 }
 
-/// ξ̇ has nearly all digits, its slopes half of them in `f64` and a third in `f32`.
+/// ξ̇ has nearly all digits, its slopes half of them in `f64`; in `f32` they have two, and one where the cranks are nearly in line
+/// with the platform's hinges.
 #[test]
 fn a_row_too_many_costs_digits_of_slopes_and_hardly_any_of_accelerations() -> Result<(), String> {
     let [accelerations, slopes] = errors::<f64>()?;
@@ -95,6 +96,6 @@ fn a_row_too_many_costs_digits_of_slopes_and_hardly_any_of_accelerations() -> Re
     assert!(slopes < 1e-6, "{slopes}");
     let [accelerations, slopes] = errors::<f32>()?;
     assert!(accelerations < 1e-4, "{accelerations}");
-    assert!(slopes < 2e-2, "{slopes}");
+    assert!(slopes < 1e-1, "{slopes}");
     Ok(())
 }
