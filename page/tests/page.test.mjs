@@ -229,16 +229,17 @@ test("latency: tables of a free body and of a UR5", async () => {
       globalThis.hamelKept = state;
       return performance.now() - begin;
     }, (1e6 * bar) / NOMINAL);
-  // The least of several: what else the machine does only ever adds to a time.
+  // The least of several: what else the machine does only ever adds to a time. Where it does much, more of them are needed.
   const least = (list) => Math.min(...list);
   const latency = async (text, bar, rounds) => {
     const [times, loops] = [[], []];
-    for (let round = 0; round < rounds; round += 1) {
+    const slower = () => Math.max(1, least(loops) / bar);
+    for (let round = 0; round < rounds || (round < 5 * rounds && least(times) > bar * slower()); round += 1) {
       loops.push(await calibrated(bar));
       await typed(page, `${text}\n// ${round}\n`);
       times.push(Number(await page.evaluate(() => document.body.dataset.latency)));
     }
-    return { time: least(times), slower: Math.max(1, least(loops) / bar) };
+    return { time: least(times), slower: slower() };
   };
   const body = await latency(await model("free_body"), BARS.body, 40);
   const urdf = join(process.env.HAMEL_ROBOTS, "ur_description", "urdf", "ur5_robot.urdf");
