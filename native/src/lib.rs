@@ -15,7 +15,8 @@
 //! |---|---|
 //! | `spill` | which values are in registers, and where the others are |
 //! | `target` | what code is written for, one set of numbers or two; the numbers that it reads |
-//! | `lower` | a tape as Cranelift's intermediate code |
+//! | `lower` | steps as Cranelift's intermediate code |
+//! | `parts` | a tape as one function, or as several that one calls where it is long |
 //! | `code` | executable memory and calls into it: everything that is `unsafe` |
 //! | `absent` | the same without the feature `machine`: no code can be made |
 //! | `repeat` | functions whose result is their next argument, for one state or for two at once |

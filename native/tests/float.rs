@@ -73,12 +73,13 @@ fn errors<S: Scalar>() -> Result<[f64; 2], String> {
                 .map_err(|cause| format!("{angle}: {cause:?}"))?;
         }
         for (row, sign) in [1.0, 1.0, 1.0, -1.0].into_iter().enumerate() {
-            let error = |found: S, wanted: f64| (found.largest_lane() - sign * wanted).abs();
+            let error = |found: f64, wanted: f64| (found - sign * wanted).abs();
             let along = |first: usize| {
                 let row = &slopes[8 * (4 + row) + first..][..4];
-                row[0] + row[1] + row[2] - row[3]
+                let [a, b, c, top] = [0, 1, 2, 3].map(|k| row[k].largest_lane());
+                a + b + c - top
             };
-            worst[0] = worst[0].max(error(xi_dot[row], acceleration));
+            worst[0] = worst[0].max(error(xi_dot[row].largest_lane(), acceleration));
             worst[1] = worst[1].max(error(along(0), by_angle));
             worst[1] = worst[1].max(error(along(4), by_rate));
         }
@@ -87,15 +88,19 @@ fn errors<S: Scalar>() -> Result<[f64; 2], String> {
     Ok(worst.map(|error| error * INERTIA / (9.81 * along.hypot(across))))
 }
 
-/// ξ̇ has nearly all digits, its slopes half of them in `f64`; in `f32` they have two, and one where the cranks are nearly in line
-/// with the platform's hinges.
+/// Beside the loops the multipliers grow like 1/r with what the diagonal is raised by, 1 + r: along the motion this cancels, and
+/// leaves rounding of ε/r in slopes, with the same factor in numbers of either length. Accelerations have it nowhere.
 #[test]
-fn a_row_too_many_costs_digits_of_slopes_and_hardly_any_of_accelerations() -> Result<(), String> {
-    let [accelerations, slopes] = errors::<f64>()?;
-    assert!(accelerations < 1e-12, "{accelerations}");
-    assert!(slopes < 1e-6, "{slopes}");
-    let [accelerations, slopes] = errors::<f32>()?;
-    assert!(accelerations < 1e-4, "{accelerations}");
-    assert!(slopes < 1e-1, "{slopes}");
-    Ok(())
+fn slopes_lose_what_the_diagonal_is_raised_by_and_accelerations_nothing() -> Result<(), String> {
+    fn holds<S: Scalar>() -> Result<(), String> {
+        let [accelerations, slopes] = errors::<S>()?;
+        let raised = S::from_f64(1.0).raised().largest_lane() - 1.0;
+        assert!(raised > 0.0);
+        assert!(accelerations < 1e3 * S::EPSILON, "{accelerations}");
+        assert!(slopes < 20.0 * S::EPSILON / raised, "{slopes}");
+        println!("{accelerations:.1e} {slopes:.1e}");
+        Ok(())
+    }
+    holds::<f64>()?;
+    holds::<f32>()
 }

@@ -30,7 +30,7 @@ class Errors:
             self.found.append((where, name, f"{len(theirs)} numbers in place of {len(mine)}"))
             return
         size = max([abs(a) for a in mine], default=mpf(0))
-        # Of numbers that are hardly there at all.
+        # Numbers that are nearly 0 are compared with `least`.
         error = max([abs(mpf(b) - a) for a, b in zip(mine, theirs)], default=mpf(0)) / max(size, mpf(least))
         if any(b != b for b in theirs):
             error = mpf("inf")

@@ -389,8 +389,8 @@ def difference(a, b, over):
 
 
 def independent(rows, least=mpf(10) ** -10):
-    """Which rows do not depend on those before, by elimination: what is left of them is not so small a part. States that are
-    differences of slopes apart have the same ones."""
+    """Which rows do not depend on those before, by elimination: what is left of them is not so small a part: steps of
+    differences are far smaller, so that both sides of one have the same rows."""
     found, reduced = [], []
     for index, row in enumerate(rows):
         size = max([abs(e) for e in row], default=NIL)
