@@ -1,20 +1,17 @@
 //! The order in which a description is read, with its checkpoints.
 
-use super::declare::{Declared, NextValue, declare};
+use super::ground::Ground;
 use super::motion::TimeDerivative;
-use super::names::Names;
 use super::rate::At;
-use super::scope::Scope;
 use super::variety::Variety;
 use super::{
-    defaults, dynamics, externals, invariants, joints, kinematics, pfaffian, prescribe, start,
-    states, staying, strange, time, unused,
+    dynamics, externals, invariants, joints, kinematics, pfaffian, prescribe, start, states,
+    staying, strange, time, unused,
 };
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
+use crate::model::Model;
 use crate::model::closure::Closure;
-use crate::model::{Model, class, samples};
 use crate::reuse;
 use crate::syntax::ast::{ItemKind, Origins, System};
 use crate::{shapes, symbols};
@@ -52,7 +49,7 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
     let system = &time::expand(system, &mut first);
     let names = symbols::resolve(system, &mut first);
     shapes::check(system, &names, &mut first);
-    let mut variety = Variety::read(system, &names, own, &mut first);
+    let mut variety = Variety::of(system, &names, own, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     let mut branches = false;
     for seed in own..own + ATTEMPTS {
@@ -61,7 +58,8 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
         errors.extend(choice.finish().err().unwrap_or_default());
         let mut report = Report::new();
         errors.iter().cloned().for_each(|error| report.push(error));
-        let result = Reading::new(system, &names, &variety, &point, seed, report).read();
+        let ground = Ground::on(&variety, &point, system, &names, seed, &mut report);
+        let result = read_at(system, &variety, &names.order, ground, report);
         match result {
             Ok(model) if model.graph.is_unfaithful() => {
                 errors.push(
@@ -112,238 +110,187 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
     Err(errors)
 }
 
-/// One reading of a description, at points of its variety.
-struct Reading<'a> {
-    system: &'a System,
-    names: &'a symbols::Resolved<'a>,
-    variety: &'a Variety,
-    graph: Graph,
-    scope: Scope<'a>,
-    declared: Declared,
-    report: Report,
-}
-
 /// What failed, and the graph where there is one.
 type Failure = (Vec<Diagnostic>, Option<Box<Graph>>);
 
-impl<'a> Reading<'a> {
-    fn new(
-        system: &'a System,
-        names: &'a symbols::Resolved<'a>,
-        variety: &'a Variety,
-        point: &[Fp],
-        seed: u64,
-        mut report: Report,
-    ) -> Self {
-        let mut graph = Graph::new(seed, class::PARAM);
-        let mut scope = Scope::new(system, &names.symbols, false);
-        let mut count = 0;
-        let mut next = |_: &mut Graph| {
-            count += 1;
-            point[count - 1]
-        };
-        let next = &mut next as &mut NextValue;
-        graph.set_roots(variety.points.roots);
-        let declared = declare(system, &mut graph, next, &mut scope, &mut report);
-        let near = variety.near.as_deref();
-        graph.set_reals(samples::sample(&variety.points, &variety.phi, seed, near));
-        graph.watch(near.is_some() && variety.complete);
-        Reading {
-            system,
-            names,
-            variety,
-            graph,
-            scope,
-            declared,
-            report,
-        }
+/// Reads a description at a point of its variety, from what it says before anything moves.
+fn read_at(
+    system: &System,
+    variety: &Variety,
+    order: &symbols::Order,
+    mut ground: Ground,
+    mut report: Report,
+) -> Result<Model, Failure> {
+    let Ground {
+        graph,
+        scope,
+        declared,
+        defaults,
+        names,
+        constraints: written,
+    } = &mut ground;
+    let errors = &mut report;
+    variety.check(written, graph, errors);
+    // The start is needed to choose pivots; what is wrong with it is said last.
+    let mut last = Report::new();
+    let mut starts = start::read(system, graph, scope, declared, defaults, &mut last);
+    start::guess::check(system, declared, &mut last);
+    if let (Some(start), Some(x)) = (&mut starts, &variety.assembled) {
+        start.x.clone_from(x);
     }
-
-    fn read(mut self) -> Result<Model, Failure> {
-        self.check_present();
-        let (system, variety) = (self.system, self.variety);
-        let (graph, report) = (&mut self.graph, &mut self.report);
-        let defaults = defaults::read(system, graph, &self.scope, &self.declared, report);
-        let order = &self.names.order;
-        let mut names = Names::default();
-        names.read(&order.before, graph, &mut self.scope, report);
-        let (scope, declared) = (&self.scope, &self.declared);
-        variety.check(system, graph, scope, report);
-        // The start is needed to choose pivots; what is wrong with it is said last.
-        let mut last = Report::new();
-        let mut starts = start::read(system, graph, scope, declared, &defaults, &mut last);
-        start::guess::check(system, declared, &mut last);
-        if let (Some(start), Some(x)) = (&mut starts, &variety.assembled) {
-            start.x.clone_from(x);
-        }
-        if let Some(start) = &starts {
-            start::check::check(system, variety, declared, &defaults, &start.x, &mut last);
-        }
-        let known = last.is_empty() && !defaults.iter().any(|number| number.is_nan());
-        let at = starts.as_ref().filter(|_| known).map(|start| At {
-            defaults: &defaults,
-            x: &start.x,
-        });
-        let kinematics = kinematics::read(system, graph, scope, variety, declared, at, report);
-        if let Some(kinematics) = &kinematics {
-            let motion = TimeDerivative::new(
-                &declared.x,
-                &kinematics.rate,
-                &declared.xi,
-                &declared.xi_dot,
-            );
-            self.scope.motion = Some(motion);
-        }
-        self.scope.unmoved = kinematics.is_none();
-        names.read(&order.after, graph, &mut self.scope, report);
-        let scope = &self.scope;
-        let numbers = declared.numbers(&defaults, starts.as_ref());
-        let frames = names.frames;
-        let mut dynamics =
-            dynamics::read(system, graph, scope, &frames, declared, &numbers, report);
-        let joints = joints::read(system, graph, scope, report);
-        let armature = joints::armature(system, graph, scope, declared, &mut dynamics, report);
-        let invariants = invariants::read(system, graph, scope, &frames, declared, report);
-        let (mut constraints, closures) =
-            pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), report);
-        let (drives, prescribed, accelerated) = prescribe::read(
-            system,
-            graph,
-            scope,
-            declared,
-            variety,
-            kinematics.as_ref(),
-            report,
+    if let Some(start) = &starts {
+        start::check::check(system, variety, declared, defaults, &start.x, &mut last);
+    }
+    let known = last.is_empty() && !defaults.iter().any(|number| number.is_nan());
+    let at = starts.as_ref().filter(|_| known).map(|start| At {
+        defaults: defaults,
+        x: &start.x,
+    });
+    let kinematics = kinematics::read(system, graph, scope, variety, declared, at, errors);
+    if let Some(kinematics) = &kinematics {
+        let motion = TimeDerivative::new(
+            &declared.x,
+            &kinematics.rate,
+            &declared.xi,
+            &declared.xi_dot,
         );
-        constraints.extend(drives);
-        let states = states::read(system, graph, scope, declared, &defaults, report);
-        let independent = staying::read(system, graph, scope, declared, &constraints, report);
-        if let (Some(start), Some(kinematics), true) = (
-            &mut starts,
-            &kinematics,
-            report.is_empty() && last.is_empty(),
-        ) {
-            let (all, n) = (&declared.coordinates, declared.xi.len());
-            let closure = Closure::new(
-                graph,
-                all,
-                (&kinematics.a, n),
-                declared.clock,
-                &constraints,
-                &defaults,
-            );
-            let known = !defaults.iter().any(|number| number.is_nan());
-            start.follow(graph, &prescribed, &numbers);
-            report.keep(match start::guess::any(system) && known {
-                true => {
-                    let inertia = (&frames[..], &dynamics);
-                    let mass = |x: &[f64]| {
-                        let moved = (declared, kinematics);
-                        start::guess::mass(graph, inertia, moved, &numbers, x)
-                    };
-                    start.close_near(&closure, &constraints, mass)
-                }
-                false => start.close(&closure, &constraints, &defaults),
-            });
-        }
-        last.finish()
-            .err()
-            .unwrap_or_default()
-            .into_iter()
-            .for_each(|error| report.push(error));
-        if let Err(errors) = self.report.finish() {
-            return Err((errors, Some(Box::new(self.graph))));
-        }
-        let (Some(kinematics), Some(start), false) = (kinematics, starts, self.scope.missed.get())
-        else {
-            let error = Diagnostic::new(system.name.span, "the description could not be read");
-            return Err((vec![error], None));
-        };
-        let declared = self.declared;
-        let places = externals::places(&self.scope);
-        let motion = self.scope.motion;
-        let (called, externals) = (self.scope.called.take(), places);
-        let model = Model {
-            name: system.name.name.clone(),
-            public: system.public,
-            docs: system.docs.clone(),
-            graph: self.graph,
-            points: variety.points.clone(),
-            params: declared.params,
-            defaults,
-            coordinates: declared.coordinates,
-            blocks: variety.points.blocks.clone(),
-            x: declared.x,
-            phi: variety.phi.clone(),
-            velocities: declared.velocities,
-            xi: declared.xi,
-            velocity_spans: declared.velocity_spans,
-            xi_dot: declared.xi_dot,
-            momenta: declared.momenta,
-            inputs: declared.inputs,
-            u: declared.u,
-            states: declared.states,
-            state_rates: states.rates,
-            rate: kinematics.rate,
-            a: kinematics.a,
-            constraints,
-            clock: declared.clock,
-            prescribed,
-            accelerated,
-            independent,
-            whole: None,
-            spans: true,
-            overconstrained: false,
-            kinetic_terms: None,
-            completion: kinematics.completion,
-            frames,
-            joints,
-            closures,
-            bodies: dynamics.bodies,
-            particles: dynamics.particles,
-            kinetic: dynamics.kinetic,
-            armature,
-            potential: dynamics.potential,
-            gravity: dynamics.gravity,
-            wrenches: dynamics.wrenches,
-            generalized: dynamics.generalized,
-            dissipation: dynamics.dissipation,
-            elements: dynamics.elements,
-            observed: motion.map_or(Vec::new(), |motion| motion.seen.into_inner()),
-            outputs: dynamics.outputs,
-            invariants,
-            lets: names.lets,
-            externals,
-            start_x: start.x,
-            start_xi: start.xi,
-            start_z: states.start,
-            asked: dynamics.asked,
-            span: system.name.span,
-            origins: Origins::default(),
-            warnings: Vec::new(),
-        };
-        match externals::misplaced(&model, &called) {
-            Some(error) => Err((vec![error], None)),
-            None => Ok(model),
-        }
+        scope.motion = Some(motion);
     }
-
-    fn check_present(&mut self) {
-        let (span, declared) = (self.system.name.span, &self.declared);
-        if declared.faulty {
-            return;
-        }
-        if declared.coordinates.is_empty() {
-            self.report.push(
-                Diagnostic::new(span, "the system has no coordinates")
-                    .help("write `coord q;` or `coord R: SO3;`"),
-            );
-        }
-        if declared.velocities.is_empty() {
-            self.report.push(
-                Diagnostic::new(span, "the system has no velocities")
-                    .help("write `velocity u;` or `velocity w: vec3;`"),
-            );
-        }
+    scope.unmoved = kinematics.is_none();
+    names.read(&order.after, graph, scope, errors);
+    let scope = &*scope;
+    let numbers = declared.numbers(defaults, starts.as_ref());
+    let frames = std::mem::take(&mut names.frames);
+    let mut dynamics = dynamics::read(system, graph, scope, &frames, declared, &numbers, errors);
+    let joints = joints::read(system, graph, scope, errors);
+    let armature = joints::armature(system, graph, scope, declared, &mut dynamics, errors);
+    let invariants = invariants::read(system, graph, scope, &frames, declared, errors);
+    let (mut constraints, closures) =
+        pfaffian::read(system, graph, scope, declared, kinematics.as_ref(), errors);
+    let (drives, prescribed, accelerated) = prescribe::read(
+        system,
+        graph,
+        scope,
+        declared,
+        variety,
+        kinematics.as_ref(),
+        errors,
+    );
+    constraints.extend(drives);
+    let states = states::read(system, graph, scope, declared, defaults, errors);
+    let independent = staying::read(system, graph, scope, declared, &constraints, errors);
+    if let (Some(start), Some(kinematics), true) = (
+        &mut starts,
+        &kinematics,
+        errors.is_empty() && last.is_empty(),
+    ) {
+        let (all, n) = (&declared.coordinates, declared.xi.len());
+        let closure = Closure::new(
+            graph,
+            all,
+            (&kinematics.a, n),
+            declared.clock,
+            &constraints,
+            defaults,
+        );
+        let known = !defaults.iter().any(|number| number.is_nan());
+        start.follow(graph, &prescribed, &numbers);
+        errors.keep(match start::guess::any(system) && known {
+            true => {
+                let inertia = (&frames[..], &dynamics);
+                let mass = |x: &[f64]| {
+                    let moved = (&*declared, kinematics);
+                    start::guess::mass(graph, inertia, moved, &numbers, x)
+                };
+                start.close_near(&closure, &constraints, mass)
+            }
+            false => start.close(&closure, &constraints, defaults),
+        });
+    }
+    last.finish()
+        .err()
+        .unwrap_or_default()
+        .into_iter()
+        .for_each(|error| report.push(error));
+    if let Err(errors) = report.finish() {
+        return Err((errors, Some(Box::new(ground.graph))));
+    }
+    let (Some(kinematics), Some(start), false) = (kinematics, starts, ground.scope.missed.get())
+    else {
+        let error = Diagnostic::new(system.name.span, "the description could not be read");
+        return Err((vec![error], None));
+    };
+    let externals = externals::places(&ground.scope);
+    let Ground {
+        graph,
+        scope,
+        declared,
+        defaults,
+        names,
+        ..
+    } = ground;
+    let (motion, called) = (scope.motion, scope.called.into_inner());
+    let model = Model {
+        name: system.name.name.clone(),
+        public: system.public,
+        docs: system.docs.clone(),
+        graph,
+        points: variety.points.clone(),
+        params: declared.params,
+        defaults,
+        coordinates: declared.coordinates,
+        blocks: variety.points.blocks.clone(),
+        x: declared.x,
+        phi: variety.phi.clone(),
+        velocities: declared.velocities,
+        xi: declared.xi,
+        velocity_spans: declared.velocity_spans,
+        xi_dot: declared.xi_dot,
+        momenta: declared.momenta,
+        inputs: declared.inputs,
+        u: declared.u,
+        states: declared.states,
+        state_rates: states.rates,
+        rate: kinematics.rate,
+        a: kinematics.a,
+        constraints,
+        clock: declared.clock,
+        prescribed,
+        accelerated,
+        independent,
+        whole: None,
+        spans: true,
+        overconstrained: false,
+        kinetic_terms: None,
+        completion: kinematics.completion,
+        frames,
+        joints,
+        closures,
+        bodies: dynamics.bodies,
+        particles: dynamics.particles,
+        kinetic: dynamics.kinetic,
+        armature,
+        potential: dynamics.potential,
+        gravity: dynamics.gravity,
+        wrenches: dynamics.wrenches,
+        generalized: dynamics.generalized,
+        dissipation: dynamics.dissipation,
+        elements: dynamics.elements,
+        observed: motion.map_or(Vec::new(), |motion| motion.seen.into_inner()),
+        outputs: dynamics.outputs,
+        invariants,
+        lets: names.lets,
+        externals,
+        start_x: start.x,
+        start_xi: start.xi,
+        start_z: states.start,
+        asked: dynamics.asked,
+        span: system.name.span,
+        origins: Origins::default(),
+        warnings: Vec::new(),
+    };
+    match externals::misplaced(&model, &called) {
+        Some(error) => Err((vec![error], None)),
+        None => Ok(model),
     }
 }

@@ -25,6 +25,7 @@ mod expression;
 mod externals;
 mod frames;
 mod functions;
+mod ground;
 mod independent;
 mod invariants;
 mod joints;

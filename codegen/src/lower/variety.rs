@@ -1,20 +1,18 @@
 //! Geometric constraints: φ in a graph with unconstrained points, and points that satisfy it.
 
-use super::declare::{Declared, declare, size};
-use super::expression::Evaluator;
-use super::names::Names;
-use super::scope::Scope;
-use super::{branch, component, defaults, start};
+use super::declare::{Declared, size};
+use super::ground::{Constraint, Ground};
+use super::{branch, component, start};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
 use crate::algebra::topoly::is_polynomial;
 use crate::diagnostics::{Diagnostic, Report};
+use crate::model::class;
 use crate::model::layout::{Block, blocks, constraint};
 use crate::model::points::{HIGHEST_DEGREE, Points};
 use crate::model::value::Value;
-use crate::model::{class, samples};
 use crate::symbols::Resolved;
-use crate::syntax::ast::{Expr, ItemKind, Span, System};
+use crate::syntax::ast::{ItemKind, Span, System};
 use std::collections::BTreeMap;
 
 /// What a row of φ says.
@@ -48,36 +46,31 @@ pub struct Variety {
 }
 
 impl Variety {
-    /// Reads all constraints, with the names that they mention.
+    /// X of a description, from a graph whose symbols have values of their own.
     ///
-    /// Errors are kept for [`Variety::check`]: all that is read here is read again on X, where what is equal modulo φ is
-    /// one node, and where the same mistakes are reported.
-    pub fn read(system: &System, names: &Resolved, seed: u64, report: &mut Report) -> Self {
-        let mut random = Random::new(seed ^ 0xf4ee);
-        let mut graph = Graph::new(seed ^ 0xf4ee, class::PARAM);
-        let mut next = |_: &mut Graph| -> Fp { random.element() };
-        let mut scope = Scope::new(system, &names.symbols, true);
+    /// What is wrong with names is kept for [`Variety::check`]: it is said on X, where what is equal modulo φ is one node.
+    pub fn of(system: &System, names: &Resolved, seed: u64, report: &mut Report) -> Self {
         let mut before = Report::new();
-        let declared = declare(system, &mut graph, &mut next, &mut scope, &mut before);
-        graph.set_reals(samples::anywhere(graph.symbols().len(), seed));
-        Names::default().read(&names.order.before, &mut graph, &mut scope, &mut before);
+        let ground = Ground::free(system, names, seed, &mut before);
         let before = before.finish().err().unwrap_or_default();
+        let Ground {
+            mut graph,
+            scope,
+            declared,
+            defaults,
+            constraints: written,
+            ..
+        } = ground;
         let (mut rows, mut unread, mut complete) = (Vec::new(), BTreeMap::new(), !declared.faulty);
-        for (index, left, right) in written(system) {
-            let mut own = Report::new();
-            let mut evaluator = Evaluator::new(&mut graph, &scope, &mut own);
-            let sides = (evaluator.value(left), evaluator.value(right));
-            let difference = match sides {
-                (Some(a), Some(b)) if a.same_shape(&b) => a.zip(&b, |x, y| graph.sub(x, y)),
-                _ => {
-                    complete = false;
-                    let own = own.finish().err().unwrap_or_default();
-                    unread.insert(index, [own, before.clone()].concat());
-                    continue;
-                }
+        for constraint in written {
+            let Some(difference) = constraint.difference else {
+                complete = false;
+                let reasons = [constraint.errors, before.clone()].concat();
+                unread.insert(constraint.item, reasons);
+                continue;
             };
-            match check(&graph, &difference, left.span.to(right.span)) {
-                Ok(edges) => rows.extend(edges.into_iter().map(|edge| (edge, index))),
+            match check(&graph, &difference, constraint.span) {
+                Ok(edges) => rows.extend(edges.into_iter().map(|edge| (edge, constraint.item))),
                 Err(error) => {
                     complete = false;
                     report.push(error);
@@ -95,7 +88,6 @@ impl Variety {
         let near = (!constraints.is_empty()).then(|| {
             // What is wrong with these is said on X, where they are read for the model.
             let again = &mut Report::new();
-            let defaults = defaults::read(system, &mut graph, &scope, &declared, again);
             let mut start = start::read(system, &mut graph, &scope, &declared, &defaults, again);
             if let (Some(start), true) = (&mut start, start::guess::any(system)) {
                 let numbers = declared.numbers(&defaults, Some(start));
@@ -205,18 +197,17 @@ impl Variety {
 
     /// Reports what is wrong with the constraints in the graph with points on X, and why a constraint has a value there
     /// and nowhere else.
-    pub fn check(&self, system: &System, graph: &mut Graph, scope: &Scope, report: &mut Report) {
-        for (index, left, right) in written(system) {
-            let mut evaluator = Evaluator::new(graph, scope, report);
-            let (a, b) = (evaluator.value(left), evaluator.value(right));
-            let (Some(a), Some(b)) = (a, b) else { continue };
-            let span = left.span.to(right.span);
-            if !a.same_shape(&b) {
+    pub fn check(&self, constraints: &[Constraint], graph: &Graph, report: &mut Report) {
+        for constraint in constraints {
+            let errors = constraint.errors.iter().cloned();
+            errors.for_each(|error| report.push(error));
+            let Some(difference) = &constraint.difference else {
                 continue;
-            }
-            if let Some(reasons) = self.unread.get(&index) {
+            };
+            let off = |edge: &Edge| !graph.value(*edge).is_zero();
+            if let Some(reasons) = self.unread.get(&constraint.item) {
                 let error = Diagnostic::new(
-                    span,
+                    constraint.span,
                     "this constraint has no value away from where it holds",
                 )
                 .help("write it without what other constraints make zero or unit");
@@ -225,29 +216,19 @@ impl Variety {
                     Some(reason) => error.note(reason.span, &reason.message),
                     None => error,
                 });
-            } else if self.origins.contains(&Origin::Statement(index))
-                && a.zip(&b, |x, y| graph.sub(x, y))
-                    .entries()
-                    .iter()
-                    .any(|&edge| !graph.value(edge).is_zero())
+            } else if self.origins.contains(&Origin::Statement(constraint.item))
+                && difference.entries().iter().any(off)
             {
                 report.push(
-                    Diagnostic::new(span, "this constraint does not hold where it was solved")
-                        .help("write it as a polynomial equation of coordinates"),
+                    Diagnostic::new(
+                        constraint.span,
+                        "this constraint does not hold where it was solved",
+                    )
+                    .help("write it as a polynomial equation of coordinates"),
                 );
             }
         }
     }
-}
-
-/// The statements of the user's constraints, with both sides of each.
-fn written(system: &System) -> Vec<(usize, &Expr, &Expr)> {
-    let items = system.items.iter().enumerate();
-    let sides = items.filter_map(|(index, item)| match &item.kind {
-        ItemKind::Constraint { left, right } => Some((index, left, right)),
-        _ => None,
-    });
-    sides.collect()
 }
 
 /// The rows of a constraint, where it is one.
