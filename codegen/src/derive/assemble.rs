@@ -3,6 +3,7 @@
 use super::accel::cheapest::Computation;
 use super::accel::{Acceleration, accel, forces};
 use super::calculus::Calculus;
+use super::candidates::Candidates;
 use super::care::{self, Care};
 use super::multipliers::with_accelerations;
 use super::program::{Builder, MOST_LITERAL, shape_of};
@@ -18,6 +19,9 @@ use crate::program::structure::Structure;
 use crate::program::{Argument, Cause, Function, FunctionId, Program};
 use Argument::{Accelerations, Coordinates, Inputs, Velocities};
 use rustc_hash::FxHashSet;
+
+/// In larger graphs T is not traced a second time.
+const MOST_TRACED: usize = 3000;
 
 /// Derives the functions of a model that are wanted; `reduction` solves its constraints, `regressor` are its base
 /// parameters where they are wanted. The program is
@@ -148,9 +152,8 @@ impl Builder<'_> {
         let applied = self.parts.applied.clone();
         let momentum = self.parts.momentum_of(graph, self.model);
         let inverse = self.parts.whole(graph, self.model);
-        let kinetic = self.parts.kinetic_of(graph, self.model, &momentum);
-        let potential = rebuild(reference, graph, &[potential])[0];
-        let energy = graph.add(kinetic, potential);
+        let [kinetic, energy] = self.energies(&momentum, reference, potential);
+        let potential = rebuild(reference, &mut self.graph, &[potential])[0];
         self.push(FunctionId::InverseDynamics, inverse);
         self.push(FunctionId::MassMatrix, mass.concat());
         self.push(FunctionId::Bias, bias);
@@ -160,6 +163,33 @@ impl Builder<'_> {
         self.push(FunctionId::KineticEnergy, vec![kinetic]);
         self.push(FunctionId::PotentialEnergy, vec![potential]);
         self.push(FunctionId::Energy, vec![energy]);
+    }
+
+    /// T and T + V, V in a graph of its own: by ½ ξ · p, or by the velocities of points and bodies, whichever takes less.
+    fn energies(&mut self, momentum: &[Edge], reference: &Graph, potential: Edge) -> [Edge; 2] {
+        let [mut kinetic, mut energy] = [(); 2].map(|()| Candidates::with(&self.care));
+        let mut offer = |graph: Graph, t: Edge| {
+            let mut around = graph.clone();
+            let v = rebuild(reference, &mut around, &[potential])[0];
+            let sum = around.add(t, v);
+            energy.offer_own(around, vec![sum]);
+            kinetic.offer_own(graph, vec![t]);
+        };
+        let mut graph = self.graph.clone();
+        let by_momentum = self.parts.kinetic_of(&mut graph, self.model, momentum);
+        let value = graph.value(by_momentum);
+        offer(graph, by_momentum);
+        if self.model.graph.len() < MOST_TRACED {
+            let mut model = self.model.clone();
+            let mut calculus = Calculus::new(&model);
+            let traced = energy::traced(&mut model, &mut calculus);
+            // Armatures, and M that was written, are in p alone.
+            if model.graph.value(traced) == value {
+                offer(model.graph, traced);
+            }
+        }
+        let [kinetic, energy] = [kinetic, energy].map(|all| all.cheapest(&mut self.graph)[0]);
+        [kinetic, energy]
     }
 
     /// ż, with ξ̇ as it is computed there.

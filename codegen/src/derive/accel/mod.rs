@@ -370,10 +370,9 @@ pub(in crate::derive) fn all_plans(graph: &Graph, parts: &Parts) -> Vec<Plan> {
         .iter()
         .flatten()
         .all(|edge| graph.is_free(edge.node()));
-    let mut orders = match n {
-        _ if constant => vec![(0..n).collect()],
-        0..=3 => permutations(n),
-        _ => vec![
+    let mut orders: Vec<Vec<usize>> = match constant {
+        true => vec![(0..n).collect()],
+        false => vec![
             (0..n).collect(),
             (0..n).rev().collect(),
             constant_first(graph, parts),
@@ -413,20 +412,4 @@ fn constant_first(graph: &Graph, parts: &Parts) -> Vec<usize> {
     let constant = |i: &usize| graph.is_free(parts.mass[*i][*i].node());
     let (first, last): (Vec<usize>, Vec<usize>) = (0..parts.mass.len()).partition(constant);
     first.into_iter().chain(last).collect()
-}
-
-fn permutations(n: usize) -> Vec<Vec<usize>> {
-    let mut all = vec![Vec::new()];
-    for _ in 0..n {
-        all = all
-            .into_iter()
-            .flat_map(|head: Vec<usize>| {
-                (0..n)
-                    .filter(|i| !head.contains(i))
-                    .map(|i| [head.as_slice(), &[i]].concat())
-                    .collect::<Vec<_>>()
-            })
-            .collect();
-    }
-    all
 }

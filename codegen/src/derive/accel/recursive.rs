@@ -152,6 +152,7 @@ impl Recursion {
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
         if self.tree.is_plain(&self.model.graph, n, &given) {
             let mut graph = self.model.graph.clone();
+            self.tree.know_polars(&mut graph);
             let load = self.load(&mut graph);
             let forces = wrenches(&mut graph, &self.tree, xi, &rest, gravity);
             let solution = articulated::forward(&mut graph, &self.tree, &given, &forces, &load);
@@ -165,6 +166,7 @@ impl Recursion {
             }
         }
         let mut graph = self.model.graph.clone();
+        self.tree.know_polars(&mut graph);
         let load = self.load(&mut graph);
         let bias = inverse(&mut graph, &self.tree, xi, &rest, gravity);
         let mass = composite::mass_matrix(&mut graph, &self.tree, n);
@@ -323,6 +325,7 @@ impl Recursion {
         if self.free.is_some() || !self.tree.is_plain(&graph, self.model.n(), &[]) {
             return None;
         }
+        self.tree.know_polars(&mut graph);
         let none = zero3(&graph);
         let nothing = Wrench {
             force: none,
@@ -371,7 +374,7 @@ impl Recursion {
             None => (&model.xi, model.gravity),
         };
         let bias = inverse(&mut graph, tree, proper, &self.rest(), gravity);
-        let mass = composite::mass_matrix(&mut graph, tree, n);
+        let mass = composite::by_second_moments(&mut graph, tree, n);
         let twins = tree.twins(&mut graph);
         let branches = Branches::of(&mut graph, &mass, &twins)?;
         let right: Vec<Edge> = (0..n).map(|i| graph.sub(load[i], bias[i])).collect();

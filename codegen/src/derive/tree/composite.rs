@@ -5,16 +5,82 @@ use super::Tree;
 use super::inverse::{Wrench, carried};
 use super::mass::Mass;
 use crate::algebra::graph::{Edge, Graph};
+use crate::program::count::count;
 
-/// M, n rows of n.
+/// Whether inertias about hinges, which turns about these leave alone, are entered into the graph apart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Polar {
+    Apart,
+    OfS,
+}
+
+/// M, n rows of n, by the fewest operations.
 pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
+    let mut ways = mass_matrices(graph, tree, n);
+    let weight =
+        |(graph, matrix): &(Graph, Vec<Vec<Edge>>)| count(graph, &matrix.concat()).weight();
+    let least = (0..ways.len()).min_by_key(|&way| weight(&ways[way]));
+    let (chosen, matrix) = ways.swap_remove(least.unwrap_or(0));
+    *graph = chosen;
+    matrix
+}
+
+/// M by the same inertias as slopes of forces are.
+pub fn by_second_moments(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
+    by_composites(graph, tree, n, Polar::OfS)
+}
+
+/// M from second moments alone and, where hinges are parallel, from inertias about them: each in a copy of the graph,
+/// since a value that is known already is not computed anew in another way.
+pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<(Graph, Vec<Vec<Edge>>)> {
+    let mut links = tree.links.iter();
+    let parallel = links.any(|link| link.turns.is_empty() || tree.parallel(graph, link).is_some());
+    let ways: &[Polar] = match parallel {
+        true => &[Polar::OfS, Polar::Apart],
+        false => &[Polar::OfS],
+    };
+    let by = |&way: &Polar| {
+        let mut graph = graph.clone();
+        let matrix = by_composites(&mut graph, tree, n, way);
+        (graph, matrix)
+    };
+    ways.iter().map(by).collect()
+}
+
+/// For each link the inertia of it and of all that hangs on it, about its origin.
+fn composites(graph: &mut Graph, tree: &Tree, way: Polar) -> Vec<Mass> {
+    if way == Polar::Apart {
+        tree.know_polars(graph);
+    }
     let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
     for (index, link) in tree.links.iter().enumerate().rev() {
         if let Some(parent) = link.parent {
-            let moved = composite[index].carried(graph, link);
+            let mut turned = composite[index];
+            for turn in link.turns.iter().rev() {
+                if way == Polar::Apart {
+                    // What a turn about the third axis leaves alone is known before it.
+                    turned.polar(graph);
+                }
+                turned = turned.turned(graph, turn);
+            }
+            let moved = turned.shifted(graph, link.position);
+            if way == Polar::Apart {
+                let polar = turned.polar(graph);
+                let moments = [turned.first, moved.first];
+                let arms = moments.map(|h| graph.dot(&link.position[..2], &h[..2]));
+                let polar = arms.iter().fold(polar, |sum, &arm| graph.add(sum, arm));
+                let own = composite[parent].polar(graph);
+                graph.add(own, polar);
+            }
             composite[parent] = composite[parent].plus(graph, &moved);
         }
     }
+    composite
+}
+
+/// M by the wrenches of composite bodies.
+fn by_composites(graph: &mut Graph, tree: &Tree, n: usize, way: Polar) -> Vec<Vec<Edge>> {
+    let composite = composites(graph, tree, way);
     let mut matrix = vec![vec![graph.zero(); n]; n];
     for (index, link) in tree.links.iter().enumerate() {
         for (place, freedom) in link.freedoms.iter().enumerate() {

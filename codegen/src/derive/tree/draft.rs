@@ -93,6 +93,7 @@ impl Draft {
             freedoms,
             drift,
             mass: self.mass,
+            own: self.mass,
         }
     }
 }

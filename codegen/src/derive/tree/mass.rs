@@ -117,6 +117,11 @@ impl Mass {
         (add3(graph, push, swing), add3(graph, spin, lever))
     }
 
+    /// Θ_zz = S_xx + S_yy.
+    pub fn polar(&self, graph: &mut Graph) -> Edge {
+        graph.add(self.second[0][0], self.second[1][1])
+    }
+
     /// Θ = tr(S) I − S.
     pub fn inertia(&self, graph: &mut Graph) -> Mat3 {
         let s = &self.second;

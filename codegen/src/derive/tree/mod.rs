@@ -77,6 +77,8 @@ pub struct Link {
     pub drift: (Vec3, Vec3),
     /// Its inertia about its origin.
     pub mass: Mass,
+    /// The same in axes of its own, where it shares those of other links.
+    pub own: Mass,
 }
 
 impl Link {
@@ -153,6 +155,14 @@ impl Tree {
             armature: model.armature.clone(),
         };
         Some((tree, carriers))
+    }
+
+    /// Enters the inertias of all links about their hinges into a graph. Turns to shared axes leave them alone: what is known
+    /// without them is not computed from turned entries.
+    pub fn know_polars(&self, graph: &mut Graph) {
+        for link in &self.links {
+            link.own.polar(graph);
+        }
     }
 
     /// Whether every ξⁱ is the rate of one freedom of its own, but for those that are given ahead.

@@ -56,22 +56,27 @@ impl Tree {
     /// Which links give up axes of their own: those whose hinge is parallel to the one before or to one behind, and the
     /// last of each chain.
     fn shares(&self, graph: &Graph) -> Vec<bool> {
-        let parallel = |link: &Link| {
-            let parent = link.parent.map(|parent| &self.links[parent]);
-            let before = parent.is_some_and(|parent| hinge(graph, parent).is_some());
-            let fixed = hinge(graph, link).map(|(fixed, _)| fixed);
-            before && fixed.is_some_and(|fixed| fixed.iter().all(|turn| is_level(graph, turn)))
-        };
         let mut shares: Vec<bool> = (0..self.links.len())
             .map(|i| !self.links.iter().any(|link| link.parent == Some(i)))
             .collect();
         for (i, link) in self.links.iter().enumerate() {
-            if let Some(parent) = link.parent.filter(|_| parallel(link)) {
+            if let Some(parent) = self.parallel(graph, link) {
                 shares[i] = true;
                 shares[parent] = true;
             }
         }
         shares
+    }
+
+    /// The link before, where its hinge and that of this link are parallel.
+    pub(super) fn parallel(&self, graph: &Graph, link: &Link) -> Option<usize> {
+        let parent = link.parent?;
+        hinge(graph, &self.links[parent])?;
+        let (fixed, _) = hinge(graph, link)?;
+        fixed
+            .iter()
+            .all(|turn| is_level(graph, turn))
+            .then_some(parent)
     }
 }
 

@@ -113,13 +113,15 @@ fn agree_placed(mut model: Model, placement: Placement, steady: bool) {
         );
     }
     let mut graph = model.graph.clone();
-    let mass = composite::mass_matrix(&mut graph, &tree, n);
-    for i in 0..n {
-        for j in 0..n {
-            let expected = plain.graph.value(parts.mass[i][j]);
-            assert_eq!(expected, graph.value(mass[i][j]), "M {i} {j}");
+    for (graph, mass) in composite::mass_matrices(&graph, &tree, n) {
+        for i in 0..n {
+            for j in 0..n {
+                let expected = plain.graph.value(parts.mass[i][j]);
+                assert_eq!(expected, graph.value(mass[i][j]), "M {i} {j}");
+            }
         }
     }
+    let mass = composite::mass_matrix(&mut graph, &tree, n);
     if tree.is_plain(&graph, n, &[]) {
         let still = vec![zero; n];
         let forces = wrenches(&mut graph, &tree, &xi, &still, gravity);
@@ -153,7 +155,30 @@ fn chains_have_the_values_of_the_plain_derivation() {
     for n in [2, 4, 6] {
         agree(chain(n, "pose(rotx(pi/2), [0.1, 0.3, 0.5])"), true);
         agree(chain(n, "pose(rpy(0.3, 0.#, 1.2), [0.1, 0.3, 0.5])"), true);
+        agree(chain(n, "pose(rotz(0.#), [0.1, 0.3, 0.#])"), true);
     }
+}
+
+/// Hinges in parallel on a slide, in two branches of which one has a ball behind it and one a hinge across.
+#[test]
+fn parallel_hinges_have_the_values_of_the_plain_derivation() {
+    let body = "inertia [[2, 0.1, 0.2], [0.1, 3, 0.3], [0.2, 0.3, 2.5]] about com";
+    let mut text = String::from(
+        "system Branched { gravity [1, -2, -9.81];
+         joint slide: prismatic [1, 2, 2] moves cart;
+         joint a: continuous [0, 1, 0] on cart at pose(identity(3), [0.1, 0.2, 0.3]) moves f1;
+         joint b: continuous [0, 1, 0] on f1 at pose(roty(0.4), [0.3, 0.1, -0.2]) moves f2;
+         joint c: continuous [0, -1, 0] on f2 at pose(identity(3), [0.3, 0.1, 0.2]) moves f3;
+         joint d: continuous [0, 1, 0] on f1 at pose(identity(3), [-0.3, 0.2, -0.2]) moves f4;
+         joint e: continuous [1, 0, 1] on f4 at pose(rotx(0.3), [-0.3, 0.2, -0.2]) moves f5;
+         joint g: continuous [0, 1, 0] on f4 at pose(identity(3), [0.4, 0.2, -0.2]) moves f6 { armature 0.3; };
+         joint ball: spherical on f3 at pose(identity(3), [0.1, 0.2, -0.2]) moves f7;
+         body on cart { mass 2; };\n",
+    );
+    for i in 1..=7 {
+        text += &format!("body on f{i} {{ mass 1.{i}; com [0.1, 0.{i}, 0.3]; {body}; }}\n");
+    }
+    agree(built(&(text + "}")), true);
 }
 
 #[test]
