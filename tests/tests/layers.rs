@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -337,6 +338,7 @@ fn dependencies(manifest: &str) -> Vec<String> {
             inside = line.ends_with("dependencies]") && !line.contains("build-");
         } else if let (true, Some((name, _))) = (inside, line.split_once('='))
             && !line.starts_with([' ', '#'])
+            && !line.ends_with("# features alone")
         {
             names.push(name.trim().trim_end_matches(".workspace").replace('-', "_"));
         }
@@ -386,6 +388,36 @@ fn every_dependency_is_used() {
     assert!(
         unused.is_empty(),
         "dependencies that nothing uses: {unused:?}"
+    );
+}
+
+/// The lines of `cargo tree`.
+fn tree(arguments: &[&str]) -> Vec<String> {
+    let mut command = Command::new(env!("CARGO"));
+    command.current_dir(root());
+    command.args(["tree", "--locked", "--offline", "--prefix", "none"]);
+    let output = command.args(arguments).output().expect("cargo runs");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    let text = String::from_utf8_lossy(&output.stdout);
+    text.lines()
+        .map(|line| line.trim_end_matches(" (*)").to_string())
+        .collect()
+}
+
+/// The generator runs in tests, in build scripts and in macros. It is built once for all of them, as long as what it depends
+/// on has the same features everywhere: `tests/Cargo.toml` adds those that other crates ask for.
+#[test]
+fn the_generator_is_built_once() {
+    let needed = tree(&["-p", "hamel-codegen", "-e", "normal"]);
+    let mut twice = tree(&["--workspace", "--duplicates", "--depth", "0"]);
+    twice.sort();
+    let pairs = twice.windows(2).filter(|pair| pair[0] == pair[1]);
+    let mut twice: Vec<&String> = pairs.map(|pair| &pair[0]).collect();
+    twice.retain(|package| needed.contains(package));
+    assert!(
+        twice.is_empty(),
+        "built with several sets of features: {twice:?}"
     );
 }
 

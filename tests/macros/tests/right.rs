@@ -13,7 +13,8 @@ hamel::rigid_eom! {
     }
 }
 
-fn main() {
+#[test]
+fn right_descriptions_expand_to_systems() {
     let particle = Particle::<f64>::default();
     let rate = particle.rate(&[1.0], &[3.0]);
     assert_eq!(rate, [3.0]);
