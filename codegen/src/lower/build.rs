@@ -143,7 +143,7 @@ fn read_at(
     }
     let known = last.is_empty() && !defaults.iter().any(|number| number.is_nan());
     let at = starts.as_ref().filter(|_| known).map(|start| At {
-        defaults: defaults,
+        defaults,
         x: &start.x,
     });
     let kinematics = kinematics::read(system, graph, scope, variety, declared, at, errors);
