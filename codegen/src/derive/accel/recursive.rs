@@ -222,7 +222,7 @@ impl Recursion {
         let bias = inverse(&mut graph, &self.tree, xi, &self.rest(), weightless);
         let weight = inverse(&mut graph, &self.tree, &still, &still, gravity);
         let momentum = inverse(&mut graph, &self.tree, &still, xi, weightless);
-        let mass = composite::mass_matrix(&mut graph, &self.tree, n);
+        let mass = composite::mass_matrix_alone(&mut graph, &self.tree, n);
         let conservative = (active.iter())
             .map(|&i| graph.sub(self.elastic[i], weight[i]))
             .collect();

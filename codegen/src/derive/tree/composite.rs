@@ -5,6 +5,7 @@ use super::Tree;
 use super::inverse::{Wrench, carried};
 use super::mass::Mass;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::resubstitute::resubstitute;
 use crate::program::count::count;
 
 /// Whether inertias about hinges, which turns about these leave alone, are entered into the graph apart.
@@ -14,11 +15,31 @@ enum Polar {
     OfS,
 }
 
-/// M, n rows of n, by the fewest operations.
+/// A matrix in the graph that it was built in.
+type Way = (Graph, Vec<Vec<Edge>>);
+
+/// M, n rows of n, by the fewest operations before resubstitution: what M⁻¹ begins with.
 pub fn mass_matrix(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
+    shortest(graph, mass_matrices(graph, tree, n))
+}
+
+/// M by the fewest operations, for those who want M itself.
+pub fn mass_matrix_alone(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Edge>> {
     let mut ways = mass_matrices(graph, tree, n);
-    let weight =
-        |(graph, matrix): &(Graph, Vec<Vec<Edge>>)| count(graph, &matrix.concat()).weight();
+    let polished = |(way, matrix): &Way| {
+        let (way, entries) = resubstitute(way, &matrix.concat(), graph)?;
+        Some((
+            way,
+            entries.chunks(n.max(1)).map(<[Edge]>::to_vec).collect(),
+        ))
+    };
+    let polished: Vec<Way> = ways.iter().filter_map(polished).collect();
+    ways.extend(polished);
+    shortest(graph, ways)
+}
+
+fn shortest(graph: &mut Graph, mut ways: Vec<Way>) -> Vec<Vec<Edge>> {
+    let weight = |(graph, matrix): &Way| count(graph, &matrix.concat()).weight();
     let least = (0..ways.len()).min_by_key(|&way| weight(&ways[way]));
     let (chosen, matrix) = ways.swap_remove(least.unwrap_or(0));
     *graph = chosen;
@@ -32,7 +53,7 @@ pub fn by_second_moments(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<Vec<Ed
 
 /// M from second moments alone and, where hinges are parallel, from inertias about them: each in a copy of the graph,
 /// since a value that is known already is not computed anew in another way.
-pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<(Graph, Vec<Vec<Edge>>)> {
+pub fn mass_matrices(graph: &Graph, tree: &Tree, n: usize) -> Vec<Way> {
     let mut links = tree.links.iter();
     let parallel = links.any(|link| link.turns.is_empty() || tree.parallel(graph, link).is_some());
     let ways: &[Polar] = match parallel {

@@ -2,14 +2,18 @@
 //! computed from these, and what only served its old definition goes.
 //!
 //! Values modulo p decide: for every node n and every node x that does not depend on n, a node of
-//! value n − x, n + x or n / x is looked up. No node is ever added, so the count can only fall.
+//! value n − x, n + x or n / x is looked up. Sums that are only multiplied are done without where that adds
+//! nothing else. So the count can only fall.
 
-use super::fp::Fp;
-use super::graph::{Graph, canonical};
-use super::node::{Edge, Node, NodeId};
-use super::shadow::Shadow;
-use super::transplant::{merged, read, rebuild};
+mod spread;
+
+use crate::fp::Fp;
+use crate::graph::{Graph, canonical};
+use crate::node::{Edge, Node, NodeId};
+use crate::shadow::Shadow;
+use crate::transplant::{merged, read, rebuild};
 use rustc_hash::FxHashMap;
+use spread::{Spread, spreads};
 
 /// Larger expressions are left as they are.
 const LARGEST: usize = 400;
@@ -22,8 +26,16 @@ pub fn resubstitute(graph: &Graph, roots: &[Edge], base: &Graph) -> Option<(Grap
     if graph.reachable(roots).iter().filter(varying).count() > LARGEST {
         return None;
     }
-    let mut network = Network::new(graph, roots);
-    if network.alive(None).len() > LARGEST || !network.improve() {
+    let mut graph = graph.clone();
+    let order = graph.reachable(roots);
+    let spreads = spreads(&mut graph, roots, &order);
+    let mut network = Network::new(&graph, roots, &spreads);
+    let mut improved = network.improve();
+    while network.spread(&spreads) {
+        improved = true;
+        network.improve();
+    }
+    if !improved {
         return None;
     }
     let mut result = base.clone();
@@ -45,8 +57,10 @@ struct Network<'a> {
 }
 
 impl<'a> Network<'a> {
-    fn new(graph: &'a Graph, roots: &'a [Edge]) -> Self {
-        let nodes = graph.reachable(roots);
+    fn new(graph: &'a Graph, roots: &'a [Edge], spreads: &[Spread]) -> Self {
+        let terms = spreads.iter().flat_map(|spread| &spread.terms);
+        let parts: Vec<Edge> = terms.map(|term| term.part).collect();
+        let nodes = graph.reachable(&[roots, &parts].concat());
         let mut definitions = vec![None; graph.len()];
         for &id in &nodes {
             definitions[id as usize] = Some(graph.node(id));
@@ -82,10 +96,13 @@ impl<'a> Network<'a> {
 
     /// Nodes that the roots need, children first; `leaf` and run-time constants count as given.
     fn alive(&self, leaf: Option<NodeId>) -> Vec<NodeId> {
+        self.below(self.roots, leaf)
+    }
+
+    fn below(&self, roots: &[Edge], leaf: Option<NodeId>) -> Vec<NodeId> {
         let mut order = Vec::new();
         let mut seen = vec![false; self.definitions.len()];
-        let mut stack: Vec<(NodeId, bool)> = self
-            .roots
+        let mut stack: Vec<(NodeId, bool)> = roots
             .iter()
             .rev()
             .map(|root| (root.node(), false))
@@ -153,6 +170,36 @@ impl<'a> Network<'a> {
             self.definitions[id as usize] = Some(node);
             improved = true;
         }
+    }
+
+    /// Does without a sum where that saves an operation; whether one was found.
+    fn spread(&mut self, spreads: &[Spread]) -> bool {
+        let total = self.cost(&self.alive(None));
+        spreads.iter().any(|spread| self.without(spread, total))
+    }
+
+    /// Computes all terms without their sum, where that is shorter than `total` operations.
+    fn without(&mut self, spread: &Spread, total: usize) -> bool {
+        let ends = spread.terms.iter().flat_map(|term| [term.rest, term.part]);
+        let below = self.below(&ends.collect::<Vec<_>>(), None);
+        let sums = spread.terms.iter().map(|term| {
+            let node = Node::Add(term.rest, term.part);
+            let agrees = |shadow: &Shadow| !shadow.refuses(term.whole, node);
+            let usable = !below.contains(&term.whole) && self.shadow.as_ref().is_none_or(agrees);
+            usable.then_some((term.whole, node))
+        });
+        let Some(sums) = sums.collect::<Option<Vec<_>>>() else {
+            return false;
+        };
+        let before = self.definitions.clone();
+        for (whole, node) in sums {
+            self.definitions[whole as usize] = Some(node);
+        }
+        let better = self.cost(&self.alive(None)) < total;
+        if !better {
+            self.definitions = before;
+        }
+        better
     }
 
     /// A sum or product of two nodes among `rest` with the value of `id`.
@@ -235,6 +282,34 @@ mod tests {
     use super::*;
     use crate::fp::Random;
 
+    /// x (a + b) + c beside x a + c is x b more than that: a + b, which serves nothing else, goes.
+    #[test]
+    fn a_sum_that_is_only_multiplied_is_spread() {
+        let mut graph = Graph::new(3, 1);
+        let mut random = Random::new(5);
+        let [a, b, c, d, x, y] = ["a", "b", "c", "d", "x", "y"].map(|name| {
+            let value = random.element();
+            graph.symbol(name, 2, value)
+        });
+        let base = graph.clone();
+        let sum = graph.add(a, b);
+        let mut roots = Vec::new();
+        for (factor, more, negative) in [(x, c, false), (y, d, true)] {
+            for summand in [a, sum] {
+                let product = graph.mul(factor, summand);
+                roots.push(graph.add(product.signed(negative), more));
+            }
+        }
+        let (better, edges) = resubstitute(&graph, &roots, &base).expect("one operation less");
+        let cost = |graph: &Graph, roots: &[Edge]| {
+            Network::new(graph, roots, &[]).cost(&graph.reachable(roots))
+        };
+        assert_eq!((cost(&graph, &roots), cost(&better, &edges)), (9, 8));
+        for (old, new) in roots.iter().zip(&edges) {
+            assert_eq!(graph.value(*old), better.value(*new));
+        }
+    }
+
     /// (a b + c) and (a b + c + d), the second built from scratch as ((a b + d) + c): resubstitution
     /// finds that it is the first plus d.
     #[test]
@@ -255,7 +330,7 @@ mod tests {
         let roots = [first, second, third];
         let (better, edges) = resubstitute(&graph, &roots, &base).expect("one operation less");
         let cost = |graph: &Graph, roots: &[Edge]| {
-            Network::new(graph, roots).cost(&graph.reachable(roots))
+            Network::new(graph, roots, &[]).cost(&graph.reachable(roots))
         };
         assert_eq!((cost(&graph, &roots), cost(&better, &edges)), (5, 4));
         for (old, new) in roots.iter().zip(&edges) {
