@@ -16,10 +16,11 @@ use super::program::Builder;
 use super::quantity::{MovingMass, motions};
 use super::tree::Placement;
 use super::tree::draft::has_more_inertia;
-use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::{Vec3, add3, cross, scale3, sub3, zero3};
-use crate::algebra::transplant::rebuild;
+use crate::algebra::transplant::{rebuild, substitute};
 use crate::diagnostics::Diagnostic;
+use crate::model::layout::Block;
 use crate::model::{Model, class};
 use crate::program::{FunctionId, Shape};
 use num_traits::Signed;
@@ -163,6 +164,7 @@ fn entries(model: &Model, id: FunctionId, total: Option<(Graph, Twist)>) -> (Gra
             (linear, angular)
         }
     };
+    let momentum = (momentum.0, at_the_origin(model, &mut graph, momentum.1));
     let roots = match id {
         FunctionId::CentroidalMap => {
             by_rows(by_velocities(model, &mut graph, momentum).into_iter())
@@ -184,8 +186,35 @@ fn about_centre(model: &Model, graph: Graph, columns: Vec<Twist>) -> (Graph, Vec
     let centre = centre(&mut graph, &moving);
     let columns = columns.into_iter().map(|(linear, angular)| {
         let lever = cross(&mut graph, centre, linear);
-        (linear, sub3(&mut graph, angular, lever))
+        let angular = sub3(&mut graph, angular, lever);
+        (linear, at_the_origin(model, &mut graph, angular))
     });
     let columns: Vec<Twist> = columns.collect();
     (graph, by_rows(columns.into_iter()))
+}
+
+/// A vector without the coordinates and velocities that it does not depend on: L is the same wherever the mechanism is, and
+/// however fast it moves as a whole, but far from the origin sums would lose the digits of both.
+fn at_the_origin(model: &Model, graph: &mut Graph, vector: Vec3) -> Vec3 {
+    let mut places = model.x.iter();
+    let mut flat: Vec<Edge> = Vec::new();
+    for block in &model.blocks {
+        let own: Vec<Edge> = places.by_ref().take(block.len()).copied().collect();
+        if let Block::Flat(_) = block {
+            flat.extend(own);
+        }
+    }
+    let mut found = vector;
+    for edge in flat.iter().chain(&model.xi) {
+        let Node::Symbol(symbol) = graph.node(edge.node()) else {
+            continue;
+        };
+        let zero = graph.zero();
+        let still = substitute(graph, &found, &[(symbol as usize, zero)]);
+        let same = |(a, b): (&Edge, &Edge)| graph.value(*a) == graph.value(*b);
+        if still.iter().zip(&found).all(same) {
+            found = std::array::from_fn(|k| still[k]);
+        }
+    }
+    found
 }

@@ -1,6 +1,6 @@
 //! Points of a system with constraints on its velocities: ξ moved to where B ξ + b = 0.
 
-use crate::algebra::fp::Fp;
+use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
@@ -34,7 +34,7 @@ pub(super) fn rows_at_rest(model: &Model, rows: &[Edge], mut lane: Lane) -> Opti
     Some(places.into_iter().zip(moved).collect())
 }
 
-/// A vector with B ξ + b = 0: by elimination, dependent entries replaced.
+/// A vector with B ξ + b = 0: by elimination, dependent entries replaced; `None` where there is none.
 pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
     let n = xi.len();
     let mut rows: Vec<Vec<Fp>> = rows
@@ -45,9 +45,12 @@ pub(super) fn in_kernel(rows: &[Fp], shifts: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>
     let mut xi = xi.to_vec();
     let mut pivots: Vec<(usize, usize)> = Vec::new();
     for i in 0..rows.len() {
-        // What is left of a row that follows from others vanishes anyway.
         let Some(pivot) = (0..n).find(|&j| !rows[i][j].is_zero()) else {
-            continue;
+            // It follows from the others, or contradicts them.
+            if rows[i][n].is_zero() {
+                continue;
+            }
+            return None;
         };
         let inverse = rows[i][pivot].inv()?;
         let row: Vec<Fp> = rows[i].iter().map(|&entry| entry * inverse).collect();
@@ -77,4 +80,24 @@ pub(super) fn places(graph: &Graph, class: u8) -> Vec<usize> {
         .filter(|(_, symbol)| symbol.class == class)
         .map(|(index, _)| index)
         .collect()
+}
+
+/// A random v with B v = 0 for the rows that are kept, in which what has a given rate stands still.
+pub(super) fn virtual_velocity(model: &Model, kept: &[Fp], xi: &[Fp]) -> Option<Vec<Fp>> {
+    let n = model.n();
+    let mut rows = kept.to_vec();
+    for (place, _) in &model.accelerated {
+        rows.extend((0..n).map(|j| if j == *place { Fp::ONE } else { Fp::ZERO }));
+    }
+    let seed = xi
+        .iter()
+        .fold(n as u64, |seed, xi| seed.rotate_left(7) ^ xi.bits());
+    let mut random = Random::new(seed);
+    let random: Vec<Fp> = (0..n).map(|_| random.element()).collect();
+    in_kernel(&rows, &vec![Fp::ZERO; rows.len() / n.max(1)], &random)
+}
+
+/// Σ aᵢ bᵢ.
+pub fn dot(a: &[Fp], b: &[Fp]) -> Fp {
+    a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y)
 }

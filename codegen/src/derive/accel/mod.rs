@@ -124,6 +124,9 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
     let mut rows: Vec<Vec<Edge>> = rows.map(|constraint| constraint.row.clone()).collect();
     // A rate that is given is a row of its own.
     rows.extend(hybrid::rows(&setting.model));
+    let constraints = &setting.model.constraints;
+    let raising = saddle::raising(constraints, rows.len() - constraints.len());
+    let raising = setting.model.overconstrained.then_some(&raising[..]);
     let mut best: Option<(Acceleration, Parts)> = None;
     for variant in variants(&setting.model, n <= SMALL) {
         let (mut traced, parts) = trace(setting, variant);
@@ -136,13 +139,8 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
         ];
         for order in orders {
             let mut graph = traced.graph.clone();
-            let Some(factored) = saddle::factored(
-                &mut graph,
-                &parts,
-                &rows,
-                &order,
-                setting.model.overconstrained,
-            ) else {
+            let Some(factored) = saddle::factored(&mut graph, &parts, &rows, &order, raising)
+            else {
                 continue;
             };
             let force: Vec<Edge> = (0..n)

@@ -7,6 +7,7 @@ use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::lane::Lane;
 use crate::derive::calculus::Calculus;
 use crate::model::Model;
+use crate::model::pfaffian::{Kind, Pfaffian};
 
 /// The solution.
 #[derive(Clone, Debug)]
@@ -54,9 +55,27 @@ pub struct Factored {
     refined: usize,
 }
 
-/// Where rows of B depend on one another along the whole motion, S is singular: its diagonal is raised
-/// (`Function::Raised`), by a small part that rounding does not hide, and two steps of refinement take the error of that away.
+/// Where rows of B depend on one another along the whole motion, S is singular: its diagonal is raised by a small part of
+/// itself that rounding does not hide (`Function::Raised`), summed over the rows of one equation, since a single row may
+/// vanish on the way; two steps of refinement take the error of that away.
 const REFINED: usize = 2;
+
+/// For each row the rows whose diagonal of S raises its own: those of a loop between vectors; all loops between numbers; a
+/// row of another kind by itself. `more` rows of given rates stand behind the constraints.
+pub fn raising(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {
+    let is_loop = |i: usize| constraints.get(i).is_some_and(|c| c.kind == Kind::Loop);
+    let mates = |i: usize| {
+        (0..constraints.len()).filter(move |&j| constraints[j].span == constraints[i].span)
+    };
+    let alone = |i: usize| is_loop(i) && mates(i).count() == 1;
+    let rows = 0..constraints.len() + more;
+    rows.map(|i| match (is_loop(i), alone(i)) {
+        (false, _) => vec![i],
+        (true, false) => mates(i).collect(),
+        (true, true) => (0..constraints.len()).filter(|&j| alone(j)).collect(),
+    })
+    .collect()
+}
 
 /// Factors with an order of elimination of M; `None` where a pivot vanishes identically.
 pub fn factored(
@@ -64,7 +83,7 @@ pub fn factored(
     parts: &Parts,
     rows: &[Vec<Edge>],
     order: &[usize],
-    overconstrained: bool,
+    raising: Option<&[Vec<usize>]>,
 ) -> Option<Factored> {
     let m = rows.len();
     let ordered = |row: &[Edge]| order.iter().map(|&i| row[i]).collect::<Vec<_>>();
@@ -89,10 +108,17 @@ pub fn factored(
         }
     }
     let mut raised = schur.clone();
-    if overconstrained {
-        for (i, row) in raised.iter_mut().enumerate() {
-            row[i] = graph.apply(Function::Raised, row[i]);
-        }
+    for (i, rows) in raising.unwrap_or(&[]).iter().enumerate() {
+        let sum: Vec<Edge> = rows.iter().map(|&j| schur[j][j]).collect();
+        let sum = graph.sum(&sum);
+        let more = graph.apply(Function::Raised, sum);
+        raised[i][i] = match rows.len() {
+            1 => more,
+            _ => {
+                let more = graph.sub(more, sum);
+                graph.add(schur[i][i], more)
+            }
+        };
     }
     Some(Factored {
         order: order.to_vec(),
@@ -101,7 +127,7 @@ pub fn factored(
         bonds,
         scaled,
         schur,
-        refined: if overconstrained { REFINED } else { 0 },
+        refined: if raising.is_some() { REFINED } else { 0 },
     })
 }
 
@@ -264,16 +290,23 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
     }
 }
 
-/// ξ̇ of an overconstrained system in numbers modulo p, by plain elimination: what the emitted code
-/// has to agree with. M and B are given by rows; of the lane is what `Raised` multiplies by.
+/// ξ̇ of an overconstrained system in numbers modulo p, by plain elimination: what the emitted code has to agree with. The
+/// parts are M and B by rows, with the forces and the right side of B ξ̇; then come velocities whose rates are given. Of
+/// the lane is what `Raised` multiplies by.
 pub fn solve_at(
-    mass: &[Fp],
-    force: &[Fp],
-    rows: &[Fp],
-    right: &[Fp],
+    constraints: &[Pfaffian],
+    [mass, force, rows, right]: [&[Fp]; 4],
+    given: &[(usize, Fp)],
     lane: &Lane,
 ) -> Option<Vec<Fp>> {
-    let (n, m) = (force.len(), right.len());
+    let n = force.len();
+    let (mut rows, mut right) = (rows.to_vec(), right.to_vec());
+    for &(place, rate) in given {
+        rows.extend((0..n).map(|j| if j == place { Fp::ONE } else { Fp::ZERO }));
+        right.push(rate);
+    }
+    let m = right.len();
+    let raising = raising(constraints, given.len());
     let mut columns: Vec<Vec<Fp>> = vec![force.to_vec()];
     columns.extend(rows.chunks(n.max(1)).map(<[Fp]>::to_vec));
     let solved = solve_columns(mass, n, &columns)?;
@@ -287,8 +320,9 @@ pub fn solve_at(
         .clone()
         .function(Function::Raised, Fp::ONE, &Vec::new());
     let mut raised = schur.clone();
-    for i in 0..m {
-        raised[i * m + i] = raised[i * m + i] * factor;
+    for (i, rows) in raising.iter().enumerate() {
+        let sum = rows.iter().fold(Fp::ZERO, |sum, &j| sum + schur[j * m + j]);
+        raised[i * m + i] = raised[i * m + i] + sum * factor - sum;
     }
     let mut multipliers = vec![Fp::ZERO; m];
     for _ in 0..=REFINED {
@@ -301,14 +335,15 @@ pub fn solve_at(
             .zip(&step[0])
             .for_each(|(sum, &more)| *sum = *sum + more);
     }
-    Some(
-        (0..n)
-            .map(|k| {
-                let column: Vec<Fp> = bonds.iter().map(|bond| bond[k]).collect();
-                free[k] + dot(&column, &multipliers)
-            })
-            .collect(),
-    )
+    let moved = (0..n).map(|k| {
+        let column: Vec<Fp> = bonds.iter().map(|bond| bond[k]).collect();
+        free[k] + dot(&column, &multipliers)
+    });
+    let mut xi_dot: Vec<Fp> = moved.collect();
+    for &(place, rate) in given {
+        xi_dot[place] = rate;
+    }
+    Some(xi_dot)
 }
 
 /// A⁻¹ b for several b.

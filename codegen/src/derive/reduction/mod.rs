@@ -9,21 +9,19 @@
 
 mod carrier;
 mod kinetic;
+mod rows;
 
 pub use kinetic::drift;
 
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::numeric::{evaluate, rank};
+use crate::algebra::numeric::evaluate;
 use crate::diagnostics::Diagnostic;
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::{Model, Whole};
 use crate::syntax::ast::Span;
 use carrier::Carrier;
+use rows::{independent, keep};
 use std::sync::Arc;
-
-/// Rows whose part across those before is smaller than this, relative to the largest, are redundant.
-const REDUNDANT: f64 = 1e-8;
 
 /// A factor is no pivot where another one of its row or its velocity is so many times larger at the start: what is
 /// solved with it loses the digits of that ratio twice. A row without pivots gets a multiplier.
@@ -366,77 +364,4 @@ fn start_numbers(model: &Model) -> Vec<f64> {
         &vec![0.0; m],
         &zeros,
     )
-}
-
-/// The rows to keep, and how many of them are independent at the start, the largest first. A loop may
-/// have rows that depend on others where it is closed (an overconstrained mechanism); a nonholonomic
-/// constraint may not. Rows of loops that depend on others wherever the tree is say nothing new.
-fn keep(
-    model: &Model,
-    rows: &[Vec<Edge>],
-    solved: &[(usize, usize)],
-) -> Result<(Vec<usize>, usize), Diagnostic> {
-    let time = model.clock.map(|clock| clock.xi);
-    // The entries of a row but that of ξ⁰.
-    let moving = |row: &[Edge]| -> Vec<Edge> {
-        let entries = row.iter().enumerate();
-        let entries = entries.filter(|(j, _)| Some(*j) != time);
-        entries.map(|(_, entry)| *entry).collect()
-    };
-    let mut open: Vec<usize> = Vec::new();
-    let mut values: Vec<Vec<Fp>> = Vec::new();
-    for i in 0..rows.len() {
-        if solved.iter().any(|&(row, _)| row == i) {
-            continue;
-        }
-        let row = moving(&rows[i]);
-        let at_point = row.iter().map(|&entry| model.graph.value(entry));
-        values.push(at_point.collect());
-        if model.constraints[i].kind == Kind::Loop && rank(values.clone()) < values.len() {
-            values.pop();
-        } else {
-            open.push(i);
-        }
-    }
-    let edges: Vec<Edge> = open.iter().flat_map(|&i| moving(&rows[i])).collect();
-    let values = evaluate(&model.graph, &edges, &start_numbers(model));
-    let columns = moving(&model.xi).len();
-    let left: Vec<Vec<f64>> = values.chunks(columns).map(<[f64]>::to_vec).collect();
-    let independent: Vec<usize> = (independent(left).into_iter())
-        .map(|row| open[row])
-        .collect();
-    let redundant_row = open
-        .iter()
-        .find(|i| !independent.contains(i) && model.constraints[**i].kind != Kind::Loop);
-    match redundant_row {
-        Some(&row) => Err(redundant(&model.constraints, row, " at the start")),
-        None => Ok((open, independent.len())),
-    }
-}
-
-/// Rows that are independent in numbers, the largest first: as many as there are.
-fn independent(mut left: Vec<Vec<f64>>) -> Vec<usize> {
-    let norm = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let most = left.iter().map(|row| norm(row)).fold(0.0, f64::max);
-    let mut independent = Vec::new();
-    loop {
-        let sizes = left.iter().map(|row| norm(row)).enumerate();
-        let largest = sizes.fold(None, |best: Option<(usize, f64)>, (i, size)| match best {
-            Some((_, found)) if size <= found => best,
-            _ => Some((i, size)),
-        });
-        let Some((row, size)) = largest.filter(|(_, size)| *size > REDUNDANT * most) else {
-            return independent;
-        };
-        independent.push(row);
-        let unit: Vec<f64> = left[row].iter().map(|v| v / size).collect();
-        for other in &mut left {
-            let along: f64 = other.iter().zip(&unit).map(|(a, b)| a * b).sum();
-            other
-                .iter_mut()
-                .zip(&unit)
-                .for_each(|(a, b)| *a -= along * b);
-        }
-        left[row].fill(0.0);
-    }
 }

@@ -14,6 +14,7 @@ use crate::algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, multiply3, sub3, transpose3,
 };
 use crate::algebra::transplant::substitute;
+use crate::derive::tree::Tree;
 use crate::derive::tree::turn::Turn;
 use crate::model::Model;
 use crate::model::layout::Block;
@@ -86,56 +87,92 @@ impl Known {
     }
 }
 
-/// The relations within each link, and between each link and the one before.
+/// The relations within each link, between each link and the one before, and the same of links that move together.
 pub fn candidates(
     model: &mut Model,
     samples: &Samples,
     known: &Known,
+    tree: &Tree,
     links: &[Link],
 ) -> Vec<Relation> {
-    let mut relations = Vec::new();
+    let mut groups: Vec<(Vec<usize>, Option<usize>)> = Vec::new();
     for (index, link) in links.iter().enumerate() {
-        let own: Vec<usize> = (10 * index..10 * index + 10).collect();
-        for values in samples.relations(&own) {
-            if let Some(exact) = known.all(&mut model.graph, &values) {
-                relations.push(joined(&model.graph, &own, &exact));
-            }
-        }
+        groups.push((vec![index], None));
         // A link that stands in the world may be placed by expressions that follow another one.
-        for parent in link.parent.map_or(0..index, |parent| parent..parent + 1) {
-            relations.extend(between(model, samples, known, links, (index, parent)));
-        }
+        let parents = link.parent.map_or(0..index, |parent| parent..parent + 1);
+        groups.extend(parents.map(|parent| (vec![index], Some(parent))));
+    }
+    groups.extend(together(tree));
+    let mut relations = Vec::new();
+    for (group, anchor) in groups {
+        relations.extend(among(model, samples, known, links, (&group, anchor)));
     }
     relations
 }
 
-/// The relations between a link and another one before it.
-fn between(
+/// Links whose joints have a velocity in common, alone and with the link that all of them hang on.
+fn together(tree: &Tree) -> Vec<(Vec<usize>, Option<usize>)> {
+    let rates = |index: usize| {
+        let freedoms = tree.links[index].freedoms.iter();
+        freedoms.flat_map(|freedom| freedom.rate.iter().map(|&(i, _)| i))
+    };
+    let mut groups = Vec::new();
+    for i in 0..tree.armature.len() {
+        let all = 0..tree.links.len();
+        let group: Vec<usize> = all.filter(|&index| rates(index).any(|j| j == i)).collect();
+        if group.len() < 2 {
+            continue;
+        }
+        let parents = group.iter().map(|&index| tree.links[index].parent);
+        let mut outside: Vec<usize> = parents
+            .flatten()
+            .filter(|parent| !group.contains(parent))
+            .collect();
+        outside.dedup();
+        if let [anchor] = outside[..] {
+            groups.push((group.clone(), Some(anchor)));
+        }
+        groups.push((group, None));
+    }
+    groups.sort();
+    groups.dedup();
+    groups
+}
+
+/// The relations among the parameters of a group of links and, where one is given, of a link before them.
+fn among(
     model: &mut Model,
     samples: &Samples,
     known: &Known,
     links: &[Link],
-    (index, parent): (usize, usize),
+    (group, anchor): (&[usize], Option<usize>),
 ) -> Vec<Relation> {
+    let ten_of = |index: usize| 10 * index..10 * index + 10;
+    let own: Vec<usize> = group.iter().flat_map(|&index| ten_of(index)).collect();
+    let before: Vec<usize> = anchor.into_iter().flat_map(ten_of).collect();
+    let found = samples.relations(&[&own[..], &before[..]].concat());
+    let halves = found.iter().map(|values| values[..own.len()].to_vec());
     let mut relations = Vec::new();
-    let own: Vec<usize> = (10 * index..10 * index + 10).collect();
-    let before: Vec<usize> = (10 * parent..10 * parent + 10).collect();
-    let both = [&own[..], &before[..]].concat();
-    let pairs = samples.relations(&both);
-    let halves: Vec<Vec<Fp>> = pairs.iter().map(|pair| pair[..10].to_vec()).collect();
-    let pose = pose_at_zero(model, links[index].frame, links[parent].frame);
-    for values in Echelon::new(halves).rows {
-        let graph = &mut model.graph;
-        let Some(exact) = known.all(graph, &values) else {
+    for values in Echelon::new(halves.collect()).rows {
+        let Some(exact) = known.all(&mut model.graph, &values) else {
             continue;
         };
-        let carried = moments(graph, &exact)
-            .turned(graph, &Turn::By(pose.0))
-            .shifted(graph, pose.1);
-        let carried: Vec<Edge> = ten(graph, &carried).iter().map(|&entry| -entry).collect();
-        let mut relation = joined(graph, &own, &exact);
-        relation.extend(joined(graph, &before, &carried));
-        if holds(graph, samples, &relation) {
+        let mut relation = joined(&model.graph, &own, &exact);
+        if let Some(anchor) = anchor {
+            let mut all = vec![model.graph.zero(); 10];
+            for (&index, exact) in group.iter().zip(exact.chunks(10)) {
+                let pose = pose_at_zero(model, links[index].frame, links[anchor].frame);
+                let graph = &mut model.graph;
+                let carried = moments(graph, exact)
+                    .turned(graph, &Turn::By(pose.0))
+                    .shifted(graph, pose.1);
+                for (sum, entry) in all.iter_mut().zip(ten(graph, &carried)) {
+                    *sum = graph.sub(*sum, entry);
+                }
+            }
+            relation.extend(joined(&model.graph, &before, &all));
+        }
+        if holds(&model.graph, samples, &relation) {
             relations.push(relation);
         }
     }

@@ -89,7 +89,7 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
     }
     let samples = Samples::new(&model, &columns)
         .ok_or("at random states its expressions have no values modulo p")?;
-    let found = relations::find(&mut model, &samples, &links, standard.len())?;
+    let found = relations::find(&mut model, &samples, &tree, &links, standard.len())?;
     let kept: Vec<usize> = found.base.iter().map(|base| base.kept).collect();
     let mut columns = columns::cheapest(&mut derived, &tree, &links, &kept);
     columns.extend(beside.parameters.into_iter().map(|(_, column)| column));

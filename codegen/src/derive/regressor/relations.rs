@@ -6,6 +6,7 @@ use super::parameters::Link;
 use super::samples::Samples;
 use crate::algebra::echelon::Echelon;
 use crate::algebra::graph::{Edge, Graph};
+use crate::derive::tree::Tree;
 use crate::model::Model;
 
 /// Base parameters by the places of parameters among all.
@@ -20,6 +21,7 @@ pub struct Found {
 pub fn find(
     model: &mut Model,
     samples: &Samples,
+    tree: &Tree,
     links: &[Link],
     total: usize,
 ) -> Result<Found, String> {
@@ -31,7 +33,7 @@ pub fn find(
     let nothing = order.len();
     order.extend(present.iter().rev());
     let known = Known::new(model, samples);
-    let mut relations = candidates(model, samples, &known, links);
+    let mut relations = candidates(model, samples, &known, tree, links);
     let mut solved = solve(&mut model.graph, &relations, &order, nothing);
     if solved.len() + rank < present.len() {
         let dependent: Vec<usize> = solved.iter().map(|(pivot, _)| *pivot).collect();

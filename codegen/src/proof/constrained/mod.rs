@@ -5,12 +5,12 @@
 mod point;
 
 use super::confidence::Confidence;
-use super::kernel::{in_kernel, places, rows_at_rest};
+use super::kernel::{dot, places, rows_at_rest, virtual_velocity};
 use super::points::{POINTS, Unequal, at_fresh_points};
 use super::reference::Reference;
 use super::verdict::{Identity, Verdict, failure};
 use super::{centroidal, derivatives, frames, outputs, states};
-use crate::algebra::fp::{Fp, Random};
+use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
@@ -223,11 +223,17 @@ fn compare(
             Some(Ok::<(), ()>(()))
         },
     );
-    // Powers balance where B ξ = 0.
+    // Powers balance where B ξ + b = 0 in the rows that have forces: where a loop is open, the others ask for something else.
+    let n = full.reference.model.n();
+    let solved = reduction.solved.iter().map(|&(row, _)| row);
+    let rows = solved.chain(reduction.kept.iter().copied());
+    let rows: Vec<Edge> = rows
+        .flat_map(|row| full.rows[row * n..][..n].to_vec())
+        .collect();
     let still = at_fresh_points(
         |number| {
             let model = &full.reference.model;
-            let moved = |lane| rows_at_rest(model, &full.rows, lane);
+            let moved = |lane| rows_at_rest(model, &rows, lane);
             points.lane_moved(0x50_0e4 + number, &model.graph, &given, &moved)
         },
         |lane, _| {
@@ -419,21 +425,24 @@ fn at_point(
                     .iter()
                     .zip(force)
                     .map(|(&needed, &force)| needed - force);
-                let virtual_velocity = virtual_velocity(full, &kept, &values.xi, na)?;
+                let virtual_velocity = virtual_velocity(&full.reduced, &kept, &values.xi)?;
                 dot(&virtual_velocity, &project(&left.collect::<Vec<_>>())).is_zero()
             }
         };
+    let accelerated = &full.reduced.accelerated;
+    let given: Vec<Edge> = accelerated.iter().map(|(_, rate)| *rate).collect();
+    let given = evaluate_at(inner_graph, &given, &mut inner.clone())?;
+    let places = accelerated.iter().map(|(place, _)| *place);
+    let given: Vec<(usize, Fp)> = places.zip(given).collect();
     let held = match xi_dot {
         None => true,
         Some(xi_dot) if full.reduced.overconstrained => {
             let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - carried[k]).collect();
-            saddle::solve_at(&reduced_mass, &project(&rest), &kept, &right, inner)? == xi_dot
+            let parts = [&reduced_mass[..], &project(&rest), &kept, &right];
+            saddle::solve_at(&full.reduced.constraints, parts, &given, inner)? == xi_dot
         }
         Some(xi_dot) => {
-            let given: Vec<Edge> = full.reduced.accelerated.iter().map(|(_, e)| *e).collect();
-            let given = evaluate_at(inner_graph, &given, &mut inner.clone())?;
-            let driven = full.reduced.accelerated.iter().zip(&given);
-            let mut driven = driven.map(|((place, _), &rate)| xi_dot[*place] == rate);
+            let mut driven = given.iter().map(|&(place, rate)| xi_dot[place] == rate);
             let mut held = right.iter().zip(kept.chunks(na.max(1)));
             driven.all(|holds| holds) && held.all(|(&right, row)| dot(row, &xi_dot) == right)
         }
@@ -478,22 +487,4 @@ fn at_point(
         result(same_frames, frames::WHAT),
         result(same_momentum, centroidal::WHAT),
     ])
-}
-
-/// A random v with B v = 0 for the rows that are kept, in which what has a given rate stands still.
-fn virtual_velocity(full: &Full, kept: &[Fp], xi: &[Fp], na: usize) -> Option<Vec<Fp>> {
-    let mut rows = kept.to_vec();
-    for (place, _) in &full.reduced.accelerated {
-        rows.extend((0..na).map(|j| if j == *place { Fp::ONE } else { Fp::ZERO }));
-    }
-    let mut random = Random::new(
-        xi.iter()
-            .fold(na as u64, |seed, xi| seed.rotate_left(7) ^ xi.bits()),
-    );
-    let random: Vec<Fp> = (0..na).map(|_| random.element()).collect();
-    in_kernel(&rows, &vec![Fp::ZERO; rows.len() / na.max(1)], &random)
-}
-
-fn dot(a: &[Fp], b: &[Fp]) -> Fp {
-    a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y)
 }

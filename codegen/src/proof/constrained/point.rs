@@ -1,7 +1,7 @@
 //! One point at which a system with constraints is compared: numbers of the full frame, its power, its
 //! slopes.
 
-use super::{Full, dot};
+use super::Full;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
@@ -10,7 +10,7 @@ use crate::algebra::tangent::tangent_at;
 use crate::derive::reduction::Reduction;
 use crate::model::class;
 use crate::program::{FunctionId, Program};
-use crate::proof::kernel::places;
+use crate::proof::kernel::{dot, places};
 use crate::proof::outputs::slopes_hold;
 use crate::proof::slopes::measured_at;
 
@@ -184,6 +184,10 @@ impl<'a> At<'a> {
             // Without the forces of the drives nothing is known of their power.
             None => return Some(true),
         };
+        if self.full.reduced.overconstrained {
+            // Nor is it where the forces of loops are not unique.
+            return Some(true);
+        }
         let rows = evaluate_at(&full.graph, &self.full.rows, &mut self.point.clone())?;
         let drives = lambda.get(rows.len() / n..).unwrap_or(&[]);
         for ((velocity, _), &force) in full.accelerated.iter().zip(drives) {

@@ -1,8 +1,9 @@
 //! What bodies and particles contribute to the three forms (30) at one point, modulo p.
 
 use super::motion::{Moving, MovingFrame};
-use super::space::{Mat3, Vec3, add, apply, apply_transposed, cross, dot, scale};
+use super::space::{Mat3, Vec3, add, apply, apply_transposed, cross, scale};
 use crate::algebra::fp::Fp;
+use crate::proof::kernel::dot;
 
 /// Inertia of a body in numbers.
 pub struct BodyNumbers {

@@ -2,8 +2,9 @@
 //! as forces on points, as `virtual_power` does it with expressions.
 
 use super::motion::{Moving, MovingFrame};
-use super::space::{Vec3, add, apply, column, cross, dot, scale, sub};
+use super::space::{Vec3, add, apply, column, cross, scale, sub};
 use crate::algebra::fp::Fp;
+use crate::proof::kernel::dot;
 use crate::syntax::ast::Axes;
 
 /// A sum of forces on points.

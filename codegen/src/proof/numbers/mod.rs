@@ -32,12 +32,13 @@ use crate::algebra::jets::{Jet, Seeds};
 use crate::algebra::lane::Lane;
 use crate::model::Model;
 use crate::model::elements::Along;
+use crate::proof::kernel::dot;
 use expressions::{Expressions, Reader};
 use inertia::{BodyNumbers, Sums};
 use loads::Forces;
 use motion::{Moving, MovingFrame, point};
 use rustc_hash::FxHashMap;
-use space::{Vec3, dot, scale, sub};
+use space::{Vec3, scale, sub};
 
 /// The reference of a model.
 pub struct Numbers {

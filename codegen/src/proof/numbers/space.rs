@@ -1,16 +1,12 @@
 //! Vectors of three numbers modulo p, and the velocities of a frame from those of its axes.
 
 use crate::algebra::fp::Fp;
+use crate::proof::kernel::dot;
 
 /// A vector.
 pub type Vec3 = [Fp; 3];
 /// A matrix, by rows.
 pub type Mat3 = [Vec3; 3];
-
-/// a · b of vectors of any length.
-pub fn dot(a: &[Fp], b: &[Fp]) -> Fp {
-    a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y)
-}
 
 /// a + b.
 pub fn add(a: Vec3, b: Vec3) -> Vec3 {
