@@ -54,6 +54,20 @@ const UPRIGHT: &str = "system Upright {
     gravity [0, 0, -9.81];
 ";
 
+/// A hand at an angle that is no part of a turn, with two fingers that one drive moves against each other.
+const HAND: &str = "system Hand {
+    joint q1: revolute [0, 1, 0] moves upper { damping 0.1; };
+    joint q2: revolute [1, 0, 0] on upper at translation([0, 0, 0.3]) moves fore;
+    frame hand on fore = pose(rotz(-0.7853981633974483), [0, 0, 0.107]);
+    joint left: prismatic [0, 1, 0] on hand at translation([0, 0, 0.0584]) moves one;
+    joint right: prismatic [0, -1, 0] on hand at translation([0, 0, 0.0584]) moves two follows left;
+    body on upper { mass 2; com [0.1, 0, 0.2]; inertia diag(0.03, 0.03, 0.04) about com; }
+    body on fore { mass 1; com [0.2, 0.1, 0]; inertia diag(0.02, 0.03, 0.04) about com; }
+    body on one { mass 0.1; com [0.01, 0.02, 0.03]; inertia diag(0.002, 0.003, 0.004) about com; }
+    body on two { mass 0.2; com [0.02, 0.01, 0.05]; inertia diag(0.003, 0.003, 0.004) about com; }
+    gravity [0, 0, -9.81];
+";
+
 fn found(text: &str) -> Regressor {
     let model = build(&parse_text(text).expect("a text")).expect("a model");
     let found = regressor(&model).expect("base parameters");
@@ -175,6 +189,8 @@ fn y_beta_is_the_force_that_a_motion_needs() {
     is_force(ARM, 30);
     // Both turn about upright axes: Θ_zz of each, h of the second, and the damper.
     is_force(UPRIGHT, 5);
+    // 3 + 7; of the fingers, which move against each other, differences of h, and both masses; the damper.
+    is_force(HAND, 16);
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
     for (name, count) in [("free_body", 10), ("two_bodies", 18), ("planar_body", 4)] {
         let text = std::fs::read_to_string(root.join(format!("{name}.eom"))).expect("a model");

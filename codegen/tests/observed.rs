@@ -8,7 +8,7 @@ mod models;
 #[path = "common/tree/mod.rs"]
 mod tree;
 
-use common::{Random, attack};
+use common::{Random, attack, generated, value};
 use hamel_codegen::functions::{FrameFunction, Jacobian};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::lower::build;
@@ -388,6 +388,43 @@ fn output_slopes(case: &Case, output: &str) {
             &format!("the slopes of `{output}`"),
             &ours,
             &slope(|d| value(column, d)),
+        );
+    }
+}
+
+/// The momentum about the centre of mass is the same in orbit as on the ground: nothing is lost to the place and the
+/// velocity of the whole.
+#[test]
+fn momenta_about_the_centre_of_mass_are_the_same_anywhere() {
+    let of = generated(
+        "system Orb {
+            joint A: free moves a;
+            joint h: revolute [0, 0, 1] on a at translation([1, 0, 0]) moves b;
+            body on a { mass 100; com [0.1, 0, 0]; inertia diag(10, 20, 30) about com; }
+            body on b { mass 20; com [0.5, 0, 0]; inertia diag(1, 2, 3) about com; }
+            generate all, centroidal_momentum, centroidal_map, centroidal_bias;
+        }",
+    );
+    let random = &mut Random::new(5);
+    let mut x = random.configuration(&of.model.blocks);
+    let mut xi = random.numbers(7);
+    let angular = |x: &[f64], xi: &[f64]| {
+        let mut all = Vec::new();
+        for name in ["centroidal_momentum", "centroidal_map", "centroidal_bias"] {
+            let found = value(&of, name, [x, xi, &[], &[]]);
+            all.extend_from_slice(&found[found.len() / 2..]);
+        }
+        all
+    };
+    let near = angular(&x, &xi);
+    for (place, far) in [7e6, -3e6, 2e6].into_iter().enumerate() {
+        x[place] += far;
+        xi[place] += far / 1000.0;
+    }
+    for (far, near) in angular(&x, &xi).into_iter().zip(near) {
+        assert!(
+            (far - near).abs() < 1e-12 * near.abs().max(1.0),
+            "{far} for {near}"
         );
     }
 }

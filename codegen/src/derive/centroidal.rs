@@ -16,9 +16,9 @@ use super::program::Builder;
 use super::quantity::{MovingMass, motions};
 use super::tree::Placement;
 use super::tree::draft::has_more_inertia;
-use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, cross, scale3, sub3, zero3};
-use crate::algebra::transplant::{rebuild, substitute};
+use crate::algebra::transplant::{map_symbols, rebuild};
 use crate::diagnostics::Diagnostic;
 use crate::model::layout::Block;
 use crate::model::{Model, class};
@@ -164,7 +164,9 @@ fn entries(model: &Model, id: FunctionId, total: Option<(Graph, Twist)>) -> (Gra
             (linear, angular)
         }
     };
-    let momentum = (momentum.0, at_the_origin(model, &mut graph, momentum.1));
+    let (mut graph, momenta) = anywhere(model, graph, vec![momentum]);
+    let mut calculus = Calculus::new(model);
+    let momentum = momenta[0];
     let roots = match id {
         FunctionId::CentroidalMap => {
             by_rows(by_velocities(model, &mut graph, momentum).into_iter())
@@ -186,35 +188,53 @@ fn about_centre(model: &Model, graph: Graph, columns: Vec<Twist>) -> (Graph, Vec
     let centre = centre(&mut graph, &moving);
     let columns = columns.into_iter().map(|(linear, angular)| {
         let lever = cross(&mut graph, centre, linear);
-        let angular = sub3(&mut graph, angular, lever);
-        (linear, at_the_origin(model, &mut graph, angular))
+        (linear, sub3(&mut graph, angular, lever))
     });
     let columns: Vec<Twist> = columns.collect();
+    let (graph, columns) = anywhere(model, graph, columns);
     (graph, by_rows(columns.into_iter()))
 }
 
-/// A vector without the coordinates and velocities that it does not depend on: L is the same wherever the mechanism is, and
-/// however fast it moves as a whole, but far from the origin sums would lose the digits of both.
-fn at_the_origin(model: &Model, graph: &mut Graph, vector: Vec3) -> Vec3 {
-    let mut places = model.x.iter();
-    let mut flat: Vec<Edge> = Vec::new();
+/// The same with L without the coordinates and velocities that it does not depend on: it is the same wherever the mechanism
+/// is, and however fast it moves as a whole, but far from the origin sums would lose the digits of both.
+fn anywhere(model: &Model, graph: Graph, momenta: Vec<Twist>) -> (Graph, Vec<Twist>) {
+    let (linear, angular): (Vec<Vec3>, Vec<Vec3>) = momenta.into_iter().unzip();
+    let angular = angular.concat();
+    let symbols = model.graph.symbols().iter();
+    let mut images: Vec<Edge> = symbols.map(|symbol| Edge::of(symbol.node)).collect();
+    let zero = model.graph.zero();
+    let mut x = model.x.iter();
+    let mut open: Vec<Edge> = Vec::new();
     for block in &model.blocks {
-        let own: Vec<Edge> = places.by_ref().take(block.len()).copied().collect();
-        if let Block::Flat(_) = block {
-            flat.extend(own);
-        }
+        let own = x.by_ref().take(block.len());
+        let flat = matches!(block, Block::Flat(_));
+        open.extend(own.filter(|_| flat));
     }
-    let mut found = vector;
-    for edge in flat.iter().chain(&model.xi) {
-        let Node::Symbol(symbol) = graph.node(edge.node()) else {
+    let mut left = None;
+    for edge in open.iter().chain(&model.xi) {
+        let Some(place) = images.iter().position(|image| image == edge) else {
             continue;
         };
-        let zero = graph.zero();
-        let still = substitute(graph, &found, &[(symbol as usize, zero)]);
-        let same = |(a, b): (&Edge, &Edge)| graph.value(*a) == graph.value(*b);
-        if still.iter().zip(&found).all(same) {
-            found = std::array::from_fn(|k| still[k]);
+        let before = std::mem::replace(&mut images[place], zero);
+        let mut own = model.graph.clone();
+        let moved = map_symbols(&graph, &mut own, &angular, &images);
+        let same = |(a, b): (&Edge, &Edge)| own.value(*a) == graph.value(*b);
+        if moved.iter().zip(&angular).all(same) {
+            left = Some((own, moved));
+        } else {
+            images[place] = before;
         }
     }
-    found
+    let whole = |linear: Vec<Vec3>, angular: &[Edge]| {
+        let angular = angular.chunks(3).map(|v| [v[0], v[1], v[2]]);
+        linear.into_iter().zip(angular).collect()
+    };
+    match left {
+        None => (graph, whole(linear, &angular)),
+        Some((mut own, angular)) => {
+            let linear = rebuild(&graph, &mut own, &linear.concat());
+            let linear = linear.chunks(3).map(|v| [v[0], v[1], v[2]]).collect();
+            (own, whole(linear, &angular))
+        }
+    }
 }
