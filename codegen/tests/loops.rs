@@ -156,7 +156,7 @@ fn bennett(more: &str) -> Generated {
 #[test]
 fn bennetts_mechanism_passes_its_folded_position() {
     for q1 in [0.0, 1e-7, 0.3, 1.0] {
-        let of = bennett(&format!("start q1 = {q1}, w1 = -0.7;"));
+        let of = bennett(&format!("start q1 = {q1}, q2 ~ 3, q3 ~ -{q1}, w1 = -0.7;"));
         let (x, xi) = (&of.model.start_x, &of.model.start_xi);
         close(xi[2], -xi[0]);
         let rates = accel(&of);
@@ -170,12 +170,12 @@ fn bennetts_mechanism_passes_its_folded_position() {
 /// Overconstrained mechanisms are driven as others are.
 #[test]
 fn overconstrained_mechanisms_are_driven() {
-    let pushed = bennett("input F; prescribe rate(w1) = F; start q1 = 1, w1 = 0.7;");
+    let pushed = bennett("input F; prescribe rate(w1) = F; start q1 = 1, q2 ~ 3, q3 ~ -1, w1 = 0.7;");
     let (x, xi) = (&pushed.model.start_x, &pushed.model.start_xi);
     let rates = value(&pushed, "accel", [x, xi, &[0.8], &[]]);
     close(rates[0], 0.8);
     close(rates[2], -0.8);
-    let turned = bennett("time t; prescribe w1 = 0.7 + 0.8 * t; start q1 = 1;");
+    let turned = bennett("time t; prescribe w1 = 0.7 + 0.8 * t; start q1 = 1, q2 ~ 3, q3 ~ -1;");
     let other = accel(&turned);
     close(*other.last().expect("rates"), -0.8);
     close(other[other.len() - 2], rates[1]);
