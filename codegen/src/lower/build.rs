@@ -12,6 +12,7 @@ use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::Model;
 use crate::model::closure::Closure;
+use crate::model::opening::Opening;
 use crate::reuse;
 use crate::syntax::ast::{ItemKind, Origins, System};
 use crate::{shapes, symbols};
@@ -135,6 +136,7 @@ fn read_at(
     let mut last = Report::new();
     let mut starts = start::read(system, graph, scope, declared, defaults, &mut last);
     start::guess::check(system, declared, &mut last);
+    let written = starts.as_ref().map(|start| start.x.clone());
     if let (Some(start), Some(x)) = (&mut starts, &variety.assembled) {
         start.x.clone_from(x);
     }
@@ -179,11 +181,14 @@ fn read_at(
     constraints.extend(drives);
     let states = states::read(system, graph, scope, declared, defaults, errors);
     let independent = staying::read(system, graph, scope, declared, &constraints, errors);
-    if let (Some(start), Some(kinematics), true) = (
+    let opening = starts.as_ref().map(|start| start.opening(graph, &states));
+    if let (Some(start), Some(opening), Some(kinematics), true) = (
         &mut starts,
+        &opening,
         &kinematics,
         errors.is_empty() && last.is_empty(),
-    ) {
+    ) && !defaults.iter().any(|number| number.is_nan())
+    {
         let (all, n) = (&declared.coordinates, declared.xi.len());
         let closure = Closure::new(
             graph,
@@ -193,19 +198,12 @@ fn read_at(
             &constraints,
             defaults,
         );
-        let known = !defaults.iter().any(|number| number.is_nan());
-        start.follow(graph, &prescribed, &numbers);
-        errors.keep(match start::guess::any(system) && known {
-            true => {
-                let inertia = (&frames[..], &dynamics);
-                let mass = |x: &[f64]| {
-                    let moved = (&*declared, kinematics);
-                    start::guess::mass(graph, inertia, moved, &numbers, x)
-                };
-                start.close_near(&closure, &constraints, mass)
-            }
-            false => start.close(&closure, &constraints, defaults),
-        });
+        let mass = |x: &[f64]| {
+            let (inertia, moved) = ((&frames[..], &dynamics), (&*declared, kinematics));
+            start::guess::mass(graph, inertia, moved, &numbers, x)
+        };
+        let tied = (&constraints[..], &prescribed[..]);
+        errors.keep(start.complete(opening.clone(), &closure, tied, &mass));
     }
     last.finish()
         .err()
@@ -215,8 +213,13 @@ fn read_at(
     if let Err(errors) = report.finish() {
         return Err((errors, Some(Box::new(ground.graph))));
     }
-    let (Some(kinematics), Some(start), false) = (kinematics, starts, ground.scope.missed.get())
-    else {
+    let (Some(kinematics), Some(start), Some(opening), Some(written), false) = (
+        kinematics,
+        starts,
+        opening,
+        written,
+        ground.scope.missed.get(),
+    ) else {
         let error = Diagnostic::new(system.name.span, "the description could not be read");
         return Err((vec![error], None));
     };
@@ -284,6 +287,10 @@ fn read_at(
         start_x: start.x,
         start_xi: start.xi,
         start_z: states.start,
+        opening: Opening {
+            x: written,
+            ..opening
+        },
         asked: dynamics.asked,
         span: system.name.span,
         origins: Origins::default(),

@@ -18,6 +18,8 @@ use crate::syntax::ast::{Expr, ItemKind, Span, System, Target};
 pub struct States {
     pub rates: Vec<Edge>,
     pub start: Vec<f64>,
+    /// Those starts that depend on parameters.
+    pub formulas: Vec<(usize, Edge)>,
 }
 
 /// Whether the target of a `rate` is a state.
@@ -50,6 +52,7 @@ pub fn read(
     }
     let known = start::known(graph, defaults);
     let mut start = vec![0.0; declared.z.len()];
+    let mut formulas = Vec::new();
     let lists = system.items.iter().filter_map(|item| match &item.kind {
         ItemKind::State(list) => Some(list),
         _ => None,
@@ -76,7 +79,10 @@ pub fn read(
         if let Some(numbers) =
             start::numbers(&mut evaluator, &found, &name.name, value.span, &known)
         {
-            start[group.offset..group.offset + group.len].copy_from_slice(&numbers);
+            let places = group.offset..group.offset + group.len;
+            start[places.clone()].copy_from_slice(&numbers);
+            let varying = places.zip(found.entries());
+            formulas.extend(varying.filter(|(_, edge)| graph.class(edge.node()) != 0));
         }
     }
     let zero = graph.zero();
@@ -84,6 +90,7 @@ pub fn read(
     States {
         rates: rates.into_iter().map(edge).collect(),
         start,
+        formulas,
     }
 }
 

@@ -89,7 +89,7 @@ impl Variety {
             // What is wrong with these is said on X, where they are read for the model.
             let again = &mut Report::new();
             let mut start = start::read(system, &mut graph, &scope, &declared, &defaults, again);
-            if let (Some(start), true) = (&mut start, start::guess::any(system)) {
+            if let Some(start) = start.as_mut().filter(|start| start.guesses_coordinates()) {
                 let numbers = declared.numbers(&defaults, Some(start));
                 let graph = &mut graph;
                 let places = (first, &declared.x[..]);

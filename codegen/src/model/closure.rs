@@ -7,7 +7,7 @@
 use super::assembly::nearest;
 use super::closest::{Loops, velocities};
 use super::layout::{Block, blocks};
-use super::pfaffian::Pfaffian;
+use super::pfaffian::{Kind, Pfaffian};
 use super::{Clock, Coordinate, Model};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
@@ -151,12 +151,34 @@ impl<'a> Closure<'a> {
         if let Some(time) = self.time {
             fixed[time] = true;
         }
-        let near = velocities(&b, &shifts, mass, &fixed, xi);
+        let mut settled = xi.clone();
+        self.drive(&mut settled, &b, &shifts, &fixed);
+        let near = velocities(&b, &shifts, mass, &fixed, &settled);
         // What contradicts what is given is found, and said, by the other way.
-        let mut settled = near.unwrap_or_else(|| xi.clone());
+        let mut settled = near.unwrap_or(settled);
         self.settle(x, &mut settled, given)?;
         *xi = settled;
         Ok(())
+    }
+
+    /// Gives velocities that are prescribed their values: they are no guesses, as coordinates are none.
+    fn drive(&self, xi: &mut [f64], b: &[Vec<f64>], shifts: &[f64], fixed: &[bool]) {
+        let drives =
+            (0..b.len()).filter(|&row| matches!(self.constraints[row].kind, Kind::Drive { .. }));
+        let drives: Vec<usize> = drives.collect();
+        let free: Vec<usize> = (0..self.n).filter(|&i| !fixed[i]).collect();
+        let speed = |row: usize| b[row].iter().zip(&*xi).map(|(b, v)| b * v).sum::<f64>();
+        let target: Vec<f64> = drives
+            .iter()
+            .map(|&row| -shifts[row] - speed(row))
+            .collect();
+        let rows = drives
+            .iter()
+            .map(|&row| free.iter().map(|&i| b[row][i]).collect());
+        let rows: Vec<Vec<f64>> = rows.collect();
+        if let Some(step) = least_norm(&rows, &target).filter(|_| !rows.is_empty()) {
+            free.iter().zip(step).for_each(|(&i, h)| xi[i] += h);
+        }
     }
 
     /// x with all loops closed, moved along A where not fixed; `None` where Newton's method fails.

@@ -140,7 +140,7 @@ fields!(Model {
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, whole;
     name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, clock,
-    joints, start_x, start_xi, start_z, asked, span, origins, warnings, independent, externals
+    joints, start_x, start_xi, start_z, opening, asked, span, origins, warnings, independent, externals
 });
 
 impl Edges for Along {

@@ -13,6 +13,7 @@ pub mod joints;
 pub mod layout;
 pub mod motion;
 pub mod nearest;
+pub mod opening;
 pub mod pfaffian;
 pub mod points;
 pub mod rotations;
@@ -30,6 +31,7 @@ use completion::Completion;
 use elements::Elements;
 use layout::Block;
 use motion::Observed;
+use opening::Opening;
 use pfaffian::Pfaffian;
 use points::Points;
 use std::sync::Arc;
@@ -279,6 +281,8 @@ pub struct Model {
     pub start_xi: Vec<f64>,
     /// z at the start.
     pub start_z: Vec<f64>,
+    /// What the description gives of the start in the full frame; the rest follows.
+    pub opening: Opening,
     /// The functions to generate.
     pub asked: Asked,
     /// The statements that the start is about, for errors found later.

@@ -10,9 +10,7 @@ use crate::lower::time;
 use crate::model::Frame;
 use crate::model::assembly::nearest;
 use crate::model::closest::Constraints;
-use crate::model::closure::Closure;
 use crate::model::layout::{Block, constraint};
-use crate::model::pfaffian::Pfaffian;
 use crate::model::twists::Moving;
 use crate::syntax::ast::{ExprKind, ItemKind, Span, System, Target};
 use crate::syntax::written::target as written;
@@ -23,11 +21,6 @@ fn guesses(system: &System) -> impl Iterator<Item = &Target> {
         ItemKind::Guess { target, .. } => Some(target),
         _ => None,
     })
-}
-
-/// Whether there are guesses.
-pub fn any(system: &System) -> bool {
-    guesses(system).next().is_some()
 }
 
 /// Reports guesses of what is not solved for.
@@ -162,30 +155,4 @@ pub fn mass(
         dynamics.kinetic,
     );
     moving.mass(frames, inertia, &numbers)
-}
-
-impl Start {
-    /// Solves for what has no exact start, nearest to the guesses in the metric of M.
-    pub fn close_near(
-        &mut self,
-        closure: &Closure,
-        constraints: &[Pfaffian],
-        mass: impl Fn(&[f64]) -> Vec<Vec<f64>>,
-    ) -> Result<(), Diagnostic> {
-        let given = self.settled_x();
-        let inertia = mass(&self.x);
-        closure.assemble(&mut self.x, &given, &inertia).map_err(|open| {
-            let message = format!(
-                "no configuration near the guesses closes this loop: at them it is open by {:.3e}",
-                open.residual
-            );
-            Diagnostic::new(constraints[open.constraint].span, message).help(
-                "check the lengths, and let exact starts be guesses, `start q ~ 1.2;`, where they need not be kept",
-            )
-        })?;
-        let given: Vec<bool> = self.given_xi.iter().map(Option::is_some).collect();
-        let mass = mass(&self.x);
-        let settled = closure.settle_near(&self.x, &mut self.xi, &given, &mass);
-        settled.map_err(|open| super::violated(constraints, open, closure.any_speed(&given)))
-    }
 }

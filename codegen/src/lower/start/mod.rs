@@ -10,13 +10,16 @@ use crate::lower::declare::Declared;
 use crate::lower::expression::Evaluator;
 use crate::lower::rate::part;
 use crate::lower::scope::Scope;
+use crate::lower::states::States;
 use crate::model::class;
 use crate::model::closure::{Closure, Open};
 use crate::model::layout::{blocks, identity};
+use crate::model::opening::{Formulas, Mass, Opening, Refused};
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::value::Value;
 use crate::syntax::ast::{CoordKind, Expr, ItemKind, Span, System, Target};
 use crate::syntax::written::target as written;
+use std::sync::Arc;
 
 /// x and ξ so far, where each entry was given, and where guessed.
 pub struct Start {
@@ -26,8 +29,10 @@ pub struct Start {
     pub given_xi: Vec<Option<Span>>,
     guessed_x: Vec<Option<Span>>,
     guessed_xi: Vec<Option<Span>>,
-    /// The entries of x whose motion is prescribed.
-    driven_x: Vec<bool>,
+    /// Entries of x that depend on parameters.
+    formulas_x: Vec<(usize, Edge)>,
+    /// Entries of ξ that depend on parameters.
+    formulas_xi: Vec<(usize, Edge)>,
 }
 
 /// x and ξ from the `start` statements; what is not given is at the identity and at rest.
@@ -47,7 +52,8 @@ pub fn read(
     let xi = vec![0.0; declared.xi.len()];
     let (no_x, no_xi) = (vec![None; x.len()], vec![None; xi.len()]);
     let mut start = Start {
-        driven_x: vec![false; x.len()],
+        formulas_x: Vec::new(),
+        formulas_xi: Vec::new(),
         x,
         xi,
         given_x: no_x.clone(),
@@ -72,59 +78,74 @@ pub fn read(
 }
 
 impl Start {
-    /// Puts coordinates where they are prescribed to be at the start; an exact start stays, and is judged later.
-    pub fn follow(&mut self, graph: &Graph, prescribed: &[(usize, Edge)], numbers: &[f64]) {
-        let values: Vec<Edge> = prescribed.iter().map(|(_, value)| *value).collect();
-        for (&(alpha, _), value) in prescribed.iter().zip(evaluate(graph, &values, numbers)) {
-            if self.given_x[alpha].is_none() && value.is_finite() {
-                self.x[alpha] = value;
-                self.driven_x[alpha] = true;
-            }
+    /// What is given of the start, before anything follows from it.
+    pub fn opening(&self, graph: &Graph, states: &States) -> Opening {
+        let is_there =
+            |list: &[Option<Span>]| -> Vec<bool> { list.iter().map(Option::is_some).collect() };
+        let lists = [&self.formulas_x, &self.formulas_xi, &states.formulas];
+        let varies = lists.iter().any(|list| !list.is_empty());
+        Opening {
+            x: self.x.clone(),
+            xi: self.xi.clone(),
+            z: states.start.clone(),
+            exact_x: is_there(&self.given_x),
+            exact_xi: is_there(&self.given_xi),
+            guessed_x: is_there(&self.guessed_x),
+            guessed_xi: is_there(&self.guessed_xi),
+            formulas: varies.then(|| {
+                let [x, xi, z] = lists.map(Clone::clone);
+                let graph = graph.clone();
+                Arc::new(Formulas { graph, x, xi, z })
+            }),
         }
-    }
-
-    /// The entries of x that closing a loop leaves alone.
-    fn settled_x(&self) -> Vec<bool> {
-        let entries = self.given_x.iter().zip(&self.driven_x);
-        entries
-            .map(|(given, &driven)| given.is_some() || driven)
-            .collect()
     }
 
     /// Solves for what the description does not give, so that its loops are closed and its constraints kept.
-    pub fn close(
+    pub fn complete(
         &mut self,
+        mut opening: Opening,
         closure: &Closure,
-        constraints: &[Pfaffian],
-        defaults: &[f64],
+        (constraints, prescribed): (&[Pfaffian], &[(usize, Edge)]),
+        mass: Mass,
     ) -> Result<(), Diagnostic> {
-        if defaults.iter().any(|number| number.is_nan()) {
-            return Ok(());
-        }
-        let given = self.settled_x();
-        closure.close_loops(&mut self.x, &given).map_err(|open| {
-            let row = &constraints[open.constraint];
-            if matches!(row.kind, Kind::Drive { .. }) {
-                let error = Diagnostic::new(
-                    row.span,
-                    format!("the start contradicts this motion by {:.3e}", open.residual),
-                );
-                return error.help("leave out the `start` of what is prescribed: it follows");
+        let refused = match opening.complete(closure, prescribed, mass) {
+            Ok(()) => {
+                (self.x, self.xi) = (opening.x, opening.xi);
+                return Ok(());
             }
-            let error = Diagnostic::new(
-                constraints[open.constraint].span,
+            Err(refused) => refused,
+        };
+        let open = match refused {
+            Refused::Configuration(open) => open,
+            Refused::Velocities(open) => {
+                let given = closure.any_speed(&opening.exact_xi);
+                return Err(violated(constraints, open, given));
+            }
+        };
+        let row = &constraints[open.constraint];
+        let by = open.residual;
+        let (message, help) = match row.kind {
+            Kind::Drive { .. } => (
+                format!("the start contradicts this motion by {by:.3e}"),
+                "leave out the `start` of what is prescribed: it follows",
+            ),
+            _ if opening.guesses_coordinates() => (
                 format!(
-                    "no configuration near the start closes this loop: it is open by {:.3e}",
-                    open.residual
+                    "no configuration near the guesses closes this loop: at them it is open by {by:.3e}"
                 ),
-            );
-            error.help(
+                "check the lengths, and let exact starts be guesses, `start q ~ 1.2;`, where they need not be kept",
+            ),
+            _ => (
+                format!("no configuration near the start closes this loop: it is open by {by:.3e}"),
                 "give a `start` closer to a closed loop; coordinates without a `start` are solved for, those with one are kept",
-            )
-        })?;
-        let given: Vec<bool> = self.given_xi.iter().map(Option::is_some).collect();
-        let settled = closure.settle(&self.x, &mut self.xi, &given);
-        settled.map_err(|open| violated(constraints, open, closure.any_speed(&given)))
+            ),
+        };
+        Err(Diagnostic::new(row.span, message).help(help))
+    }
+
+    /// Whether coordinates are guessed.
+    pub fn guesses_coordinates(&self) -> bool {
+        self.guessed_x.iter().any(Option::is_some)
     }
 
     fn read(
@@ -157,10 +178,25 @@ impl Start {
             return evaluator.miss();
         }
         let numbers = numbers(&mut evaluator, &value, name, expr.span, symbols)?;
-        let (into, given, guessed) = if of_x {
-            (&mut self.x, &mut self.given_x, &mut self.guessed_x)
+        let graph = &*evaluator.graph;
+        let places = range.clone().zip(value.entries());
+        let varying: Vec<(usize, Edge)> = places
+            .filter(|(_, edge)| graph.class(edge.node()) != 0)
+            .collect();
+        let (into, given, guessed, formulas) = if of_x {
+            (
+                &mut self.x,
+                &mut self.given_x,
+                &mut self.guessed_x,
+                &mut self.formulas_x,
+            )
         } else {
-            (&mut self.xi, &mut self.given_xi, &mut self.guessed_xi)
+            (
+                &mut self.xi,
+                &mut self.given_xi,
+                &mut self.guessed_xi,
+                &mut self.formulas_xi,
+            )
         };
         let first = |list: &[Option<Span>]| list[range.clone()].iter().flatten().next().copied();
         if let Some((span, exact)) = first(given)
@@ -186,6 +222,7 @@ impl Start {
             return evaluator.error(error.note(span, "first given here"));
         }
         let known = if guess { guessed } else { given };
+        formulas.extend(varying);
         known[range.clone()].fill(Some(target.span()));
         into[range].copy_from_slice(&numbers);
         Some(())
