@@ -76,7 +76,7 @@ fn coordinates_that_constraints_give_are_solved_for() {
     assert!(!output.status.success());
 }
 
-/// `check` says what a velocity follows from, and a state that gives it is told the same.
+/// `check` says what a velocity follows from.
 #[test]
 fn velocities_that_follow_are_shown_with_their_line() {
     let sleigh = include_str!("../../tests/models/sleigh_choice.eom");

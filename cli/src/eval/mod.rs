@@ -30,9 +30,11 @@ const MOST_SHOWN: usize = 64;
 /// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…},
 /// "state": {…}, "input": {…}}.
 /// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
-/// Velocities of joints are known by the joint's name, too. What the file does not give is completed as
-/// the start of a description is: loops are closed and constraints kept by the coordinates and velocities
-/// that are left out, and a state that contradicts them is refused.
+/// Velocities of joints are known by the joint's name, too. A state is what the start of the description
+/// would be with its numbers in the text: they and the other exact starts are kept, what is prescribed
+/// follows, loops are closed and constraints kept by the rest. Where the numbers contradict exact starts of
+/// the text, those give way that the loops and constraints tie to them, to the nearest values; a state that
+/// contradicts loops or constraints by itself is refused.
 /// Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk.
 ///
 /// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3, "root_joint": {"position": […],

@@ -8,6 +8,7 @@
 
 mod complete;
 pub mod file;
+mod given;
 pub mod joints;
 mod read;
 pub mod sample;
@@ -15,6 +16,7 @@ pub mod solved;
 pub mod strict;
 #[cfg(test)]
 mod tests;
+mod ties;
 mod values;
 mod written;
 
@@ -69,10 +71,10 @@ impl State {
         text: &str,
         json: &Value,
     ) -> Result<Self, Vec<String>> {
-        let mut state = self;
+        let mut state = self.clone();
         let mut reader = Reader::new(generated, text);
-        reader.state(json, &generated.active, &mut state);
-        reader.finish(generated, &mut state)?;
+        reader.state(json, generated, &mut state);
+        reader.finish(generated, &mut state, &self)?;
         Ok(state)
     }
 

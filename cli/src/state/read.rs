@@ -1,9 +1,9 @@
 //! JSON values to numbers, with the path of every mistake.
 
+use super::given::{Given, joints, velocities};
 use super::solved::solved;
 use super::values::State;
 use hamel_codegen::generate::Generated;
-use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::suggest::closest;
 use serde_json::{Map, Value};
@@ -16,10 +16,8 @@ const SYMMETRY: f64 = 1e-12;
 pub struct Reader {
     /// One line each, its path first.
     errors: Vec<String>,
-    /// Entries of x that were given.
-    given_x: Vec<bool>,
-    /// Entries of ξ that were given.
-    given_xi: Vec<bool>,
+    /// What was given.
+    given: Given,
     /// Velocities that no state has, with the reason.
     solved: Vec<(String, String)>,
 }
@@ -27,19 +25,22 @@ pub struct Reader {
 impl Reader {
     /// Nothing was given yet; `text` is that of the description.
     pub fn new(generated: &Generated, text: &str) -> Self {
-        let model = &generated.active;
         Reader {
             errors: Vec::new(),
-            given_x: vec![false; model.nu()],
-            given_xi: vec![false; model.n()],
+            given: Given::nothing(generated),
             solved: solved(generated, text),
         }
     }
 
-    /// Completes the state that was read, or hands out all mistakes.
-    pub fn finish(self, generated: &Generated, state: &mut State) -> Result<(), Vec<String>> {
+    /// Completes the state that was read by changes of another one, or hands out all mistakes.
+    pub fn finish(
+        self,
+        generated: &Generated,
+        state: &mut State,
+        from: &State,
+    ) -> Result<(), Vec<String>> {
         match self.errors.is_empty() {
-            true => state.complete(generated, &self.given_x, &self.given_xi),
+            true => state.complete(generated, &self.given, from),
             false => Err(self.errors),
         }
     }
@@ -47,27 +48,30 @@ impl Reader {
     /// Entries of x from a place on.
     pub(super) fn put_x(&mut self, x: &mut [f64], offset: usize, values: &[f64]) {
         put(x, offset, values);
-        self.given_x[offset..offset + values.len()].fill(true);
+        self.given.x[offset..offset + values.len()].fill(true);
     }
 
-    /// Entries of ξ from a place on.
-    pub(super) fn put_xi(&mut self, xi: &mut [f64], offset: usize, values: &[f64]) {
-        put(xi, offset, values);
-        self.given_xi[offset..offset + values.len()].fill(true);
+    /// Entries of ξ of the full frame from a place on.
+    pub(super) fn put_xi(&mut self, offset: usize, values: &[f64]) {
+        let places = self.given.xi.iter_mut().skip(offset);
+        places
+            .zip(values)
+            .for_each(|(place, value)| *place = Some(*value));
     }
 
     /// A whole file.
-    pub fn state(&mut self, json: &Value, model: &Model, state: &mut State) {
+    pub fn state(&mut self, json: &Value, generated: &Generated, state: &mut State) {
+        let model = &generated.active;
         let Value::Object(parts) = json else {
             let expected =
                 "{\"param\": …, \"coord\": …, \"velocity\": …, \"state\": …, \"input\": …}";
             return self.error("", format!("{expected} expected, {} found", kind(json)));
         };
         self.known("", parts, &["param", "coord", "velocity", "state", "input"]);
-        let states = model.states_behind();
+        let (states, velocities) = (model.states_behind(), velocities(generated));
         let groups = [
             ("param", &model.params),
-            ("velocity", &model.velocities),
+            ("velocity", &velocities),
             ("state", &states),
             ("input", &model.inputs),
         ];
@@ -75,11 +79,11 @@ impl Reader {
             let numbers = match part {
                 "param" => &mut state.params,
                 "input" => &mut state.u,
-                // ξ, and the states behind it.
+                // The states behind ξ.
                 _ => &mut state.xi,
             };
             let joints = if part == "velocity" {
-                joints(model)
+                joints(&generated.model)
             } else {
                 Vec::new()
             };
@@ -98,7 +102,7 @@ impl Reader {
                     places => self.vector(&at, value, places.len()),
                 };
                 for (&place, value) in places.iter().zip(values.unwrap_or_default()) {
-                    self.put_xi(numbers, place, &[value]);
+                    self.put_xi(place, &[value]);
                 }
             }
             for group in groups {
@@ -106,12 +110,17 @@ impl Reader {
                 if let Some(value) = given.get(&group.name)
                     && let Some(values) = self.shape(&at, value, group.shape)
                 {
+                    let places = group.offset..group.offset + group.len;
                     if part != "velocity" {
                         put(numbers, group.offset, &values);
-                    } else if self.given_xi[group.offset] {
-                        self.error(&at, "given twice, by the name of its joint, too".into());
+                        if part == "state" {
+                            let behind = group.offset - model.n();
+                            self.given.z[behind..behind + group.len].fill(true);
+                        }
+                    } else if self.given.xi[places].iter().any(Option::is_some) {
+                        self.error(&at, "given twice, by another of its names, too".into());
                     } else {
-                        self.put_xi(numbers, group.offset, &values);
+                        self.put_xi(group.offset, &values);
                     }
                 }
             }
@@ -334,21 +343,4 @@ pub(super) fn kind(value: &Value) -> &'static str {
         Value::Array(_) => "a list",
         Value::Object(_) => "an object",
     }
-}
-
-/// The joints, with the places of their velocities in ξ.
-fn joints(model: &Model) -> Vec<(&str, Vec<usize>)> {
-    let places = |names: &[String]| -> Vec<usize> {
-        let groups = names.iter().filter_map(|name| {
-            let mut groups = model.velocities.iter();
-            groups.find(|group| group.name == *name)
-        });
-        groups
-            .flat_map(|group| group.offset..group.offset + group.len)
-            .collect()
-    };
-    let all = model.joints.iter();
-    all.map(|joint| (joint.name.as_str(), places(&joint.velocities)))
-        .filter(|(_, places)| !places.is_empty())
-        .collect()
 }

@@ -54,16 +54,26 @@ impl Sample {
     ) -> Result<Self, Vec<String>> {
         let model = &generated.active;
         let mut sample = Sample {
-            state: start,
+            state: start.clone(),
             joints: joints(model, names),
             force: None,
         };
         let mut reader = Reader::new(generated, text);
         match json {
-            Value::Object(parts) => reader.sample(parts, order, model, &mut sample),
+            Value::Object(parts) => {
+                let all = joints(&generated.model, names);
+                let clock = generated.model.clock.map(|clock| clock.xi);
+                let moving = all.into_iter().filter(|j| clock != Some(j.velocities.0));
+                reader.sample(
+                    (parts, order),
+                    &moving.collect::<Vec<_>>(),
+                    model,
+                    &mut sample,
+                );
+            }
             other => reader.error("", format!("an object expected, {} found", kind(other))),
         }
-        reader.finish(generated, &mut sample.state)?;
+        reader.finish(generated, &mut sample.state, &start)?;
         Ok(sample)
     }
 }
@@ -71,8 +81,8 @@ impl Sample {
 impl Reader {
     fn sample(
         &mut self,
-        parts: &Map<String, Value>,
-        order: Option<&Value>,
+        (parts, order): (&Map<String, Value>, Option<&Value>),
+        all: &[Joint],
         model: &Model,
         sample: &mut Sample,
     ) {
@@ -83,26 +93,28 @@ impl Reader {
             .chain([ORDER])
             .collect();
         self.known("", parts, &known);
-        let joints = sample.joints.clone();
-        let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
-        let State { x, xi, .. } = &mut sample.state;
+        let names: Vec<&str> = all.iter().map(|joint| joint.name.as_str()).collect();
+        let x = &mut sample.state.x;
         if let Some(given) = self.part(parts, "configuration", &names) {
-            for joint in &joints {
+            for joint in all {
                 if let Some(value) = given.get(&joint.name) {
                     self.configuration(&format!("configuration.{}", joint.name), value, joint, x);
                 }
             }
         }
         if let Some(given) = self.part(parts, "velocity", &names) {
-            for joint in &joints {
+            for joint in all {
                 if let Some(value) = given.get(&joint.name) {
                     let at = format!("velocity.{}", joint.name);
                     for (offset, values) in self.motion(&at, value, joint) {
-                        self.put_xi(xi, offset, &values);
+                        self.put_xi(offset, &values);
                     }
                 }
             }
         }
+        // A force is about the velocities that constraints leave.
+        let joints = sample.joints.clone();
+        let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
         let mut force = vec![0.0; model.n()];
         match parts.get("force") {
             None => return,

@@ -90,17 +90,35 @@ const SLEIGH: &str = "system Sleigh {
     kinetic (u^2 + v^2 + dot(w, w)) / 2;
 }";
 
+/// What constraints give may be given where it agrees with them, by its own name or those of entries that stay.
 #[test]
-fn velocities_that_follow_are_named_with_their_constraints() {
+fn velocities_that_follow_are_read_and_judged() {
     let generated = from_text(SLEIGH).expect("a sound description");
-    let text = r#"{"velocity": {"u": 1, "v": 0, "w": [0, 0, 2], "z": 1}}"#;
     let read = |text: &str| State::of(&generated, SLEIGH, &strict::parse(text).expect("JSON"));
-    let errors = read(text).expect_err("mistakes");
-    let expected = [
-        "velocity.v: follows from the constraint on line 10, `inactive v`; leave it out",
-        "velocity.w: follows in part from the constraint on line 10, `inactive w[1]` and the constraint on line 10, `inactive w[2]`; give w_3",
-        "velocity.z: unknown name; known are u, w_3",
-    ];
-    assert_eq!(errors, expected);
-    read(r#"{"velocity": {"u": 1, "w_3": 2}}"#).expect("a sound state");
+    for text in [
+        r#"{"velocity": {"u": 1, "v": 0, "w": [0, 0, 2]}}"#,
+        r#"{"velocity": {"u": 1, "w_3": 2}}"#,
+    ] {
+        assert_eq!(read(text).expect("a sound state").xi, [1.0, 2.0], "{text}");
+    }
+    for (text, expected) in [
+        (
+            r#"{"velocity": {"v": 1}}"#,
+            "velocity: violates `inactive v` by 1.00e0, and no change of velocities that are not given keeps it",
+        ),
+        (
+            r#"{"velocity": {"w": [0, 3, 2]}}"#,
+            "velocity: violates `inactive w[2]` by 3.00e0, and no change of velocities that are not given keeps it",
+        ),
+        (
+            r#"{"velocity": {"w": [0, 0, 2], "w_3": 2}}"#,
+            "velocity.w_3: given twice, by another of its names, too",
+        ),
+        (
+            r#"{"velocity": {"z": 1}}"#,
+            "velocity.z: unknown name; known are u, v, w, w_3",
+        ),
+    ] {
+        assert_eq!(read(text).expect_err("a mistake"), [expected]);
+    }
 }
