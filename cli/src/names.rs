@@ -5,6 +5,11 @@ use hamel_codegen::model::{Group, Model};
 use hamel_codegen::program::Shape;
 use hamel_codegen::syntax::ast::ShapeKind;
 
+/// The name of the time.
+pub const TIME: &str = "t";
+/// What is added to it where it is taken.
+const OF_RUN: &str = "_run";
+
 /// Names of the entries of x.
 pub fn coordinates(model: &Model) -> Vec<String> {
     model
@@ -23,6 +28,40 @@ pub fn velocities(model: &Model) -> Vec<String> {
 pub fn moving(model: &Model) -> Vec<String> {
     let groups = model.velocities.iter().chain(&model.states);
     groups.flat_map(group).collect()
+}
+
+/// The time of runs among what is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Time {
+    /// Its name, which nothing else has.
+    pub name: String,
+    /// Its place in x, where it is that of the description; else it counts from the start of the run.
+    pub place: Option<usize>,
+}
+
+impl Time {
+    /// What a run of a model calls time beside these names: `t`. It is the description's where that declares `time t;`, and
+    /// has another name where something else is called so.
+    pub fn of(model: &Model, taken: &[&[String]]) -> Self {
+        let mut name = TIME.to_string();
+        let own = model.clock.map(|clock| clock.x);
+        let place = own.filter(|&place| coordinates(model)[place] == name);
+        if place.is_none() {
+            let is_taken = |name: &String| taken.iter().any(|list| list.contains(name));
+            while is_taken(&name) {
+                name.push_str(OF_RUN);
+            }
+        }
+        Time { name, place }
+    }
+
+    /// The time at which a description has this x and a run has come to t.
+    pub fn at(&self, t: f64, x: &[f64]) -> f64 {
+        self.place
+            .and_then(|place| x.get(place))
+            .copied()
+            .unwrap_or(t)
+    }
 }
 
 /// Names of the entries of a group of symbols.

@@ -460,3 +460,36 @@ fn poses_are_varied_on_their_group() {
         assert!(said.contains(message), "{said}");
     }
 }
+
+/// A cart that is moved, with a pendulum: what is varied moves the one, and the other begins where the text says.
+#[test]
+fn members_begin_where_free_coordinates_are_given() {
+    let cart = "system CartP {
+        param A = 0.3;
+        time t;
+        joint x: prismatic [1, 0, 0] moves cart;
+        joint q: revolute [0, -1, 0] on cart moves rod;
+        body on cart { mass 1; }
+        particle mass 1 at [0, 0, -0.5] on rod;
+        gravity [0, 0, -9.81];
+        prescribe x = A * cos(2 * t) + 0.1 * sin(t);
+        start q = 0.3, t = 0.25;
+    }";
+    let vary = [
+        "--vary",
+        "A = grid(0.3, 1, 3)",
+        "--keep",
+        "at(0, q); at(0, x); end",
+    ];
+    let table = swept("began", cart, &[&vary[..], &["--until", "0.5"]].concat());
+    for (row, a) in [0.3, 0.65, 1.0].into_iter().enumerate() {
+        let x = a * 0.5_f64.cos() + 0.1 * 0.25_f64.sin();
+        let near = |name: &str, wanted: f64| {
+            let found = table.column(name)[row];
+            assert!((found - wanted).abs() < 1e-12, "{name}: {found} {wanted}");
+        };
+        near("at(0, q)", 0.3);
+        near("at(0, x)", x);
+        near("end t", 0.75);
+    }
+}

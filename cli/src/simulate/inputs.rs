@@ -20,7 +20,8 @@ use std::sync::Arc;
 #[derive(Args, Clone, Debug, Default)]
 pub struct Asked {
     /// Inputs over time: a column `t` and columns with names of inputs, as in `t,F,tau[2]`; between two rows on a
-    /// straight line. Inputs without a column keep their values.
+    /// straight line. Inputs without a column keep their values. Where the description declares a time, `t` is that
+    /// time, as in --input.
     #[arg(long, value_name = "F.csv")]
     pub inputs: Option<PathBuf>,
     /// Values of --inputs hold until the next row, and behind the last.
@@ -37,6 +38,10 @@ pub struct Inputs {
     table: Option<Table>,
     expressions: Option<Expressions>,
     law: Option<Law>,
+    /// The place in x of the time that the description declares.
+    clock: Option<usize>,
+    /// The description's time at the start of a run.
+    begin: f64,
 }
 
 /// A function of t, x and ξ that sets entries of u: a controller of another program.
@@ -58,6 +63,8 @@ impl From<Law> for Inputs {
             table: None,
             expressions: None,
             law: Some(law),
+            clock: None,
+            begin: 0.0,
         }
     }
 }
@@ -86,13 +93,20 @@ impl Inputs {
                 )));
             }
         }
-        Ok(
-            (table.is_some() || expressions.is_some()).then_some(Inputs {
-                table,
-                expressions,
-                law: None,
-            }),
-        )
+        if table.is_none() && expressions.is_none() {
+            return Ok(None);
+        }
+        let inputs = Inputs {
+            table,
+            expressions,
+            law: None,
+            clock: model.clock.map(|clock| clock.x),
+            begin: 0.0,
+        };
+        inputs.started(state).map(Some).map_err(|why| {
+            let path = asked.inputs.as_deref().unwrap_or(Path::new(""));
+            Failure::usage(format!("{}: {why}", path.display()))
+        })
     }
 
     /// Times at which inputs jump.
@@ -100,12 +114,16 @@ impl Inputs {
         self.table.as_ref().map_or(&[], Table::jumps)
     }
 
-    /// The same with other values of the parameters.
-    pub fn with_params(mut self, params: &[f64]) -> Self {
+    /// The same for a run from another state; why there is none.
+    pub fn started(mut self, state: &State) -> Result<Self, String> {
+        self.begin = begin(self.clock, state);
         if let Some(expressions) = &mut self.expressions {
-            expressions.set_params(params);
+            expressions.set_params(&state.params);
         }
-        self
+        if let Some(table) = self.table {
+            self.table = Some(table.from(self.begin)?);
+        }
+        Ok(self)
     }
 
     /// Whether an entry of u has a column or an expression.
@@ -117,13 +135,13 @@ impl Inputs {
                 .any(|known| known == place)
     }
 
-    /// Sets the entries of u that change; the others keep their values.
+    /// Sets the entries of u that change, where a run has come to t; the others keep their values.
     pub fn set(&self, t: f64, x: &[f64], xi: &[f64], u: &mut [f64]) {
         if let Some(table) = &self.table {
             table.set(t, u);
         }
         if let Some(expressions) = &self.expressions {
-            expressions.set(t, x, xi, u);
+            expressions.set(self.begin + t, x, xi, u);
         }
         if let Some(Law(law)) = &self.law {
             law(t, x, xi, u);
@@ -140,9 +158,23 @@ pub fn constant(
     expressions::constant(expression, &generated.active, params)
 }
 
-/// The times of samples, from the column `t` of a file.
-pub fn times(path: &Path, until: f64) -> Result<Vec<f64>, Failure> {
-    file::times(path, until)
+/// The times of samples of a run from a state, from the column `t` of a file.
+pub fn times(
+    path: &Path,
+    until: f64,
+    generated: &Generated,
+    state: &State,
+) -> Result<Vec<f64>, Failure> {
+    let clock = generated.active.clock.map(|clock| clock.x);
+    file::times(path, begin(clock, state), until)
+}
+
+/// The description's time at a state; 0 where it declares none.
+fn begin(clock: Option<usize>, state: &State) -> f64 {
+    clock
+        .and_then(|place| state.x.get(place))
+        .copied()
+        .unwrap_or(0.0)
 }
 
 /// The place of an entry of the inputs, as it is written or plainly; why there is none.

@@ -59,7 +59,8 @@ pub struct Arguments {
     /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// Samples as .csv or .json, or a plot as .svg.
+    /// Samples as .csv or .json, or a plot as .svg. Every name stands there once: `t` is the time of a description that
+    /// declares `time t;`, and else counts from the start of the run; it is `t_run` where another thing is called `t`.
     #[arg(long, value_name = "F")]
     out: Option<PathBuf>,
     /// Print γ, M and Γ before the run.
@@ -69,7 +70,8 @@ pub struct Arguments {
     /// samples.
     #[arg(long, value_name = "N", value_parser = every, allow_negative_numbers = true)]
     every: Option<Every>,
-    /// Samples at the times in the column `t` of this file, and nowhere else.
+    /// Samples at the times in the column `t` of this file, and nowhere else; where the description declares a time,
+    /// at these times of it.
     #[arg(long, value_name = "F.csv", conflicts_with = "every")]
     times: Option<PathBuf>,
     #[command(flatten)]
@@ -98,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .stepping
         .plan(&generated, &system, arguments.every)?;
     if let Some(path) = &arguments.times {
-        plan.spacing = Spacing::Times(inputs::times(path, until)?);
+        plan.spacing = Spacing::Times(inputs::times(path, until, &generated, &state)?);
     }
     let run = Run::new(&generated, &system, plan)?;
 

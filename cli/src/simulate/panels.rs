@@ -56,6 +56,10 @@ impl Run<'_> {
         };
         for coordinate in &self.program.coordinates {
             let (name, at) = (coordinate.name.as_str(), coordinate.offset);
+            // It is what everything is drawn over.
+            if self.time.place == Some(at) {
+                continue;
+            }
             match coordinate.kind {
                 CoordKind::Real => numbers.lines.push(self.line(name, |sample| sample.x[at])),
                 CoordKind::S1 => {

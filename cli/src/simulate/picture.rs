@@ -11,7 +11,8 @@ use hamel_report::plot::{Panel, Path, Picture};
 impl Run<'_> {
     /// What a plot shows: coordinates, velocities, outputs, what is conserved, and how a body turns.
     pub fn picture(&self, system: &Instance) -> Picture {
-        let time: Vec<f64> = self.track.iter().map(|sample| sample.t).collect();
+        let time = self.track.iter();
+        let time: Vec<f64> = time.map(|s| self.time.at(s.t, &s.x)).collect();
         let path = self.attitude();
         let mut panels = self.panels(system, path.is_some());
         panels.push(self.drift());

@@ -8,7 +8,7 @@ use super::recorder::{Recorded, Recorder};
 use super::sample::Sample;
 use crate::failure::Failure;
 use crate::mechanism::{Instance, Output};
-use crate::names;
+use crate::names::{self, Time};
 use crate::number::short;
 use hamel::{Monitor, State, StepError};
 use hamel_codegen::generate::Generated;
@@ -19,6 +19,7 @@ use std::cell::Cell;
 pub struct Run<'a> {
     pub program: &'a Program,
     pub plan: Plan,
+    pub time: Time,
     pub coordinate_names: Vec<String>,
     pub velocity_names: Vec<String>,
     pub output_names: Vec<String>,
@@ -85,12 +86,17 @@ impl<'a> Run<'a> {
                 .flat_map(|output| names::shaped(&output.name, output.shape))
                 .collect()
         };
+        let coordinate_names = names::coordinates(&generated.model);
+        let velocity_names = names::moving(&generated.active);
+        let output_names = entries(system.outputs());
+        let taken = [&coordinate_names[..], &velocity_names, &output_names];
         Ok(Run {
             program: &generated.program,
             plan,
-            coordinate_names: names::coordinates(&generated.model),
-            velocity_names: names::moving(&generated.active),
-            output_names: entries(system.outputs()),
+            time: Time::of(&generated.model, &taken),
+            coordinate_names,
+            velocity_names,
+            output_names,
             invariant_names: entries(system.invariants()),
             samples,
             track,

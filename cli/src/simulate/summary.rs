@@ -16,8 +16,8 @@ const KEPT: f64 = 1e-6;
 /// About twenty rows of t and velocities.
 pub fn table(run: &Run) -> String {
     let shown = run.velocity_names.len().min(COLUMNS);
-    let header =
-        std::iter::once("t".to_string()).chain(run.velocity_names.iter().take(shown).cloned());
+    let header = std::iter::once(run.time.name.clone())
+        .chain(run.velocity_names.iter().take(shown).cloned());
     let mut rows: Vec<Vec<String>> = vec![header.collect()];
     let last = run.samples.len().saturating_sub(1);
     let stride = last.div_ceil(ROWS).max(1);
@@ -25,7 +25,8 @@ pub fn table(run: &Run) -> String {
     indices.push(last);
     for index in indices {
         let sample = &run.samples[index];
-        let values = std::iter::once(sample.t).chain(sample.xi.iter().take(shown).copied());
+        let values = std::iter::once(run.time.at(sample.t, &sample.x))
+            .chain(sample.xi.iter().take(shown).copied());
         rows.push(values.map(short).collect());
     }
     let mut text = aligned(&rows, "");
@@ -75,7 +76,8 @@ pub fn text(run: &Run, default_step: bool) -> String {
     if let Some(reason) = chosen.reason {
         text.push_str(&format!("{method} was chosen: {reason}\n"));
     }
-    text.push_str(&format!("\n\x1b[1mt = {}\x1b[0m\n", short(last.t)));
+    let time = short(run.time.at(last.t, &last.x));
+    text.push_str(&format!("\n\x1b[1m{} = {time}\x1b[0m\n", run.time.name));
     text.push_str(&state(run, last));
     text.push_str(&invariants(run, first, last));
     text
@@ -85,6 +87,9 @@ pub fn text(run: &Run, default_step: bool) -> String {
 fn state(run: &Run, last: &Sample) -> String {
     let mut groups: Vec<(String, Vec<&[f64]>)> = Vec::new();
     for coordinate in &run.program.coordinates {
+        if run.time.place == Some(coordinate.offset) {
+            continue;
+        }
         let at = &last.x[coordinate.offset..];
         let name = coordinate.name.clone();
         match coordinate.kind {

@@ -1,6 +1,7 @@
 //! Samples as files.
 
 use super::record::Run;
+use super::sample::Sample;
 use crate::failure::Failure;
 use crate::json::Json;
 use crate::number::exact;
@@ -35,15 +36,27 @@ impl Format {
     }
 }
 
-/// Names of the columns after t.
+/// Names of the columns.
 fn columns<'a>(run: &'a Run) -> impl Iterator<Item = &'a String> {
-    run.coordinate_names
-        .iter()
+    let coordinates = run.coordinate_names.iter().enumerate();
+    let coordinates = coordinates.filter(|(place, _)| run.time.place != Some(*place));
+    std::iter::once(&run.time.name)
+        .chain(coordinates.map(|(_, name)| name))
         .chain(&run.velocity_names)
         .chain(&run.output_names)
 }
 
-/// A header and one row a sample: t, coordinates, velocities, outputs.
+/// What stands in them.
+fn values<'a>(run: &'a Run, sample: &'a Sample) -> impl Iterator<Item = f64> {
+    let coordinates = sample.x.iter().enumerate();
+    let coordinates = coordinates.filter(|(place, _)| run.time.place != Some(*place));
+    std::iter::once(run.time.at(sample.t, &sample.x))
+        .chain(coordinates.map(|(_, value)| *value))
+        .chain(sample.xi.iter().copied())
+        .chain(sample.outputs.iter().copied())
+}
+
+/// A header and one row a sample: time, coordinates, velocities, outputs.
 pub fn csv(run: &Run) -> String {
     let names: Vec<String> = columns(run)
         .map(|name| {
@@ -54,13 +67,10 @@ pub fn csv(run: &Run) -> String {
             }
         })
         .collect();
-    let mut text = format!("t,{}\n", names.join(","));
+    let mut text = names.join(",") + "\n";
     for sample in &run.samples {
-        text.push_str(&exact(sample.t));
-        for &value in sample.x.iter().chain(&sample.xi).chain(&sample.outputs) {
-            text.push(',');
-            text.push_str(&exact(value));
-        }
+        let row: Vec<String> = values(run, sample).map(exact).collect();
+        text.push_str(&row.join(","));
         text.push('\n');
     }
     text
@@ -72,12 +82,8 @@ pub fn json(run: &Run) -> String {
         .samples
         .iter()
         .map(|sample| {
-            let values = sample.x.iter().chain(&sample.xi).chain(&sample.outputs);
-            let members = columns(run)
-                .map(String::as_str)
-                .zip(values.map(|&value| Json::Number(value)));
-            let time = std::iter::once(("t", Json::Number(sample.t)));
-            Json::object(time.chain(members)).line()
+            let values = values(run, sample).map(Json::Number);
+            Json::object(columns(run).map(String::as_str).zip(values)).line()
         })
         .collect();
     format!("[\n{}\n]\n", rows.join(",\n"))

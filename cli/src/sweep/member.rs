@@ -205,8 +205,12 @@ impl Family {
             })?;
         let system = Instance::of(&self.mechanism, &state);
         let system = system.map_err(|failure| of_start(&failure))?;
-        let given = self.given.clone();
-        let system = system.with(given.map(|given| given.with_params(&state.params)));
+        let given = self.given.clone().map(|given| given.started(&state));
+        let given = given.transpose().map_err(|why| Early {
+            kind: "start",
+            why: format!("--inputs: {why}"),
+        })?;
+        let system = system.with(given);
         let singular = |failure: Failure| Early {
             kind: "singular",
             why: said(&failure),

@@ -150,14 +150,16 @@ const LONG: &str = "\
   input F = grid(0, 10, 11)                      11 numbers from 0 to 10; several grids make all combinations
   start R = normal(0, 0.1)                       a rotation, by the vector of a turn from its start, about axes of the
                                                  body (rad); of a pose X so X.R, and its position as X.p
-A single number stands for all entries. Arguments may be expressions of parameters that are not varied. Coordinates and
-velocities that are not varied follow where loops and other constraints ask for it.
+A single number stands for all entries. Arguments may be expressions of parameters that are not varied. A member
+begins where the description would with its numbers in the text: coordinates and velocities that are not varied follow
+where prescribed motion, loops and other constraints ask for it, and else stay.
 
 --keep takes items, `;` between them:
-  end                      the time at which the run ended, coordinates and velocities
+  end                      the time at which the run ended, coordinates and velocities; where the description declares
+                           `time t;` its `t` is that time, and else it counts from the start of the run
   max(EXPR), min(EXPR)     the extreme values of an expression, over the ends of steps
   mean(EXPR)               its mean over the time, by trapezia between these
-  at(TIME, EXPR)           its value at a time
+  at(TIME, EXPR)           its value at a time from the start of the run
   event(A < B)             the first time at which a comparison begins to hold, empty where it never does; one that
                            holds at the start begins to hold where it has not held in between
 Expressions are those of the description, over its parameters, coordinates, velocities, inputs and outputs.

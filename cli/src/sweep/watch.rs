@@ -4,15 +4,12 @@ use super::keep::{Item, Kept, Of};
 use crate::added;
 use crate::mechanism::{Instance, Output};
 use crate::method::Stepper;
-use crate::names;
+use crate::names::{self, Time};
 use crate::simulate::advance::{Observer, Place};
 use crate::simulate::events;
 use hamel::State;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
-
-/// The name of the time at which a member ended.
-const TIME: &str = "t";
 
 /// What is made of one item, without the texts that it was read from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,8 +38,9 @@ impl Keeping {
                     let coordinates = names::coordinates(&generated.model);
                     let moving = names::moving(&generated.active);
                     let all: Vec<String> = coordinates.into_iter().chain(moving).collect();
-                    timed = !all.iter().any(|name| name == TIME);
-                    let time = timed.then(|| TIME.to_string());
+                    let time = Time::of(&generated.model, &[&all]);
+                    timed = time.place.is_none();
+                    let time = timed.then_some(time.name);
                     let all = time.into_iter().chain(all);
                     columns.extend(all.map(|name| format!("end {name}")));
                     items.push((Kind::End, name));

@@ -4,7 +4,7 @@
 
 use super::place;
 use crate::failure::Failure;
-use crate::names;
+use crate::names::{self, TIME};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::model::layout::entry_names;
@@ -12,9 +12,6 @@ use hamel_codegen::model::{Group, Model};
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::path::plain;
-
-/// The name of the time, where the description has no other use for it.
-const TIME: &str = "t";
 
 /// The names that the description has beside those of the user, as messages list them.
 const OWN: &str = "`hamel_v`, `hamel_x`, ";
@@ -25,7 +22,7 @@ pub struct Expressions {
     /// Each with the entries of u that it is.
     all: Vec<(Vec<usize>, Interpreter)>,
     params: Vec<f64>,
-    /// Whether the time stands first among what they take.
+    /// Whether the time stands first among what they take: where the description has no other use for its name.
     timed: bool,
 }
 
@@ -90,7 +87,7 @@ impl Expressions {
         self.params = params.to_vec();
     }
 
-    /// Sets the entries of u that expressions give.
+    /// Sets the entries of u that expressions give, at a time of the description.
     pub fn set(&self, t: f64, x: &[f64], xi: &[f64], u: &mut [f64]) {
         let time = self.timed.then_some(t).into_iter();
         let rest = self.params.iter().chain(x).chain(xi).copied();

@@ -2,23 +2,26 @@
 
 use super::place;
 use crate::failure::Failure;
+use crate::names::TIME;
 use crate::number::short;
 use std::path::Path;
-
-/// The name of the column of times.
-const TIME: &str = "t";
 
 /// Inputs over time.
 #[derive(Clone, Debug)]
 pub struct Table {
+    /// Times as they stand in the file.
+    written: Vec<f64>,
+    /// The same from the start of a run on.
     times: Vec<f64>,
     /// Entries of u with their values at the times.
     columns: Vec<(usize, Vec<f64>)>,
     hold: bool,
+    /// How long runs are.
+    until: f64,
 }
 
 impl Table {
-    /// Reads a file, which has to cover the run.
+    /// Reads a file for runs of this length.
     pub fn read(path: &Path, entries: &[String], hold: bool, until: f64) -> Result<Self, Failure> {
         let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display()));
         let (names, rows) = rows(path).map_err(wrong)?;
@@ -40,21 +43,30 @@ impl Table {
                 "no column of an input beside `{TIME}`: {all}"
             )));
         }
-        if let (Some(&first), Some(&last)) = (times.first(), times.last())
-            && (first > 0.0 || last < until && !hold)
-        {
-            return Err(wrong(format!(
-                "its times reach from {} to {}, the run from 0 to {}: add rows, or shorten the run",
-                short(first),
-                short(last),
-                short(until)
-            )));
-        }
         Ok(Table {
+            written: times.clone(),
             times,
             columns,
             hold,
+            until,
         })
+    }
+
+    /// The same for a run that begins at a time of the description, which the file has to cover; why it does not.
+    pub fn from(mut self, begin: f64) -> Result<Self, String> {
+        self.times = self.written.iter().map(|time| time - begin).collect();
+        match (self.times.first(), self.times.last()) {
+            (Some(&first), Some(&last)) if first > 0.0 || last < self.until && !self.hold => {
+                Err(format!(
+                    "its times reach from {} to {}, the run from {} to {}: add rows, or shorten the run",
+                    short(first + begin),
+                    short(last + begin),
+                    short(begin),
+                    short(begin + self.until)
+                ))
+            }
+            _ => Ok(self),
+        }
     }
 
     /// Whether an entry of u has a column.
@@ -89,20 +101,22 @@ impl Table {
     }
 }
 
-/// Times of samples: those of the column `t`.
-pub fn times(path: &Path, until: f64) -> Result<Vec<f64>, Failure> {
+/// Times of samples from the start of a run on, which begins at a time of the description: those of the column `t`.
+pub fn times(path: &Path, begin: f64, until: f64) -> Result<Vec<f64>, Failure> {
     let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display()));
     let (names, rows) = rows(path).map_err(wrong)?;
     let times = increasing(&names, &rows).map_err(wrong)?;
+    let times: Vec<f64> = times.iter().map(|time| time - begin).collect();
     let outside = times
         .iter()
         .zip(&rows)
         .find(|(time, _)| !(0.0..=until).contains(*time));
     match outside {
         Some((time, (line, _))) => Err(wrong(format!(
-            "line {line}: t = {} is outside of the run, which is from 0 to {}",
-            short(*time),
-            short(until)
+            "line {line}: t = {} is outside of the run, which is from {} to {}",
+            short(*time + begin),
+            short(begin),
+            short(begin + until)
         ))),
         None => Ok(times),
     }
