@@ -47,7 +47,7 @@ fn columns<'a>(run: &'a Run) -> impl Iterator<Item = &'a String> {
 }
 
 /// What stands in them.
-fn values<'a>(run: &'a Run, sample: &'a Sample) -> impl Iterator<Item = f64> {
+fn values(run: &Run, sample: &Sample) -> impl Iterator<Item = f64> {
     let coordinates = sample.x.iter().enumerate();
     let coordinates = coordinates.filter(|(place, _)| run.time.place != Some(*place));
     std::iter::once(run.time.at(sample.t, &sample.x))
