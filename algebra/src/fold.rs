@@ -9,6 +9,7 @@ use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use rustc_hash::FxHashMap;
+use std::cmp::Reverse;
 
 impl Graph {
     /// √ of a rational square.
@@ -180,35 +181,62 @@ impl Graph {
         contents.remove(&edge.node()).unwrap_or(one)
     }
 
-    /// The argument of a function with a group law, as Σ coefficient · atom.
+    /// The argument of a function with a group law, as Σ coefficient · atom, in the order in which the atoms
+    /// stand in it.
     pub fn linear_form(&self, edge: Edge) -> Vec<(NodeId, BigRational)> {
-        let mut form = Vec::new();
-        let mut stack = vec![(edge, BigRational::one())];
-        while let Some((edge, scale)) = stack.pop() {
-            let scale = if edge.is_negative() { -scale } else { scale };
-            let node = edge.node();
-            match self.node(node) {
-                Node::Add(a, b) => {
-                    stack.push((b, scale.clone()));
-                    stack.push((a, scale));
-                }
-                Node::Mul(a, b) => match (self.as_rational(a), self.as_rational(b)) {
-                    (Some(factor), _) => stack.push((b, scale * factor)),
-                    (_, Some(factor)) => stack.push((a, scale * factor)),
-                    _ => collect(&mut form, node, scale),
-                },
-                Node::Constant(index) => collect(&mut form, 1, scale * self.constant(index)),
-                _ => collect(&mut form, node, scale),
+        let mut scales: FxHashMap<NodeId, BigRational> = FxHashMap::default();
+        let (mut sums, mut atoms) = (Vec::new(), Vec::new());
+        let mut stack = vec![edge.node()];
+        while let Some(id) = stack.pop() {
+            if scales.insert(id, BigRational::zero()).is_some() {
+                continue;
+            }
+            let parts = self.linear_parts(id);
+            stack.extend(parts.iter().rev().map(|(part, _)| part.node()));
+            match parts.is_empty() {
+                true => atoms.push(id),
+                false => sums.push((id, parts)),
             }
         }
-        form
+        let sign = if edge.is_negative() {
+            -BigRational::one()
+        } else {
+            BigRational::one()
+        };
+        scales.insert(edge.node(), sign);
+        // What a sum is multiplied by is known when all nodes above it have been visited: these were made later.
+        sums.sort_unstable_by_key(|(id, _)| Reverse(*id));
+        for (id, parts) in sums {
+            let scale = scales.remove(&id).unwrap_or_default();
+            for (part, factor) in parts {
+                let scale = if part.is_negative() {
+                    -&scale
+                } else {
+                    scale.clone()
+                };
+                *scales.entry(part.node()).or_default() += scale * factor;
+            }
+        }
+        let form = atoms.into_iter().map(|atom| {
+            let scale = scales.remove(&atom).unwrap_or_default();
+            (atom, scale)
+        });
+        form.filter(|(_, scale)| !scale.is_zero()).collect()
     }
-}
 
-fn collect(form: &mut Vec<(NodeId, BigRational)>, atom: NodeId, coefficient: BigRational) {
-    match form.iter_mut().find(|(known, _)| *known == atom) {
-        Some((_, sum)) => *sum += coefficient,
-        None => form.push((atom, coefficient)),
+    /// What a node is a linear combination of, with the factors; nothing where it is an atom.
+    fn linear_parts(&self, id: NodeId) -> Vec<(Edge, BigRational)> {
+        match self.node(id) {
+            Node::Add(a, b) => vec![(a, BigRational::one()), (b, BigRational::one())],
+            Node::Mul(a, b) => match (self.as_rational(a), self.as_rational(b)) {
+                (Some(factor), _) => vec![(b, factor)],
+                (_, Some(factor)) => vec![(a, factor)],
+                _ => Vec::new(),
+            },
+            Node::Constant(index) if id != self.one().node() => {
+                vec![(self.one(), self.constant(index).clone())]
+            }
+            _ => Vec::new(),
+        }
     }
-    form.retain(|(_, coefficient)| !coefficient.is_zero());
 }
