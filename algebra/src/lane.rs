@@ -378,7 +378,9 @@ fn split<const K: usize>(atom: Residue<K>, coefficient: &BigRational) -> (Residu
     let whole = parts
         .is_integer()
         .then(|| parts.to_integer().to_i64())
-        .flatten();
+        .flatten()
+        // Its negative is a number of the same kind, too.
+        .filter(|count| *count != i64::MIN);
     let (base, count, parts) = match whole {
         Some(count) => (atom, count, 1),
         None => (
