@@ -230,14 +230,15 @@ impl Interval {
     pub(super) fn exp(&self) -> Option<Self> {
         const HALVINGS: u32 = 12;
         let (x, radius) = self.middle()?;
-        if x.bits() > FRACTION + 10 {
+        if (x.abs() + &radius).bits() > FRACTION + 10 {
             return None;
         }
         let small = &x >> HALVINGS;
         let value = Self::series(power_of_two(FRACTION), |term, k| {
             ((term * &small) >> FRACTION) / (k + 1)
         });
-        let radius = (radius >> HALVINGS) + power_of_two(16);
+        // |x / 2^k| < 1/4 between the bounds, and the slope there is below e^(1/4) < 3/2.
+        let radius = ((&radius + (&radius >> 1u32)) >> HALVINGS) + power_of_two(16);
         let mut result = Interval::new(&value - &radius, value + radius, -(FRACTION as i64));
         for _ in 0..HALVINGS {
             result = result.times(&result);
@@ -414,5 +415,47 @@ mod tests {
             zero.apply(Function::Sqrt).map(|root| root.to_f64()),
             Some(0.0)
         );
+    }
+
+    /// Wide and narrow bounds hold eˣ at both of their ends, which is added up here in numbers of 3000 bits.
+    #[test]
+    fn exponentials_of_the_ends_are_between_the_bounds() {
+        const BITS: u64 = 3000;
+        // n / 2¹²; each of at most 6000 terms is cut twice.
+        let power = |n: i64| -> BigInt {
+            let (mut term, mut sum) = (power_of_two(BITS), BigInt::zero());
+            for k in 1..6000u32 {
+                sum += &term;
+                term = ((term * n.abs()) >> 12u32) / k;
+            }
+            match n < 0 {
+                true => power_of_two(2 * BITS) / sum,
+                false => sum,
+            }
+        };
+        let scaled = |bound: &BigInt, exponent: i64| -> BigRational {
+            let one = BigRational::from_integer(power_of_two(exponent.unsigned_abs()));
+            let bound = BigRational::from_integer(bound.clone());
+            if exponent < 0 {
+                bound / one
+            } else {
+                bound * one
+            }
+        };
+        for x in [-900, -30, 0, 1, 250, 900] {
+            for width in [0, 1, 64, 4096, 40 * 4096] {
+                let (lo, hi) = (x * 4096, x * 4096 + width);
+                let wide = Interval::new(lo.into(), hi.into(), -12);
+                let found = wide.exp().expect("of moderate size");
+                let slack = BigRational::new(1.into(), power_of_two(400));
+                let at = |n: i64| scaled(&power(n), -(BITS as i64));
+                let (least, most) = (at(lo), at(hi));
+                let low = scaled(&found.lo, found.exponent);
+                let high = scaled(&found.hi, found.exponent);
+                let one = BigRational::one();
+                assert!(low <= least * (&one + &slack), "{x}, {width}");
+                assert!(high >= most * (&one - &slack), "{x}, {width}");
+            }
+        }
     }
 }
