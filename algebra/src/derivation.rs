@@ -4,7 +4,7 @@
 //! d/dt along ẋ = A ξ, and derivatives by symbols that φ does not contain (ξ, inputs, parameters).
 
 use super::function::Slope;
-use super::graph::{Edge, Graph, Node, NodeId};
+use super::graph::{Edge, Graph, Node, NodeId, Power};
 use rustc_hash::FxHashMap;
 
 /// A derivation, given by what it does to symbols; it remembers what it has differentiated.
@@ -69,6 +69,9 @@ impl Derivation {
                 graph.add(da, db)
             }
             Node::Mul(a, b) => {
+                if let Some(derivative) = self.of_power(graph, id) {
+                    return derivative;
+                }
                 let (da, db) = (self.seen(graph, a), self.seen(graph, b));
                 let left = graph.mul(da, b);
                 let right = graph.mul(a, db);
@@ -153,5 +156,48 @@ impl Derivation {
                 graph.div(numerator, square).unwrap_or(zero)
             }
         }
+    }
+
+    /// (w a √s)′ = w′ a √s + 3/2 w a′ √s where a is s, or |a|, times a constant: nothing is divided by a root that
+    /// may be 0. `None` of other products.
+    fn of_power(&self, graph: &mut Graph, id: NodeId) -> Option<Edge> {
+        let power = graph.half_integer_power(id)?;
+        let Power {
+            rest,
+            base,
+            root,
+            constants,
+        } = power;
+        let all = || rest.iter().chain(&base).chain(&constants);
+        let is_known = |factor: &Edge| {
+            let number = graph.as_rational(*factor).is_some();
+            number || self.memo.contains_key(&factor.node())
+        };
+        if !all().all(is_known) {
+            return None;
+        }
+        let constant = |factor: &Edge| self.seen(graph, *factor) == graph.zero();
+        if !constants.iter().all(constant) {
+            return None;
+        }
+        let (rest, d_rest) = self.of_product(graph, &rest);
+        let (base, d_base) = self.of_product(graph, &base);
+        let with_root = graph.mul(base, root);
+        let left = graph.mul(d_rest, with_root);
+        let ratio = graph.ratio(3, 2);
+        let right = graph.mul(rest, d_base);
+        let right = graph.mul(right, root);
+        let right = graph.mul(ratio, right);
+        Some(graph.add(left, right))
+    }
+
+    /// A product and its derivative.
+    fn of_product(&self, graph: &mut Graph, factors: &[Edge]) -> (Edge, Edge) {
+        let start = (graph.one(), graph.zero());
+        factors.iter().fold(start, |(product, slope), &factor| {
+            let own = self.seen(graph, factor);
+            let (left, right) = (graph.mul(slope, factor), graph.mul(product, own));
+            (graph.mul(product, factor), graph.add(left, right))
+        })
     }
 }

@@ -9,8 +9,10 @@
 
 mod calls;
 mod merge;
+mod powers;
 mod side;
 pub(crate) use merge::canonical;
+pub(crate) use powers::Power;
 
 use super::external::External;
 use super::fp::Fp;

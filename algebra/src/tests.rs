@@ -369,3 +369,84 @@ fn polynomials_have_the_values_of_their_nodes() {
         );
     }
 }
+
+/// Sums of sums, each of which stands twice below the next: coefficients are those of Fibonacci, found at once.
+#[test]
+fn linear_forms_take_each_sum_once() {
+    let (mut g, [_, _, a, b, ..]) = graph();
+    let (mut last, mut next) = (a, b);
+    let (mut x, mut y) = ((1u128, 0u128), (0, 1));
+    for _ in 0..90 {
+        (last, next) = (next, g.add(next, last));
+        (x, y) = (y, (x.0 + y.0, x.1 + y.1));
+    }
+    let number = |n: u128| BigRational::from_integer(n.into());
+    let mut form = g.linear_form(next);
+    form.sort();
+    assert_eq!(form, [(a.node(), number(y.0)), (b.node(), number(y.1))]);
+    // What cancels is left out, numbers stand before 1.
+    let seven = g.ratio(7, 3);
+    let sum = g.sum(&[a, seven, b]);
+    let rest = g.sub(sum, a);
+    let mut form = g.linear_form(-rest);
+    form.sort();
+    let seven = BigRational::new(7.into(), 3.into());
+    assert_eq!(form, [(1, -seven), (b.node(), -number(1))]);
+}
+
+/// e^(c a) e^(−c a) = 1 where 12 c is −2⁶³, the smallest number of its kind.
+#[test]
+fn coefficients_at_the_end_of_the_whole_numbers() {
+    let (mut g, [_, _, a, ..]) = graph();
+    let least = BigRational::from_integer(i64::MIN.into()) / BigRational::from_integer(12.into());
+    let factor = g.rational(&least);
+    let argument = g.mul(factor, a);
+    let powers = [argument, -argument].map(|argument| g.apply(Function::Exp, argument));
+    assert_eq!(g.mul(powers[0], powers[1]), g.one());
+    let sine = g.apply(Function::Sin, argument);
+    assert_eq!(g.apply(Function::Sin, -argument), -sine);
+}
+
+/// (w a^p)′ = w′ a^p + p w a^(p−1) a′ for half-integer p, which has a value at a = 0 where p > 1.
+#[test]
+fn slopes_of_half_integer_powers_are_finite_at_zero() {
+    let (mut g, [k, ..]) = graph();
+    let mut random = Random::new(17);
+    let (of_a, of_b) = (random.element(), random.element());
+    // A square, so that it has roots.
+    let a = g.symbol("square", COORD, of_a * of_a);
+    let b = g.symbol("other", COORD, of_b);
+    let root = g.apply(Function::Sqrt, a);
+    let numbers = |a: f64| [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, a, -3.0];
+    for n in [3, 5, 7, 9] {
+        let p = f64::from(n) / 2.0;
+        let power = g.powi(root, n.into()).expect("no divisor");
+        let with = g.mul(b, power);
+        let factor = g.mul(k, with);
+        let first = Derivation::new([(a.node(), g.one())]).of(&mut g, factor);
+        let second = Derivation::new([(a.node(), g.one())]).of(&mut g, first);
+        let cross = Derivation::new([(b.node(), g.one())]).of(&mut g, first);
+        for at in [0.0, 0.25, 4.0] {
+            let found = evaluate(&g, &[first, second, cross], &numbers(at));
+            let slope = p * at.powf(p - 1.0);
+            let bend = p * (p - 1.0) * at.powf(p - 2.0);
+            let expected = [-6.0 * slope, -6.0 * bend, 2.0 * slope];
+            for (found, expected) in found.iter().zip(expected) {
+                let close = (found - expected).abs() <= 1e-12 * expected.abs();
+                assert!(close || expected.is_infinite(), "{n}/2 at {at}: {found}");
+            }
+        }
+    }
+    // √(−c) of a negative symbol, with its sign inside and outside.
+    let c = g.symbol("negative", COORD, -(of_b * of_b));
+    let root = g.apply(Function::Sqrt, -c);
+    for (base, sign) in [(c, 1.0), (-c, -1.0)] {
+        let power = g.mul(base, root);
+        let slope = Derivation::new([(c.node(), g.one())]).of(&mut g, power);
+        for at in [0.0_f64, -4.0] {
+            let numbers = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, at];
+            let found = evaluate(&g, &[slope], &numbers)[0];
+            assert_eq!(found, sign * 1.5 * (-at).sqrt());
+        }
+    }
+}
