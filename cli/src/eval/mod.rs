@@ -182,7 +182,7 @@ fn motion(
             Shape::Vector(_) => Json::vector(&values),
             Shape::Matrix(_, columns) => Json::matrix(
                 &values
-                    .chunks(columns)
+                    .chunks(columns.max(1))
                     .map(<[f64]>::to_vec)
                     .collect::<Vec<_>>(),
             ),

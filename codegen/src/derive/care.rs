@@ -6,6 +6,7 @@
 
 use super::tree::Placement;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::linear::matrix;
 use crate::algebra::rounding::rounded;
 use crate::model::Model;
 use crate::model::states::states;
@@ -110,24 +111,29 @@ pub fn note(program: &mut Program, losses: &[Option<f64>]) {
     }
 }
 
-/// log₁₀ ‖M‖ ‖M⁻¹‖ (greatest sums of rows), the greatest at the states.
+/// log₁₀ ‖M‖ ‖M⁻¹‖ (greatest sums of rows), the greatest at the states; infinite where it is not known.
 fn condition_digits(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64 {
-    let n = mass.len();
     let mut most = 1.0_f64;
     for state in states(model) {
         let values = rounded(&program.graph, &mass.concat(), &state);
-        let rows: Vec<Vec<f64>> = values
-            .chunks(n)
-            .map(|row| row.iter().map(|entry| entry.exact.to_f64()).collect())
-            .collect();
-        most = most.max(norm(&rows) * norm(&inverse(rows)));
+        let entries: Vec<f64> = values.iter().map(|entry| entry.exact.to_f64()).collect();
+        let rows = matrix(&entries, mass.len());
+        let of = [most, norm(&rows) * norm(&inverse(rows))];
+        most = greatest(of.into_iter());
     }
     most.log10()
 }
 
 fn norm(rows: &[Vec<f64>]) -> f64 {
-    let sums = rows.iter().map(|row| row.iter().map(|e| e.abs()).sum());
-    sums.fold(0.0, f64::max)
+    greatest(rows.iter().map(|row| row.iter().map(|e| e.abs()).sum()))
+}
+
+/// The greatest of numbers that are not negative; infinite where one is none.
+fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.fold(0.0, |most, number| match number.is_nan() {
+        true => f64::INFINITY,
+        false => most.max(number),
+    })
 }
 
 /// By Gauss and Jordan without exchange: M is positive definite.
@@ -149,7 +155,7 @@ fn inverse(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{inverse, norm};
+    use super::{greatest, inverse, norm};
 
     #[test]
     fn inverses_and_norms() {
@@ -167,5 +173,14 @@ mod tests {
             }
         }
         assert_eq!(norm(&rows), 5.0);
+    }
+
+    /// M that has no number at a state says nothing of its condition: it counts as any number.
+    #[test]
+    fn what_is_no_number_is_no_small_one() {
+        assert_eq!(greatest([f64::NAN, 2.0].into_iter()), f64::INFINITY);
+        assert_eq!(greatest([2.0, f64::NAN].into_iter()), f64::INFINITY);
+        assert_eq!(norm(&[vec![1.0, f64::NAN], vec![0.0, 1.0]]), f64::INFINITY);
+        assert_eq!(greatest(std::iter::empty()), 0.0);
     }
 }

@@ -77,7 +77,7 @@ impl<'c, 'a> Loops<'c, 'a> {
         let (a, n) = (self.a(x), self.closure.n);
         let columns: Vec<Vec<f64>> = (0..n)
             .map(|i| {
-                let rate: Vec<f64> = a.chunks(n).map(|row| row[i]).collect();
+                let rate: Vec<f64> = a.chunks(n.max(1)).map(|row| row[i]).collect();
                 each(&self.closure.blocks, |block, place| {
                     let end = place + block.len();
                     chart_rate(block, &x[place..end], &rate[place..end])
@@ -113,7 +113,7 @@ impl Assembly for Loops<'_, '_> {
             .given
             .iter()
             .map(|&alpha| &a[alpha * n..(alpha + 1) * n]);
-        let rows = b.chunks(n).chain(given);
+        let rows = b.chunks(n.max(1)).chain(given);
         rows.map(|row| self.free.iter().map(|&i| row[i]).collect())
             .collect()
     }
@@ -153,7 +153,7 @@ impl Assembly for Loops<'_, '_> {
     fn moved(&self, x: &[f64], step: &[f64]) -> Vec<f64> {
         let (a, n) = (self.a(x), self.closure.n);
         let mut moved = x.to_vec();
-        for (entry, row) in moved.iter_mut().zip(a.chunks(n)) {
+        for (entry, row) in moved.iter_mut().zip(a.chunks(n.max(1))) {
             *entry += self
                 .free
                 .iter()

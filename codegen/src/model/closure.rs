@@ -210,7 +210,7 @@ impl<'a> Closure<'a> {
                 .filter(|i| (0..x.len()).all(|alpha| !fixed[alpha] || a[alpha * n + i] == 0.0))
                 .collect();
             let jacobian: Vec<Vec<f64>> = b
-                .chunks(n)
+                .chunks(n.max(1))
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
             let target: Vec<f64> = residuals.iter().map(|r| -r).collect();
@@ -260,7 +260,7 @@ impl<'a> Closure<'a> {
             let free = (0..n).filter(|&i| !fixed[i] && self.time != Some(i));
             let free: Vec<usize> = free.collect();
             let jacobian: Vec<Vec<f64>> = b
-                .chunks(n)
+                .chunks(n.max(1))
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
             for _ in 0..3 {

@@ -131,7 +131,7 @@ impl Equations {
                 break;
             }
             let slopes = self.at(&self.slopes, numbers, &x);
-            let rows: Vec<&[f64]> = slopes.chunks(x.len()).collect();
+            let rows: Vec<&[f64]> = slopes.chunks(x.len().max(1)).collect();
             let mut gram: Vec<Vec<f64>> = rows
                 .iter()
                 .map(|a| rows.iter().map(|b| dot(a, b)).collect())
@@ -161,14 +161,7 @@ impl Equations {
             }
         }
         let residual = largest(&phi);
-        (
-            x,
-            if residual.is_nan() {
-                f64::INFINITY
-            } else {
-                residual
-            },
-        )
+        (x, residual)
     }
 }
 
@@ -201,13 +194,23 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// max |a|, NaN where one entry is.
+/// max |a|, infinite where an entry is no number.
 fn largest(list: &[f64]) -> f64 {
-    list.iter().fold(0.0, |most: f64, a| {
-        if a.is_nan() {
-            f64::NAN
-        } else {
-            most.max(a.abs())
-        }
+    list.iter().fold(0.0, |most: f64, a| match a.is_nan() {
+        true => f64::INFINITY,
+        false => most.max(a.abs()),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest;
+
+    #[test]
+    fn what_is_no_number_is_not_close() {
+        for list in [[f64::NAN, 1e-13], [1e-13, f64::NAN]] {
+            assert_eq!(largest(&list), f64::INFINITY);
+        }
+        assert_eq!(largest(&[1.0, -2.0]), 2.0);
+    }
 }

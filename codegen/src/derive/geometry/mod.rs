@@ -22,6 +22,7 @@ use super::loads::applied_force;
 use super::normal::without_coordinates;
 use super::tables::Geometry;
 use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::linear::matrix;
 use crate::model::{Model, class};
 use blocks::Entry;
 use lie_algebra::LieAlgebra;
@@ -194,8 +195,8 @@ fn block(geometry: &mut Geometry, members: Vec<usize>) -> Block {
         .flatten();
     let m = members.len();
     let algebra = numbers.and_then(|numbers| {
-        let planes = numbers.chunks(m * m);
-        let constants = planes.map(|plane| plane.chunks(m).map(<[_]>::to_vec).collect());
+        let planes = numbers.chunks((m * m).max(1));
+        let constants = planes.map(|plane| matrix(plane, m));
         LieAlgebra::new(constants.collect())
     });
     Block {
