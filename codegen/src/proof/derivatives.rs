@@ -23,7 +23,10 @@ pub(super) fn hold(full: &Model, program: &Program, [point, inner]: [&Lane; 2]) 
     let time = full.clock.map(|clock| clock.xi);
     let displaced: Vec<usize> = (0..full.n()).filter(|&i| Some(i) != time).collect();
     let n = displaced.len();
-    let seed = a.iter().fold(1, |seed, a| seed ^ a.bits().rotate_left(9));
+    let mut seed = 1u64;
+    for entry in &a {
+        seed = seed.rotate_left(7) ^ entry.bits();
+    }
     let mut random = Random::new(seed);
     let mut numbers = |count: usize| -> Vec<Fp> { (0..count).map(|_| random.element()).collect() };
     // (h, δξ), and A h.

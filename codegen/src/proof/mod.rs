@@ -7,6 +7,7 @@
 //! |---|---|---|
 //! | `validate` | every emitted function is the one that the equations imply | (30) |
 //! | `constrained` | the same where constraints act on ξ | |
+//! | `charts` | the rates of charts are those that K leads back to ẋ | |
 //! | `correction` | the stabilising term leads back to X | (8) |
 //! | `splitting` | the functions of a system that splits | |
 //! | `numbers` | the three forms at points modulo p: what every build is compared with | (30) |
@@ -28,6 +29,7 @@
 //! | `verdict` | what a proof says | |
 
 mod centroidal;
+mod charts;
 pub mod check;
 pub mod confidence;
 pub(crate) mod constrained;
@@ -76,6 +78,8 @@ pub fn prove(
         Some(reduction) => constrained::validate(model, reduction, program).map_err(one)?,
         None => validate::validate(model, program).map_err(one)?,
     }
+    let active = reduction.map_or(model, |reduction| &reduction.model);
+    charts::validate(active, program).map_err(one)?;
     correction::validate(model, program).map_err(one)?;
     if let Some(derived) = regressor {
         regressor::validate(model, derived, program).map_err(one)?;

@@ -23,7 +23,7 @@ use super::points::{Unequal, at_fresh_points};
 use super::slopes::Slopes;
 use super::splitting::Proof;
 use super::states;
-use super::verdict::failure;
+use super::verdict::{NOWHERE, failure};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
@@ -78,7 +78,7 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), String> {
     )
     .map_err(|unequal| match unequal {
         Unequal::Differs(what) => what,
-        Unequal::Nowhere => "that the equations have values at some points".into(),
+        Unequal::Nowhere => NOWHERE.into(),
     })
 }
 

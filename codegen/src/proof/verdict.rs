@@ -36,22 +36,30 @@ pub(super) struct Sides {
     pub(super) right: Vec<Edge>,
 }
 
+/// What does not hold where no point was found.
+pub(super) const NOWHERE: &str = "that the equations have values at some points";
+
+/// What is said of it.
+const MISSING: &str = "no random point was found at which all functions have values";
+
 /// A fault of the generator, which is never emitted.
 pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
     if model.points.roots == Roots::Anything {
-        let message = format!(
-            "`{}` could not be proved: {what} was not confirmed",
-            model.name
-        );
+        let why = match what.starts_with(NOWHERE) {
+            true => MISSING.into(),
+            false => format!("{what} was not confirmed"),
+        };
+        let message = format!("`{}` could not be proved: {why}", model.name);
         let help = "roots within roots have no values in the fields of the proof: let a parameter or a coordinate stand for the inner one";
         return Diagnostic::new(model.span, message).help(help);
     }
+    let why = match what.starts_with(NOWHERE) {
+        true => MISSING.into(),
+        false => format!("{what} does not hold"),
+    };
     Diagnostic::new(
         model.span,
-        format!(
-            "internal check failed for `{}`: {what} does not hold",
-            model.name
-        ),
+        format!("internal check failed for `{}`: {why}", model.name),
     )
     .help("this is a fault of the generator, nothing was emitted; please report the description")
     .about_proof()
