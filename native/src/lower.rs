@@ -18,6 +18,8 @@ use std::collections::HashMap;
 
 /// The bits of infinity.
 const INFINITE: i64 = f64::INFINITY.to_bits().cast_signed();
+/// The bits of the smallest number that is not subnormal.
+const NORMAL: i64 = f64::MIN_POSITIVE.to_bits().cast_signed();
 /// What a function returns where all is well.
 pub const WELL: i32 = 0;
 /// What it returns where the tape has to be evaluated step by step. Positive numbers are those of causes, from 1.
@@ -352,10 +354,10 @@ impl<'a, 'b> Writer<'a, 'b> {
                     causes.len() - 1
                 });
                 for pivot in self.alone(pivot) {
-                    // Positive and finite by its bits, 1 to those below infinity, as generated code has it.
+                    // Positive, finite and not subnormal by its bits, as generated code has it.
                     let bits = self.ins().bitcast(types::I64, MemFlags::new(), pivot);
-                    let bits = self.ins().iadd_imm(bits, -1);
-                    let limit = self.ins().iconst(types::I64, INFINITE - 1);
+                    let bits = self.ins().iadd_imm(bits, -NORMAL);
+                    let limit = self.ins().iconst(types::I64, INFINITE - NORMAL);
                     let positive = self.ins().icmp(IntCC::UnsignedLessThan, bits, limit);
                     self.end_unless(positive, i32::try_from(place + 1).unwrap_or(UNDONE));
                 }

@@ -155,7 +155,7 @@ pub trait Scalar:
         so3::chart_velocity(u, w)
     }
 
-    /// Whether all lanes are positive and finite: a pivot that can be divided by.
+    /// Whether all lanes are positive, finite and not subnormal: a pivot that can be divided by.
     fn is_positive(self) -> bool;
 
     /// Whether no lane is infinite or NaN.
@@ -252,9 +252,11 @@ macro_rules! scalar {
 
             #[inline]
             fn is_positive(self) -> bool {
-                // By bits, 1 to those below infinity: a compiler makes three times as many instructions
-                // of `self > 0.0 && self < INFINITY`.
-                self.to_bits().wrapping_sub(1) < $float::INFINITY.to_bits() - 1
+                // By bits, from those of the smallest normal number to those below infinity: a compiler
+                // makes three times as many instructions of two comparisons.
+                const LEAST: $float = $float::MIN_POSITIVE;
+                self.to_bits().wrapping_sub(LEAST.to_bits())
+                    < $float::INFINITY.to_bits() - LEAST.to_bits()
             }
 
             #[inline]

@@ -105,7 +105,7 @@ macro_rules! lanes {
 
             #[inline]
             fn is_positive(self) -> bool {
-                (self.simd_gt(Self::splat(0.0)) & self.simd_lt(Self::splat($float::INFINITY))).all()
+                (self.simd_ge(Self::splat($float::MIN_POSITIVE)) & self.simd_lt(Self::splat($float::INFINITY))).all()
             }
 
             #[inline]

@@ -119,7 +119,7 @@ impl Interpreter {
         }
         for &(pivot, guard) in &self.guards {
             let value = read(guard, &values);
-            if !(value.is_finite() && value > 0.0) {
+            if !(value.is_normal() && value > 0.0) {
                 return Err(pivot);
             }
         }

@@ -26,6 +26,8 @@ const DOUBLE: &[(&str, &str)] = &[
     ("@BITS", "uint64_t"),
     ("@INFINITY", "UINT64_C(0x7FF0000000000000)"),
     ("@LARGEST", "DBL_MAX"),
+    ("@NORMAL", "UINT64_C(0x0010000000000000)"),
+    ("@LEAST", "DBL_MIN"),
 ];
 const FLOAT: &[(&str, &str)] = &[
     (
@@ -38,6 +40,8 @@ const FLOAT: &[(&str, &str)] = &[
     ("@BITS", "uint32_t"),
     ("@INFINITY", "UINT32_C(0x7F800000)"),
     ("@LARGEST", "FLT_MAX"),
+    ("@NORMAL", "UINT32_C(0x00800000)"),
+    ("@LEAST", "FLT_MIN"),
 ];
 
 /// What compilers are told of sine and cosine, undefined again by [`END`].
@@ -81,15 +85,15 @@ static inline @REAL @_select(@REAL c, @REAL a, @REAL b)
     (
         "is_positive",
         "\
-/* Whether a pivot is positive and finite: by one comparison of bits where numbers are those of IEEE 754. */
+/* Whether a pivot can be divided by, positive, finite and not subnormal: by one comparison of bits where numbers are those of IEEE 754. */
 static inline int @_is_positive(@REAL a)
 {
 #if FLT_RADIX == 2 && @DIGITS
     @BITS bits;
     memcpy(&bits, &a, sizeof bits);
-    return bits - 1u < @INFINITY - 1u;
+    return bits - @NORMAL < @INFINITY - @NORMAL;
 #else
-    return a > 0.0@F && a <= @LARGEST;
+    return a >= @LEAST && a <= @LARGEST;
 #endif
 }
 ",
