@@ -18,12 +18,18 @@ pub fn text(texts: &Texts) -> String {
         let docs = comment::documentation(&spec.docs, 0);
         declared.push_str(&format!("\n{docs}{};\n", prototype(texts, &spec, name)));
     }
+    let limits = limit_macros(texts);
+    let infinite = ["HUGE_VAL", "NAN"].iter().any(|word| limits.contains(word));
+    let headers = if infinite {
+        "\n#include <math.h>\n"
+    } else {
+        ""
+    };
     format!(
-        "#ifndef {capitals}_H\n#define {capitals}_H\n\n{}{}{}{}{}{}{declared}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n",
+        "#ifndef {capitals}_H\n#define {capitals}_H\n\n{}{headers}{}{}{limits}{}{}{declared}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n",
         about(texts),
         opening(capitals),
         sizes(texts),
-        limit_macros(texts),
         types(texts),
         setting(texts),
     )

@@ -104,12 +104,17 @@ impl Identifiers {
     pub fn of(program: &Program) -> (Self, Names) {
         let names = Names::beside(program, OWN);
         let prefix = snake(&program.name).trim_end_matches('_').to_string();
+        // In C++ a member cannot be called as a type that its struct mentions.
+        let own: Vec<String> = OWN.iter().map(|name| format!("{prefix}_{name}")).collect();
+        let mut members = Unique::new(&own.iter().map(String::as_str).collect::<Vec<_>>());
         let identifiers = Identifiers {
             capitals: prefix.to_ascii_uppercase(),
             functions: (names.functions.iter())
                 .map(|name| legal(format!("{prefix}_{name}")))
                 .collect(),
-            fields: names.fields.iter().cloned().map(legal).collect(),
+            fields: (names.fields.iter())
+                .map(|name| members.claim(&legal(name.clone())))
+                .collect(),
             prefix,
         };
         (identifiers, names)
