@@ -10,7 +10,7 @@ use hamel_codegen::tables::tables;
 const SYSTEMS: [&str; 8] = [
     "time t; coord x; velocity v; rate x = v; particle mass 1 at [x, 0, 0]; prescribe x = sin(1000000 * t);",
     "time t; joint h: revolute [0, 0, 1] moves f; body on f { mass 1; com [1, 0, 0]; inertia diag(1, 1, 1) about com; }
-        prescribe h.q = 2000 * t;",
+        prescribe h = 2000 * t;",
     "time t; coord x; velocity v; rate x = v; particle mass 1 at [x, 0, 0]; prescribe x = t^2; generate all, linearize;",
     "time t; output y = t^2; generate all, linearize;",
     "state z = 1; rate z = -z; generate all, linearize;",
