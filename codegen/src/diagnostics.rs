@@ -138,3 +138,22 @@ impl Report {
         }
     }
 }
+
+/// A number with four digits, as messages show how far something is off: `3`, `-0.62`, `1.556e-7`.
+pub(crate) fn rough(value: f64) -> String {
+    let text = format!("{value:.3e}");
+    let exponent = text
+        .split_once('e')
+        .and_then(|(_, e)| e.parse::<i32>().ok());
+    match (exponent, text.parse::<f64>()) {
+        (Some(exponent @ -3..=3), Ok(rounded)) => {
+            let digits = (3 - exponent).unsigned_abs() as usize;
+            let plain = format!("{rounded:.digits$}");
+            match plain.contains('.') {
+                true => plain.trim_end_matches('0').trim_end_matches('.').into(),
+                false => plain,
+            }
+        }
+        _ => text,
+    }
+}

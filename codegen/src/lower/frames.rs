@@ -98,6 +98,20 @@ pub fn relative_pose(
                 .help("use an SO3 coordinate, `rot(q)`, `rotx(angle)` and their products"),
         );
     }
+    // The determinant of an orthogonal matrix is 1 or -1, also of its values modulo p.
+    let [x, y, z] = rotation.map(|row| row.map(|entry| graph.value(entry)));
+    let minor = |i: usize, j: usize| y[i] * z[j] - y[j] * z[i];
+    let determinant = x[0] * minor(1, 2) - x[1] * minor(0, 2) + x[2] * minor(0, 1);
+    if !scope.free && determinant != graph.value(graph.one()) {
+        let message = format!(
+            "the matrix of frame `{}` is a reflection, its determinant is -1",
+            name.name
+        );
+        return evaluator.error(
+            Diagnostic::new(pose.span, message)
+                .help("use an SO3 coordinate, `rot(q)`, `rotx(angle)` and their products"),
+        );
+    }
     Some(Value::Pose(rotation, position))
 }
 

@@ -2,11 +2,11 @@
 
 use crate::algebra::graph::Node;
 use crate::algebra::numeric::evaluate;
-use crate::diagnostics::{Diagnostic, Report};
+use crate::diagnostics::{Diagnostic, Report, rough};
 use crate::lower::declare::Declared;
 use crate::lower::variety::{Origin, Variety};
 use crate::model::nearest::Nearest;
-use crate::syntax::ast::{CoordKind, ItemKind, System};
+use crate::syntax::ast::{CoordKind, ItemKind, Span, System};
 
 /// Largest violation of φ at the start that counts as rounding of the numbers given.
 const ROUNDING: f64 = 1e-9;
@@ -45,6 +45,46 @@ pub fn check(
         }
         report.push(error);
     }
+    if reported.is_empty() {
+        reflections(system, declared, x, report);
+    }
+}
+
+/// R.T * R = 1 holds for reflections, too, which no motion leads to.
+fn reflections(system: &System, declared: &Declared, x: &[f64], report: &mut Report) {
+    for coordinate in &declared.coordinates {
+        let first = match coordinate.kind {
+            CoordKind::SO3 => coordinate.offset,
+            CoordKind::SE3 => coordinate.offset + 3,
+            _ => continue,
+        };
+        let [a, b, c, d, e, f, g, h, i] = x[first..first + 9] else {
+            continue;
+        };
+        let determinant = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
+        if determinant >= 0.0 || determinant.is_nan() {
+            continue;
+        }
+        let given = given(system, &[&coordinate.name]);
+        let message = format!(
+            "the start of `{}` is a reflection, its determinant is -1",
+            coordinate.name
+        );
+        report.push(
+            Diagnostic::new(given.unwrap_or(coordinate.span), message)
+                .help("build the rotation by `rotx(angle)`, `rpy(…)`, `axis_angle(…)`"),
+        );
+    }
+}
+
+/// Where the start of one of these coordinates is given last.
+fn given(system: &System, names: &[&str]) -> Option<Span> {
+    system.items.iter().rev().find_map(|item| match &item.kind {
+        ItemKind::Start { target, value } | ItemKind::Guess { target, value } => names
+            .contains(&target.name.name.as_str())
+            .then_some(value.span),
+        _ => None,
+    })
 }
 
 fn violation(
@@ -56,13 +96,8 @@ fn violation(
 ) -> Diagnostic {
     let text = &variety.phi[row].1;
     let names = coordinates_of(variety, declared, row);
-    let given = system.items.iter().rev().find_map(|item| match &item.kind {
-        ItemKind::Start { target, value } | ItemKind::Guess { target, value } => names
-            .contains(&target.name.name.as_str())
-            .then_some(value.span),
-        _ => None,
-    });
-    let difference = format!("the difference is {residual:.3e}");
+    let given = given(system, &names);
+    let difference = format!("the difference is {}", rough(residual));
     match variety.origins[row] {
         Origin::Coordinate(index) => {
             let coordinate = &declared.coordinates[index];
@@ -113,7 +148,8 @@ fn advise(
                 .message
                 .push_str(", and no real configuration was found near it");
             error.help = Some(format!(
-                "check the lengths: the constraints are violated by {least:.3e} at least; or start nearer to a configuration"
+                "check the lengths: the constraints are violated by {} at least; or start nearer to a configuration",
+                rough(*least)
             ));
             return;
         }

@@ -5,7 +5,7 @@ pub mod guess;
 
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::numeric::evaluate;
-use crate::diagnostics::{Diagnostic, Report};
+use crate::diagnostics::{Diagnostic, Report, rough};
 use crate::lower::declare::Declared;
 use crate::lower::expression::Evaluator;
 use crate::lower::rate::part;
@@ -123,20 +123,20 @@ impl Start {
             }
         };
         let row = &constraints[open.constraint];
-        let by = open.residual;
+        let by = rough(open.residual);
         let (message, help) = match row.kind {
             Kind::Drive { .. } => (
-                format!("the start contradicts this motion by {by:.3e}"),
+                format!("the start contradicts this motion by {by}"),
                 "leave out the `start` of what is prescribed: it follows",
             ),
             _ if opening.guesses_coordinates() => (
                 format!(
-                    "no configuration near the guesses closes this loop: at them it is open by {by:.3e}"
+                    "no configuration near the guesses closes this loop: at them it is open by {by}"
                 ),
                 "check the lengths, and let exact starts be guesses, `start q ~ 1.2;`, where they need not be kept",
             ),
             _ => (
-                format!("no configuration near the start closes this loop: it is open by {by:.3e}"),
+                format!("no configuration near the start closes this loop: it is open by {by}"),
                 "give a `start` closer to a closed loop; coordinates without a `start` are solved for, those with one are kept",
             ),
         };
@@ -276,16 +276,16 @@ pub fn known(graph: &Graph, defaults: &[f64]) -> Vec<f64> {
 fn violated(constraints: &[Pfaffian], open: Open, given: bool) -> Diagnostic {
     if !given {
         let message = format!(
-            "no velocities at the start keep this constraint with the others: it is off by {:.3e}",
-            open.residual
+            "no velocities at the start keep this constraint with the others: it is off by {}",
+            rough(open.residual)
         );
         return Diagnostic::new(constraints[open.constraint].span, message).help(
             "remove a constraint, or what is prescribed; where rows depend on one another at the start alone, start elsewhere",
         );
     }
     let message = format!(
-        "the start velocities violate this constraint by {:.3e}",
-        open.residual
+        "the start velocities violate this constraint by {}",
+        rough(open.residual)
     );
     Diagnostic::new(constraints[open.constraint].span, message).help(
         "leave out the `start` of velocities that follow from the others: they are solved for",

@@ -28,7 +28,7 @@ use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
 use crate::derive::calculus::Calculus;
 use crate::derive::quantity;
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::{Diagnostic, rough};
 use crate::model::Model;
 use crate::model::invariants::Invariant;
 use proof::{Proof, Prover};
@@ -256,7 +256,7 @@ impl Equations {
         );
         let rate = crate::algebra::numeric::evaluate(&model.graph, &[rate], &numbers)[0];
         (rate.is_finite() && rate.abs() > 1e-9)
-            .then(|| format!("it changes at the rate {rate:.3e} at the start"))
+            .then(|| format!("it changes at the rate {} at the start", rough(rate)))
     }
 }
 
