@@ -251,7 +251,10 @@ fn what_has_no_regressor_says_why() {
         ("rolling_disk", "constraints act on its velocities"),
         ("kapitza", "depends on the time"),
         ("pendulum", "its coordinates are tied by constraints"),
-        ("cart_pole", "describe it by bodies, without `kinetic`"),
+        (
+            "cart_pole",
+            "describe it by `body` statements, without `kinetic` and `particle`",
+        ),
     ] {
         let file = root.join(format!("{name}.eom"));
         let output = hamel(&["regressor", &file.display().to_string()], "");

@@ -24,6 +24,25 @@ fn warnings_are_shown_once_and_end_nothing() {
     }
 }
 
+/// Each of them once, however many velocities a joint has.
+#[test]
+fn negative_masses_and_damping_are_warned_of() {
+    let negative = "system N {
+        joint b: spherical moves f { damping -0.1; }
+        body on f { mass 1; inertia identity(3); com [0, 0, 0]; }
+        particle mass -1/10 at [0, 0, 1] on f;
+    }";
+    let output = hamel(&["check", "-"], negative);
+    let said = text(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    for part in [
+        "the mass of this particle is negative: -0.1",
+        "this coefficient of damping is negative: -0.1",
+    ] {
+        assert_eq!(said.matches(part).count(), 1, "{said}");
+    }
+}
+
 #[test]
 fn the_advice_is_heeded() {
     let output = hamel(&["emit", "-"], &UNUSED.replace("param k", "param _k"));

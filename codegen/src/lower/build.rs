@@ -5,8 +5,8 @@ use super::motion::TimeDerivative;
 use super::rate::At;
 use super::variety::Variety;
 use super::{
-    dynamics, externals, invariants, joints, kinematics, pfaffian, prescribe, start, states,
-    staying, strange, time, unused,
+    dynamics, externals, invariants, joints, kinematics, negative, pfaffian, prescribe, start,
+    states, staying, strange, time, unused,
 };
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -82,6 +82,8 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
                 let strange = strange::warnings(described, &model);
                 model.warnings = unused::warnings(described, &(&names.used | used));
                 model.warnings.extend(strange);
+                let negative = negative::warnings(system, &model);
+                model.warnings.extend(negative);
                 return Ok(model);
             }
             Err((errors, _)) => return Err(errors),

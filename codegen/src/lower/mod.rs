@@ -34,6 +34,7 @@ mod line;
 mod loads;
 mod motion;
 mod names;
+mod negative;
 mod observe;
 mod pfaffian;
 mod prescribe;

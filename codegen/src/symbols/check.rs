@@ -182,6 +182,12 @@ impl<'a> Checker<'a> {
         if self.symbols.get(name).is_some() {
             return error.help("a product is written with `*`");
         }
+        // As other languages have it.
+        match name.as_str() {
+            "ln" => return error.help("the natural logarithm is `log(a)`"),
+            "pow" => return error.help("a power is written `a ^ b`"),
+            _ => {}
+        }
         let own = self.symbols.iter();
         let own = own.filter(|(_, symbol)| symbol.kind == Kind::Function);
         let mut known: Vec<&str> = words::names().collect();
@@ -237,6 +243,9 @@ impl<'a> Checker<'a> {
         self.misspelt += 1;
         if self.misspelt > MOST_MISSPELT {
             return error.help("define it, or check its spelling");
+        }
+        if name == "t" && wanted.is_none() {
+            return error.help("the time has to be declared: `time t;`");
         }
         let known = || {
             let all = self.symbols.iter();

@@ -46,6 +46,10 @@ pub(super) fn docs(cursor: &mut Cursor<'_>) -> Parsed<Vec<String>> {
                     .help("comments are written `// …`, and docs of what follows `/// …`"),
             );
         }
+        if !cursor.is_open(Delimiter::Bracket) {
+            return Err(Diagnostic::new(start, "no statement begins with `#`")
+                .help("a comment is written `// …`"));
+        }
         let opened = cursor.eat_open(Delimiter::Bracket);
         let documents = opened && cursor.eat_word("doc") && cursor.eat_punct('=');
         let text = cursor.peek();

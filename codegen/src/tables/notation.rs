@@ -42,7 +42,7 @@ const GREEK: &[(&str, &str)] = &[
 ];
 
 /// A name with its indices: `s[1]` is s_{1}, `Theta[1,2]` is \Theta_{12}, `q.c` is q_c, `T.p[1]` is
-/// T_{p,1}, `v_dot[1]` is \dot{v}_{1}, `m1` is m_{1}, `th1` is \mathrm{th1}.
+/// T_{p,1}, `v_dot[1]` is \dot{v}_{1}, `q_dot_dot` is \ddot{q}, `m1` is m_{1}, `th1` is \mathrm{th1}.
 pub fn latex_name(name: &str) -> String {
     let (path, index) = match name.split_once('[') {
         Some((path, rest)) => (path, rest.trim_end_matches(']')),
@@ -50,15 +50,12 @@ pub fn latex_name(name: &str) -> String {
     };
     let mut parts = path.split('.');
     let head = parts.next().unwrap_or_default();
-    let (head, dotted) = match head.strip_suffix("_dot") {
-        Some(rest) if !rest.is_empty() => (rest, true),
-        _ => (head, false),
-    };
+    let (head, dots) = undot(head);
     let (letter, mut below) = split(head);
-    let letter = if dotted {
-        format!(r"\dot{{{letter}}}")
-    } else {
-        letter
+    let letter = match dots {
+        0 => letter,
+        1 => format!(r"\dot{{{letter}}}"),
+        _ => format!(r"\ddot{{{letter}}}"),
     };
     below.extend(parts.map(word));
     let indices: Vec<&str> = index
@@ -76,6 +73,18 @@ pub fn latex_name(name: &str) -> String {
             format!("{letter}_{one}")
         }
         _ => format!("{letter}_{{{}}}", below.join(",")),
+    }
+}
+
+/// What a name is the rate of, and how often it is differentiated: the rate of a velocity `q_dot` is `q_dot_dot`.
+fn undot(name: &str) -> (&str, usize) {
+    let once = |name| str::strip_suffix(name, "_dot").filter(|rest| !rest.is_empty());
+    match once(name) {
+        None => (name, 0),
+        Some(velocity) => match once(velocity) {
+            None => (velocity, 1),
+            Some(coordinate) => (coordinate, 2),
+        },
     }
 }
 
@@ -117,4 +126,24 @@ fn word(text: &str) -> String {
         return text.to_string();
     }
     letter(text).unwrap_or_else(|| format!(r"\mathrm{{{}}}", text.replace('_', r"\_")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::latex_name;
+
+    /// The rate of the velocity `q_dot` has the name `q_dot_dot`, with the indices of a joint before or behind.
+    #[test]
+    fn rates_of_rates_have_two_dots() {
+        for (name, wanted) in [
+            ("arm_dot", r"\dot{\mathrm{arm}}"),
+            ("arm_dot_dot", r"\ddot{\mathrm{arm}}"),
+            ("q_1_dot", r"\dot{q}_1"),
+            ("q_1_dot_dot", r"\ddot{q}_1"),
+            ("j_dot_dot[2]", r"\ddot{j}_{2}"),
+            ("w_dot[2]", r"\dot{w}_{2}"),
+        ] {
+            assert_eq!(latex_name(name).replace("{1}", "1"), wanted, "{name}");
+        }
+    }
 }

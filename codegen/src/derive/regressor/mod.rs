@@ -72,7 +72,7 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
     let mut model = model.clone();
     let mut calculus = Calculus::new(&model);
     let (tree, carriers) = Tree::with_frames(&mut model, &mut calculus).ok_or(
-        "its inertia is not that of bodies on frames and of armatures alone: describe it by bodies, without `kinetic`",
+        "its inertia is not that of bodies on frames and of armatures alone: describe it by `body` statements, without `kinetic` and `particle`",
     )?;
     let links = parameters::links(&mut model, &tree, &carriers);
     let mut standard: Vec<Standard> = links
