@@ -1,6 +1,7 @@
 //! `hamel emit`: the generated Rust, or C99.
 
 use crate::failure::{Failure, print, update};
+use crate::outputs;
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
@@ -61,6 +62,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => None,
     };
     let source = Source::open(&arguments.file, &arguments.robot)?;
+    if let Some(out) = arguments.out.as_deref().filter(|_| !arguments.check) {
+        let out = match &stem {
+            Some(stem) => [".h", ".c"].map(|ending| out.with_file_name(format!("{stem}{ending}"))),
+            None => [out.to_path_buf(), out.to_path_buf()],
+        };
+        let beside = source.files()?;
+        for out in &out {
+            let read = std::iter::once(&arguments.file).chain(&beside);
+            outputs::apart(
+                [("-o", Some(out.as_path()))],
+                read.map(|path| Some(path.as_path())),
+            )?;
+        }
+    }
     let name = arguments
         .file
         .file_name()

@@ -1,6 +1,7 @@
 //! `hamel import`: a robot in URDF as a description.
 
 use crate::failure::{Failure, print, warn, write};
+use crate::outputs;
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::Args;
@@ -35,7 +36,18 @@ pub struct Arguments {
 
 /// Imports and writes.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source = Source::read(&arguments.file)?.robot(&arguments.robot)?;
+    outputs::apart(
+        [("-o", arguments.out.as_deref())],
+        [Some(arguments.file.as_path())],
+    )?;
+    let source = Source::read(&arguments.file)?;
+    if !source.is_urdf() {
+        return Err(Failure::usage(format!(
+            "{}: this is no URDF, which is XML and begins with `<`; a description needs no import",
+            source.path
+        )));
+    }
+    let source = source.robot(&arguments.robot)?;
     let cleaned = source
         .robot
         .iter()

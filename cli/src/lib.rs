@@ -55,6 +55,7 @@ mod mechanism;
 mod method;
 mod names;
 mod ops;
+mod outputs;
 #[cfg_attr(not(feature = "command"), path = "silent.rs")]
 mod progress;
 mod regressor;

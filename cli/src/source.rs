@@ -13,7 +13,7 @@ use hamel_codegen::render::{render, warnings};
 use hamel_codegen::syntax::{self, ast::System};
 use hamel_codegen::urdf;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The path of standard input in messages.
@@ -103,6 +103,11 @@ impl Source {
         }
     }
 
+    /// Whether the text is that of a robot in URDF, by the name of its file or by how it begins.
+    pub fn is_urdf(&self) -> bool {
+        urdf::is_urdf(Path::new(&self.path)) || self.text.trim_start().starts_with('<')
+    }
+
     /// The joints of a robot by their names in its file and in the description; none of a description.
     pub fn joints(&self) -> &[(String, String)] {
         match &self.robot {
@@ -119,7 +124,7 @@ impl Source {
     /// The description, or robot in URDF, that a text is.
     pub fn given(self, options: &RobotOptions) -> Result<Self, Failure> {
         let mut source = self;
-        if urdf::is_urdf(Path::new(&source.path)) || source.text.trim_start().starts_with('<') {
+        if source.is_urdf() {
             if !options.constants.is_empty() {
                 let message = format!("{} is a robot: --const is for descriptions", source.path);
                 return Err(Failure::usage(message));
@@ -172,6 +177,20 @@ impl Source {
     fn file(&self, name: &str) -> std::io::Result<String> {
         let folder = Path::new(&self.path).parent();
         std::fs::read_to_string(folder.unwrap_or(Path::new("")).join(name))
+    }
+
+    /// Other files that the description has statements or numbers of.
+    pub fn files(&self) -> Result<Vec<PathBuf>, Failure> {
+        let folder = Path::new(&self.path).parent().unwrap_or(Path::new(""));
+        let mut files = Vec::new();
+        let read = syntax::parse_text(&self.text).and_then(|mut system| {
+            syntax::read_files(&mut system, &mut |name| {
+                files.push(folder.join(name));
+                self.file(name)
+            })
+        });
+        read.map_err(|errors| self.refused(&errors))?;
+        Ok(files)
     }
 
     /// The description with what it has in other files, and the texts of these.

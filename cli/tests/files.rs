@@ -86,8 +86,8 @@ fn a_full_disk_and_a_kill_leave_the_old_file() {
         ("killed", "ulimit -f 0", true),
     ] {
         let folder = folder(name);
-        for arguments in writers(&folder, "out.csv") {
-            let out = folder.join("out.csv");
+        for arguments in writers(&folder, "out.svg") {
+            let out = folder.join("out.svg");
             fs::write(&out, "the old text").expect("a file");
             let output = under(limit, &arguments);
             assert!(!output.status.success(), "{arguments:?}");
@@ -117,18 +117,18 @@ fn what_is_no_file_is_refused_with_its_reason() {
     let folder = folder("refused");
     assert!(
         Command::new("mkfifo")
-            .arg(folder.join("pipe.csv"))
+            .arg(folder.join("pipe.svg"))
             .status()
             .expect("mkfifo")
             .success()
     );
-    fs::create_dir(folder.join("folder.csv")).expect("a folder");
-    std::os::unix::fs::symlink("/dev/full", folder.join("full.csv")).expect("a link");
+    fs::create_dir(folder.join("folder.svg")).expect("a folder");
+    std::os::unix::fs::symlink("/dev/full", folder.join("full.svg")).expect("a link");
     for (name, reason) in [
-        ("pipe.csv", "it is a pipe that nobody reads from"),
-        ("folder.csv", "it is a folder"),
-        ("full.csv", "No space left on device"),
-        ("none/out.csv", "No such file or directory"),
+        ("pipe.svg", "it is a pipe that nobody reads from"),
+        ("folder.svg", "it is a folder"),
+        ("full.svg", "No space left on device"),
+        ("none/out.svg", "No such file or directory"),
     ] {
         for arguments in writers(&folder, name) {
             let output = under("true", &arguments);
@@ -141,7 +141,7 @@ fn what_is_no_file_is_refused_with_its_reason() {
         }
     }
     // To compare with a pipe would wait for a writer.
-    let pipe = folder.join("pipe.csv").display().to_string();
+    let pipe = folder.join("pipe.svg").display().to_string();
     let check = ["emit", &model("pendulum.eom"), "--check", "-o", &pipe].map(String::from);
     let output = under("true", &check);
     let said = text(&output.stderr);

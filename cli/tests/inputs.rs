@@ -165,7 +165,7 @@ fn what_cannot_be_used_is_said() {
         ),
         (
             &["--inputs", &path("ragged.csv", "t,F\n0,1\n4\n")],
-            "line 3: 1 columns, the header has 2",
+            "line 3: 1 column, the header has 2",
         ),
         (
             &["--times", &path("late.csv", "t\n1\n5\n")],
@@ -250,4 +250,78 @@ fn functions_in_rust_have_values_by_their_stand_ins_alone() {
             .join("\n")
     };
     assert_eq!(emitted(&alone), emitted(&standing));
+}
+
+const PENDULUM: &str = "system Pendulum {
+    param m = 1, l = 0.5, g = 9.81;
+    coord q;
+    velocity w;
+    rate q = w;
+    particle mass m at [l * sin(q), 0, -l * cos(q)];
+    gravity [0, 0, -g];
+    input tau;
+    generalized force w = tau;
+    start q = 2.9;
+}";
+
+/// The last row of a run, and what was said of it.
+fn end(name: &str, arguments: &[&str]) -> (Vec<f64>, String) {
+    let out = file(name, "").display().to_string();
+    let fixed = ["simulate", "-", "--until", "0.5", "--out", &out];
+    let output = hamel(&[&fixed[..], arguments].concat(), PENDULUM);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let written = std::fs::read_to_string(&out).expect("samples");
+    let last = written.lines().last().expect("a row").split(',');
+    let last = last.map(|n| n.parse().expect("a number")).collect();
+    (last, text(&output.stdout))
+}
+
+/// Splitting has its order only where forces do not depend on velocities, and an input may let them do so.
+#[test]
+fn inputs_that_depend_on_velocities_are_not_split() {
+    let feedback = "tau = -12 * (q - pi) - 3 * w";
+    let by = |method: &str| {
+        end(
+            "by.csv",
+            &["--input", feedback, "--method", method, "--step", "1e-3"],
+        )
+        .0
+    };
+    let (wanted, collocated) = (by("rkmk8"), by("gauss6"));
+    let (found, said) = end("auto.csv", &["--input", feedback, "--step", "1e-3"]);
+    for ((wanted, collocated), found) in wanted.iter().zip(&collocated).zip(&found) {
+        assert!(
+            (wanted - collocated).abs() < CLOSE && (wanted - found).abs() < CLOSE,
+            "{said}"
+        );
+    }
+    assert!(
+        said.contains("rkmk54 was chosen: forces depend on velocities"),
+        "{said}"
+    );
+    for method in [
+        "splitting",
+        "splitting2",
+        "splitting6",
+        "suzuki",
+        "kahan-li",
+        "lgvi",
+    ] {
+        let asked = [
+            "simulate", "-", "--until", "0.5", "--method", method, "--input", feedback,
+        ];
+        let output = hamel(&asked, PENDULUM);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{method}: {said}");
+        assert!(
+            said.contains("the input `tau` makes forces depend on velocities"),
+            "{method}: {said}"
+        );
+    }
+    // Of the configuration alone it splits, and keeps its order.
+    let spring = "tau = -12 * (q - pi) * cos(t)";
+    let (found, said) = end("split.csv", &["--input", spring]);
+    assert!(said.contains("splitting6 was chosen"), "{said}");
+    let (wanted, _) = end("spring.csv", &["--input", spring, "--method", "rkmk8"]);
+    near(&found, [wanted[0], wanted[1], wanted[2], 0.0]);
 }

@@ -170,7 +170,8 @@ fn bennetts_mechanism_passes_its_folded_position() {
 /// Overconstrained mechanisms are driven as others are.
 #[test]
 fn overconstrained_mechanisms_are_driven() {
-    let pushed = bennett("input F; prescribe rate(w1) = F; start q1 = 1, q2 ~ 3, q3 ~ -1, w1 = 0.7;");
+    let pushed =
+        bennett("input F; prescribe rate(w1) = F; start q1 = 1, q2 ~ 3, q3 ~ -1, w1 = 0.7;");
     let (x, xi) = (&pushed.model.start_x, &pushed.model.start_xi);
     let rates = value(&pushed, "accel", [x, xi, &[0.8], &[]]);
     close(rates[0], 0.8);

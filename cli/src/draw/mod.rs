@@ -6,6 +6,7 @@ use crate::drawing::{Drawing, Scene};
 use crate::failure::{self, Failure, print};
 use crate::mechanism::Instance;
 use crate::method::AUTO;
+use crate::outputs;
 use crate::robot::RobotOptions;
 use crate::simulate::inputs::{Asked, Inputs};
 use crate::simulate::plan::Spacing;
@@ -73,14 +74,26 @@ pub struct Arguments {
 
 /// Draws.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (out, at) = (arguments.out.as_deref(), arguments.at.as_deref());
+    let given = &arguments.inputs;
+    let until = arguments.time.unwrap_or(0.0) + arguments.motion.unwrap_or(0.0);
+    if until == 0.0 && (given.inputs.is_some() || !given.input.is_empty()) {
+        return Err(Failure::usage(
+            "--inputs and --input act on a motion: give its length by --time or --motion as well",
+        ));
+    }
+    outputs::svg("--out", out)?;
+    outputs::apart(
+        [("--out", out)],
+        [Some(arguments.file.as_path()), at, given.inputs.as_deref()],
+    )?;
     let source = Source::open(&arguments.file, &arguments.robot)?;
     let source = source.in_numbers().showing_frames();
-    let until = arguments.time.unwrap_or(0.0) + arguments.motion.unwrap_or(0.0);
     let generated = match until > 0.0 {
         true => source.derive_all()?,
         false => source.derive_only(&[], &[])?,
     };
-    let state = State::read(&source, &generated, arguments.at.as_deref())?;
+    let state = State::read(&source, &generated, at)?;
     let traced = traced(&generated, &arguments.trace)?;
     let drawing = Drawing::new(&generated)?;
     let moments = match until > 0.0 {

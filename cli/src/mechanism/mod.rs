@@ -234,6 +234,11 @@ impl Instance {
         Instance { given, ..self }
     }
 
+    /// What acts from outside, where inputs do not keep their values.
+    pub fn given(&self) -> Option<&Inputs> {
+        self.given.as_ref()
+    }
+
     /// Times at which inputs jump.
     pub fn jumps(&self) -> &[f64] {
         self.given.as_ref().map_or(&[], Inputs::jumps)

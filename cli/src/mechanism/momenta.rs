@@ -4,11 +4,12 @@
 use super::functions::place;
 use super::{Functions, Instance, Numbers, Place};
 use crate::failure::Failure;
+use crate::simulate::inputs::Inputs;
 use crate::singular::Failed;
 use hamel::rotor::{Rotor, Symmetry};
 use hamel::{Canonical, Singular, Split};
 use hamel_codegen::program::Program;
-use hamel_codegen::program::structure::{self, Inertia, Structure};
+use hamel_codegen::program::structure::{self, Inertia, Reason, Structure};
 use hamel_native::Compiled;
 
 /// The functions of a system that splits, and those of generalised momenta.
@@ -109,8 +110,31 @@ impl Instance {
                 });
             }
         }
+        if let Some(what) = self.given().and_then(Inputs::moving) {
+            moved(&mut structure, what);
+        }
         structure
     }
+
+    /// The structure by which a method is chosen: a controller of another program may depend on velocities.
+    pub fn cautious(&self, program: &Program) -> Structure {
+        let mut structure = self.structure(program);
+        if structure.split.is_ok() && self.given().is_some_and(Inputs::is_law) {
+            moved(&mut structure, "a controller".into());
+        }
+        structure
+    }
+}
+
+/// Forces depend on velocities by something that acts from outside, unless nothing does.
+fn moved(structure: &mut Structure, what: String) {
+    let reason = Reason::Velocities { what };
+    match &mut structure.split {
+        Ok(splitting) if splitting.free => return,
+        Ok(_) => structure.split = Err(vec![reason.clone()]),
+        Err(reasons) => reasons.push(reason.clone()),
+    }
+    structure.damped.push(reason);
 }
 
 impl Split for Instance {

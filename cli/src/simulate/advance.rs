@@ -97,7 +97,7 @@ pub fn advance(
     // A run that has lost the motion ends there.
     let followed = |state: &State<Instance>| {
         let here = balance.get().after(system, state);
-        if here.lost(tolerance).is_some() {
+        if here.lost(Some(tolerance)).is_some() {
             -1.0
         } else {
             1.0

@@ -1,5 +1,5 @@
-//! Whether a run with error control still follows the motion: its energy may change by the work of loads
-//! alone, and does so otherwise where a step has jumped across a singularity.
+//! Whether a run still follows the motion: its energy may change by the work of loads alone, and does so otherwise where a
+//! step has jumped across a singularity, or is far too long.
 
 use crate::mechanism::Instance;
 use hamel::{State, System};
@@ -8,6 +8,11 @@ use hamel::{State, System};
 /// part of the energy that moves on average, or than so many tolerances of what moves here.
 const LOST: f64 = 1e-2;
 const TOLERANCES: f64 = 100.0;
+/// In equal steps nobody says what a step may err by, and methods of low order gain or lose energy as they go: the motion
+/// is lost where the change is so many times the energy.
+const GROSS: f64 = 10.0;
+/// A mechanism at rest may have no energy at all: what rounding makes of it is no loss.
+const ROUNDING: f64 = 1e-13;
 /// The work of loads is estimated from the ends of steps, and may be so many times as much.
 const WORK: f64 = 10.0;
 
@@ -60,8 +65,8 @@ impl Balance {
         self
     }
 
-    /// The change of energy here, where no load accounts for it.
-    pub fn lost(&self, tolerance: f64) -> Option<f64> {
+    /// The change of energy here, where no load accounts for it; without a tolerance, where steps are equal.
+    pub fn lost(&self, tolerance: Option<f64>) -> Option<f64> {
         if self.driven {
             return None;
         }
@@ -71,8 +76,14 @@ impl Balance {
         } else {
             0.0
         };
-        let rough = TOLERANCES * tolerance;
-        let allowed = LOST.max(rough) * mean.max(self.initial.abs()) + rough * self.kinetic;
+        let scale = mean.max(self.initial.abs());
+        let allowed = match tolerance {
+            Some(tolerance) => {
+                let rough = TOLERANCES * tolerance;
+                LOST.max(rough) * scale + rough * self.kinetic
+            }
+            None => GROSS * scale + ROUNDING,
+        };
         // What is not a number is said by the method itself.
         let lost = self.change.abs() > allowed + WORK * self.work;
         lost.then_some(self.change)

@@ -114,6 +114,17 @@ impl Inputs {
         self.table.as_ref().map_or(&[], Table::jumps)
     }
 
+    /// What makes forces depend on velocities, as far as that is known: an expression that mentions one.
+    pub fn moving(&self) -> Option<String> {
+        let name = self.expressions.as_ref()?.moving()?;
+        Some(format!("the input `{name}`"))
+    }
+
+    /// Whether a controller of another program sets them, of which nothing is known.
+    pub fn is_law(&self) -> bool {
+        self.law.is_some()
+    }
+
     /// The same for a run from another state; why there is none.
     pub fn started(mut self, state: &State) -> Result<Self, String> {
         self.begin = begin(self.clock, state);

@@ -22,6 +22,7 @@ mod write;
 use crate::failure::{Failure, print};
 use crate::mechanism::Instance;
 use crate::method;
+use crate::outputs;
 use crate::robot::RobotOptions;
 use crate::source::Source;
 use crate::state::State;
@@ -89,6 +90,17 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.stepping.check()?;
     let format = arguments.out.as_deref().map(Format::of).transpose()?;
+    let (out, plot) = (arguments.out.as_deref(), arguments.plot.as_deref());
+    outputs::svg("--plot", plot)?;
+    outputs::apart(
+        [("--out", out), ("--plot", plot)],
+        [
+            Some(arguments.file.as_path()),
+            arguments.at.as_deref(),
+            arguments.times.as_deref(),
+            arguments.inputs.inputs.as_deref(),
+        ],
+    )?;
     let source = Source::open(&arguments.file, &arguments.robot)?.in_numbers();
     let generated = source.derive_all()?;
     let state = State::read(&source, &generated, arguments.at.as_deref())?;

@@ -1,6 +1,8 @@
 //! What is to be run: the method, its steps, and where samples are taken.
 
+use super::inputs::Inputs;
 use crate::failure::Failure;
+use crate::mechanism::Instance;
 use crate::method::Chosen;
 
 /// Samples where nothing else is asked for.
@@ -93,6 +95,13 @@ impl Spacing {
 }
 
 impl Plan {
+    /// Whether the energy of a run is watched. Where nobody looks at equal steps, nothing is known of the work of loads; and
+    /// a controller of another program is called by the method alone.
+    pub fn watches(&self, system: &Instance) -> bool {
+        let is_law = system.given().is_some_and(Inputs::is_law);
+        self.tolerance.is_some() || !self.quiet && !is_law
+    }
+
     /// A plan with about a thousand samples, or as many as are asked for. Equal steps are shortened so that samples are
     /// at their ends.
     pub fn new(

@@ -128,18 +128,24 @@ pub fn ended(
 ) -> Result<Option<Early>, Failure> {
     let (kind, why) = match outcome {
         Ok(()) => {
-            let lost = plan.tolerance.and_then(|tolerance| {
-                let change = balance.after(system, state).lost(tolerance)?;
-                Some((change, tolerance))
-            });
-            let Some((change, tolerance)) = lost else {
+            if !plan.watches(system) {
+                return Ok(None);
+            }
+            let Some(change) = balance.after(system, state).lost(plan.tolerance) else {
                 return Ok(None);
             };
+            let advice = match plan.tolerance {
+                Some(tolerance) => format!("try a smaller --tol than {}", short(tolerance)),
+                None => format!(
+                    "try a smaller --step than {}, or steps that are chosen by their error, `--method rkmk8 --tol 1e-9`",
+                    short(plan.step)
+                ),
+            };
             let why = format!(
-                "the run has lost the motion at t = {}: its energy has changed by {}, for which no load accounts; there may be a singularity on the way: try a smaller --tol than {}",
+                "the run has lost the motion {} t = {}: its energy has changed by {}, for which no load accounts; there may be a singularity on the way: {advice}",
+                if plan.tolerance.is_some() { "at" } else { "by" },
                 short(state.t),
                 short(change),
-                short(tolerance)
             );
             ("lost", why)
         }

@@ -28,6 +28,8 @@ pub struct Recorder<'a> {
     bar: Bar,
     /// Whether the bar is there from the start.
     long: bool,
+    /// Whether the energy is watched.
+    watches: bool,
 }
 
 /// What is left of it.
@@ -61,6 +63,7 @@ impl<'a> Recorder<'a> {
                 false => progress::hidden(),
             },
             long,
+            watches: plan.watches(system),
             system,
             plan,
             balance,
@@ -93,7 +96,7 @@ impl Observer for Recorder<'_> {
             Place::End => {}
         }
         self.recorded.monitor.observe(system, state);
-        if plan.tolerance.is_some() {
+        if self.watches {
             self.balance.set(self.balance.get().after(system, state));
         }
         let steps = self.recorded.steps;

@@ -33,7 +33,8 @@ pub struct Stepping {
     /// --tol is given. --help tells them apart.
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(method::names()), default_value = AUTO)]
     pub method: String,
-    /// Error that a step may make, for rkmk54 and rkmk8, which then choose their steps themselves.
+    /// Permitted error per step, for rkmk54 and rkmk8, which then choose their steps themselves; 1e-9 where `auto` takes one
+    /// of them and no --step is given.
     #[arg(long, value_name = "E", value_parser = positive, allow_negative_numbers = true, conflicts_with = "step")]
     pub tol: Option<f64>,
     /// Rate at which rk4 leads back to the constraint (1/s); default 10.
@@ -92,7 +93,10 @@ impl Stepping {
         system: &Instance,
         steps: u64,
     ) -> Result<Chosen, Failure> {
-        let structure = system.structure(&generated.program);
+        let structure = match self.method == AUTO {
+            true => system.cautious(&generated.program),
+            false => system.structure(&generated.program),
+        };
         let mut chosen = Chosen::new(&self.method, system, &structure, steps)?;
         if self.method == AUTO && self.tol.is_some() && !adapts(&chosen) {
             chosen = Chosen::new(BY_TOLERANCE, system, &structure, steps)?;

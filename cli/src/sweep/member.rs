@@ -141,11 +141,12 @@ impl<'a> Running<'a> {
     fn advance(&mut self) -> Result<(), StepError> {
         let Member { system, plan, .. } = self.member;
         let balance = &self.balance;
+        let watches = plan.watches(system);
         // What is kept looks for its own events.
         let watched = (balance, &mut Events::default());
         let watch = &mut self.watch;
         let mut observe = |state: &State<Instance>, place| {
-            if plan.tolerance.is_some() {
+            if watches {
                 balance.set(balance.get().after(system, state));
             }
             watch.see(state, place);

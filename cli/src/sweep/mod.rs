@@ -31,6 +31,7 @@ use crate::json::Json;
 use crate::mechanism::Mechanism;
 use crate::method;
 use crate::number::grouped;
+use crate::outputs;
 use crate::robot::RobotOptions;
 use crate::simulate::inputs::{self, Inputs};
 use crate::simulate::plan::Spacing;
@@ -184,6 +185,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::usage("FILE, --vary, --until and --out are needed"));
     };
     stepping.check()?;
+    let plot = arguments.plot.as_deref();
+    outputs::svg("--plot", plot)?;
+    outputs::apart(
+        [("--plot", plot)],
+        [
+            Some(file.as_path()),
+            arguments.at.as_deref(),
+            arguments.inputs.inputs.as_deref(),
+        ],
+    )?;
     let source = Source::open(file, &arguments.robot)?.in_numbers();
     if arguments.submit.is_some() && source.is_stdin() {
         return Err(Failure::usage(
@@ -423,9 +434,14 @@ fn operations(generated: &Generated) -> Vec<(String, String)> {
 /// What was done now, and what had been done before.
 fn summary(out: &Path, done: Done, before: u64) -> String {
     let mut text = format!(
-        "{}: {} members computed, {} of them failed",
+        "{}: {} {} computed, {} of them failed",
         out.display(),
         grouped(done.members),
+        if done.members == 1 {
+            "member"
+        } else {
+            "members"
+        },
         grouped(done.failed)
     );
     if before > 0 {

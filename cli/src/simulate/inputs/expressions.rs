@@ -5,6 +5,7 @@
 use super::place;
 use crate::failure::Failure;
 use crate::names::{self, TIME};
+use hamel_codegen::algebra::graph::Node;
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::model::layout::entry_names;
@@ -24,6 +25,8 @@ pub struct Expressions {
     params: Vec<f64>,
     /// Whether the time stands first among what they take: where the description has no other use for its name.
     timed: bool,
+    /// The first that mentions a velocity or a state of first order.
+    moving: Option<String>,
 }
 
 impl Expressions {
@@ -34,6 +37,9 @@ impl Expressions {
         }
         let entries: Vec<String> = model.inputs.iter().flat_map(names::group).collect();
         let (known, timed) = known(model);
+        let groups = model.velocities.iter().chain(&model.states);
+        let moving: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
+        let mut first = None;
         let mut all: Vec<(Vec<usize>, Interpreter)> = Vec::new();
         for text in asked {
             let wrong = |why: String| Failure::usage(format!("--input \"{text}\": {why}"));
@@ -56,8 +62,15 @@ impl Expressions {
                 Some(ShapeKind::Vector(n)) => format!(": vec{n}"),
                 _ => String::new(),
             };
-            let (interpreter, count) = compiled(&known, &shape, expression)
+            let Compiled {
+                interpreter,
+                count,
+                mentions,
+            } = compiled(&known, &shape, expression)
                 .map_err(|why| wrong(why.replace("hamel_input", name)))?;
+            if mentions.iter().any(|one| moving.contains(&one.as_str())) {
+                first = first.or_else(|| Some(name.to_string()));
+            }
             if count != places.len() {
                 let numbers = |count: usize| match count {
                     1 => "a number".into(),
@@ -72,6 +85,7 @@ impl Expressions {
             all,
             params: params.to_vec(),
             timed,
+            moving: first,
         }))
     }
 
@@ -80,6 +94,11 @@ impl Expressions {
         self.all
             .iter()
             .flat_map(|(places, _)| places.iter().copied())
+    }
+
+    /// The first input that depends on velocities or on states of first order.
+    pub fn moving(&self) -> Option<&str> {
+        self.moving.as_deref()
     }
 
     /// The parameters have other values from now on.
@@ -108,7 +127,9 @@ pub fn constant(expression: &str, model: &Model, params: &[f64]) -> Result<Vec<f
     if known.is_empty() {
         known.push("hamel_t".into());
     }
-    let (interpreter, count) = compiled(&known, "", expression)?;
+    let Compiled {
+        interpreter, count, ..
+    } = compiled(&known, "", expression)?;
     let given = match params {
         [] => &[0.0],
         params => params,
@@ -149,12 +170,17 @@ fn known(model: &Model) -> (Vec<String>, bool) {
     (all, timed)
 }
 
-/// An expression as the output of a description, and how many numbers it is.
-fn compiled(
-    known: &[String],
-    shape: &str,
-    expression: &str,
-) -> Result<(Interpreter, usize), String> {
+/// An expression that can be evaluated.
+struct Compiled {
+    interpreter: Interpreter,
+    /// How many numbers it is.
+    count: usize,
+    /// What its value depends on.
+    mentions: Vec<String>,
+}
+
+/// An expression as the output of a description.
+fn compiled(known: &[String], shape: &str, expression: &str) -> Result<Compiled, String> {
     if expression.contains(';') {
         return Err("one expression is needed".into());
     }
@@ -178,10 +204,21 @@ fn compiled(
         .iter()
         .find(|function| function.id.is_none());
     match function {
-        Some(function) => Ok((
-            Interpreter::new(program, function, &[]),
-            function.outputs.len(),
-        )),
+        Some(function) => {
+            let graph = &program.graph;
+            let reached = graph.reachable(&function.outputs).into_iter();
+            let mentions = reached.filter_map(|id| match graph.node(id) {
+                Node::Symbol(symbol) => graph.symbols().get(symbol as usize),
+                _ => None,
+            });
+            // `w[1]` is an entry of `w`.
+            let mentions = mentions.filter_map(|symbol| symbol.name.split('[').next());
+            Ok(Compiled {
+                interpreter: Interpreter::new(program, function, &[]),
+                count: function.outputs.len(),
+                mentions: mentions.map(String::from).collect(),
+            })
+        }
         None => Err("one expression is needed".into()),
     }
 }

@@ -143,7 +143,8 @@ fn rows(path: &Path) -> Result<(Vec<String>, Vec<Row>), String> {
                 len,
             } => {
                 let line = pos.as_ref().map_or(0, csv::Position::line);
-                format!("line {line}: {len} columns, the header has {expected_len}")
+                let plural = if *len == 1 { "" } else { "s" };
+                format!("line {line}: {len} column{plural}, the header has {expected_len}")
             }
             _ => error.to_string(),
         })?;

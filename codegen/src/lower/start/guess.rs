@@ -2,7 +2,7 @@
 
 use super::Start;
 use crate::algebra::graph::{Edge, Graph};
-use crate::diagnostics::{Diagnostic, Report, rough};
+use crate::diagnostics::{Diagnostic, Report};
 use crate::lower::declare::Declared;
 use crate::lower::rate::Kinematics;
 use crate::lower::reader::Dynamics;
