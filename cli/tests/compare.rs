@@ -128,7 +128,7 @@ fn mistakes_are_named() {
             "no state at t = 0.123; it has",
         ),
         (vec![&top, "--reference", &top], "not valid JSON"),
-        (vec![&top, "--steps", "0"], "0 is not in"),
+        (vec![&top, "--steps", "0"], "a whole number from 1"),
         (vec!["missing.eom"], "cannot read missing.eom"),
     ] {
         let output = compare(&arguments);

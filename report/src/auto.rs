@@ -75,6 +75,7 @@ pub fn verdict(report: &Report) -> Option<String> {
     let beyond = judged.iter().filter(|(_, ratio)| *ratio > BAR);
     let beyond: Vec<&str> = beyond.map(|(case, _)| case.name.as_str()).collect();
     let _ = match beyond[..] {
+        [] if judged.is_empty() => Ok(()),
         [] => write!(text, " It is never more than {BAR} times slower."),
         _ => write!(
             text,

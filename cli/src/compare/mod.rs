@@ -32,6 +32,8 @@ use std::path::{Path, PathBuf};
 const UNTIL: f64 = 10.0;
 /// Numbers of steps where --steps is left out.
 const STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
+/// The largest of them.
+const MOST: u64 = 100_000_000;
 /// Errors that steps may make, for methods that can choose them.
 const TOLERANCES: [f64; 8] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11];
 /// Timings of each run, and how long each takes at least (s).
@@ -68,7 +70,7 @@ pub struct Arguments {
     #[arg(long, value_name = "T", value_parser = super::simulate::positive, allow_negative_numbers = true)]
     until: Option<f64>,
     /// Numbers of steps.
-    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = number_of_steps, allow_negative_numbers = true)]
     steps: Vec<u64>,
     /// A reference solution.
     #[arg(long, value_name = "SOLUTION.json")]
@@ -113,6 +115,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     for file in &arguments.files {
         let case = compare(file, arguments, solution.as_ref())?;
+        if case.methods.is_empty() {
+            let missing = case.missing.iter();
+            let why: String = missing
+                .map(|missing| format!("\n  {}: {}", missing.method, missing.why))
+                .collect();
+            return Err(Failure::failed(format!(
+                "{}: none of the methods that are asked for fits, so that there is nothing to compare{why}",
+                file.display()
+            )));
+        }
         let taken = report
             .cases
             .iter()
@@ -318,6 +330,13 @@ fn title(name: &str, docs: &[String]) -> String {
         Some(line) if !line.trim().is_empty() => format!("{name}: {}", line.trim()),
         _ => name.to_string(),
     }
+}
+
+/// A number of steps of a run.
+fn number_of_steps(text: &str) -> Result<u64, String> {
+    let number = text.trim().parse::<u64>().ok();
+    let number = number.filter(|number| (1..=MOST).contains(number));
+    number.ok_or_else(|| format!("a whole number from 1 to {MOST} is needed"))
 }
 
 /// The time of the end, which a reference has to list.

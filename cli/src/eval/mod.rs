@@ -35,11 +35,12 @@ const MOST_SHOWN: usize = 64;
 /// follows, loops are closed and constraints kept by the rest. Where the numbers contradict exact starts of
 /// the text, those give way that the loops and constraints tie to them, to the nearest values; a state that
 /// contradicts loops or constraints by itself is refused.
+/// Of a list of samples, as `hamel simulate --out` writes it to a .json file, the last is taken.
 /// Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk.
 ///
 /// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3, "root_joint": {"position": […],
 /// "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […], "angular": […]}},
-/// "force": […]}, angles in rad, forces by joint or in the order of the rows. Then `velocities` names
+/// "param": {…}, "force": […]}, angles in rad, forces by joint or in the order of the rows. Then `velocities` names
 /// each row by its joint, `bias` is Γ ξ ξ + ∂V, gravity in it, and `accel` is M⁻¹ (force − bias): force is
 /// all of the generalised force, friction in it. `force`, and a list {"samples": […]} of such states, are
 /// for `eval` alone.

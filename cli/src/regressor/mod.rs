@@ -14,7 +14,7 @@ use hamel_codegen::proof::regressor::prove;
 use hamel_codegen::tables::regressor::{BaseParameters, json, latex, markdown, text};
 use std::path::PathBuf;
 
-/// Prints the base parameters: what of all masses, centres of mass and inertias can be told from forces and motion.
+/// Prints the base parameters: which inertial parameters forces can identify, alone or in combinations.
 ///
 /// Inverse dynamics is linear in m, h = m s and Theta (about the frame's origin) of every link, and in armatures,
 /// damping and stiffness of joints: F = Y(x, xi, xi_dot) beta. A link is all that moves rigidly together, in the frame

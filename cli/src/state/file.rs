@@ -1,6 +1,7 @@
 //! A file that gives a state, in either of its forms: by coordinates, or by joints.
 
 use super::sample::{Sample, is_sample};
+use super::samples;
 use super::strict;
 use super::values::State;
 use super::written::plainly;
@@ -67,9 +68,10 @@ impl File {
         source: &Source,
         generated: &Generated,
     ) -> Result<State, Failure> {
-        let state = match self.is_by_joints() {
-            true => self.by_joints(start, source, generated),
-            false => start.changed(generated, &source.text, &self.json),
+        let state = match (self.is_by_joints(), &self.json) {
+            (true, _) => self.by_joints(start, source, generated),
+            (false, Value::Array(list)) => samples::last(start, list, (generated, &source.text)),
+            (false, _) => start.changed(generated, &source.text, &self.json),
         };
         state.map_err(|errors| Failure::usages(&self.path, &errors))
     }

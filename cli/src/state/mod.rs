@@ -1,7 +1,7 @@
 //! The numbers of a state: the description's own, changed by what a JSON file says.
 //!
 //! `{"param": {…}, "coord": {…}, "velocity": {…}, "state": {…}, "input": {…}}`, all optional, or, by joints,
-//! `{"configuration": {…}, "velocity": {…}}`. Every mistake is reported with its path in the file, all at
+//! `{"configuration": {…}, "velocity": {…}, "param": {…}}`; or a list of samples, of which the last counts. Every mistake is reported with its path in the file, all at
 //! once. What a file does not give is completed as the
 //! start of a description is, so that loops are closed and constraints on velocities are kept; what it
 //! gives is kept, and refused where it contradicts them.
@@ -12,6 +12,7 @@ mod given;
 pub mod joints;
 mod read;
 pub mod sample;
+mod samples;
 pub mod solved;
 pub mod strict;
 #[cfg(test)]

@@ -239,7 +239,7 @@ impl Reader {
     }
 
     /// Numbers of a declared shape, in the order of its symbols.
-    fn shape(&mut self, at: &str, value: &Value, shape: ShapeKind) -> Option<Vec<f64>> {
+    pub(super) fn shape(&mut self, at: &str, value: &Value, shape: ShapeKind) -> Option<Vec<f64>> {
         match shape {
             ShapeKind::Scalar => self.number(at, value).map(|number| vec![number]),
             ShapeKind::Vector(n) => self.vector(at, value, n),

@@ -8,7 +8,7 @@ use hamel_codegen::model::Model;
 use serde_json::{Map, Value};
 
 /// What a sample can have, and what is read of it.
-const READ: [&str; 3] = ["configuration", "velocity", "force"];
+const READ: [&str; 4] = ["configuration", "velocity", "force", "param"];
 /// Results that stand beside them in files of reference values.
 const RESULTS: [&str; 6] = [
     "mass_matrix",
@@ -93,6 +93,18 @@ impl Reader {
             .chain([ORDER])
             .collect();
         self.known("", parts, &known);
+        let groups = model.params.iter();
+        let groups: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
+        if let Some(given) = self.part(parts, "param", &groups) {
+            for group in &model.params {
+                let at = format!("param.{}", group.name);
+                if let Some(value) = given.get(&group.name)
+                    && let Some(values) = self.shape(&at, value, group.shape)
+                {
+                    put(&mut sample.state.params, group.offset, &values);
+                }
+            }
+        }
         let names: Vec<&str> = all.iter().map(|joint| joint.name.as_str()).collect();
         let x = &mut sample.state.x;
         if let Some(given) = self.part(parts, "configuration", &names) {

@@ -492,7 +492,7 @@ class System:
         ----------
         until : length of the run (s).
         method : one of `hamel simulate --help`; `"auto"` takes what fits the system.
-        step : length of a step (s); `tol`: the error that a step may make, where steps are chosen by it.
+        step : length of a step (s); `tol`: the permitted error per step, where steps are chosen by it.
         rate : the rate at which the method `rk4` leads back to the constraint (1/s).
         every : a sample after so many steps; `spacing`: at multiples of this time (s); `times`: at these times (s), (k,). One of
             the three, or none for some thousand samples at most.
