@@ -5,8 +5,8 @@ use super::motion::TimeDerivative;
 use super::rate::At;
 use super::variety::Variety;
 use super::{
-    dynamics, externals, invariants, joints, kinematics, negative, pfaffian, prescribe, start,
-    states, staying, strange, time, unused,
+    corners, dynamics, externals, invariants, joints, kinematics, negative, pfaffian, prescribe,
+    start, states, staying, strange, time, unused,
 };
 use crate::algebra::graph::Graph;
 use crate::diagnostics::{Diagnostic, Report};
@@ -80,8 +80,10 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
                 let strange = strange::warnings(described, &model);
+                let corners = corners::warnings(described, &model);
                 model.warnings = unused::warnings(described, &(&names.used | used));
                 model.warnings.extend(strange);
+                model.warnings.extend(corners);
                 let negative = negative::warnings(system, &model);
                 model.warnings.extend(negative);
                 return Ok(model);

@@ -14,6 +14,7 @@ mod build;
 mod choice;
 mod completion;
 mod component;
+mod corners;
 mod curve;
 mod curves;
 mod declare;

@@ -1,0 +1,81 @@
+//! Motions over time with corners, as a table has them that is `linear` between its points: the speed jumps there, and
+//! what would be an impulse is in no acceleration.
+//!
+//! Such a description is legal, as what is prescribed is continuous, so these are warnings.
+
+use crate::algebra::derivation::Derivation;
+use crate::algebra::graph::{Edge, NodeId};
+use crate::algebra::text::short;
+use crate::diagnostics::Diagnostic;
+use crate::lower::declare::size;
+use crate::model::{Model, class};
+use crate::syntax::ast::{ItemKind, Span, System};
+use crate::syntax::written::target as written;
+
+/// Longer expressions are not shown.
+const LONGEST: usize = 40;
+
+/// A warning for every coordinate and frame whose speed was not found to be continuous in time, in the order of the
+/// text.
+pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
+    let Some(clock) = model.clock else {
+        return Vec::new();
+    };
+    let time = model.x[clock.x].node();
+    let one = |(what, edges, span): (String, Vec<Edge>, Span)| {
+        let place = corner(model, &edges, time)?;
+        let message =
+            format!("the speed of {what} jumps{place}, and the impulse there is left out");
+        Some(Diagnostic::new(span, message).help(
+            "let the slopes be equal on both sides: a table without corners is `pchip`, not `linear`",
+        ))
+    };
+    let moved = system.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Prescribe {
+            target,
+            rate: false,
+            value,
+        } => {
+            let coordinate = model.coordinates.iter();
+            let mut coordinate = coordinate.filter(|c| c.name == target.name.name);
+            let (first, len) = coordinate.next().map(|c| (c.offset, size(c.kind)))?;
+            let places = match target.place(len) {
+                Some(place) => first + place..first + place + 1,
+                None => first..first + len,
+            };
+            let given = model.prescribed.iter();
+            let given = given.filter(|(place, _)| places.contains(place));
+            let given = given.map(|(_, edge)| *edge).collect();
+            Some((format!("`{}`", written(target)), given, value.span))
+        }
+        ItemKind::Frame { name, pose, .. } => {
+            let frame = model.frames.iter().find(|frame| frame.name == name.name)?;
+            let (rotation, position) = frame.relative;
+            let entries = rotation.into_iter().flatten().chain(position).collect();
+            Some((format!("frame `{}`", name.name), entries, pose.span))
+        }
+        _ => None,
+    });
+    moved.filter_map(one).collect()
+}
+
+/// Where the rates of expressions along time may jump, in words; none where they do not.
+fn corner(model: &Model, edges: &[Edge], time: NodeId) -> Option<String> {
+    let reached = model.graph.reachable(edges);
+    let chosen = reached
+        .iter()
+        .any(|&id| model.graph.chosen_by(id).is_some());
+    if !chosen || !reached.contains(&time) {
+        return None;
+    }
+    let mut graph = model.graph.clone();
+    let mut along = Derivation::new([(time, graph.one())]);
+    let rates: Vec<Edge> = edges
+        .iter()
+        .map(|&edge| along.of(&mut graph, edge))
+        .collect();
+    let free = |symbol: NodeId| graph.class(symbol) != class::COORD || symbol == time;
+    let by = graph.jump(&rates, class::PARAM, &free)?;
+    let place = short(&graph, by, LONGEST).map(|by| format!(" where {by} = 0"));
+    Some(place.unwrap_or_default())
+}
