@@ -1,5 +1,6 @@
 //! Forces, torques, wrenches and generalised forces.
 
+use super::rate::entry;
 use super::reader::Reader;
 use crate::algebra::graph::Edge;
 use crate::algebra::linear::{
@@ -127,10 +128,12 @@ impl Reader<'_, '_> {
         let force = self.evaluator.value(value)?;
         let mut groups = self.declared.velocities.iter();
         let group = groups.find(|group| group.name == target.name.name)?;
-        if target.field.is_some() || !force.same_shape(&group.value) {
+        let range = group.offset..group.offset + group.len;
+        let (range, wanted) = entry(target, range, group.value.clone());
+        if target.field.is_some() || !force.same_shape(&wanted) {
             return self.evaluator.miss();
         }
         self.no_acceleration(&force, value.span, "a generalized force")?;
-        Some((group.offset, force.entries()))
+        Some((range.start, force.entries()))
     }
 }

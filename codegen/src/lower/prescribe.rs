@@ -8,7 +8,7 @@
 
 use super::declare::Declared;
 use super::expression::Evaluator;
-use super::rate::{Kinematics, part};
+use super::rate::{Kinematics, entry, part};
 use super::scope::Scope;
 use super::time;
 use super::variety::{Origin, Variety};
@@ -45,9 +45,7 @@ pub fn read(
         else {
             continue;
         };
-        let first = targets
-            .iter()
-            .find(|other| other.name.name == target.name.name);
+        let first = targets.iter().find(|other| other.overlaps(target));
         if let Some(first) = first {
             let message = format!("the motion of `{}` is prescribed twice", written(target));
             let error = Diagnostic::new(target.span(), message).help("remove one of the two");
@@ -86,7 +84,9 @@ impl Reader<'_> {
         let velocity = self.declared.velocities.iter().find(|g| g.name == *name);
         let group = velocity.filter(|_| target.field.is_none())?;
         let value = value?;
-        if !value.same_shape(&group.value) {
+        let range = group.offset..group.offset + group.len;
+        let (range, wanted) = entry(target, range, group.value.clone());
+        if !value.same_shape(&wanted) {
             return self.evaluator.miss();
         }
         let graph = &*self.evaluator.graph;
@@ -105,7 +105,7 @@ impl Reader<'_> {
             entries
                 .into_iter()
                 .enumerate()
-                .map(|(i, e)| (group.offset + i, e)),
+                .map(|(i, e)| (range.start + i, e)),
         );
         Some(())
     }
@@ -116,7 +116,11 @@ impl Reader<'_> {
         let name = &target.name.name;
         let velocity = self.declared.velocities.iter().find(|g| g.name == *name);
         let (place, wanted, coordinate) = match velocity {
-            Some(group) if target.field.is_none() => (group.offset, group.value.clone(), None),
+            Some(group) if target.field.is_none() => {
+                let range = group.offset..group.offset + group.len;
+                let (range, wanted) = entry(target, range, group.value.clone());
+                (range.start, wanted, None)
+            }
             _ => {
                 let (range, wanted) = part(target, self.declared)?;
                 let mut coordinates = self.declared.coordinates.iter();
@@ -170,7 +174,8 @@ impl Reader<'_> {
             coordinate.kind,
             CoordKind::Real | CoordKind::Euclidean(_) | CoordKind::S1
         );
-        if !plain || target.field.is_some() {
+        let of_angle = coordinate.kind == CoordKind::S1 && !target.entry.is_empty();
+        if !plain || of_angle || target.field.is_some() {
             return self.evaluator.error(
                 error.help("prescribe its velocity, or let the pose of a frame depend on time"),
             );
@@ -182,12 +187,14 @@ impl Reader<'_> {
             },
         );
         let free = &self.variety.points.free;
-        let first = self.variety.points.first + coordinate.offset;
+        let first = self.variety.points.first;
+        let (given, _) = part(target, self.declared)?;
+        let given = first + given.start..first + given.end;
         let tied = statements.find(|(_, row)| {
             let reached = free.reachable(&[*row]);
             reached
                 .iter()
-                .any(|&id| matches!(free.node(id), Node::Symbol(index) if index as usize == first))
+                .any(|&id| matches!(free.node(id), Node::Symbol(index) if given.contains(&(index as usize))))
         });
         match tied {
             Some((item, _)) => {

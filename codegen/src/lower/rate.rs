@@ -8,6 +8,7 @@ use crate::model::completion::Completion;
 use crate::model::value::Value;
 use crate::shapes::{rate_help, velocity_for};
 use crate::syntax::ast::{CoordKind, Expr, Target};
+use std::ops::Range;
 
 /// ẋ and A.
 pub struct Kinematics {
@@ -41,21 +42,36 @@ impl At<'_> {
 }
 
 /// The entries of x that a target names, and its value.
-pub fn part(target: &Target, declared: &Declared) -> Option<(std::ops::Range<usize>, Value)> {
+pub fn part(target: &Target, declared: &Declared) -> Option<(Range<usize>, Value)> {
     let name = &target.name;
     let mut coordinates = declared.coordinates.iter();
     let coordinate = coordinates.find(|c| c.name == name.name)?;
     let entries = &declared.x[coordinate.offset..coordinate.offset + size(coordinate.kind)];
     let at = |from: usize, len: usize| coordinate.offset + from..coordinate.offset + from + len;
     let field = target.field.as_ref().map(|field| field.name.as_str());
-    Some(match (field, coordinate.kind) {
+    let (range, value) = match (field, coordinate.kind) {
         (None, kind) => (at(0, entries.len()), coordinate_value(kind, entries)),
         (Some("p"), CoordKind::SE3) => (at(0, 3), Value::Vector(entries[..3].to_vec())),
         (Some("R"), CoordKind::SE3) => (at(3, 9), coordinate_value(CoordKind::SO3, &entries[3..])),
         (Some("c"), CoordKind::S1) => (at(0, 1), Value::Scalar(entries[0])),
         (Some("s"), CoordKind::S1) => (at(1, 1), Value::Scalar(entries[1])),
         _ => return None,
-    })
+    };
+    Some(entry(target, range, value))
+}
+
+/// What a target names of a vector in these places: all of it or an entry.
+pub fn entry(target: &Target, range: Range<usize>, value: Value) -> (Range<usize>, Value) {
+    match &value {
+        Value::Vector(entries) => match target.place(entries.len()) {
+            Some(place) => {
+                let first = range.start + place;
+                (first..first + 1, Value::Scalar(entries[place]))
+            }
+            None => (range, value),
+        },
+        _ => (range, value),
+    }
 }
 
 /// How the rate of a coordinate is written, with the name of the velocity that probably moves it.

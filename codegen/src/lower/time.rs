@@ -71,6 +71,7 @@ fn written(time: &Ident) -> [ItemKind; 4] {
     let target = |name: &Ident| Target {
         name: name.clone(),
         field: None,
+        entry: Vec::new(),
     };
     let expr = |kind: ExprKind| Expr { kind, span };
     let kind = ShapeKind::Scalar;

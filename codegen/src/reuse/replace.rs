@@ -140,9 +140,26 @@ impl Visit for Replacing<'_, '_> {
                 target.name.name = found;
                 target.field = None;
             }
-            (Ok(Some((_, taken))), _) => {
-                let error = no_more(&path, taken, whole.span);
-                self.report.push_once(error);
+            (Ok(Some((found, taken))), _) => {
+                let (field, list) = match &path[taken..] {
+                    [Step::Index(list)] => (None, list),
+                    [Step::Name(field), Step::Index(list)] => (Some(field), list),
+                    _ => {
+                        let error = no_more(&path, taken, whole.span);
+                        return self.report.push_once(error);
+                    }
+                };
+                match self.world.indices(list, self.context) {
+                    Ok(indices) => {
+                        target.entry = indices;
+                        target.name.name = found;
+                        target.field = field.map(|field| Ident {
+                            name: field.clone(),
+                            span: whole.span,
+                        });
+                    }
+                    Err(error) => self.report.push_once(error),
+                }
             }
             (Err(error), _) => self.report.push_once(error),
         }
@@ -181,7 +198,7 @@ fn no_more(path: &[Step], taken: usize, span: Span) -> Diagnostic {
         )
         .help("parts that components make have names of their own: `left.knee`"),
         _ => Diagnostic::new(span, format!("`{name}` is no array"))
-            .help("an array is declared with its index, as in `frame link[0] = world;`; a vector is given whole, as in `generalized force w = [a, b, c];`"),
+            .help("an array is declared with its index, as in `frame link[0] = world;`"),
     }
 }
 

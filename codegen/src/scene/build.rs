@@ -438,10 +438,12 @@ fn target(text: &str) -> Target {
         Some((name, field)) if !field.contains('[') => Target {
             name: ident(name),
             field: Some(ident(field)),
+            entry: Vec::new(),
         },
         _ => Target {
             name: ident(text),
             field: None,
+            entry: Vec::new(),
         },
     }
 }

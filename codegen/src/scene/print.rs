@@ -274,10 +274,7 @@ fn coordinate((name, of): &(Ident, CoordKind)) -> String {
 }
 
 fn part(target: &Target) -> String {
-    match &target.field {
-        Some(field) => format!("{}.{}", target.name.name, field.name),
-        None => target.name.name.clone(),
-    }
+    crate::syntax::written::target(target)
 }
 
 fn word(name: &Ident) -> String {

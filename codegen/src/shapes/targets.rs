@@ -11,12 +11,12 @@ use crate::syntax::ast::{
 use crate::syntax::written;
 
 impl<'a> Inference<'a> {
-    /// The shape of a velocity or state, which is given as a whole by statements that begin so.
+    /// The shape of a velocity or state, or of an entry of it; fields have none of those that statements begin so for.
     fn whole(&mut self, target: &Target, begins: &str) -> Option<Shape> {
         let name = &target.name.name;
         let shape = self.named(name)?.shape;
         let Some(field) = &target.field else {
-            return Some(shape);
+            return self.entry(target, shape);
         };
         let message = format!("`{name}` has no part `.{}`", field.name);
         let error = Diagnostic::new(field.span, message);
@@ -26,21 +26,78 @@ impl<'a> Inference<'a> {
     /// The shape of a coordinate, or of a part of it.
     fn part(&mut self, target: &Target, kind: CoordKind) -> Option<Shape> {
         let shape = self.named(&target.name.name)?.shape;
-        let Some(field) = &target.field else {
-            return Some(shape);
+        let field = target.field.as_ref();
+        let shape = match (field.map(|field| field.name.as_str()), kind) {
+            (None, _) => shape,
+            (Some("p"), CoordKind::SE3) => Shape::Vector(3),
+            (Some("R"), CoordKind::SE3) => Shape::TURN,
+            (Some("c" | "s"), CoordKind::S1) => Shape::Scalar,
+            (Some(_), _) => return self.error(no_part(&target.name, field?, kind)),
         };
-        match (field.name.as_str(), kind) {
-            ("p", CoordKind::SE3) => Some(Shape::Vector(3)),
-            ("R", CoordKind::SE3) => Some(Shape::TURN),
-            ("c" | "s", CoordKind::S1) => Some(Shape::Scalar),
-            _ => self.error(no_part(&target.name, field, kind)),
+        let help = match (kind, shape) {
+            _ if target.entry.is_empty() => return Some(shape),
+            (CoordKind::S1, Shape::Vector(_)) => "give the angle, as in `start q = 0.3;`",
+            (CoordKind::S3, _) => "give a unit quaternion, scalar first",
+            (_, Shape::Matrix(..)) => {
+                "give all of the rotation, by `rotx(angle)`, `rpy(…)`, `axis_angle(…)`"
+            }
+            _ => return self.entry(target, shape),
+        };
+        let message = format!(
+            "`{}` is tied to the other entries, it is not given alone",
+            written::target(target)
+        );
+        self.error(Diagnostic::new(target.span(), message).help(help))
+    }
+
+    /// The shape of what a target names of a vector: all of it or an entry.
+    fn entry(&mut self, target: &Target, whole: Shape) -> Option<Shape> {
+        let length = match (target.entry.as_slice(), whole) {
+            ([], _) => return Some(whole),
+            ([_], Shape::Vector(length)) => length,
+            _ => {
+                let name = written::target(&Target {
+                    entry: Vec::new(),
+                    ..target.clone()
+                });
+                let message = format!("`{name}` is {}, it has no such entry", whole.describe());
+                let help = match whole {
+                    Shape::Vector(_) => format!("an entry is written `{name}[1]`"),
+                    _ => format!("write `{name}` alone"),
+                };
+                return self.error(Diagnostic::new(target.span(), message).help(help));
+            }
+        };
+        if target.place(length).is_some() {
+            return Some(Shape::Scalar);
         }
+        let message = format!(
+            "index {} is out of range, {} has {length} entries",
+            target.entry[0],
+            whole.describe()
+        );
+        self.error(Diagnostic::new(target.span(), message).help("indices start at 1"))
+    }
+
+    /// Rates are given of all entries at once.
+    fn all_entries(&mut self, target: &Target) -> Option<()> {
+        if target.entry.is_empty() {
+            return Some(());
+        }
+        let name = written::target(&Target {
+            entry: Vec::new(),
+            ..target.clone()
+        });
+        let message = format!("the rate of `{name}` is given as a whole");
+        let help = format!("write its entries in one statement, as in `rate {name} = [a, b, c];`");
+        self.error(Diagnostic::new(target.span(), message).help(help))
     }
 
     /// `rate q = …;` of a coordinate or a state.
     pub fn rate_of(&mut self, system: &System, target: &Target, value: &'a Expr) -> Option<()> {
         let found = self.of(value);
         let name = &target.name.name;
+        self.all_entries(target)?;
         let kind = match self.symbols.kind(name)? {
             Kind::Coord(kind) => kind,
             Kind::State => {
@@ -108,16 +165,23 @@ impl<'a> Inference<'a> {
         let what = |what: &str| format!("the {what} of `{}`", written::target(target));
         match self.symbols.kind(name)? {
             Kind::Velocity if target.field.is_none() => {
-                let wanted = self.named(name)?.shape;
+                let wanted = self.whole(target, "prescribe")?;
                 let what = what(if rate { "rate" } else { "motion" });
                 self.agree(value, &what, wanted, found?.shape)
             }
             Kind::Coord(kind) if !rate => {
-                let wanted = self.part(target, kind)?;
+                let given = match kind {
+                    CoordKind::Real | CoordKind::Euclidean(_) => target.clone(),
+                    _ => Target {
+                        entry: Vec::new(),
+                        ..target.clone()
+                    },
+                };
+                let wanted = self.part(&given, kind)?;
                 let found = found?.shape;
                 match kind {
                     // What else has no values that can be given is refused as a whole.
-                    _ if target.field.is_some() => Some(()),
+                    _ if target.field.is_some() || given != *target => Some(()),
                     CoordKind::S1 if found == Shape::Scalar => Some(()),
                     CoordKind::S1 => self.wrong(value.span, &what("motion"), "an angle", found),
                     CoordKind::Real | CoordKind::Euclidean(_) => {
@@ -137,7 +201,7 @@ impl<'a> Inference<'a> {
             return None;
         }
         let wanted = self.whole(target, "generalized force")?;
-        let what = format!("the generalized force of `{}`", target.name.name);
+        let what = format!("the generalized force of `{}`", written::target(target));
         self.agree(value, &what, wanted, found?.shape)
     }
 

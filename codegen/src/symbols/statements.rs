@@ -10,6 +10,7 @@ use crate::syntax::ast::{
     Declaration, Expr, ExprKind, Ident, Item, ItemKind, Source, Span, System, Target, Wanted,
 };
 use crate::syntax::suggest::closest;
+use crate::syntax::written;
 
 /// Looks up the names in all statements; the errors follow.
 pub fn read<'a>(system: &'a System, symbols: Symbols<'a>) -> (Resolved<'a>, Vec<Diagnostic>) {
@@ -218,11 +219,7 @@ fn prescribed(target: &Target, of_velocity: bool, checker: &mut Checker) {
     match symbol.map(|symbol| (symbol.kind, symbol.span)) {
         Some((Kind::Velocity, _)) if target.field.is_none() => {}
         _ if of_velocity => {
-            let written = match &target.field {
-                Some(field) => format!("{name}.{}", field.name),
-                None => name.clone(),
-            };
-            let message = format!("`{written}` is no velocity");
+            let message = format!("`{}` is no velocity", written::target(target));
             checker.error(
                 Diagnostic::new(target.span(), message)
                     .help("the rate of a velocity is given: `prescribe rate(v) = a;`"),

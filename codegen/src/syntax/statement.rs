@@ -244,8 +244,13 @@ fn target(cursor: &mut Cursor<'_>, of: &str) -> Parsed<Target> {
                 name: field.to_owned(),
                 span: last,
             }),
+            entry: Vec::new(),
         },
-        _ => Target { name, field: None },
+        _ => Target {
+            name,
+            field: None,
+            entry: Vec::new(),
+        },
     })
 }
 

@@ -47,12 +47,18 @@ pub fn written(expr: &Expr) -> String {
     }
 }
 
-/// What a statement is about, as it is written: `X.p`.
+/// What a statement is about, as it is written: `X.p`, `w[3]`.
 pub fn target(target: &Target) -> String {
-    match &target.field {
-        Some(field) => format!("{}.{}", target.name.name, field.name),
-        None => target.name.name.clone(),
+    let mut text = target.name.name.clone();
+    if let Some(field) = &target.field {
+        text.push('.');
+        text.push_str(&field.name);
     }
+    if !target.entry.is_empty() {
+        let indices: Vec<String> = target.entry.iter().map(i64::to_string).collect();
+        text.push_str(&format!("[{}]", indices.join(", ")));
+    }
+    text
 }
 
 /// An equation as it is written: `a = b`.

@@ -60,9 +60,9 @@ impl Writer<'_> {
     }
 
     fn rate(&mut self, ending: &str, value: Expr) {
-        let (name, field) = (self.ident(ending), None);
+        let name = self.ident(ending);
         self.push(ItemKind::Rate {
-            target: Target { name, field },
+            target: whole(name),
             value,
         });
     }
@@ -285,10 +285,10 @@ impl Writer<'_> {
             });
         }
         if let Some((span, value)) = force {
-            let (name, field) = (self.ident("_dot"), None);
+            let name = self.ident("_dot");
             let name = Ident { span, ..name };
             self.push(ItemKind::Generalized {
-                target: Target { name, field },
+                target: whole(name),
                 value,
             });
         }
@@ -307,5 +307,14 @@ impl Writer<'_> {
             JointKind::Universal => vec![self.name("_1_dot"), self.name("_2_dot")],
             _ => vec![whole],
         }
+    }
+}
+
+/// What a statement about all of something is about.
+fn whole(name: Ident) -> Target {
+    Target {
+        name,
+        field: None,
+        entry: Vec::new(),
     }
 }

@@ -31,7 +31,7 @@ pub fn check(system: &System, declared: &Declared, report: &mut Report) {
         if !velocity && !declared.coordinates.iter().any(|c| c.name == name) {
             continue;
         }
-        if let Some((why, help, place)) = fixed(system, name, velocity) {
+        if let Some((why, help, place)) = fixed(system, target, velocity) {
             let message = format!(
                 "there is nothing to guess about `{}`: {why}",
                 written(target)
@@ -48,7 +48,8 @@ pub fn check(system: &System, declared: &Declared, report: &mut Report) {
 /// Why a coordinate or velocity is not solved for, what to do, and where that is said.
 type Fixed = (String, String, Option<(Span, &'static str)>);
 
-fn fixed(system: &System, name: &str, velocity: bool) -> Option<Fixed> {
+fn fixed(system: &System, guess: &Target, velocity: bool) -> Option<Fixed> {
+    let name = guess.name.name.as_str();
     if time::name(system).is_some_and(|time| time.name == name) {
         let help = format!("write `start {name} = …;`");
         return Some(("it is the time".into(), help, None));
@@ -60,7 +61,7 @@ fn fixed(system: &System, name: &str, velocity: bool) -> Option<Fixed> {
                 target,
                 rate: false,
                 ..
-            } if target.name.name == name => {
+            } if target.overlaps(guess) => {
                 let place = Some((target.span(), "prescribed here"));
                 let help = "remove the guess: its start follows from its motion";
                 return Some(("its motion is prescribed".into(), help.into(), place));

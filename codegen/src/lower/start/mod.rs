@@ -8,7 +8,7 @@ use crate::algebra::numeric::evaluate;
 use crate::diagnostics::{Diagnostic, Report, rough};
 use crate::lower::declare::Declared;
 use crate::lower::expression::Evaluator;
-use crate::lower::rate::part;
+use crate::lower::rate::{entry, part};
 use crate::lower::scope::Scope;
 use crate::lower::states::States;
 use crate::model::class;
@@ -300,10 +300,8 @@ fn place(target: &Target, declared: &Declared) -> Option<(std::ops::Range<usize>
         return Some((range, wanted, true));
     };
     let range = group.offset..group.offset + group.len;
-    target
-        .field
-        .is_none()
-        .then(|| (range, group.value.clone(), false))
+    let (range, value) = entry(target, range, group.value.clone());
+    target.field.is_none().then_some((range, value, false))
 }
 
 impl Declared {
