@@ -12,7 +12,7 @@ use crate::model::charts::all_tangents;
 use crate::program::{FunctionId, Program};
 
 /// Compares at fresh points of X, those of the velocities that constraints leave; the rates ẋ themselves have been
-/// proved. Where drives leave no such point nothing is said.
+/// proved. Where there is no such point nothing is said. Not for systems with prescribed coordinates.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     let outputs = |id| Some(&program.function(id)?.outputs);
     let functions = (outputs(FunctionId::Rate), outputs(FunctionId::ChartRate));
