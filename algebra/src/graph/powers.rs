@@ -20,7 +20,7 @@ pub(crate) struct Power {
 impl Graph {
     /// A product as such a power; of a factor |v| of s there may be v beside the root.
     pub(crate) fn half_integer_power(&self, id: NodeId) -> Option<Power> {
-        let factors = self.factors(Edge::of(id))?;
+        let factors = self.whole_factors(Edge::of(id))?;
         (0..factors.len()).find_map(|place| {
             let root = factors[place];
             let Node::Apply(Function::Sqrt, square) = self.node(root.node()) else {
@@ -29,7 +29,7 @@ impl Graph {
             let mut rest = factors.clone();
             rest.remove(place);
             let (mut base, mut constants) = (Vec::new(), Vec::new());
-            for factor in self.factors(square)? {
+            for factor in self.whole_factors(square)? {
                 if self.is_free(factor.node()) {
                     constants.push(factor);
                     continue;
@@ -59,7 +59,7 @@ impl Graph {
     }
 
     /// The factors of a product, the sign of an edge with one of them; `None` where there are too many.
-    fn factors(&self, edge: Edge) -> Option<Vec<Edge>> {
+    fn whole_factors(&self, edge: Edge) -> Option<Vec<Edge>> {
         let (mut factors, mut stack) = (Vec::new(), vec![edge]);
         while let Some(edge) = stack.pop() {
             match self.node(edge.node()) {

@@ -59,6 +59,13 @@ impl Reader {
             .for_each(|(place, value)| *place = Some(*value));
     }
 
+    /// An entry of z, which stands behind ξ.
+    pub(super) fn put_z(&mut self, xi: &mut [f64], place: usize, value: f64) {
+        let n = xi.len() - self.given.z.len();
+        xi[n + place] = value;
+        self.given.z[place] = true;
+    }
+
     /// A whole file.
     pub fn state(&mut self, json: &Value, generated: &Generated, state: &mut State) {
         let model = &generated.active;

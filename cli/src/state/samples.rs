@@ -1,5 +1,6 @@
 //! The last of the samples that `hamel simulate --out` writes as JSON, as a state.
 
+use super::given::places;
 use super::read::{Reader, kind};
 use super::values::State;
 use crate::names;
@@ -15,7 +16,7 @@ pub fn last(
     (generated, text): (&Generated, &str),
 ) -> Result<State, Vec<String>> {
     let model = &generated.active;
-    let mut state = start;
+    let mut state = start.clone();
     let mut reader = Reader::new(generated, text);
     let place = format!("[{}]", list.len().saturating_sub(1));
     let sample = match list.last() {
@@ -48,13 +49,14 @@ pub fn last(
             reader.put_x(&mut state.x, place, &[value]);
         }
     }
+    let places = places(generated);
     for (place, value) in xi.into_iter().enumerate() {
-        match value {
-            Some(value) if place < model.n() => reader.put_xi(&mut state.xi, place, &[value]),
-            Some(value) => state.xi[place] = value,
-            None => {}
+        match (value, places.get(place)) {
+            (Some(value), Some(&full)) if place < model.n() => reader.put_xi(full, &[value]),
+            (Some(value), _) => reader.put_z(&mut state.xi, place - model.n(), value),
+            (None, _) => {}
         }
     }
-    reader.finish(generated, &mut state)?;
+    reader.finish(generated, &mut state, &start)?;
     Ok(state)
 }
