@@ -81,6 +81,9 @@ fn read_rate(
     rates: &mut [Option<Rate>],
     system: &System,
 ) -> Option<()> {
+    if !target.entry.is_empty() {
+        return evaluator.miss();
+    }
     let found = part(target, declared);
     let value_of = evaluator.value(value);
     let (range, wanted) = found?;
