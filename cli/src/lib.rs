@@ -41,6 +41,7 @@ mod columns;
 mod command;
 mod compare;
 mod constants;
+mod divided;
 #[cfg(feature = "command")]
 mod draw;
 pub mod drawing;

@@ -1,11 +1,13 @@
 //! Singular states in the names of the description: which velocity has no inertia.
 
+use crate::divided::Divisors;
 use crate::failure::Failure;
 use crate::mechanism::Instance;
 use crate::names;
 use crate::number::short;
 use crate::state::solved::shown;
 use hamel::{Singular, StepError, System};
+use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::program::Cause;
 use nalgebra::DMatrix;
@@ -83,6 +85,16 @@ pub fn at(mass: &DMatrix<f64>, names: &[String]) -> String {
     of_mass(mass, names).unwrap_or_else(|| CONFIGURATION.into())
 }
 
+/// The same of a description with parameters: what was divided by 0 comes first.
+pub fn of(generated: &Generated, params: &[f64], mass: &DMatrix<f64>, text: &str) -> String {
+    let divisors = Divisors::of(generated, text);
+    let divided = divisors.as_ref().and_then(|all| all.zero(params));
+    match divided {
+        Some(divided) => divided.to_owned(),
+        None => at(mass, &labels(&generated.active, text)),
+    }
+}
+
 /// The first row whose inertia, with the rows before it eliminated, is not positive, else the one that keeps
 /// the least part of its inertia; with that part.
 fn weakest(mass: &DMatrix<f64>) -> Option<(usize, f64)> {
@@ -131,6 +143,9 @@ impl Instance {
 
     /// What is said of a failure of ξ̇, of a projection or of a change to velocities.
     pub fn singular(&self, cause: Singular) -> String {
+        if let Some(divided) = self.divided() {
+            return divided.to_owned();
+        }
         if let Singular::Kinematics { .. } = cause {
             return CONFIGURATION.into();
         }
@@ -164,6 +179,9 @@ impl Instance {
 
     /// What is said of a state where ξ̇ has no value.
     pub fn at(&self, x: &[f64]) -> String {
+        if let Some(divided) = self.divided() {
+            return divided.to_owned();
+        }
         at(&self.mass(x), self.velocity_labels())
     }
 

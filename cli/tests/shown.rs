@@ -98,6 +98,36 @@ fn a_velocity_without_inertia_is_named() {
     assert!(errors.contains(named), "{errors}");
 }
 
+/// A velocity that a constraint gives by others, divided by a parameter.
+const ROLLING: &str = "system Rolling {
+    param L2 = 0.5;
+    coord x, p; velocity u, w; rate x = u; rate p = w;
+    kinetic u^2 / 2 + w^2 / 2;
+    nonholonomic L2 * w = u * sin(x);
+    start x = 1, u = 1;
+}";
+
+#[test]
+fn constraints_that_are_divided_by_0_are_named() {
+    let scratch = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let file = scratch.join("rolling.eom").display().to_string();
+    std::fs::write(&file, ROLLING).expect("scratch");
+    let named = "the constraint on line 5, `L2 * w = u * sin(x)`, gives `w` by others, and its factor `L2` is 0";
+    for arguments in [
+        &["eval", &file, "--at", "-"][..],
+        &["linearize", &file, "--at", "-"],
+        &["simulate", &file, "--until", "1", "--at", "-"],
+        &["compare", &file, "--until", "1", "--at", "-"],
+    ] {
+        let output = hamel(arguments, r#"{"param": {"L2": 0}}"#);
+        let errors = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {errors}");
+        assert!(errors.contains(named), "{arguments:?}: {errors}");
+    }
+    let output = hamel(&["simulate", &file, "--until", "1"], "");
+    assert!(output.status.success());
+}
+
 #[test]
 fn parameters_that_leave_no_inertia_name_the_velocity() {
     let state = r#"{"param": {"J2": 0}}"#;

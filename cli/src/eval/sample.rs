@@ -146,7 +146,7 @@ fn members((generated, text): (&Generated, &str), sample: &Sample) -> Result<Mem
     let mut missing = Vec::new();
     // Where there is no such function, that was said before.
     if accel.value.is_none() && generated.program.function(FunctionId::Accel).is_some() {
-        let why = singular::at(&mass, &singular::labels(model, text));
+        let why = singular::of(generated, &state.params, &mass, text);
         missing.push(format!("{why}: `accel` has no value"));
     }
     let infinite = members.iter().filter(|(_, value)| !finite(value));

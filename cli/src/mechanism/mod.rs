@@ -8,6 +8,7 @@ mod taped;
 mod varied;
 mod whole;
 
+use crate::divided::Divisors;
 use crate::failure::Failure;
 use crate::simulate::inputs::Inputs;
 use crate::singular::{self, Failed};
@@ -55,6 +56,8 @@ pub struct Mechanism {
     velocity_labels: Vec<String>,
     /// What is said where constraints depend on one another.
     dependent: String,
+    /// What constraints were divided by.
+    divisors: Option<Divisors>,
     constrained: bool,
     /// Whether energy changes otherwise than by loads: with the time, or by drives.
     driven: bool,
@@ -73,6 +76,8 @@ pub struct Instance {
     before: Cell<f64>,
     evaluations: Cell<u64>,
     constant_singular: bool,
+    /// What is said of a constraint that was divided by 0.
+    divided: Option<String>,
     /// What had no value last.
     failed: RefCell<Option<Failed>>,
 }
@@ -135,6 +140,7 @@ impl Mechanism {
             momenta: Momenta::new(program, &compiled),
             velocity_labels: singular::labels(&generated.active, text),
             dependent: singular::dependent(&generated.active, text),
+            divisors: Divisors::of(generated, text),
             constrained: model.is_constrained(),
             driven: model.clock.is_some() || !model.accelerated.is_empty(),
             compiled,
@@ -157,7 +163,10 @@ impl Instance {
     /// A mechanism with the parameters, start and constant inputs of a state.
     pub fn of(mechanism: &Arc<Mechanism>, state: &State) -> Result<Self, Failure> {
         let functions = Functions::new(&mechanism.compiled, &state.params);
+        let divisors = mechanism.divisors.as_ref();
+        let divided = divisors.and_then(|all| all.zero(&state.params));
         Ok(Instance {
+            divided: divided.map(str::to_owned),
             rotors: mechanism.momenta.rotors(&functions)?,
             constant_singular: functions.are_singular(),
             of: Arc::clone(mechanism),
@@ -189,6 +198,11 @@ impl Instance {
     /// Whether a mass matrix that is constant in time is not positive definite with these parameters.
     pub fn constant_singular(&self) -> bool {
         self.constant_singular
+    }
+
+    /// What is said of a constraint that was solved by dividing by 0, where one was.
+    pub fn divided(&self) -> Option<&str> {
+        self.divided.as_deref()
     }
 
     /// Whether there are constraints on the velocities.

@@ -1,0 +1,55 @@
+//! Constraints that were solved by dividing by parameters: which of them has a factor that is 0.
+
+use crate::names;
+use crate::state::solved::shown;
+use hamel_codegen::algebra::graph::{Edge, Graph};
+use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::algebra::text::short;
+use hamel_codegen::generate::Generated;
+
+/// Longer factors are not shown.
+const LONGEST: usize = 40;
+
+/// The factors that are made of parameters, and what is said where one is 0.
+pub struct Divisors {
+    graph: Graph,
+    factors: Vec<(Edge, String)>,
+}
+
+impl Divisors {
+    /// Those of a description; its text is for messages.
+    pub fn of(generated: &Generated, text: &str) -> Option<Self> {
+        let model = &generated.model;
+        let names = names::velocities(model);
+        let factor = |&(velocity, row): &(usize, usize)| {
+            let constraint = model.constraints.get(row)?;
+            let edge = *constraint.row.get(velocity)?;
+            // A number is not 0, or another one took its place.
+            if model.graph.class(edge.node()) == 0 {
+                return None;
+            }
+            let (row, name) = (shown(constraint, text), names.get(velocity)?);
+            let factor = short(&model.graph, edge, LONGEST);
+            let factor = factor.map_or(String::new(), |factor| format!(" `{factor}`"));
+            let said = format!("{row}, gives `{name}` by others, and its factor{factor} is 0");
+            Some((edge, said))
+        };
+        let factors: Vec<(Edge, String)> = generated.solved.iter().filter_map(factor).collect();
+        (!factors.is_empty()).then(|| Divisors {
+            graph: model.graph.clone(),
+            factors,
+        })
+    }
+
+    /// What is said of the first factor that is 0 with parameters, if one is.
+    pub fn zero(&self, params: &[f64]) -> Option<&str> {
+        let mut numbers = vec![std::f64::consts::PI];
+        numbers.extend_from_slice(params);
+        numbers.resize(self.graph.symbols().len(), f64::NAN);
+        let edges: Vec<Edge> = self.factors.iter().map(|(edge, _)| *edge).collect();
+        let values = evaluate(&self.graph, &edges, &numbers);
+        let mut all = values.iter().zip(&self.factors);
+        let (_, (_, said)) = all.find(|(value, _)| **value == 0.0)?;
+        Some(said)
+    }
+}
