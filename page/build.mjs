@@ -6,6 +6,7 @@ import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
+import subsetFont from "subset-font";
 // Not what the package exports, which has no choice of contexts.
 import { Encoder } from "./node_modules/lzma1/lib/encoder.js";
 import { MODES } from "./node_modules/lzma1/lib/lzma.js";
@@ -37,6 +38,13 @@ async function bundled(entry) {
   return result.outputFiles[0].text;
 }
 
+const from = (first, last) => String.fromCodePoint(...Array.from({ length: last - first + 1 }, (_, i) => first + i));
+
+// What formulas of the generator are set in: letters, digits and signs of ASCII, Greek, operators, accents; brackets and roots of
+// every size, with the pieces that large ones are made of.
+const letters = from(0x20, 0x7e) + from(0x391, 0x3f6) + "·×÷±¬°−∓∂∇∑∏√∞≈≡≠≤≥∈∘…⋯⋮⋱′⟨⟩∣∥⌊⌋⌈⌉→⊤⊥¨¯´`ˆ˙˜ˇ˘⃗\u00a0ıȷ";
+const brackets = "()[]{}⟨⟩⌊⌋⌈⌉∣∥⏐∑∏∫√\ue000\ue001" + from(0x239b, 0x23ad);
+
 // The style sheet of KaTeX with the fonts that formulas of the generator need, and the page's own.
 async function style() {
   const katex = dirname(createRequire(import.meta.url).resolve("katex/dist/katex.min.css"));
@@ -45,7 +53,8 @@ async function style() {
   const faces = [...css.matchAll(/@font-face\{[^}]*\}/g)].map((match) => match[0]);
   for (const face of faces) {
     const file = /url\((fonts\/[^)]*\.woff2)\)/.exec(face)[1];
-    const font = needed.test(file) ? await readFile(join(katex, file)) : null;
+    const signs = file.includes("Size") ? brackets : letters;
+    const font = needed.test(file) ? await subsetFont(await readFile(join(katex, file)), signs, { targetFormat: "woff2" }) : null;
     const inline = font && face.replace(/src:[^}]*/, `src:url(data:font/woff2;base64,${font.toString("base64")}) format("woff2")`);
     css = css.replace(face, inline ?? "");
   }

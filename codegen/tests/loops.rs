@@ -7,12 +7,9 @@ use hamel_codegen::generate::Generated;
 
 /// ξ̇ at the start.
 fn accel(of: &Generated) -> Vec<f64> {
-    let inputs = vec![0.0; of.model.u.len()];
-    value(
-        of,
-        "accel",
-        [&of.model.start_x, &of.model.start_xi, &inputs, &[]],
-    )
+    let model = &of.active;
+    let inputs = vec![0.0; model.u.len()];
+    value(of, "accel", [&model.start_x, &model.start_xi, &inputs, &[]])
 }
 
 fn close(found: f64, expected: f64) {

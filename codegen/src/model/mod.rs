@@ -5,6 +5,7 @@ pub mod assembly;
 pub mod charts;
 pub mod closest;
 pub mod closure;
+pub mod complete;
 pub mod completion;
 mod edges;
 pub mod elements;

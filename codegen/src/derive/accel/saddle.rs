@@ -56,9 +56,12 @@ pub struct Factored {
 }
 
 /// Where rows of B depend on one another along the whole motion, S is singular: its diagonal is raised by a small part of
-/// itself that rounding does not hide (`Function::Raised`), summed over the rows of one equation, since a single row may
-/// vanish on the way; two steps of refinement take the error of that away.
+/// itself that rounding does not hide (`Function::Raised`), and two steps of refinement take the error of that away.
 const REFINED: usize = 2;
+
+/// Since a single row may vanish on the way, the diagonal is raised by the same part of a share of the sum over all rows of
+/// its equation, too.
+const SHARE: i64 = 16;
 
 /// For each row the rows whose diagonal of S raises its own: those of a loop between vectors; all loops between numbers; a
 /// row of another kind by itself. `more` rows of given rates stand behind the constraints.
@@ -109,14 +112,18 @@ pub fn factored(
     }
     let mut raised = schur.clone();
     for (i, rows) in raising.unwrap_or(&[]).iter().enumerate() {
-        let sum: Vec<Edge> = rows.iter().map(|&j| schur[j][j]).collect();
-        let sum = graph.sum(&sum);
-        let more = graph.apply(Function::Raised, sum);
+        let own = schur[i][i];
         raised[i][i] = match rows.len() {
-            1 => more,
+            1 => graph.apply(Function::Raised, own),
             _ => {
-                let more = graph.sub(more, sum);
-                graph.add(schur[i][i], more)
+                let all: Vec<Edge> = rows.iter().map(|&j| schur[j][j]).collect();
+                let share = graph.ratio(1, SHARE);
+                let all = graph.sum(&all);
+                let all = graph.mul(share, all);
+                let size = graph.add(own, all);
+                let more = graph.apply(Function::Raised, size);
+                let more = graph.sub(more, size);
+                graph.add(own, more)
             }
         };
     }
@@ -321,8 +328,13 @@ pub fn solve_at(
         .function(Function::Raised, Fp::ONE, &Vec::new());
     let mut raised = schur.clone();
     for (i, rows) in raising.iter().enumerate() {
-        let sum = rows.iter().fold(Fp::ZERO, |sum, &j| sum + schur[j * m + j]);
-        raised[i * m + i] = raised[i * m + i] + sum * factor - sum;
+        let own = schur[i * m + i];
+        let all = rows.iter().fold(Fp::ZERO, |sum, &j| sum + schur[j * m + j]);
+        let size = match rows.len() {
+            1 => own,
+            _ => own + all * Fp::from_i64(SHARE).inv()?,
+        };
+        raised[i * m + i] = own + size * factor - size;
     }
     let mut multipliers = vec![Fp::ZERO; m];
     for _ in 0..=REFINED {

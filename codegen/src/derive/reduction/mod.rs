@@ -20,7 +20,7 @@ use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::{Model, Whole};
 use crate::syntax::ast::Span;
 use carrier::Carrier;
-use rows::{independent, keep};
+use rows::{independent, keep, redundant, start_numbers};
 use std::sync::Arc;
 
 /// A factor is no pivot where another one of its row or its velocity is so many times larger at the start: what is
@@ -340,28 +340,4 @@ fn contradicting(constraints: &[Pfaffian], row: usize) -> Diagnostic {
         Some((_, other)) => error.note(other.span, "one of the others"),
         None => error,
     }
-}
-
-fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
-    let error = Diagnostic::new(
-        constraints[row].span,
-        format!("this constraint is redundant{when}: it follows from the others"),
-    )
-    .help("remove it; its multiplier would have no value");
-    match constraints.iter().enumerate().find(|(i, _)| *i != row) {
-        Some((_, other)) => error.note(other.span, "one of the others"),
-        None => error,
-    }
-}
-
-fn start_numbers(model: &Model) -> Vec<f64> {
-    let (m, n) = (model.u.len(), model.n());
-    let zeros = vec![0.0; n];
-    model.numbers(
-        &model.defaults,
-        &model.start_x,
-        &model.start_xi,
-        &vec![0.0; m],
-        &zeros,
-    )
 }

@@ -1,12 +1,11 @@
 //! Which rows that were not solved are kept: all but those of loops that say nothing new.
 
-use super::{redundant, start_numbers};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::Edge;
 use crate::algebra::numeric::{evaluate, rank};
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
-use crate::model::pfaffian::Kind;
+use crate::model::pfaffian::{Kind, Pfaffian};
 
 /// Rows whose part across those before is smaller than this, relative to the largest, are redundant.
 const REDUNDANT: f64 = 1e-8;
@@ -157,4 +156,30 @@ pub fn independent(mut left: Vec<Vec<f64>>) -> Vec<usize> {
         project(&mut left, row);
         left[row].fill(0.0);
     }
+}
+
+/// The error of a row that follows from the others.
+pub fn redundant(constraints: &[Pfaffian], row: usize, when: &str) -> Diagnostic {
+    let error = Diagnostic::new(
+        constraints[row].span,
+        format!("this constraint is redundant{when}: it follows from the others"),
+    )
+    .help("remove it; its multiplier would have no value");
+    match constraints.iter().enumerate().find(|(i, _)| *i != row) {
+        Some((_, other)) => error.note(other.span, "one of the others"),
+        None => error,
+    }
+}
+
+/// The numbers of all symbols at the start.
+pub fn start_numbers(model: &Model) -> Vec<f64> {
+    let (m, n) = (model.u.len(), model.n());
+    let zeros = vec![0.0; n];
+    model.numbers(
+        &model.defaults,
+        &model.start_x,
+        &model.start_xi,
+        &vec![0.0; m],
+        &zeros,
+    )
 }
