@@ -61,7 +61,7 @@ const REFINED: usize = 2;
 
 /// Since a single row may vanish on the way, the diagonal is raised by the same part of a share of the sum over all rows of
 /// its equation, too.
-const SHARE: i64 = 16;
+const SHARE: i64 = 1024;
 
 /// For each row the rows whose diagonal of S raises its own: those of a loop between vectors; all loops between numbers; a
 /// row of another kind by itself. `more` rows of given rates stand behind the constraints.

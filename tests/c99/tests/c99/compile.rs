@@ -134,10 +134,11 @@ fn wrong(status: i64, values: &[f64], expected: &Expected, precision: Precision)
     };
     let largest = |list: &[f64]| list.iter().fold(1.0, |most: f64, v| most.max(v.abs()));
     let scale = largest(wanted);
-    // Where the interpreter is off, another order of the same operations is, too.
+    // Where the interpreter is off, another order of the same operations is, too. What `raised` leaves after two steps of
+    // refinement is (2^11)^3 = 8.6e9 times larger in `float`; rounding comes on top.
     let [rounding, slope, error] = match precision {
         Precision::Double => [1e-13, 1e-7, 8.0],
-        Precision::Float => [1e-5, 100.0, 1e10],
+        Precision::Float => [1e-5, 100.0, 2e10],
     };
     let allowed = rounding * scale + slope * expected.doubt + error * expected.error;
     let apart = distance(wanted, values);
