@@ -9,7 +9,9 @@ import subprocess
 import sys
 import tomllib
 
-TOOLS: dict[str, tuple[str, str]] = {}
+TOOLS: dict[str, tuple[str, str]] = {
+    "argparse": ("Python-2.0", "permissive; of the program that cuts fonts to the signs that are needed, while the page is built"),
+}
 
 
 def permitted(expression: str, allowed: set[str]) -> bool:
