@@ -1,7 +1,11 @@
 //! One description as C, with a function that calls all functions at a few states and prints what they give.
 
 use crate::common::Random;
+use hamel_codegen::algebra::graph::Function::Raised;
+use hamel_codegen::algebra::numbers::{Numbers, Step};
+use hamel_codegen::algebra::numeric::Floats;
 use hamel_codegen::algebra::rounding::{Rounded, rounded};
+use hamel_codegen::algebra::walk::evaluate;
 use hamel_codegen::builder::written_in_c;
 use hamel_codegen::emit::c::Precision;
 use hamel_codegen::generate::Generated;
@@ -38,6 +42,8 @@ pub struct Case {
 pub struct Expected {
     pub what: String,
     pub value: Result<Vec<f64>, i64>,
+    /// The values with what `raised` is in `float`.
+    pub single: Vec<f64>,
     /// How much rounding of the arguments to `float` changes the values.
     pub doubt: f64,
     /// The error of the values in `f64`, by those in twice the length.
@@ -130,6 +136,7 @@ impl Case {
         let exact = |what: &str, value: &[f64]| Expected {
             what: format!("{}: {what}", self.name()),
             value: Ok(value.to_vec()),
+            single: value.to_vec(),
             doubt: 0.0,
             error: 0.0,
             narrow: false,
@@ -149,10 +156,12 @@ impl Case {
             for (function, interpreter) in program.functions.iter().zip(&functions) {
                 let (value, doubt) = interpreted(program, function, interpreter, state);
                 let what = format!("{}: {} at state {number}", self.name(), function.name);
-                let (error, narrow) = rounding(program, function, &params, state);
+                let numbers = numbers(program, &params, state);
+                let (error, narrow) = rounding(program, function, &numbers);
                 all.push(Expected {
                     what,
                     value,
+                    single: single(program, function, &numbers),
                     doubt,
                     error,
                     narrow,
@@ -269,21 +278,44 @@ fn interpreted(
     (value.map_err(status), doubt)
 }
 
-/// What rounding makes of a function at a state.
-fn rounding(
-    program: &Program,
-    function: &Function,
-    params: &[f64],
-    [x, xi, u, xi_dot, p]: &State,
-) -> (f64, bool) {
+/// The values of all symbols.
+fn numbers(program: &Program, params: &[f64], [x, xi, u, xi_dot, p]: &State) -> Vec<f64> {
     let (xi, z) = xi.split_at(program.n);
     let xi_dot = &xi_dot[..program.n];
-    let numbers = [&[std::f64::consts::PI], params, x, xi, u, z, xi_dot, p].concat();
+    [&[std::f64::consts::PI], params, x, xi, u, z, xi_dot, p].concat()
+}
+
+/// Numbers in `f64`, with what `raised` is in `float`.
+struct Single<'a>(Floats<'a>);
+
+impl Numbers for Single<'_> {
+    type Number = f64;
+
+    fn make(&mut self, step: Step<f64>) -> Option<f64> {
+        match step {
+            Step::Apply(Raised, a, _) => Some(a * (1.0 + 1.0 / f64::from(1 << 15))),
+            step => self.0.make(step),
+        }
+    }
+
+    fn is_positive(&self, a: &f64) -> Option<bool> {
+        self.0.is_positive(a)
+    }
+}
+
+/// What a function gives where `raised` is that of `float`.
+fn single(program: &Program, function: &Function, numbers: &[f64]) -> Vec<f64> {
+    let numbers = &mut Single(Floats(numbers));
+    evaluate(&program.graph, &function.outputs, numbers).expect("numbers")
+}
+
+/// What rounding makes of a function at a state.
+fn rounding(program: &Program, function: &Function, numbers: &[f64]) -> (f64, bool) {
     let (outputs, guards) = (&function.outputs, &function.guards);
     let values = rounded(
         &program.graph,
         &[outputs.as_slice(), guards].concat(),
-        &numbers,
+        numbers,
     );
     let (outputs, guards) = values.split_at(outputs.len());
     let error = outputs
