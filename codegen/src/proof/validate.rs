@@ -23,7 +23,7 @@ use super::points::{Unequal, at_fresh_points};
 use super::slopes::Slopes;
 use super::splitting::Proof;
 use super::states;
-use super::verdict::{NOWHERE, failure};
+use super::verdict::{failure, nowhere};
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
@@ -40,7 +40,10 @@ const MOST_EXPLAINED: usize = 8;
 /// Validates the functions of a program; an error here is a fault of the generator, never emitted. It
 /// names the identities of the symbols that are broken too, so that the fault is found.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
-    compared(model, program).map_err(|what| {
+    compared(model, program).map_err(|unequal| {
+        let Unequal::Differs(what) = unequal else {
+            return nowhere(model);
+        };
         let mut broken = vec![what];
         if model.n() <= MOST_EXPLAINED
             && let Some(symbols) = Symbols::new(model)
@@ -53,10 +56,12 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
 }
 
 /// The first comparison that fails, at the first point at which one does.
-pub(super) fn compared(model: &Model, program: &Program) -> Result<(), String> {
-    let numbers = Numbers::new(model).ok_or("Y A = I")?;
-    let emitted = Emitted::new(model, program).ok_or("that numbers have values")?;
-    let slopes = Slopes::new(model, program).ok_or("Y A = I")?;
+pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<String>> {
+    let without = |what: &str| Unequal::Differs(what.to_string());
+    let numbers = Numbers::new(model).ok_or_else(|| without("Y A = I"))?;
+    let emitted =
+        Emitted::new(model, program).ok_or_else(|| without("that numbers have values"))?;
+    let slopes = Slopes::new(model, program).ok_or_else(|| without("Y A = I"))?;
     let splitting = Proof::new(model, program);
     let at_point = |lane: &Lane| -> Option<Result<(), String>> {
         let values = match numbers.at(lane)? {
@@ -76,10 +81,6 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), String> {
         |number| model.points.lane(0x7a11 + number),
         |lane, _| at_point(lane),
     )
-    .map_err(|unequal| match unequal {
-        Unequal::Differs(what) => what,
-        Unequal::Nowhere => NOWHERE.into(),
-    })
 }
 
 /// The functions that are compared with the forms, to be evaluated together.

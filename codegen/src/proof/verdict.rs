@@ -36,30 +36,31 @@ pub(super) struct Sides {
     pub(super) right: Vec<Edge>,
 }
 
-/// What does not hold where no point was found.
-pub(super) const NOWHERE: &str = "that the equations have values at some points";
-
-/// What is said of it.
-const MISSING: &str = "no random point was found at which all functions have values";
-
 /// A fault of the generator, which is never emitted.
 pub(super) fn failure(model: &Model, what: &str) -> Diagnostic {
+    fault(
+        model,
+        &format!("{what} was not confirmed"),
+        &format!("{what} does not hold"),
+    )
+}
+
+/// There was nowhere to compare.
+pub(super) fn nowhere(model: &Model) -> Diagnostic {
+    let why = "no random point was found at which all functions have values";
+    fault(model, why, why)
+}
+
+/// Why nothing is emitted: where roots stand within roots, or else by a fault.
+fn fault(model: &Model, unproved: &str, wrong: &str) -> Diagnostic {
     if model.points.roots == Roots::Anything {
-        let why = match what.starts_with(NOWHERE) {
-            true => MISSING.into(),
-            false => format!("{what} was not confirmed"),
-        };
-        let message = format!("`{}` could not be proved: {why}", model.name);
+        let message = format!("`{}` could not be proved: {unproved}", model.name);
         let help = "roots within roots have no values in the fields of the proof: let a parameter or a coordinate stand for the inner one";
         return Diagnostic::new(model.span, message).help(help);
     }
-    let why = match what.starts_with(NOWHERE) {
-        true => MISSING.into(),
-        false => format!("{what} does not hold"),
-    };
     Diagnostic::new(
         model.span,
-        format!("internal check failed for `{}`: {why}", model.name),
+        format!("internal check failed for `{}`: {wrong}", model.name),
     )
     .help("this is a fault of the generator, nothing was emitted; please report the description")
     .about_proof()

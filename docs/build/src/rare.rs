@@ -130,13 +130,13 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "proof/verdict.rs",
-        "could not be proved: {why}",
+        "could not be proved: {unproved}",
         "`…` could not be proved: … was not confirmed",
         "roots stand within roots: let a parameter or a coordinate stand for the inner one",
     ),
     (
         "proof/verdict.rs",
-        "internal check failed for `{}`: {why}",
+        "internal check failed for `{}`: {wrong}",
         "internal check failed for `…`: … does not hold",
         "a fault of the generator, found before anything was written: please report it with the description",
     ),

@@ -1,7 +1,7 @@
 //! One point at which a system with constraints is compared: numbers of the full frame, its power, its
 //! slopes.
 
-use super::Full;
+use super::frame::Full;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
@@ -161,7 +161,11 @@ impl<'a> At<'a> {
     /// Whether d/dt (T + V) = f ξ, which holds where B ξ + b = 0. Drives take part, and with time the row of ξ⁰, by
     /// the power that it would need: −∂L/∂t, and that of prescribed motion.
     pub(super) fn power(&self) -> Option<bool> {
-        let Some(xi_dot) = self.program.xi_dot() else {
+        let Some(xi_dot) = self
+            .program
+            .xi_dot()
+            .filter(|_| self.full.power_is_known(self.program))
+        else {
             return Some(true);
         };
         let values = self.values()?;
@@ -180,14 +184,8 @@ impl<'a> At<'a> {
             Some(force) => {
                 evaluate_at(&self.program.graph, &force.outputs, &mut self.inner.clone())?
             }
-            None if self.full.rows.is_empty() && full.accelerated.is_empty() => Vec::new(),
-            // Without the forces of the drives nothing is known of their power.
-            None => return Some(true),
+            None => Vec::new(),
         };
-        if self.full.reduced.overconstrained {
-            // Nor is it where the forces of loops are not unique.
-            return Some(true);
-        }
         let rows = evaluate_at(&full.graph, &self.full.rows, &mut self.point.clone())?;
         let drives = lambda.get(rows.len() / n..).unwrap_or(&[]);
         for ((velocity, _), &force) in full.accelerated.iter().zip(drives) {

@@ -1,0 +1,236 @@
+//! The full frame, before constraints act: M, Γ ξ ξ, ∂V, f, T and V, which reduced systems are compared with, follow from the
+//! rules that the generator derives by. Here they are compared with the three forms (30a), (30b), (30c) in numbers, which
+//! share none of these rules.
+
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::numeric::evaluate_at;
+use crate::algebra::transplant::{substitute, substitute_under_roots};
+use crate::derive::accel::saddle;
+use crate::derive::calculus::Calculus;
+use crate::derive::reduction::{Reduction, drift};
+use crate::model::{Model, class};
+use crate::program::{FunctionId, Program};
+use crate::proof::kernel::places;
+use crate::proof::numbers::Numbers;
+use crate::proof::points::{Unequal, at_fresh_points};
+use crate::proof::reference::Reference;
+use num_rational::BigRational;
+
+/// Everything of the full frame that is compared with.
+pub(super) struct Full {
+    pub(super) reference: Reference,
+    /// Whether it agrees with the three forms in numbers, where that is known.
+    pub(super) frame: Option<bool>,
+    /// Ċ ξₐ + ċ.
+    pub(super) drift: Vec<Edge>,
+    /// C by rows, then c.
+    pub(super) complement: Vec<Edge>,
+    /// B, all rows.
+    pub(super) rows: Vec<Edge>,
+    /// d/dt (T + V) at ξ̇ = 0.
+    pub(super) change: Edge,
+    /// The symbols of velocities that were solved away, with what gives them.
+    pub(super) solved: Vec<(usize, Edge)>,
+    /// The forms that they have as arguments of functions, in the reduced graph: values and coefficients.
+    pub(super) forms: Vec<Vec<(Edge, BigRational)>>,
+    /// Kept rows in ξₐ and their right sides, in the reduced graph.
+    pub(super) reduced: Model,
+    pub(super) right: Vec<Edge>,
+}
+
+impl Full {
+    pub(super) fn new(model: &Model, reduction: &Reduction) -> Option<Self> {
+        let full = Model {
+            graph: reduction.graph.clone(),
+            ..model.clone()
+        };
+        let mut reference = Reference::new(&full)?;
+        let frame = agrees(model, &reference);
+        let full = &mut reference.model;
+        let xi: Vec<Edge> = reduction.active.iter().map(|&i| full.xi[i]).collect();
+        let drift = drift(full, &xi, &reduction.section);
+        let section = &reduction.section;
+        let lifted = [section.complement.concat(), section.shift.clone()].concat();
+        let mut calculus = Calculus::new(full);
+        let energy = full.graph.add(reference.kinetic, reference.potential);
+        let change = calculus.rate(&mut full.graph, energy);
+        let place = places(&full.graph, class::VELOCITY);
+        let solved = reduction.solved.iter();
+        let solved: Vec<(usize, Edge)> = solved
+            .map(|&(_, i)| {
+                let moved = full.graph.dot(&section.complement[i], &xi);
+                (place[i], full.graph.add(moved, section.shift[i]))
+            })
+            .collect();
+        let mut reduced = reduction.model.clone();
+        let forms = solved.iter().map(|(symbol, _)| {
+            let image = reduction.images[*symbol];
+            let form = reduced.graph.form(Function::Exp, image);
+            let edges = form.into_iter().map(|(atom, c)| (Edge::of(atom), c));
+            edges.collect()
+        });
+        let forms = forms.collect();
+        let mut calculus = Calculus::new(&reduced);
+        let right = saddle::right_side(&mut reduced, &mut calculus);
+        let mut full = Full {
+            drift,
+            complement: lifted,
+            rows: model
+                .constraints
+                .iter()
+                .flat_map(|c| c.row.clone())
+                .collect(),
+            change,
+            solved,
+            forms,
+            reduced,
+            right,
+            reference,
+            frame,
+        };
+        full.prescribe();
+        Some(full)
+    }
+
+    /// Whether the forces of drives are known, which take part in d/dt (T + V): not where they are not emitted, nor where
+    /// the forces of loops are not unique.
+    pub(super) fn power_is_known(&self, program: &Program) -> bool {
+        let model = &self.reference.model;
+        let driven = model.clock.is_some() || !model.accelerated.is_empty();
+        let forces = program.function(FunctionId::ConstraintForce).is_some()
+            || self.rows.is_empty() && model.accelerated.is_empty();
+        program.xi_dot().is_some() && (!driven || forces && !self.reduced.overconstrained)
+    }
+
+    /// Puts prescribed coordinates and ξ⁰ = 1 in, now that all derivatives are taken: at a point, sin q of a symbol q
+    /// and sin f of a sum f with the same value would differ. So would the roots of v² + 1 and of (4/9) u² + 1 where
+    /// 3 v = 2 u, by their sign: under roots, velocities that were solved away are put in as well.
+    fn prescribe(&mut self) {
+        let reference = &mut self.reference;
+        let model = &mut reference.model;
+        let (set, graph) = (given(model), &mut model.graph);
+        let solved = self.solved.iter_mut();
+        solved.for_each(|(_, edge)| *edge = substitute(graph, &[*edge], &set)[0]);
+        let put = |graph: &mut Graph, edges: &[Edge]| {
+            let edges = substitute(graph, edges, &set);
+            substitute_under_roots(graph, &edges, &self.solved)
+        };
+        let rows = [&mut reference.mass, &mut model.a];
+        let rows = rows.into_iter().flatten();
+        let lists = [
+            &mut reference.bias,
+            &mut reference.slope,
+            &mut reference.force,
+            &mut self.drift,
+            &mut self.complement,
+            &mut self.rows,
+        ];
+        for list in rows.chain(lists) {
+            *list = put(graph, list);
+        }
+        let single = [
+            &mut reference.kinetic,
+            &mut reference.potential,
+            &mut reference.dissipation,
+            &mut self.change,
+        ];
+        for edge in single {
+            *edge = put(graph, &[*edge])[0];
+        }
+    }
+}
+
+/// The symbols of prescribed coordinates with what they are prescribed to be, and ξ⁰ with 1.
+pub(super) fn given(model: &Model) -> Vec<(usize, Edge)> {
+    let first = model.points.first;
+    let given = model.prescribed.iter();
+    let given = given.map(|(place, edge)| (first + place, *edge));
+    let velocities = places(&model.graph, class::VELOCITY);
+    let time = model
+        .clock
+        .map(|clock| (velocities[clock.xi], model.graph.one()));
+    given.chain(time).collect()
+}
+
+/// Whether they agree at fresh points of X; `None` where there are none, as where roots have values only on a prescribed
+/// motion.
+fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
+    let numbers = Numbers::new(model)?;
+    let mut roots = reference.mass.concat();
+    for list in [&reference.bias, &reference.slope, &reference.force] {
+        roots.extend(list);
+    }
+    roots.extend([
+        reference.kinetic,
+        reference.potential,
+        reference.dissipation,
+    ]);
+    let graph = &reference.model.graph;
+    let compared = at_fresh_points(
+        |number| model.points.lane(0xf4a_3e0 + number),
+        |lane, _| {
+            let found = evaluate_at(graph, &roots, &mut lane.clone())?;
+            let Ok(values) = numbers.at(lane)? else {
+                return Some(Err(()));
+            };
+            let mut expected: Vec<Fp> = values.mass.concat();
+            for list in [&values.bias, &values.slope, &values.force] {
+                expected.extend(list);
+            }
+            expected.extend([values.kinetic, values.potential, values.dissipation]);
+            let [hamel, gibbs, levi_civita] = &values.left;
+            let same = hamel == gibbs && gibbs == levi_civita && found == expected;
+            Some(if same { Ok(()) } else { Err(()) })
+        },
+    );
+    match compared {
+        Ok(()) => Some(true),
+        Err(Unequal::Differs(())) => Some(false),
+        Err(Unequal::Nowhere) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::agrees;
+    use crate::generate::from_text;
+    use crate::proof::reference::Reference;
+
+    /// A wrong sign in any entry is noticed, with constraints of several kinds beside it.
+    #[test]
+    fn a_wrong_sign_is_noticed() {
+        let text = "system Sleigh {
+            param m = 2, s = 0.3; input F; time t;
+            coord x, y, a: S1, l; velocity u, v, w, e; rate x = u * a.c - v * a.s, y = u * a.s + v * a.c, a = w, l = e;
+            kinetic m * (u^2 + (v + s * w)^2) / 2 + w^2 * (1 + l^2) / 2 + e^2 / 2;
+            potential 3 * (l - s)^2 / 2 + x^2 * a.c;
+            generalized force u = F - 0.2 * u^2;
+            damper coefficient 0.4 on e - w;
+            nonholonomic v = 0;
+            prescribe l = 0.2 * sin(t);
+        }";
+        let model = from_text(text)
+            .unwrap_or_else(|errors| panic!("{errors:?}"))
+            .model;
+        let reference = Reference::new(&model).expect("regular");
+        assert_eq!(agrees(&model, &reference), Some(true));
+        let zero = model.graph.zero();
+        let mut broken = 0;
+        for list in 0..3 {
+            for place in 0..model.n() {
+                let mut wrong = Reference::new(&model).expect("regular");
+                let list = [&mut wrong.bias, &mut wrong.slope, &mut wrong.force]
+                    .into_iter()
+                    .nth(list)
+                    .expect("three");
+                if list[place] != zero {
+                    list[place] = -list[place];
+                    assert_eq!(agrees(&model, &wrong), Some(false), "{place}");
+                    broken += 1;
+                }
+            }
+        }
+        assert!(broken > 6, "{broken}");
+    }
+}
