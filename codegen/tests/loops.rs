@@ -124,6 +124,13 @@ fn one_row_may_vanish_on_the_way() {
 
 /// Bennett's mechanism, `more` beside it.
 fn bennett(more: &str) -> Generated {
+    let second =
+        "body on g2 { mass 1; com [b / 2, 0, 0]; inertia diag(0.01, 0.1, 0.1) about com; }";
+    bennett_with(second, more)
+}
+
+/// The same with what the second link carries.
+fn bennett_with(second: &str, more: &str) -> Generated {
     generated(&format!(
         "system Bennett {{
             const al = 40 * pi / 180, a = 1, b = 1.3;
@@ -140,7 +147,7 @@ fn bennett(more: &str) -> Generated {
             let base = pose(rotx(-be), [-b, 0, 0]);
             loop f3.p = base.p, f3.R * [0, 0, 1] = base.R * [0, 0, 1];
             body on g1 {{ mass 1; com [a / 2, 0, 0]; inertia diag(0.01, 0.1, 0.1) about com; }}
-            body on g2 {{ mass 1; com [b / 2, 0, 0]; inertia diag(0.01, 0.1, 0.1) about com; }}
+            {second}
             body on g3 {{ mass 1; com [a / 2, 0, 0]; inertia diag(0.01, 0.1, 0.1) about com; }}
             gravity [0, -9.81, 0];
             {more}
@@ -177,4 +184,70 @@ fn overconstrained_mechanisms_are_driven() {
     let other = accel(&turned);
     close(*other.last().expect("rates"), -0.8);
     close(other[other.len() - 2], rates[1]);
+}
+
+/// A crank that drives a slider by a rod without mass: M of the three joints alone is singular.
+fn slider(rod: &str, more: &str) -> Generated {
+    generated(&format!(
+        "system Slider {{
+            param mr = 0, J = 0.02, m = 0.7, r = 0.1, l = 0.3;
+            joint a: revolute [0, 0, 1] moves crank {{ armature J; }}
+            joint b: revolute [0, 0, 1] on crank at [r, 0, 0] moves rod;
+            joint s: prismatic [1, 0, 0] moves piston;
+            {rod}
+            body on piston {{ mass m; }}
+            loop rod.p + rod.R * [l, 0, 0] = piston.p;
+            gravity [-9.81, 0, 0];
+            {more}
+        }}"
+    ))
+}
+
+/// s = r cos a + √(l² − r² sin² a), (J + m s'²) ä + m s' s'' ȧ² = −m g s', whatever is said of a rod whose mass is 0.
+#[test]
+fn links_of_a_loop_need_no_mass() {
+    let (inertia, mass, r, l) = (0.02, 0.7, 0.1, 0.3_f64);
+    for rod in ["", "body on rod { mass mr; com [l / 2, 0, 0]; }"] {
+        for (a, rate) in [(0.7_f64, 2.0), (-2.1, -3.0), (3.0, 0.5)] {
+            let (sin, cos) = a.sin_cos();
+            let root = (l * l - r * r * sin * sin).sqrt();
+            let slope = -r * sin - r * r * sin * cos / root;
+            let bend = -r * cos
+                - r * r * (cos * cos - sin * sin) / root
+                - (r * r * sin * cos).powi(2) / root.powi(3);
+            let force = -mass * (9.81 * slope + slope * bend * rate * rate);
+            let expected = force / (inertia + mass * slope * slope);
+            let of = slider(rod, &format!("start a = {a}, a_dot = {rate}, s ~ 0.3;"));
+            let found = accel(&of);
+            close(found[0], expected);
+            close(found[2], slope * expected + bend * rate * rate);
+        }
+    }
+    // Where rows depend on one another, too: the coupler has no mass, or nearly none.
+    let folded = "start q1 = 0, q2 ~ 3, q3 ~ 0, w1 = -0.7;";
+    let (none, little) = (
+        bennett_with("", folded),
+        bennett_with(
+            "body on g2 { mass 1e-6; inertia diag(1e-7, 1e-7, 1e-7) about com; }",
+            folded,
+        ),
+    );
+    for (none, little) in accel(&none).iter().zip(accel(&little)) {
+        assert!(
+            (none - little).abs() < 1e-4 * little.abs(),
+            "{none} and {little}"
+        );
+    }
+    // And where the crank is driven.
+    let driven = slider(
+        "",
+        "input F; prescribe rate(a_dot) = F; start a = 0.7, a_dot = 2;",
+    );
+    let model = &driven.model;
+    let found = value(
+        &driven,
+        "accel",
+        [&model.start_x, &model.start_xi, &[0.8], &[]],
+    );
+    close(found[0], 0.8);
 }

@@ -16,6 +16,10 @@ use crate::state::State;
 /// Smaller pivots, beside rows whose largest entry is 1, are those of rows that follow from others.
 const REDUNDANT: f64 = 1e-8;
 
+/// Rows that are so many times smaller than the largest vanish at the state: what is left of them is rounding, and is not
+/// scaled to 1.
+const VANISHING: f64 = 1e-6;
+
 /// What constraints leave of (h, δξ, δz).
 pub struct Tangent {
     /// Places of η, δζ and δz among h, δξ and δz.
@@ -168,10 +172,10 @@ impl Eliminated {
     /// Eliminates with the largest pivots among the first n columns; in those that are spared only where there is no
     /// other.
     fn new(mut rows: Vec<Vec<f64>>, n: usize, spared: &[usize]) -> Self {
+        let size = |row: &Vec<f64>| row[..n].iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        let largest = rows.iter().map(size).fold(0.0, f64::max);
         for row in &mut rows {
-            let most = row[..n]
-                .iter()
-                .fold(0.0_f64, |most, entry| most.max(entry.abs()));
+            let most = size(row).max(VANISHING * largest);
             if most > 0.0 {
                 row.iter_mut().for_each(|entry| *entry /= most);
             }
@@ -246,5 +250,13 @@ mod tests {
         assert_eq!(found.lift(3, &[0]), [[1.0], [-0.5], [0.0]]);
         let spared = Eliminated::new(rows, 3, &[1]);
         assert_eq!(spared.free(3), [1]);
+    }
+
+    #[test]
+    fn what_rounding_leaves_of_a_row_is_no_pivot() {
+        let rows = vec![vec![1.0, 0.0, 0.0], vec![0.0, 1e-17, -1e-16]];
+        assert_eq!(Eliminated::new(rows, 3, &[]).free(3), [1, 2]);
+        let rows = vec![vec![1.0, 0.0], vec![0.0, 1e-9]];
+        assert!(Eliminated::new(rows, 2, &[]).free(2).is_empty());
     }
 }

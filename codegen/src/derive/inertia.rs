@@ -1,11 +1,13 @@
 //! The mass matrix M_ij = Σ m_p ⟨∂ᵢr_p, ∂ⱼr_p⟩, KR18 (20), for bodies, particles and a given T.
 
+use super::accel::hybrid;
 use super::calculus::{Calculus, into_frame};
 use crate::algebra::derivation::Derivation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{apply3, cross};
 use crate::algebra::numeric::evaluate;
 use crate::diagnostics::Diagnostic;
+use crate::model::twists::Moving;
 use crate::model::{Body, Model, Particle};
 
 /// M, in the axes and about the origins of the bodies' frames: for the free body this is
@@ -108,22 +110,85 @@ pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<V
         .collect()
 }
 
-/// M, in a graph with the model's symbols, has to be positive definite at the start, with the default
-/// parameters.
-pub fn positive_definite(
-    model: &Model,
-    graph: &Graph,
-    mass: &[Vec<Edge>],
-) -> Result<(), Diagnostic> {
+/// Whether M is not positive definite at the start, with the default parameters; in numbers alone.
+pub fn is_singular(model: &Model) -> bool {
+    let numbers = start(model);
+    let first = 1 + model.defaults.len();
+    let moving = Moving {
+        graph: &model.graph,
+        a: &model.a,
+        first,
+        velocity: first + model.x.len(),
+        n: model.n(),
+    };
+    let inertia = (&model.bodies[..], &model.particles[..], model.kinetic);
+    let mass = moving.mass(&model.frames, inertia, &numbers).concat();
+    let more = model.kinetic_terms.iter();
+    let more = more.flat_map(|terms| evaluate(&model.graph, &terms.mass.concat(), &numbers));
+    let more: Vec<f64> = more.collect();
+    let all = mass.iter().enumerate();
+    let all = all.map(|(i, entry)| entry + more.get(i).unwrap_or(&0.0));
+    failing_pivot(&all.collect::<Vec<_>>(), model.n()).is_some()
+}
+
+/// The numbers of the start.
+fn start(model: &Model) -> Vec<f64> {
     let (m, n) = (model.u.len(), model.n());
-    let numbers = model.numbers(
+    model.numbers(
         &model.defaults,
         &model.start_x,
         &model.start_xi,
         &vec![0.0; m],
         &vec![0.0; n],
-    );
-    let values = evaluate(graph, &mass.concat(), &numbers);
+    )
+}
+
+/// M + w BᵀB and w Bᵀ b, which may be added to M ξ̇ = f + Bᵀ λ where B ξ̇ = b: neither ξ̇ nor λ changes, and what has
+/// inertia through constraints alone gets pivots. w = tr M / tr BᵀB makes the sizes of both alike.
+pub fn carried(
+    graph: &mut Graph,
+    mass: &[Vec<Edge>],
+    rows: &[Vec<Edge>],
+    right: &[Edge],
+) -> Option<(Vec<Vec<Edge>>, Vec<Edge>)> {
+    let n = mass.len();
+    let diagonal: Vec<Edge> = (0..n).map(|i| mass[i][i]).collect();
+    let (entries, trace) = (rows.concat(), graph.sum(&diagonal));
+    let squares = graph.dot(&entries, &entries);
+    let weight = graph.div(trace, squares)?;
+    let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
+    let weighed: Vec<Vec<Edge>> = (0..n)
+        .map(|i| {
+            let column = column(i).into_iter();
+            column.map(|entry| graph.mul(weight, entry)).collect()
+        })
+        .collect();
+    let sum = symmetric(n, |i, j| {
+        let part = graph.dot(&weighed[i], &column(j));
+        graph.add(mass[i][j], part)
+    });
+    let force = weighed.iter().map(|column| graph.dot(column, right));
+    Some((sum, force.collect()))
+}
+
+/// M, in a graph with the model's symbols, has to be positive definite at the start, with the default parameters; or, where
+/// constraints carry what has no inertia, M + w BᵀB.
+pub fn positive_definite(
+    model: &Model,
+    graph: &Graph,
+    mass: &[Vec<Edge>],
+) -> Result<(), Diagnostic> {
+    let n = model.n();
+    let (mut graph, mut mass) = (graph.clone(), mass.to_vec());
+    if model.carried {
+        let rows = model.constraints.iter().map(|c| c.row.clone());
+        let rows: Vec<Vec<Edge>> = rows.chain(hybrid::rows(model)).collect();
+        let right = vec![graph.zero(); rows.len()];
+        if let Some((sum, _)) = carried(&mut graph, &mass, &rows, &right) {
+            mass = sum;
+        }
+    }
+    let values = evaluate(&graph, &mass.concat(), &start(model));
     let Some(pivot) = failing_pivot(&values, n) else {
         return Ok(());
     };

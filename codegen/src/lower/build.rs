@@ -268,6 +268,7 @@ fn read_at(
         whole: None,
         spans: true,
         overconstrained: false,
+        carried: false,
         kinetic_terms: None,
         completion: kinematics.completion,
         frames,

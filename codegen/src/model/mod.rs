@@ -234,6 +234,8 @@ pub struct Model {
     pub spans: bool,
     /// Whether constraints that are kept depend on one another along the whole motion.
     pub overconstrained: bool,
+    /// Whether M is singular at the start and constraints are kept: some velocities have inertia through these alone.
+    pub carried: bool,
     /// The user's kinetic energy where A does not span the tangent space.
     pub kinetic_terms: Option<KineticTerms>,
     /// Y as it was given, the rows of Φ, and what [Y; Φ]⁻¹ divides by.

@@ -14,6 +14,7 @@ import time
 from . import wrong
 from .awkward import AwkwardDriven, AwkwardLoops, AwkwardTrees, Platforms
 from .compare import Comparison, Errors
+from .definitions import Definitions, independent
 from .doors import Doors, Refused
 from .driven import Driven
 from .loops import Loops, Open
@@ -62,10 +63,16 @@ def loop(seed, largest, hard, kind=Loops):
             made = kind(r, 2 + r.randrange(3), hard=hard)
             if 2 <= made.m.n <= largest:
                 made.state = made.configuration()
-                if any(v != 0 for v in made.state.xi):
+                if any(v != 0 for v in made.state.xi) and moves(made):
                     return made
         except (Open, ZeroDivisionError):
             pass
+
+
+def moves(made):
+    """Whether ties alone leave some motion."""
+    ties = Definitions(made.m).conditions(made.state)
+    return bool(made.m.driven or made.m.accelerated) or len(independent(ties, 1e-9)) < made.m.n
 
 
 def driven(seed, largest, hard):

@@ -1,5 +1,6 @@
 """Random mechanisms with closed loops: planar linkages, cranks that drive sliders, rods between points, overconstrained
-ones, gears, and trees whose frames are pinned to one another or to the ground."""
+ones, gears, links of which an axis or all of the rotation is kept by equations of vectors and matrices, and trees whose
+frames are pinned to one another or to the ground."""
 
 from . import vectors
 from .definitions import Definitions, independent
@@ -10,7 +11,8 @@ from .tied import allowed_velocities, on_kinds
 from .trees import AXES, Forest, random_state
 from .vectors import mpf
 
-KINDS = ["planar", "planar", "slider", "two loops", "rod", "rod", "ball", "flat", "bricard", "gears", "tree", "tree", "tree"]
+KINDS = ["planar", "planar", "slider", "two loops", "rod", "rod", "ball", "flat", "bricard", "gears", "axis", "axis", "turned", "turned"]
+KINDS += ["tree", "tree", "tree"]
 # Where the loops stand: mounts of the whole mechanism.
 GROUNDS = [lambda: STILL, lambda: rotation("x", PI / 4), lambda: rotation("y", "0.3") * rotation("x", PI / 4), lambda: rotation("z", PI / 4)]
 
@@ -60,11 +62,11 @@ class Loops(Forest):
     def length(self):
         return f"{self.r.uniform(0.4, 1.2):.2f}"
 
-    def chain(self, name, parent, place, axis, count, kinds=("revolute", "continuous")):
-        """Links in a row about parallel axes; the last frame, and the place of its end."""
+    def chain(self, name, parent, place, axis, count, kinds=("revolute", "continuous"), light=False):
+        """Links in a row about parallel axes; the last frame, and the place of its end. The last link may be light: without mass."""
         mount = (STILL, place)
         for k in range(count):
-            parent = self.link(f"{name}{k}", self.pick(kinds), axis, parent, mount)
+            parent = self.link(f"{name}{k}", self.pick(kinds), axis, parent, mount, not (light and k == count - 1))
             place = Vec.of([self.length(), 0, 0])
             mount = (STILL, place)
         return parent, place
@@ -82,12 +84,14 @@ class Loops(Forest):
         base = Vec.of([f"{self.r.uniform(0.5, 1.2):.2f}", self.number(0.3), 0])
         if self.hard and self.r.random() < 0.5:
             z = Vec.of([0, "1e-7", 1])
+        # What only the loop gives inertia.
+        light = self.r.random() < 0.3
         if kind == "planar":
-            a = self.chain("a", ground, zero, z, 2)
+            a = self.chain("a", ground, zero, z, 2, light=light)
             b = self.chain("b", ground, base, z, 1 + self.r.randrange(2))
             self.ends.append(("pin", a, b))
         elif kind == "slider":
-            a = self.chain("a", ground, zero, z, 2)
+            a = self.chain("a", ground, zero, z, 2, light=light)
             b = self.link("b", "prismatic", Vec.of(["0.6", "0.8", 0]), ground, (STILL, base)), zero
             self.ends.append(("pin", a, b))
         elif kind == "two loops":
@@ -100,7 +104,7 @@ class Loops(Forest):
         elif kind == "rod":
             # A crank and a rocker about axes in space, with a rod without mass between balls.
             a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 1)
-            b = self.chain("b", ground, base + Vec.of([0, 0, self.number()]), Vec.of(self.pick(AXES)), 1 + self.r.randrange(2))
+            b = self.chain("b", ground, base + Vec.of([0, 0, self.number()]), Vec.of(self.pick(AXES)), 1 + self.r.randrange(2), light=light)
             self.ends.append(("rod", a, b))
         elif kind == "ball":
             # The rod has mass and hangs on a ball; its other end is pinned.
@@ -111,9 +115,27 @@ class Loops(Forest):
         elif kind == "flat":
             # Parallel axes, and a ball for a pin: a row more than there need be.
             m.frame("tilted", ground, rotation("x", "0.4"), zero)
-            a = self.chain("a", "tilted", zero, Vec.of([0, 0, 1]), 2)
+            a = self.chain("a", "tilted", zero, Vec.of([0, 0, 1]), 2, light=light)
             b = self.chain("b", "tilted", base, Vec.of([0, 0, 1]), 1 + self.r.randrange(2))
             self.ends.append(("ball", a, b))
+        elif kind == "axis":
+            # Three rows for a direction, of which one follows from the others: with parallel axes two of them do.
+            if self.r.random() < 0.5:
+                last = self.chain("a", ground, zero, z, 2 + self.r.randrange(2))[0]
+                along = Vec.of(self.pick([[1, 0, 0], ["0.6", "0.8", 0]]))
+            else:
+                a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 1)
+                last = self.link("ball", self.pick(["spherical", "spherical3"]), None, a[0], (STILL, a[1]))
+                along = Vec.of(self.pick(AXES))
+            self.ends.append(("axis", (last, along), (ground, along)))
+        elif kind == "turned":
+            # Nine rows for a rotation, of which at most three count.
+            if self.r.random() < 0.5:
+                last = self.chain("a", ground, zero, z, 2 + self.r.randrange(2))[0]
+            else:
+                a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 1 + self.r.randrange(2))
+                last = self.link("ball", self.pick(["spherical", "spherical3"]), None, a[0], (STILL, a[1]))
+            self.ends.append(("turned", (last, zero), (ground, zero)))
         elif kind == "gears":
             # Straight loops: velocities follow from others. Beside them, if there is room, a rod.
             a = self.chain("a", ground, zero, Vec.of(self.pick(AXES)), 2, ("revolute",))
@@ -227,10 +249,23 @@ class Loops(Forest):
             else:
                 m.say(f"loop {length.text}^2 = dot({a} - {b}, {a} - {b}){tail};")
                 m.closures.append(Ex("", lambda s: length.at(s) ** 2 - vectors.dot(apart(s), apart(s))))
+        elif kind == "axis":
+            m.say(f"loop {f}.R * {p.text} = {q.text if g == WORLD else f'{g}.R * {q.text}'}{tail};")
+            turned = lambda s: vectors.sub(vectors.on(m.pose(s, f)[0], p.at(s)), vectors.on(m.pose(s, g)[0], q.at(s)))  # noqa: E731
+            m.closures += self.varying([Ex("", (lambda k: lambda s: turned(s)[k])(k)) for k in range(3)])
+        elif kind == "turned":
+            m.say(f"loop {f}.R = {'identity(3)' if g == WORLD else f'{g}.R'}{tail};")
+            rows = lambda s: vectors.sub(sum(m.pose(s, f)[0], []), sum(m.pose(s, g)[0], []))  # noqa: E731
+            m.closures += self.varying([Ex("", (lambda k: lambda s: rows(s)[k])(k)) for k in range(9)])
         elif kind == "across":
             m.say(f"loop dot({f}.R * {p.text}, {q.text if g == WORLD else f'{g}.R * {q.text}'}) = 0{tail};")
             m.closures.append(Ex("", lambda s: vectors.dot(vectors.on(m.pose(s, f)[0], p.at(s)), vectors.on(m.pose(s, g)[0], q.at(s)))))
         m.stabilized += [decay] * (len(m.closures) - len(m.stabilized))
+
+    def varying(self, entries):
+        """Those that are no identities: the others are no equations."""
+        states = [random_state(self.m, self.r) for _ in range(2)]
+        return [e for e in entries if abs(e.at(states[0]) - e.at(states[1])) > mpf(10) ** -30]
 
     # Where they are closed.
 

@@ -7,7 +7,7 @@
 pub(super) mod best;
 pub mod branches;
 pub mod cheapest;
-mod hybrid;
+pub(super) mod hybrid;
 pub mod parts;
 pub mod polynomial;
 pub mod recursive;
@@ -17,6 +17,7 @@ pub mod solve;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::derive::care::Care;
+use crate::derive::inertia;
 use crate::model::Model;
 use crate::program::count::{count, depth};
 use crate::syntax::ast::Axes;
@@ -132,20 +133,26 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
         let (mut traced, parts) = trace(setting, variant);
         let mut right = saddle::right_side(&mut traced, &mut setting.calculus.clone());
         right.extend(traced.accelerated.iter().map(|(_, rate)| *rate));
+        let mut solved = parts.clone();
+        if traced.carried {
+            let carried = inertia::carried(&mut traced.graph, &parts.mass, &rows, &right)?;
+            solved.mass = carried.0;
+            solved.groups.push(carried.1);
+        }
         let orders = [
             (0..n).collect(),
             (0..n).rev().collect(),
-            constant_first(&traced.graph, &parts),
+            constant_first(&traced.graph, &solved),
         ];
         for order in orders {
             let mut graph = traced.graph.clone();
-            let Some(factored) = saddle::factored(&mut graph, &parts, &rows, &order, raising)
+            let Some(factored) = saddle::factored(&mut graph, &solved, &rows, &order, raising)
             else {
                 continue;
             };
             let force: Vec<Edge> = (0..n)
                 .map(|i| {
-                    let column: Vec<Edge> = parts.groups.iter().map(|group| group[i]).collect();
+                    let column: Vec<Edge> = solved.groups.iter().map(|group| group[i]).collect();
                     graph.sum(&column)
                 })
                 .collect();

@@ -301,22 +301,34 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
 /// parts are M and B by rows, with the forces and the right side of B ξ̇; then come velocities whose rates are given. Of
 /// the lane is what `Raised` multiplies by.
 pub fn solve_at(
-    constraints: &[Pfaffian],
+    model: &Model,
     [mass, force, rows, right]: [&[Fp]; 4],
     given: &[(usize, Fp)],
     lane: &Lane,
 ) -> Option<Vec<Fp>> {
     let n = force.len();
+    let (mut mass, mut force) = (mass.to_vec(), force.to_vec());
     let (mut rows, mut right) = (rows.to_vec(), right.to_vec());
     for &(place, rate) in given {
         rows.extend((0..n).map(|j| if j == place { Fp::ONE } else { Fp::ZERO }));
         right.push(rate);
     }
     let m = right.len();
-    let raising = raising(constraints, given.len());
-    let mut columns: Vec<Vec<Fp>> = vec![force.to_vec()];
+    let raising = raising(&model.constraints, given.len());
+    if model.carried {
+        let trace = (0..n).fold(Fp::ZERO, |sum, i| sum + mass[i * n + i]);
+        let squares = rows.iter().fold(Fp::ZERO, |sum, &b| sum + b * b);
+        let weight = trace * squares.inv()?;
+        for (row, &right) in rows.chunks(n).zip(&right) {
+            for (i, &b) in row.iter().enumerate() {
+                force[i] = force[i] + weight * b * right;
+                (0..n).for_each(|j| mass[i * n + j] = mass[i * n + j] + weight * b * row[j]);
+            }
+        }
+    }
+    let mut columns: Vec<Vec<Fp>> = vec![force];
     columns.extend(rows.chunks(n.max(1)).map(<[Fp]>::to_vec));
-    let solved = solve_columns(mass, n, &columns)?;
+    let solved = solve_columns(&mass, n, &columns)?;
     let (free, bonds) = solved.split_first()?;
     let dot = |a: &[Fp], b: &[Fp]| a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y);
     let row = |i: usize| &rows[i * n..(i + 1) * n];

@@ -15,6 +15,7 @@ pub use kinetic::drift;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::evaluate;
+use crate::derive::inertia;
 use crate::diagnostics::Diagnostic;
 use crate::model::pfaffian::{Kind, Pfaffian};
 use crate::model::{Model, Whole};
@@ -129,6 +130,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     let images = carrier.images.clone();
     let mut model = carrier.model(&rows, &kept, &pivots);
     model.overconstrained = kept.len() > rank;
+    model.carried = !kept.is_empty() && inertia::is_singular(&model);
     model.whole = given.then(|| Whole {
         full: Arc::new(before),
         images: images.clone(),

@@ -330,7 +330,7 @@ fn at_point(
         Some(xi_dot) if full.reduced.overconstrained => {
             let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - carried[k]).collect();
             let parts = [&reduced_mass[..], &project(&rest), &kept, &right];
-            saddle::solve_at(&full.reduced.constraints, parts, &given, inner)? == xi_dot
+            saddle::solve_at(&full.reduced, parts, &given, inner)? == xi_dot
         }
         Some(xi_dot) => {
             let mut driven = given.iter().map(|&(place, rate)| xi_dot[place] == rate);
