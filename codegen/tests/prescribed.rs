@@ -5,7 +5,7 @@ mod common;
 #[path = "common/tree/mod.rs"]
 mod tree;
 
-use common::{Random, attack, difference, value};
+use common::{Random, attack, difference, generated, value};
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::model::Group;
 use hamel_codegen::render::render;
@@ -284,4 +284,29 @@ fn faults(seed: u64) -> Vec<String> {
 #[test]
 fn trees_with_drives_obey_newton_and_euler() {
     attack(60, 2000, faults);
+}
+
+/// A crank without mass that is driven takes no part in what is solved: the piston falls, and the drive needs no torque.
+#[test]
+fn what_is_driven_needs_no_mass() {
+    let of = generated(
+        "system Driven {
+            input F;
+            joint a: revolute [0, 0, 1] moves crank;
+            joint b: prismatic [0, 1, 0] on crank at [0.5, 0, 0] moves slide;
+            joint c: prismatic [0, 1, 0] moves piston;
+            body on piston { mass 2; }
+            particle mass 3 at slide.p;
+            gravity [0, -9.81, 0];
+            prescribe rate(a_dot) = F;
+            start b = 0.2, a_dot = 0.7;
+        }",
+    );
+    let model = &of.active;
+    let found = value(&of, "accel", [&model.start_x, &model.start_xi, &[0.4], &[]]);
+    // Along the crank: b̈ = b ȧ² − 0.5 ä − g.
+    let expected = [0.4, 0.2 * 0.49 - 0.5 * 0.4 - 9.81, -9.81];
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
+    }
 }

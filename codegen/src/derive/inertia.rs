@@ -171,8 +171,8 @@ pub fn carried(
     Some((sum, force.collect()))
 }
 
-/// M, in a graph with the model's symbols, has to be positive definite at the start, with the default parameters; or, where
-/// constraints carry what has no inertia, M + w BᵀB.
+/// M, in a graph with the model's symbols, has to be positive definite at the start, with the default parameters, for what
+/// is solved for; or, where constraints carry what has no inertia, M + w BᵀB.
 pub fn positive_definite(
     model: &Model,
     graph: &Graph,
@@ -188,7 +188,18 @@ pub fn positive_definite(
             mass = sum;
         }
     }
-    let values = evaluate(&graph, &mass.concat(), &start(model));
+    let mut values = evaluate(&graph, &mass.concat(), &start(model));
+    // Where no constraint acts on it, a velocity whose rate is given takes no part in what is solved.
+    for &(place, _) in model
+        .accelerated
+        .iter()
+        .filter(|_| model.constraints.is_empty())
+    {
+        for i in 0..n {
+            let entry = f64::from(u8::from(i == place));
+            (values[place * n + i], values[i * n + place]) = (entry, entry);
+        }
+    }
     let Some(pivot) = failing_pivot(&values, n) else {
         return Ok(());
     };
