@@ -184,12 +184,19 @@ class Comparison:
         if not single and self.slopes:
             self.printed(s, mine)
 
+    def in_text(self, bonds):
+        """Rows of closures, of conditions on velocities and of given rates, in the order of the text."""
+        m = self.m
+        rows = {"closure": iter(bonds), "kept": iter(bonds[len(m.closures) :])}
+        return [next(rows[name]) for name in m.order] + bonds[len(m.order) :]
+
     def ties(self, c, s, given, kind, tolerance):
         """What keeps ties, and what leads back onto them."""
         d, m = self.d, self.m
         if "constraint_force" in c:
             force = c.call("constraint_force", self.rows, **given)
-            self.note(kind + "constraint_force", d.motion(s)[1], on(transposed(d.bonds(s)), [mpf(f) for f in force]), tolerance)
+            bonds = self.in_text(d.bonds(s))
+            self.note(kind + "constraint_force", d.motion(s)[1], on(transposed(bonds), [mpf(f) for f in force]), tolerance)
         elif self.unique:
             self.errors.found.append((self.where, kind + "constraint_force", "is missing"))
         # From beside the ties.

@@ -87,7 +87,7 @@ class Driven(Loops):
     def configuration(self):
         if self.m.closures:
             return super().configuration()
-        return loops.allowed_velocities(self.m, self.near)
+        return loops.allowed_velocities(self.m, self.complete())
 
 
 __all__ = ["Driven"]

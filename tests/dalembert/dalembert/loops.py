@@ -280,8 +280,12 @@ class Loops(Forest):
                 m.say(f"start {name} {'~' if self.ends else '='} {float(value):.4f};")
         super().asked()
 
+    def complete(self):
+        """The state nearby, with parameters that came later."""
+        return self.near.but(p=list(self.m.default))
+
     def configuration(self):
-        s = closed(self.m, self.near)
+        s = closed(self.m, self.complete())
         return allowed_velocities(self.m, s)
 
 

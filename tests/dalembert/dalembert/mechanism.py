@@ -8,6 +8,23 @@ WORLD = "world"
 SIZES = {"real": 1, "S1": 2, "S3": 4, "SO3": 9, "R2": 2, "R3": 3}
 
 
+class Listed(list):
+    """A list that notes in another one, which it shares, what is appended to it."""
+
+    def __init__(self, order, name):
+        super().__init__()
+        self.order, self.name = order, name
+
+    def append(self, entry):
+        self.order.append(self.name)
+        super().append(entry)
+
+    def __iadd__(self, entries):
+        for entry in entries:
+            self.append(entry)
+        return self
+
+
 class Mechanism:
     """Filled by a generator; what it means is in `definitions`."""
 
@@ -35,9 +52,10 @@ class Mechanism:
         self.line_dampers = []  # coefficient, ends; their force stands in lines_of_force
         self.dissipation = []  # expressions
         self.onto = []  # place in x, size, what leads these numbers back to the constraints that are written of them
-        self.closures = []  # scalars of the configuration that are zero
+        self.order = []  # which of the two that follow, as they stand in the text
+        self.closures = Listed(self.order, "closure")  # scalars of the configuration that are zero
         self.stabilized = []  # of each closure, how fast it decays, or None
-        self.kept = []  # scalars linear in the velocities that are zero
+        self.kept = Listed(self.order, "kept")  # scalars linear in the velocities that are zero
         self.accelerated = []  # place of a velocity, its rate
         self.driven = []  # place of a coordinate that is given, kind, its value
         self.outputs = []  # name, expression or vector
