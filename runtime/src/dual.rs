@@ -343,6 +343,11 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     }
 
     #[inline]
+    fn nearest_whole(self) -> Self {
+        Dual::constant(self.value.nearest_whole())
+    }
+
+    #[inline]
     fn is_positive(self) -> bool {
         self.value.is_positive()
     }

@@ -57,9 +57,7 @@ impl<S: Scalar> Rotor<S> {
     pub fn general(inertia: Matrix<S>) -> Self {
         let half = S::from_f64(0.5);
         let mut j: Matrix<S> = from_fn(|k| half * (inertia[k] + inertia[3 * (k % 3) + k / 3]));
-        let off_diagonal = j[1].abs() + j[2].abs() + j[5].abs();
-        let (zero, one) = (S::default(), S::from_f64(1.0));
-        if zero.select_lt(off_diagonal, zero, one).is_positive() {
+        if [j[1], j[2], j[5]].iter().all(|&entry| size(entry) == 0.0) {
             return Self::of_moments([j[0], j[4], j[8]]);
         }
         let mut axes = so3::identity();
@@ -112,12 +110,20 @@ fn rotation<S: Scalar>(j: Matrix<S>, a: usize, b: usize) -> Matrix<S> {
     turn
 }
 
-/// Which moments differ by less than `ulps` units of rounding of the largest, in all lanes.
+/// The largest of all lanes without their signs, slopes as well.
+fn size<S: Scalar>(number: S) -> f64 {
+    number.largest_lane().max((-number).largest_lane())
+}
+
+/// Which moments differ by less than `ulps` units of rounding of the largest, in all lanes, and have the same slopes.
 fn symmetry<S: Scalar>(moments: Vector<S>, ulps: f64) -> Symmetry {
     let [a, b, c] = moments;
     let largest = Scalar::max(Scalar::max(a.abs(), b.abs()), c.abs());
     let limit = S::from_f64(ulps) * epsilon::<S>();
-    let equal = |a: S, b: S| (limit * largest - (a - b).abs()).is_positive();
+    let equal = |a: S, b: S| {
+        (limit * largest - (a - b).abs()).is_positive()
+            && size(a - b) <= ulps * S::EPSILON * size(largest)
+    };
     match (equal(b, c), equal(c, a), equal(a, b)) {
         (true, true, true) => Symmetry::Spherical,
         (true, _, false) => Symmetry::Axial(0),

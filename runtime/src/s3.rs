@@ -83,9 +83,11 @@ pub fn log<S: Scalar>(q: Quaternion<S>) -> Vector<S> {
     let [w, v @ ..] = q;
     let v2 = v[0].mul_add(v[0], v[1].mul_add(v[1], v[2] * v[2]));
     let norm = v2.sqrt();
-    let closed = S::from_f64(2.0) * norm.atan2(w.abs()) / norm;
+    // Unlike |w| it has a slope at half a turn.
+    let positive = w.select_lt(zero, -w, w);
+    let closed = S::from_f64(2.0) * norm.atan2(positive) / norm;
     let z2 = v2 / (w * w);
-    let expanded = series(z2, TWICE_ARCTANGENT_RATIO) / w.abs();
+    let expanded = series(z2, TWICE_ARCTANGENT_RATIO) / positive;
     let factor = z2.select_lt(S::from_f64(1e-4), expanded, closed);
     let factor = w.select_lt(zero, -factor, factor);
     v.map(|component| factor * component)

@@ -158,6 +158,13 @@ pub trait Scalar:
     /// Whether all lanes are positive, finite and not subnormal: a pivot that can be divided by.
     fn is_positive(self) -> bool;
 
+    /// The nearest whole number, as long as whole numbers are exact; it has no slope.
+    #[inline]
+    fn nearest_whole(self) -> Self {
+        let large = Self::from_f64(1.5 / Self::EPSILON);
+        self + large - large
+    }
+
     /// Whether no lane is infinite or NaN.
     fn is_finite(self) -> bool;
 

@@ -10,7 +10,11 @@
 //!
 //! Nothing here subtracts |P|² from 2 E I: all terms are sums, or differences of inertias that are given.
 //! sn, cn, dn at the start are p₁/a, p₂ √r/a, |p₃|/b, so that no inverse function is needed; they are
-//! advanced by the addition theorem. Sources: E. Celledoni, F. Fassò, N. Säfström, A. Zanna, SIAM J.
+//! advanced by the addition theorem.
+//!
+//! About a principal axis, at rest, and with three equal moments P stands still in the body, and the amplitudes say nothing
+//! of motions nearby: what is linear in them follows from Euler's equations there, so that numbers with slopes keep them.
+//! Sources: E. Celledoni, F. Fassò, N. Säfström, A. Zanna, SIAM J.
 //! Sci. Comput. 30 (2008) 2084; R. van Zon, J. Schofield, J. Comput. Phys. 225 (2007) 145.
 
 use core::array::from_fn;
@@ -29,6 +33,10 @@ pub(crate) struct FreeRotation<S> {
     unit: Vector<S>,
     /// |P|
     length: S,
+    /// P, in principal axes.
+    momentum: Vector<S>,
+    /// 1/I, in principal axes.
+    flexibility: Vector<S>,
     /// Named axes as rows, in principal axes.
     names: [Vector<S>; 3],
     /// κ₁, κ₃
@@ -37,9 +45,7 @@ pub(crate) struct FreeRotation<S> {
     pub(crate) factor: S,
     /// a, a/√r, σ b
     amplitudes: Vector<S>,
-    /// 2 E/|P|², the rate of a steady turn over |P|.
-    steady_rate: S,
-    /// 0 for a turn about a principal axis, or three equal moments.
+    /// 0 for a turn about a principal axis, or of equal moments about any of theirs.
     moving: S,
     pub(crate) m: S,
     pub(crate) complement: S,
@@ -69,6 +75,8 @@ pub(crate) struct Turned<S> {
     angle: S,
     /// How often cn has changed its sign.
     folds: S,
+    /// The time that it takes.
+    h: S,
 }
 
 /// A principal axis with its moment.
@@ -150,16 +158,17 @@ impl<S: Scalar> FreeRotation<S> {
         Self {
             unit,
             length,
+            momentum: p,
+            flexibility: moments.map(|moment| one / moment),
             names,
             inverses: [one / axes[0].moment, one / axes[2].moment],
             factor: length * whole,
             amplitudes: [a, a / root, sigma * b],
-            steady_rate: (p1 * p1) / axes[0].moment
-                + (p2 * p2) / axes[1].moment
-                + (p3 * p3) / axes[2].moment,
-            moving: circling * off_axis * zero.select_lt(whole.abs(), one, zero),
+            moving: circling * off_axis * zero.select_lt(whole.abs() * b2, one, zero),
             m: a2 * q / (b2 * r),
-            complement: (x - y) * (x + y) / (r * b2),
+            // Where q is 0, its root has no slope.
+            complement: zero.select_lt(q, (x - y) * (x + y), r * (p3 * p3) - q * (p1 * p1))
+                / (r * b2),
             start,
             rate: length * per_factor * whole,
             n: by_first.select_lt(one, q / r, a2 / b2),
@@ -185,26 +194,101 @@ impl<S: Scalar> FreeRotation<S> {
         let mut unit: Vector<S> =
             from_fn(|i| (0..3).fold(zero, |sum, k| self.names[k][i].mul_add(named[k], sum)));
         let norm = so3::dot(unit, unit).sqrt();
-        unit = from_fn(|i| zero.select_lt(self.moving, unit[i] / norm, self.unit[i]));
-
         let part = self.n * integral;
         let time = self.length * h;
         let by_first = self.inverses[1] * time + part;
         let by_third = self.inverses[0] * time - part;
-        let angle = zero.select_lt(self.by_first, by_first, by_third);
-        let angle = zero.select_lt(self.moving, angle, self.steady_rate * time);
+        let mut angle = zero.select_lt(self.by_first, by_first, by_third);
+        unit = unit.map(|component| component / norm);
+        if !self.moving.is_positive() {
+            let (still, rate) = (self.still(time), self.steady_rate());
+            unit = from_fn(|i| zero.select_lt(self.moving, unit[i], still[i]));
+            angle = zero.select_lt(self.moving, angle, rate * time);
+        }
         let reference: Vector<S> =
             from_fn(|i| zero.select_lt(self.by_first, self.names[0][i], self.names[2][i]));
         let (before, after) = (frame(reference, self.unit), frame(reference, unit));
         let (turned, _) = before.turned_about(2, angle);
         let transposed: Matrix<S> = from_fn(|k| after[3 * (k % 3) + k / 3]);
+        let mut f = so3::product(turned, transposed);
+        let mut momentum = unit.map(|component| self.length * component);
+        if !self.length.is_positive() {
+            let resting = so3::exp(self.from_rest(h));
+            f = from_fn(|k| zero.select_lt(self.length, f[k], resting[k]));
+            momentum = from_fn(|i| zero.select_lt(self.length, momentum[i], self.momentum[i]));
+        }
         Turned {
-            f: so3::product(turned, transposed),
-            momentum: unit.map(|component| self.length * component),
+            f,
+            momentum,
             unit,
             angle,
             folds,
+            h,
         }
+    }
+
+    /// P/|P| after `time`, |P| times the time, where P stands still in the body: but for what is linear in the slopes. With
+    /// f = p × κ p, f = 0, that is p + t f + ½ t² f′ f where two moments are equal, whose f′ f′ is 0; about axis k
+    /// ṗᵢ = pₖ (κₖ − κⱼ) pⱼ and ṗⱼ = pₖ (κᵢ − κₖ) pᵢ for i, j, k in turn.
+    fn still(&self, time: S) -> Vector<S> {
+        let (zero, one, half) = (S::default(), S::from_f64(1.0), S::from_f64(0.5));
+        let (p, flexibility) = (self.unit, self.flexibility);
+        let product = |a: Vector<S>, b: Vector<S>| -> Vector<S> {
+            from_fn(|i| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                a[j] * b[k] * (flexibility[k] - flexibility[j])
+            })
+        };
+        let f = product(p, p);
+        let (once, again) = (product(f, p), product(p, f));
+        let bend = from_fn::<S, 3, _>(|i| half * time * (once[i] + again[i]));
+        let mut still: Vector<S> = from_fn(|i| time.mul_add(f[i] + bend[i], p[i]));
+        let aligned = one - S::from_f64(4.0 * S::EPSILON);
+        for k in 0..3 {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            let by_j = flexibility[k] - flexibility[j];
+            let by_i = flexibility[i] - flexibility[k];
+            let square = by_i * by_j;
+            let root = square.abs().sqrt();
+            let (far, way) = (nodes::farthest::<S>(), time * p[k]);
+            let angle = root * way;
+            let angle = Scalar::max(far.select_lt(angle, far, angle), -far);
+            let (sine, cosine) = angle.sin_cos();
+            let cosine = square.select_lt(zero, cosine, angle.cosh());
+            let sine = square.select_lt(zero, sine, angle.sinh());
+            let sine = zero.select_lt(root, sine / root, way);
+            let moved = [
+                cosine * p[i] + by_j * sine * p[j],
+                cosine * p[j] + by_i * sine * p[i],
+                p[k],
+            ];
+            for (place, moved) in [i, j, k].into_iter().zip(moved) {
+                still[place] = (p[k] * p[k]).select_lt(aligned, still[place], moved);
+            }
+        }
+        still
+    }
+
+    /// The rate of the angle about R P where P stands still, over |P|: Σ κᵢ pᵢ²/Σ pᵢ² over the axes beside that of the node.
+    fn steady_rate(&self) -> S {
+        let zero = S::default();
+        let squares = self.names.map(|axis| {
+            let p = so3::dot(axis, self.unit);
+            p * p
+        });
+        let beside = [
+            zero.select_lt(self.by_first, zero, squares[0]),
+            squares[1],
+            zero.select_lt(self.by_first, squares[2], zero),
+        ];
+        let weighed = from_fn(|k| so3::dot(self.names[k], self.flexibility) * beside[k]);
+        let sum = |list: [S; 3]| list[0] + list[1] + list[2];
+        sum(weighed) / sum(beside)
+    }
+
+    /// The turn of a body that rests, in principal axes: h J⁻¹ P, which has slopes alone.
+    fn from_rest(&self, h: S) -> Vector<S> {
+        from_fn(|i| h * (self.flexibility[i] * self.momentum[i]))
     }
 
     /// F as a unit quaternion, where it has a sign: that of the motion, which starts at 1.
@@ -228,7 +312,12 @@ impl<S: Scalar> FreeRotation<S> {
         let (before, after) = (shortest(axis, self.unit), shortest(axis, turned.unit));
         let [x, y, z] = axis.map(|component| component * twist[1]);
         let back = [after[0], -after[1], -after[2], -after[3]];
-        s3::product(s3::product(before, [twist[0], x, y, z]), back)
+        let lifted = s3::product(s3::product(before, [twist[0], x, y, z]), back);
+        if self.length.is_positive() {
+            return lifted;
+        }
+        let resting = s3::exp(self.from_rest(turned.h));
+        from_fn(|i| zero.select_lt(self.length, lifted[i], resting[i]))
     }
 
     /// e = σ names[2], along which p keeps its sign.
@@ -245,7 +334,7 @@ impl<S: Scalar> FreeRotation<S> {
         let along = so3::dot(self.names[0], p);
         let across = self.turning * so3::dot(self.names[1], p);
         let height = so3::dot(self.third(), p);
-        let cosine = zero.select_lt(self.by_first, one + height - along * along, along.abs());
+        let cosine = zero.select_lt(self.by_first, one + height - along * along, side * along);
         let sine = zero.select_lt(self.by_first, -(along * across), side * across);
         let length = (cosine * cosine + sine * sine).sqrt();
         let (cosine, sine) = (cosine / length, sine / length);

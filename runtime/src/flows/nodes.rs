@@ -8,7 +8,7 @@
 use crate::flows::carlson::third_kind;
 use crate::flows::exact::FreeRotation;
 use crate::flows::jacobi::{Jacobi, Mean, SERIES_BELOW, Series};
-use crate::scalar::{Scalar, epsilon};
+use crate::scalar::Scalar;
 
 /// Where a motion gets.
 #[derive(Clone, Copy, Debug)]
@@ -150,9 +150,14 @@ pub(crate) fn side<S: Scalar>(at: Jacobi<S>) -> S {
     at.cn.select_lt(S::default(), -one, one)
 }
 
-/// The nearest whole number, as long as whole numbers are exact.
+/// The nearest whole number.
 #[inline]
 pub(crate) fn round<S: Scalar>(value: S) -> S {
-    let large = S::from_f64(1.5) / epsilon::<S>();
-    value + large - large
+    value.nearest_whole()
+}
+
+/// |u| beyond which hyperbolic functions are not taken.
+#[inline]
+pub(crate) fn farthest<S: Scalar>() -> S {
+    separatrix::<S>().1
 }
