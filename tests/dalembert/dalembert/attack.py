@@ -24,7 +24,11 @@ from .trees import Forest
 from .written import Written
 
 # What hamel cannot do and says so, with what is left out of `generate` then.
-LEFT_OUT = {"has no regressor": ", regressor", "`centroidal_map` is not known": ", centroidal_map"}
+LEFT_OUT = {
+    "has no regressor": ", regressor",
+    "`centroidal_map` is not known": ", centroidal_map",
+    "`parameter_slopes` is not known: the constraints": ", parameter_slopes",
+}
 # What a random mechanism should not have been.
 MEANINGLESS = ["can coincide", "its points keep their distance", "the velocity by others", "leave it none of its own"]
 
