@@ -41,7 +41,8 @@ where
 {
     let found = sloped(start, motion);
     let values = end(start, motion);
-    let step = 2e-4;
+    // Small enough for the phase of the motion.
+    let step = 2e-4 / (motion[2] * motion[6]).abs().sqrt().max(1.0);
     for d in 0..7 {
         let at = |k: f64| {
             let mut beside = motion;
@@ -92,6 +93,11 @@ fn about_principal_axes() {
             }
         }
     }
+}
+
+#[test]
+fn over_hundreds_of_radians() {
+    both([0.0, 0.0, 20.0, 2.1, 1.7, 0.3, 20.0]);
 }
 
 #[test]

@@ -252,10 +252,10 @@ impl<S: Scalar> FreeRotation<S> {
             let root = square.abs().sqrt();
             let (far, way) = (nodes::farthest::<S>(), time * p[k]);
             let angle = root * way;
-            let angle = Scalar::max(far.select_lt(angle, far, angle), -far);
             let (sine, cosine) = angle.sin_cos();
-            let cosine = square.select_lt(zero, cosine, angle.cosh());
-            let sine = square.select_lt(zero, sine, angle.sinh());
+            let bounded = Scalar::max(far.select_lt(angle, far, angle), -far);
+            let cosine = square.select_lt(zero, cosine, bounded.cosh());
+            let sine = square.select_lt(zero, sine, bounded.sinh());
             let sine = zero.select_lt(root, sine / root, way);
             let moved = [
                 cosine * p[i] + by_j * sine * p[j],
