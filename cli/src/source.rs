@@ -230,6 +230,7 @@ impl Source {
             system.evaluate();
         }
         system.shows_frames = self.shows_frames;
+        system.starts_anywhere = self.robot.is_some();
         Ok((system, texts))
     }
 

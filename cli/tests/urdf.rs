@@ -378,3 +378,68 @@ fn planar_joints_are_one_joint() {
     let alone = eval(&[&robot], r#"{"velocity": {"glide 1": [1, 2, 3]}}"#);
     assert_eq!(alone["xi"], serde_json::json!([1.0, 2.0, 3.0, 0.0]));
 }
+
+/// Two links, a point mass at the end of the second one, which starts on the first axis, where M is singular: nobody has
+/// chosen this start, and other states have accelerations.
+#[test]
+fn a_start_at_zero_may_be_singular() {
+    let hinge = |name: &str, parent: &str, child: &str, place: &str| {
+        format!(
+            r#"<joint name="{name}" type="KIND"><parent link="{parent}"/><child link="{child}"/>
+            <origin xyz="{place}"/><axis xyz="0 1 0"/></joint>"#
+        )
+    };
+    let described = format!(
+        r#"<robot name="r"><link name="base"/><link name="a"/><link name="b"><inertial><origin xyz="0 0 1"/><mass value="1"/>
+        <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>{}{}</robot>"#,
+        hinge("j", "base", "a", "0 0 0"),
+        hinge("k", "a", "b", "0 0 1")
+    );
+    for kind in ["revolute", "continuous"] {
+        let robot = scratch(
+            &format!("singular_{kind}.urdf"),
+            &described.replace("KIND", kind),
+        );
+        let state = r#"{"configuration": {"k": 1.2}}"#;
+        let found = eval(&[&robot], state);
+        // In closed form: r = (sin a + sin(a + k), cos a + cos(a + k)) for a = 0, whose rates have to make r̈ = −g e_z.
+        let (s, c) = 1.2_f64.sin_cos();
+        let rates: [f64; 2] = [0, 1].map(|place| number(&found["accel"][place]));
+        let reached = [
+            (1.0 + c) * rates[0] + c * rates[1],
+            -s * (rates[0] + rates[1]),
+        ];
+        assert!(reached[0].abs() < 1e-12, "{reached:?}");
+        assert!((reached[1] + 9.81).abs() < 1e-12, "{reached:?}");
+        for command in [
+            &["simulate", &robot, "--until", "0.01", "--at", "-"][..],
+            &["linearize", &robot, "--at", "-"],
+        ] {
+            let output = hamel(command, state);
+            assert!(output.status.success(), "{}", text(&output.stderr));
+        }
+        // At the start itself there is none, which is said.
+        let output = hamel(&["eval", &robot], "");
+        assert_eq!(output.status.code(), Some(1));
+        let said = text(&output.stderr);
+        assert!(said.contains("`accel` has no value"), "{said}");
+        let output = hamel(&["simulate", &robot, "--until", "0.01"], "");
+        assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    }
+    // What is singular everywhere still has no inverse: the point on an axis through it.
+    let robot = scratch(
+        "nowhere.urdf",
+        &described
+            .replace("KIND", "revolute")
+            .replace(r#"<origin xyz="0 0 1"/><mass"#, "<mass"),
+    );
+    let output = hamel(
+        &["eval", &robot, "--at", "-"],
+        r#"{"configuration": {"k": 1.2}}"#,
+    );
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("what needs its inverse is left out"),
+        "{said}"
+    );
+}
