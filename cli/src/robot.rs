@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
+use hamel_codegen::syntax::suggest::closest;
 use hamel_codegen::urdf::{self, Imported, Options, TOLERANCE};
 use std::path::Path;
 
@@ -25,7 +26,8 @@ pub struct RobotOptions {
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
     /// Angles this near to a multiple of π/2 (rad) are that multiple, and entries this small beside
-    /// the largest of their vector or matrix are 0; default 1e-9, 0 keeps every digit.
+    /// the largest of their vector or matrix are 0, lengths below a millionth of it (m) in any case;
+    /// default 1e-9, 0 keeps every digit.
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     pub rounding: Option<f64>,
     /// Another value of a constant of the description, such as the length of a chain; once for each constant.
@@ -109,5 +111,47 @@ impl Robot {
             urdf::import(&urdf, &options.options(path), path, true).map_err(Failure::Failed)?;
         crate::failure::warn(&urdf::warnings(&imported, path, &urdf, true));
         Ok(Robot { urdf, imported })
+    }
+
+    /// The frame of a link, by the link's name in the file or else in the description; the link that stands in the world
+    /// becomes a frame.
+    pub fn frame(&mut self, link: &str) -> Result<String, String> {
+        let Imported { links, ground, .. } = &self.imported;
+        let all: Vec<&(String, String)> = links.iter().chain(ground).collect();
+        let written = all.iter().find(|(written, _)| written == link);
+        let found = written.or_else(|| all.iter().find(|(_, name)| name == link));
+        let Some((_, frame)) = found else {
+            let names = || all.iter().map(|(written, _)| written.as_str());
+            let help = match closest(link, names()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("the links are {}", names().collect::<Vec<_>>().join(", ")),
+            };
+            return Err(format!("no link is called `{link}`; {help}"));
+        };
+        let frame = frame.clone();
+        if ground.as_ref().is_some_and(|(_, name)| *name == frame) {
+            self.stand();
+        }
+        Ok(frame)
+    }
+
+    /// The link that stands in the world becomes a frame of the description.
+    fn stand(&mut self) {
+        let Imported {
+            text,
+            origins,
+            links,
+            ground,
+            ..
+        } = &mut self.imported;
+        let (Some(place), Some(link)) = (text.rfind('}'), ground.take()) else {
+            return;
+        };
+        text.insert_str(
+            place,
+            &format!("    frame {} = pose(identity(3), [0, 0, 0]);\n", link.1),
+        );
+        origins.insert(origins.len().saturating_sub(1), None);
+        links.push(link);
     }
 }

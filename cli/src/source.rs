@@ -160,6 +160,35 @@ impl Source {
         }
     }
 
+    /// The frames that are asked for, each with its name in the description; those of a robot are its links, by their names
+    /// in its file or in the description, and the link that stands in the world becomes a frame where it is asked for.
+    pub fn frames(&mut self, asked: &[String]) -> Result<Vec<(String, String)>, Failure> {
+        let Some(robot) = &mut self.robot else {
+            let both = asked.iter().map(|name| (name.clone(), name.clone()));
+            return Ok(both.collect());
+        };
+        let mut frames: Vec<(String, String)> = Vec::new();
+        let mut unknown = Vec::new();
+        for name in asked {
+            match robot.frame(name) {
+                Ok(frame) if frames.iter().all(|(known, _)| known != name) => {
+                    frames.push((name.clone(), frame));
+                }
+                Ok(_) => {}
+                Err(why) => unknown.push(why),
+            }
+        }
+        self.text.clone_from(&robot.imported.text);
+        match unknown.is_empty() {
+            true => Ok(frames),
+            false => Err(Failure::failed(format!(
+                "{}: {}",
+                self.path,
+                unknown.join("; ")
+            ))),
+        }
+    }
+
     /// The text is a robot in URDF: it becomes a description.
     pub fn robot(self, options: &RobotOptions) -> Result<Self, Failure> {
         let robot = Robot::read(self.text, &self.path, options)?;
@@ -201,6 +230,7 @@ impl Source {
             system.evaluate();
         }
         system.shows_frames = self.shows_frames;
+        system.starts_anywhere = self.robot.is_some();
         Ok((system, texts))
     }
 

@@ -3,7 +3,10 @@
 mod common;
 
 use common::{hamel, text};
+use hamel_codegen::urdf::Options;
+use hamel_codegen::{lower, syntax, vocabulary};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Small results of a few roundings.
@@ -219,4 +222,224 @@ fn mistakes_are_shown_in_the_urdf() {
         "{errors}"
     );
     assert!(errors.contains("2 errors"), "{errors}");
+}
+
+const BODY: &str = r#"<inertial><origin xyz="0.1 0.2 0.3"/><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"#;
+
+/// A joint between two links.
+fn joint(name: &str, kind: &str, parent: &str, child: &str) -> String {
+    format!(
+        r#"<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 1"/></joint>"#
+    )
+}
+
+/// A link with mass.
+fn link(name: &str) -> String {
+    format!(r#"<link name="{name}">{BODY}</link>"#)
+}
+
+/// Joints and links may be called as words of the language are: the description calls them otherwise.
+#[test]
+fn words_of_the_language_are_names_of_robots() {
+    let words: BTreeSet<String> = vocabulary::statements()
+        .map(|(word, _)| word.to_string())
+        .chain(vocabulary::kinds_of_joints().map(String::from))
+        .chain(vocabulary::fields_of_joints().map(|(word, _)| word.into()))
+        .chain(vocabulary::fields_of_bodies().map(|(word, _)| word.into()))
+        .chain(vocabulary::functions().map(|(word, _)| word.into()))
+        .collect();
+    assert!(words.len() > 100);
+    let mut refused = Vec::new();
+    for word in &words {
+        let robot = |joint_name: &str, link_name: &str| {
+            let (base, link) = (r#"<link name="base"/>"#, link(link_name));
+            let joint = joint(joint_name, "revolute", "base", link_name);
+            let text = format!(r#"<robot name="{word}">{base}{link}{joint}</robot>"#);
+            let imported = hamel_codegen::urdf::import(&text, &Options::default(), "r.urdf", false);
+            imported.expect("a sound robot")
+        };
+        for imported in [robot(word, "rod"), robot("hinge", word)] {
+            let built = syntax::parse_text(&imported.text).and_then(|system| lower::build(&system));
+            if let Err(errors) = built {
+                refused.push(format!("{word}: {}", errors[0].message));
+            }
+        }
+        if word == "max" {
+            assert_eq!(robot(word, "rod").joints[0].1, "max_joint");
+            assert_eq!(robot("hinge", word).links[0].1, "max_link");
+        }
+    }
+    assert!(refused.is_empty(), "{refused:#?}");
+}
+
+/// Frames are links by their names in the file, which descriptions change; the base that stands is one of them.
+#[test]
+fn frames_are_links() {
+    let described = format!(
+        r#"<robot name="r"><link name="base link"/>{}<link name="tool-0"/><link name="tool_0"/>{}{}
+        <joint name="s" type="fixed"><parent link="arm"/><child link="tool_0"/><origin xyz="0 0 2"/></joint></robot>"#,
+        link("arm"),
+        joint("arm", "revolute", "base link", "arm"),
+        joint("t", "fixed", "arm", "tool-0").replace("<axis", r#"<origin xyz="0 3 0"/><axis"#),
+    );
+    let robot = scratch("frames.urdf", &described);
+    let names = ["tool-0", "tool_0", "arm", "arm_link", "base link"];
+    let mut arguments = vec![robot.as_str()];
+    arguments.extend(names.iter().flat_map(|name| ["--frame", name]));
+    let by_joints = eval(&arguments, r#"{"configuration": {}}"#);
+    for found in [eval(&arguments, "{}"), by_joints] {
+        let frames = found["kinematics"].as_object().expect("frames");
+        assert_eq!(frames.len(), names.len());
+        let position = |name: &str, place: usize| number(&frames[name]["pose"][place][3]);
+        assert_eq!(position("tool-0", 1), 3.0);
+        // A link's name in the file goes before that of another one in the description.
+        assert_eq!(position("tool_0", 2), 2.0);
+        assert_eq!(frames["arm"], frames["arm_link"]);
+        let base = &frames["base link"];
+        for (row, column) in (0..3).flat_map(|row| (0..4).map(move |column| (row, column))) {
+            let expected = f64::from(u8::from(row == column));
+            assert_eq!(number(&base["pose"][row][column]), expected);
+        }
+        let rows = base["jacobian"].as_array().expect("a Jacobian");
+        assert!(rows.iter().all(|row| number(&row[0]) == 0.0), "{base}");
+    }
+    let output = hamel(&["eval", &robot, "--frame", "tool-1", "--frame", "x"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let said = text(&output.stderr);
+    for part in [
+        "frames.urdf: no link is called `tool-1`; did you mean `tool-0`?",
+        "no link is called `x`; the links are arm, tool_0, tool-0, base link",
+    ] {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
+}
+
+/// Velocities by joints alone, in either form, and beside inputs.
+#[test]
+fn velocities_alone_are_known_by_joints() {
+    let described = format!(
+        r#"<robot name="r">{}{}{}</robot>"#,
+        link("base"),
+        link("leg"),
+        joint("hip 1", "revolute", "base", "leg")
+    );
+    let robot = scratch("velocities.urdf", &described);
+    let given = r#""velocity": {"hip 1": 2, "root_joint": {"linear": [1, 2, 3]}}"#;
+    let other = r#""velocity": {"hip_1": 2, "root_joint_v": [1, 2, 3]}"#;
+    for state in [
+        format!("{{{given}}}"),
+        format!(r#"{{"configuration": {{}}, {given}}}"#),
+        format!(r#"{{"input": {{"hip_1_tau": 1}}, {given}}}"#),
+        format!("{{{other}}}"),
+    ] {
+        let found = eval(&[&robot, "--floating"], &state);
+        let xi: Vec<f64> = found["xi"]
+            .as_array()
+            .expect("ξ")
+            .iter()
+            .map(number)
+            .collect();
+        assert_eq!(xi, [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 2.0], "{state}");
+    }
+    let twice =
+        r#"{"velocity": {"hip 1": 2, "hip_1": 2, "root_joint": {"linear": [1], "angle": 0}}}"#;
+    let output = hamel(&["eval", &robot, "--floating", "--at", "-"], twice);
+    let said = text(&output.stderr);
+    for part in [
+        "velocity.hip_1: given twice, by another of its names, too",
+        "velocity.root_joint.linear: a list of 3 numbers expected, a list of 1 found",
+        "velocity.root_joint.angle: unknown name",
+    ] {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
+}
+
+/// A planar joint is one joint, whatever others are called.
+#[test]
+fn planar_joints_are_one_joint() {
+    let described = format!(
+        r#"<robot name="r"><link name="base"/>{}{}{}{}</robot>"#,
+        link("a"),
+        link("b"),
+        joint("glide 1", "planar", "base", "a"),
+        joint("glide_1_r", "revolute", "a", "b")
+    );
+    let robot = scratch("planar.urdf", &described);
+    let state = r#"{"configuration": {"glide_1_r": 0.3, "glide 1": {"position": [1, 2], "angle": 0.5}},
+        "velocity": {"glide_1_r": 4, "glide 1": {"linear": [1, 2], "angular": 3}},
+        "force": {"glide 1": [5, 6, 7]}}"#;
+    let found = eval(&[&robot], state);
+    let names = ["glide 1", "glide 1", "glide 1", "glide_1_r"];
+    assert_eq!(found["velocities"], serde_json::json!(names));
+    assert_eq!(found["x"], serde_json::json!([1.0, 2.0, 0.5, 0.3]));
+    assert_eq!(found["xi"], serde_json::json!([1.0, 2.0, 3.0, 4.0]));
+    let force = serde_json::json!([5.0, 6.0, 7.0, 0.0]);
+    assert_eq!(found["generalized_force"], force);
+    let alone = eval(&[&robot], r#"{"velocity": {"glide 1": [1, 2, 3]}}"#);
+    assert_eq!(alone["xi"], serde_json::json!([1.0, 2.0, 3.0, 0.0]));
+}
+
+/// Two links, a point mass at the end of the second one, which starts on the first axis, where M is singular: nobody has
+/// chosen this start, and other states have accelerations.
+#[test]
+fn a_start_at_zero_may_be_singular() {
+    let hinge = |name: &str, parent: &str, child: &str, place: &str| {
+        format!(
+            r#"<joint name="{name}" type="KIND"><parent link="{parent}"/><child link="{child}"/>
+            <origin xyz="{place}"/><axis xyz="0 1 0"/></joint>"#
+        )
+    };
+    let described = format!(
+        r#"<robot name="r"><link name="base"/><link name="a"/><link name="b"><inertial><origin xyz="0 0 1"/><mass value="1"/>
+        <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>{}{}</robot>"#,
+        hinge("j", "base", "a", "0 0 0"),
+        hinge("k", "a", "b", "0 0 1")
+    );
+    for kind in ["revolute", "continuous"] {
+        let robot = scratch(
+            &format!("singular_{kind}.urdf"),
+            &described.replace("KIND", kind),
+        );
+        let state = r#"{"configuration": {"k": 1.2}}"#;
+        let found = eval(&[&robot], state);
+        // In closed form: r = (sin a + sin(a + k), cos a + cos(a + k)) for a = 0, whose rates have to make r̈ = −g e_z.
+        let (s, c) = 1.2_f64.sin_cos();
+        let rates: [f64; 2] = [0, 1].map(|place| number(&found["accel"][place]));
+        let reached = [
+            (1.0 + c) * rates[0] + c * rates[1],
+            -s * (rates[0] + rates[1]),
+        ];
+        assert!(reached[0].abs() < 1e-12, "{reached:?}");
+        assert!((reached[1] + 9.81).abs() < 1e-12, "{reached:?}");
+        for command in [
+            &["simulate", &robot, "--until", "0.01", "--at", "-"][..],
+            &["linearize", &robot, "--at", "-"],
+        ] {
+            let output = hamel(command, state);
+            assert!(output.status.success(), "{}", text(&output.stderr));
+        }
+        // At the start itself there is none, which is said.
+        let output = hamel(&["eval", &robot], "");
+        assert_eq!(output.status.code(), Some(1));
+        let said = text(&output.stderr);
+        assert!(said.contains("`accel` has no value"), "{said}");
+        let output = hamel(&["simulate", &robot, "--until", "0.01"], "");
+        assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    }
+    // What is singular everywhere still has no inverse: the point on an axis through it.
+    let robot = scratch(
+        "nowhere.urdf",
+        &described
+            .replace("KIND", "revolute")
+            .replace(r#"<origin xyz="0 0 1"/><mass"#, "<mass"),
+    );
+    let output = hamel(
+        &["eval", &robot, "--at", "-"],
+        r#"{"configuration": {"k": 1.2}}"#,
+    );
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("what needs its inverse is left out"),
+        "{said}"
+    );
 }

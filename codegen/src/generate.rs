@@ -67,7 +67,8 @@ pub fn from_file(text: &str, open: &mut Open<'_>) -> Result<Generated, Vec<Diagn
 /// What is wrong with the description beyond that.
 #[cfg(feature = "files")]
 pub fn available_in(text: &str) -> Result<(Generated, Option<Diagnostic>), Vec<Diagnostic>> {
-    let system = syntax::parse_text(text)?;
+    let mut system = syntax::parse_text(text)?;
+    system.starts_anywhere = true;
     let hash = fingerprint(&canonical(text));
     at_some_point(&system, |model| Generated::available(model, hash))
 }

@@ -10,17 +10,18 @@ use std::collections::BTreeSet;
 /// Words that name nothing, or something else: statements, connectives, functions, constants of
 /// the language, and keywords of Rust.
 const WORDS: &str = "\
-abstract acceleration angular_acceleration angular_momentum angular_velocity armature as async at \
-atan2 await axis_angle become body box break com const constraint continue continuous coord cos \
-cross crate cylindrical damper damping diag dissipation do dot dyn else energy enum exp extern \
-false final fixed fn follows for force frame free from gen generalized generate gravity hat \
-identity if impl in inactive inertia input invariant inverse joint kinetic length let limit \
-linear_momentum log loop macro mass match max_force max_speed mod move moves mut nonholonomic norm \
-on origin outer output override param particle pi planar pose position potential priv prismatic \
-pub qmul rate ref rest return revolute rot rotx roty rotz rpy self Self sin spherical spring sqrt \
-stabilized start static stiffness struct super system tan to torque trace trait transpose true try \
-type typeof universal unsafe unsized use vee velocity virtual wrench when where while world yield \
-about cart _ x xi u xi_dot R1 R2 R3 S1 S3 SO3 SE3 vec2 vec3 mat3 sym3";
+abs abstract acceleration acos angular_acceleration angular_momentum angular_velocity armature as \
+asin async at atan2 await axis_angle become body box break clamp com const constraint continue \
+continuous coord cos cosh crate cross cylindrical damper damping diag dissipation do dot dyn else \
+energy enum exp extern false final fixed fn follows for force frame free from gen generalized \
+generate gravity hat hypot identity if impl in inactive inertia input invariant inverse joint \
+kinetic length let limit linear_momentum log loop macro mass match max max_force max_speed min mod \
+move moves mut nonholonomic norm on origin outer output override param particle pi planar pose \
+position potential prismatic priv pub qmul rate ref rest return revolute rot rotx roty rotz rpy \
+Self self sign sin sinh spherical spring sqrt stabilized start static stiffness struct super \
+system tan tanh to torque trace trait transpose true try type typeof universal unsafe unsized use \
+vee velocity virtual when where while world wrench yield about cart _ x xi u xi_dot R1 R2 R3 S1 S3 \
+SO3 SE3 vec2 vec3 mat3 sym3";
 
 /// What the symbols that belong to a joint add to its name.
 const SUFFIXES: [&str; 10] = [

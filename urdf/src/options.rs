@@ -4,7 +4,7 @@ use crate::problem::Problem;
 use std::ops::Range;
 
 /// Angles this near to a multiple of π/2 (rad), and entries this small beside the largest of their
-/// vector or matrix, are taken for roundings.
+/// vector or matrix, are taken for roundings; so are lengths (m) below a millionth of it.
 pub const TOLERANCE: f64 = 1e-9;
 
 /// How joints with `<mimic>` move.
@@ -59,6 +59,10 @@ pub struct Imported {
     pub name: String,
     /// Joints with coordinates of their own: name in the URDF, name in the description.
     pub joints: Vec<(String, String)>,
+    /// Links that are frames of the description: name in the URDF, name in the description.
+    pub links: Vec<(String, String)>,
+    /// The link that stands in the world, where the base does not float, and the name that a frame for it may have.
+    pub ground: Option<(String, String)>,
     /// What was taken for a rounding, one sentence each.
     pub cleaned: Vec<String>,
     /// What is legal and still looks wrong.

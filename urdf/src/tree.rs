@@ -74,24 +74,31 @@ pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
             child,
         });
     }
-    if !sound {
-        return None;
-    }
     let roots: Vec<usize> = (0..mover.len())
         .filter(|&link| mover[link].is_none())
         .collect();
-    let (Some(&root), true) = (roots.first(), errors.is_empty()) else {
+    // What is wrong with a joint leaves its link without one: that is no further error.
+    let sound = sound && errors.is_empty();
+    let cycles = cycles(&edges, robot.links.len());
+    if sound && roots.is_empty() && cycles.len() == 1 {
         // Every link is moved by another one.
-        if errors.is_empty() {
-            errors.push(
-                &robot.range,
-                "no link is the base: the joints form a cycle",
-                "remove the joint that moves the base",
-            );
-        }
+        errors.push(
+            &robot.range,
+            "no link is the base: the joints form a cycle",
+            "remove the joint that moves the base",
+        );
         return None;
-    };
-    for &other in &roots[1..] {
+    }
+    for cycle in cycles {
+        let joint = &robot.joints[cycle];
+        errors.push(
+            &joint.name.range,
+            format!("`{}` is part of a cycle of joints", joint.name.name),
+            "URDF has trees alone; remove one joint of the cycle",
+        );
+    }
+    let (&root, others) = roots.split_first()?;
+    for &other in others.iter().filter(|_| sound) {
         let names = (&robot.links[other].name, &robot.links[root].name.name);
         errors.push(
             &names.0.range,
@@ -104,28 +111,44 @@ pub(crate) fn tree(robot: &Robot, errors: &mut Problems<'_>) -> Option<Tree> {
     }
     let mut order = Vec::new();
     let mut open = vec![root];
-    let mut reached = vec![false; robot.links.len()];
     while let Some(link) = open.pop() {
-        reached[link] = true;
         order.extend(edges.iter().filter(|edge| edge.child == link));
         let mut children: Vec<&Edge> = edges.iter().filter(|edge| edge.parent == link).collect();
         children.sort_by_key(|edge| &robot.joints[edge.joint].name.name);
         open.extend(children.iter().rev().map(|edge| edge.child));
     }
-    if roots.len() == 1
-        && let Some(edge) = edges.iter().find(|edge| !reached[edge.child])
-    {
-        let joint = &robot.joints[edge.joint];
-        errors.push(
-            &joint.name.range,
-            format!("`{}` is part of a cycle of joints", joint.name.name),
-            "URDF has trees alone; remove one joint of the cycle",
-        );
-    }
     errors.is_empty().then_some(Tree {
         root,
         joints: order,
     })
+}
+
+/// The first joint of each cycle, in the order of the file; no link is moved by two of the edges.
+fn cycles(edges: &[Edge], links: usize) -> Vec<usize> {
+    let mut parents: Vec<Option<usize>> = vec![None; links];
+    for edge in edges {
+        parents[edge.child] = Some(edge.parent);
+    }
+    let mut known = vec![false; links];
+    let mut first = Vec::new();
+    for edge in edges.iter() {
+        if known[edge.child] {
+            continue;
+        }
+        // From parent to parent, at most once around: a link of a cycle comes back to itself.
+        let up = std::iter::successors(Some(edge.parent), |&link| parents[link]);
+        let way: Vec<usize> = up
+            .take(links)
+            .take_while(|&link| link != edge.child)
+            .collect();
+        let last = way.last().copied().unwrap_or(edge.child);
+        if last == edge.child || parents[last] == Some(edge.child) {
+            known[edge.child] = true;
+            way.iter().for_each(|&link| known[link] = true);
+            first.push(edge.joint);
+        }
+    }
+    first
 }
 
 /// Indices by name; a name that comes again is an error.

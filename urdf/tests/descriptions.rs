@@ -66,6 +66,82 @@ fn a_tolerance_of_zero_changes_nothing() {
     assert!(exact.text.contains("1e-20"));
 }
 
+/// Directions and inertias are compared with their largest entry alone: only lengths are so small that they are nothing.
+#[test]
+fn small_is_what_is_small_beside_the_largest() {
+    let robot = |origin: &str, axis: &str, inertia: &str| {
+        let entries =
+            format!("ixx='{inertia}' ixy='0' ixz='0' iyy='{inertia}' iyz='0' izz='{inertia}'");
+        let link = format!(
+            "<link name='b'><inertial><mass value='1e-9'/><inertia {entries}/></inertial></link>"
+        );
+        let hinge = format!(
+            "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><origin xyz='{origin}'/><axis xyz='{axis}'/></joint>"
+        );
+        let text = format!("<robot name='r'><link name='a'/>{link}{hinge}</robot>");
+        import(&text, &options()).expect("a sound robot")
+    };
+    let light = robot("0 0 1e-16", "1e-16 0 1e-26", "4e-16");
+    assert!(light.warnings.is_empty(), "{:?}", light.warnings);
+    assert_eq!(
+        light.cleaned,
+        ["1e-16 is read as 0 (line 1)", "1e-26 is read as 0 (line 1)"]
+    );
+    assert!(
+        light.text.contains("diag(4e-16, 4e-16, 4e-16)"),
+        "{}",
+        light.text
+    );
+    assert!(
+        light
+            .text
+            .contains("joint j: revolute [1e-16, 0, 0] moves b")
+    );
+}
+
+/// Names are quoted in comments, which end with their line.
+#[test]
+fn names_with_line_breaks_stay_in_comments() {
+    let broken = EVERY_JOINT
+        .replace("finger_l_joint", "x&#10;param injected = 1; //")
+        .replace("base plate", "b&#13;&#10;param grounded = 1; //");
+    assert_ne!(broken, EVERY_JOINT);
+    let free = Options {
+        mimic: Mimic::Free,
+        ..options()
+    };
+    let text = import(&broken, &free).expect("a sound robot").text;
+    for line in text.lines().filter(|line| line.contains(" = 1;")) {
+        assert!(line.trim_start().starts_with("//"), "{line}");
+    }
+    assert!(
+        text.contains("In the URDF it follows 0.5 * x param injected"),
+        "{text}"
+    );
+    assert!(
+        text.contains("// `b  param grounded = 1; //` stands in the world."),
+        "{text}"
+    );
+}
+
+/// Every link that is a frame, or stands in the world, has its name in the description.
+#[test]
+fn links_are_known_by_both_names() {
+    let fixed = imported(&options());
+    let floating = imported(&Options {
+        floating: true,
+        ..options()
+    });
+    let base = fixed.ground.clone().expect("a base that stands");
+    assert_eq!(floating.ground, None);
+    assert_eq!(floating.links[0], base);
+    assert_eq!(floating.links[1..], fixed.links);
+    for (_, name) in &fixed.links {
+        assert!(fixed.text.contains(&format!("moves {name}")), "{name}");
+    }
+    assert!(!fixed.text.contains(&format!("moves {}", base.1)));
+}
+
 /// Every line that is made from an element knows where it stands.
 #[test]
 fn lines_know_their_origin() {

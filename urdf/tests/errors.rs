@@ -31,6 +31,9 @@ fn wrong_files() {
     let cases = [
         ("no XML", "robot".to_string()),
         ("not closed", "<robot name='r'>\n  <link name='a'>\n</robot>".into()),
+        ("cut off", format!("{}\n", pendulum(&hinge(""), BODY).replace("</robot>", ""))),
+        ("cut off in a name", "<robot name='r'>\n  <link name='é".into()),
+        ("a comment alone", "<!-- nothing -->\n".into()),
         ("no URDF", "<mujoco model='m'/>".into()),
         ("xacro", "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'>\n<xacro:arm/></robot>".into()),
         ("xacro without its namespace", "<robot name='r'>\n<xacro:arm/></robot>".into()),
@@ -43,6 +46,8 @@ fn wrong_files() {
         ("moved twice", pendulum(&format!("{}\n{}", hinge(""), hinge("").replace("'j'", "'k'")), BODY)),
         ("cycle", pendulum(&format!("{}\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint>", hinge("")), BODY)),
         ("cycle beside the tree", "<robot name='r'><link name='o'/><link name='a'/><link name='b'/>\n<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint></robot>".into()),
+        ("two roots beside two cycles", "<robot name='r'><link name='o'/><link name='p'/><link name='a'/><link name='b'/><link name='c'/><link name='d'/>\n<joint name='l' type='fixed'><parent link='b'/><child link='d'/></joint>\n<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint>\n<joint name='m' type='fixed'><parent link='c'/><child link='c'/></joint></robot>".into()),
+        ("unknown link beside a cycle", "<robot name='r'><link name='o'/><link name='a'/><link name='b'/><link name='c'/>\n<joint name='i' type='fixed'><parent link='oo'/><child link='c'/></joint>\n<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint></robot>".into()),
         ("unknown type", pendulum(&hinge("").replace("revolute", "ball"), BODY)),
         ("no parent", pendulum("<joint name='j' type='fixed'><child link='b'/></joint>", BODY)),
         ("zero axis", pendulum(&hinge("<axis xyz='0 0 0'/>"), BODY)),
@@ -176,6 +181,25 @@ fn robots_that_look_wrong() {
     let fixed = two.replace("prismatic", "fixed");
     let imported = import(&pendulum(&fixed, ""), &Options::default()).expect("legal");
     assert_eq!(imported.warnings, []);
+}
+
+/// Only joints whose positions URDF limits have limits that can be wrong.
+#[test]
+fn limits_of_joints_that_have_none() {
+    let exchanged = pendulum(&hinge("<limit lower='0' upper='-1'/>"), BODY);
+    for kind in ["continuous", "planar", "floating"] {
+        let text = exchanged.replace("revolute", kind);
+        import(&text, &Options::default()).expect("the limits say nothing");
+    }
+    let fixed = format!(
+        "{}<link name='c'/>\n<joint name='k' type='fixed'><parent link='b'/><child link='c'/><limit lower='1' upper='0'/></joint>",
+        hinge("")
+    );
+    import(&pendulum(&fixed, BODY), &Options::default()).expect("the limits say nothing");
+    for kind in ["revolute", "prismatic"] {
+        let text = exchanged.replace("revolute", kind);
+        assert!(messages(&text, &Options::default()).contains("exchange them"));
+    }
 }
 
 /// Texts that are cut anywhere, or damaged, are refused or read; nothing panics.

@@ -8,26 +8,33 @@ use hamel_codegen::functions::{FrameFunction, Jacobian};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Shape;
 
-/// What is asked for of frames: everything, in axes of the world and in their own.
-pub fn asked(names: &[String]) -> Vec<Jacobian> {
-    let both = |name: &String| {
-        [false, true].map(|own| Jacobian {
-            frame: name.clone(),
-            own,
-        })
-    };
-    names.iter().flat_map(both).collect()
+/// A frame: how it was asked for, and its name in the description.
+pub type Named = (String, String);
+
+/// Its Jacobians in axes of the world and in its own.
+fn both(frame: &str) -> [Jacobian; 2] {
+    [false, true].map(|own| Jacobian {
+        frame: frame.into(),
+        own,
+    })
 }
 
-/// An object for every frame, whose members are named as the functions are without the frame's name; nothing where no
-/// frame is asked for.
-pub fn kinematics(generated: &Generated, state: &State) -> Result<Option<Json>, Failure> {
-    let asked = &generated.active.asked.jacobians;
+/// What is asked for of frames: everything.
+pub fn asked(frames: &[Named]) -> Vec<Jacobian> {
+    frames.iter().flat_map(|(_, frame)| both(frame)).collect()
+}
+
+/// An object for every frame, called as it was asked for, whose members are named as the functions are without the
+/// frame's name; nothing where no frame is asked for.
+pub fn kinematics(
+    generated: &Generated,
+    state: &State,
+    asked: &[Named],
+) -> Result<Option<Json>, Failure> {
     let mut frames: Vec<(&str, Json)> = Vec::new();
-    for jacobian in asked.iter().filter(|jacobian| !jacobian.own) {
-        let of_frame = asked.iter().filter(|other| other.frame == jacobian.frame);
+    for (written, frame) in asked {
         let mut members = Vec::new();
-        for one in of_frame {
+        for one in both(frame) {
             for &of in FrameFunction::ALL {
                 let name = one.name_of(of);
                 let short = name[one.frame.len() + 1..].to_string();
@@ -52,7 +59,7 @@ pub fn kinematics(generated: &Generated, state: &State) -> Result<Option<Json>, 
                 members.push((short, value));
             }
         }
-        frames.push((&jacobian.frame, Json::Object(members)));
+        frames.push((written, Json::Object(members)));
     }
     Ok((!frames.is_empty()).then(|| Json::object(frames)))
 }

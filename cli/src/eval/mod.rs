@@ -30,7 +30,7 @@ const MOST_SHOWN: usize = 64;
 /// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…},
 /// "state": {…}, "input": {…}}.
 /// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
-/// Velocities of joints are known by the joint's name, too. A state is what the start of the description
+/// Velocities of joints are known by the joint's name, too, that of the URDF file for a robot. A state is what the start of the description
 /// would be with its numbers in the text: they and the other exact starts are kept, what is prescribed
 /// follows, loops are closed and constraints kept by the rest. Where the numbers contradict exact starts of
 /// the text, those give way that the loops and constraints tie to them, to the nearest values; a state that
@@ -40,7 +40,8 @@ const MOST_SHOWN: usize = 64;
 ///
 /// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3, "root_joint": {"position": […],
 /// "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […], "angular": […]}},
-/// "param": {…}, "force": […]}, angles in rad, forces by joint or in the order of the rows. Then `velocities` names
+/// "param": {…}, "force": […]}, angles in rad, forces by joint or in the order of the rows; a planar joint has
+/// {"position": [x, y], "angle": a} and {"linear": [vx, vy], "angular": w}. Then `velocities` names
 /// each row by its joint, `bias` is Γ ξ ξ + ∂V, gravity in it, and `accel` is M⁻¹ (force − bias): force is
 /// all of the generalised force, friction in it. `force`, and a list {"samples": […]} of such states, are
 /// for `eval` alone.
@@ -58,7 +59,8 @@ pub struct Arguments {
     /// State, by coordinates or by joints; `-` for standard input.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// Pose, twist, Jacobian and bias acceleration of a frame, or of a robot's link; once for each.
+    /// Pose, twist, Jacobian and bias acceleration of a frame, or of a robot's link by its name in the URDF file; once
+    /// for each.
     #[arg(long, value_name = "NAME")]
     frame: Vec<String>,
     /// Print γ and Γ of systems with more than 64 velocities, too.
@@ -74,18 +76,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.frame.is_empty() {
         source = source.showing_frames();
     }
+    let frames = source.frames(&arguments.frame)?;
     let at = arguments.at.as_deref();
     let at = at.map(|path| File::read(path, &source)).transpose()?;
     if let Some(at) = at.as_ref().filter(|at| at.is_by_joints()) {
-        return sample::run(&source, at, &arguments.frame);
+        return sample::run(&source, at, &frames);
     }
-    let generated = source.derive_available(&frames::asked(&arguments.frame))?;
+    let generated = source.derive_available(&frames::asked(&frames))?;
     let state = match &at {
         Some(at) => at.state(&source, &generated)?,
         None => State::start(&generated.active),
     };
     let shown = arguments.tables || generated.model.n() <= MOST_SHOWN;
-    let (value, missing) = numbers(&generated, &state, source.shown(), shown)?;
+    let (value, missing) = numbers((&generated, source.shown()), &state, &frames, shown)?;
     if !shown {
         warn(&format!(
             "gamma and Gamma, 2 × {}³ numbers, are left out: --tables prints them\n",
@@ -104,12 +107,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The numbers of everything at a state, γ and Γ among them where they are wanted, and what has no value; `shown` is the text
-/// that messages give lines of.
+/// The numbers of everything at a state and of frames, γ and Γ among them where they are wanted, and what has no value;
+/// `shown` is the text that messages give lines of.
 pub fn numbers(
-    generated: &Generated,
+    (generated, shown): (&Generated, &str),
     state: &State,
-    shown: &str,
+    frames: &[frames::Named],
     with_tables: bool,
 ) -> Result<(Json, Vec<String>), Failure> {
     let states = generated.model.states.iter();
@@ -139,7 +142,7 @@ pub fn numbers(
     members.extend(Geometry::new(generated, state, with_tables)?.members());
     let mut missing: Vec<String> = Vec::new();
     members.extend(motion(generated, (state, shown), &mut missing)?);
-    members.extend(frames::kinematics(generated, state)?.map(|all| ("kinematics", all)));
+    members.extend(frames::kinematics(generated, state, frames)?.map(|all| ("kinematics", all)));
     let infinite = members.iter().filter(|(_, value)| !finite(value));
     let infinite: Vec<&str> = infinite.map(|(name, _)| *name).collect();
     if !infinite.is_empty() {

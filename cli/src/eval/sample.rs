@@ -1,7 +1,7 @@
 //! Numbers at a state that is given by joints: what other programs call M, bias and acceleration.
 
 use super::finite;
-use super::frames::{asked, kinematics};
+use super::frames::{Named, asked, kinematics};
 use crate::failure::{Failure, print};
 use crate::json::Json;
 use crate::mechanism::{constant_singular, function};
@@ -36,7 +36,7 @@ const REACHED: f64 = 1e-9;
 /// `bias` is Γ ξ ξ + ∂V, so that M ξ̇ + bias = force, where force is the whole generalised force:
 /// friction and other loads of the description are part of it, not added to it. Without a force
 /// the loads of the description act, with zero input.
-pub fn run(source: &Source, at: &File, frames: &[String]) -> Result<(), Failure> {
+pub fn run(source: &Source, at: &File, frames: &[Named]) -> Result<(), Failure> {
     let File { path, json } = at;
     let generated = source.derive_only(&FUNCTIONS, &asked(frames))?;
     let (list, several) = match json.get("samples") {
@@ -72,7 +72,7 @@ pub fn run(source: &Source, at: &File, frames: &[String]) -> Result<(), Failure>
     let mut failed = Vec::new();
     let mut written = Vec::new();
     for (index, sample) in samples.iter().enumerate() {
-        let (members, missing) = members((&generated, source.shown()), sample)?;
+        let (members, missing) = members((&generated, source.shown()), sample, frames)?;
         let place = match several {
             true => format!("samples[{index}]: "),
             false => String::new(),
@@ -101,7 +101,11 @@ pub fn run(source: &Source, at: &File, frames: &[String]) -> Result<(), Failure>
 /// What is printed of a state, and what has no value there.
 type Members = (Vec<(&'static str, Json)>, Vec<String>);
 
-fn members((generated, text): (&Generated, &str), sample: &Sample) -> Result<Members, Failure> {
+fn members(
+    (generated, text): (&Generated, &str),
+    sample: &Sample,
+    frames: &[Named],
+) -> Result<Members, Failure> {
     let model = &generated.active;
     let state = &sample.state;
     let call = |name: &str| -> Result<Vec<f64>, Failure> {
@@ -142,7 +146,7 @@ fn members((generated, text): (&Generated, &str), sample: &Sample) -> Result<Mem
         ("kinetic_energy", number(call("kinetic_energy")?)),
         ("potential_energy", number(call("potential_energy")?)),
     ];
-    members.extend(kinematics(generated, state)?.map(|all| ("kinematics", all)));
+    members.extend(kinematics(generated, state, frames)?.map(|all| ("kinematics", all)));
     let mut missing = Vec::new();
     // Where there is no such function, that was said before.
     if accel.value.is_none() && generated.program.function(FunctionId::Accel).is_some() {

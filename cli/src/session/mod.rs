@@ -442,7 +442,7 @@ impl Session {
     /// Where functions in Rust have no numbers.
     pub fn evaluate(&self, state: &State) -> Result<String, Failure> {
         let shown = self.source.shown();
-        let (value, _) = numbers(&self.generated, state, shown, true)?;
+        let (value, _) = numbers((&self.generated, shown), state, &[], true)?;
         Ok(value.pretty())
     }
 

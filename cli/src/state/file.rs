@@ -71,7 +71,7 @@ impl File {
         let state = match (self.is_by_joints(), &self.json) {
             (true, _) => self.by_joints(start, source, generated),
             (false, Value::Array(list)) => samples::last(start, list, (generated, &source.text)),
-            (false, _) => start.changed(generated, &source.text, &self.json),
+            (false, _) => start.changed((generated, &source.text), source.joints(), &self.json),
         };
         state.map_err(|errors| Failure::usages(&self.path, &errors))
     }

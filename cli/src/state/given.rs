@@ -2,6 +2,7 @@
 
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::{Group, Model};
+use hamel_codegen::syntax::ast::JointKind;
 
 /// The entries of x that were given, and what was given of ξ.
 #[derive(Clone, Debug)]
@@ -62,19 +63,44 @@ pub fn velocities(generated: &Generated) -> Vec<Group> {
     all
 }
 
-/// The joints that have velocities, with the places of these in ξ.
-pub fn joints(model: &Model) -> Vec<(&str, Vec<usize>)> {
-    let places = |names: &[String]| -> Vec<usize> {
-        let groups = names.iter().filter_map(|name| {
+/// A joint that has velocities, by one of its names.
+pub struct Moving<'a> {
+    /// The name.
+    pub name: &'a str,
+    /// Places of its velocities in ξ.
+    pub places: Vec<usize>,
+    /// How many of them are linear, where the others are angular.
+    pub linear: Option<usize>,
+}
+
+/// The joints that have velocities, by their names in the robot's file and by those in the description that are no
+/// other's there; `names` are pairs of these.
+pub fn joints<'a>(model: &'a Model, names: &'a [(String, String)]) -> Vec<Moving<'a>> {
+    let mut all = Vec::new();
+    for joint in &model.joints {
+        let groups = joint.velocities.iter().filter_map(|name| {
             let mut groups = model.velocities.iter();
             groups.find(|group| group.name == *name)
         });
-        groups
+        let places: Vec<usize> = groups
             .flat_map(|group| group.offset..group.offset + group.len)
-            .collect()
-    };
-    let all = model.joints.iter();
-    all.map(|joint| (joint.name.as_str(), places(&joint.velocities)))
-        .filter(|(_, places)| !places.is_empty())
-        .collect()
+            .collect();
+        // Constraints may leave a part of them.
+        let linear = match (joint.kind, places.len()) {
+            (JointKind::Free, 6) => Some(3),
+            (JointKind::Planar, 3) => Some(2),
+            _ => None,
+        };
+        let written = names.iter().find(|(_, name)| *name == joint.name);
+        let written = written.map(|(written, _)| written.as_str());
+        let own = Some(joint.name.as_str());
+        let own = own.filter(|own| names.iter().all(|(written, _)| written != own));
+        let called = written.into_iter().chain(own);
+        all.extend(called.filter(|_| !places.is_empty()).map(|name| Moving {
+            name,
+            places: places.clone(),
+            linear,
+        }));
+    }
+    all
 }

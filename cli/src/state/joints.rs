@@ -7,12 +7,14 @@
 //! | `j_dot: vec2` and so on | `j: R2` | a list |
 //! | `j_dot: vec3` | `j: SO3` or `S3` | a rotation |
 //! | `j_v: vec3`, `j_w: vec3` | `j_r: R3`, `j_R: SO3` | a free body, `j` |
+//! | `j_r_dot: vec2`, `j_dot` | `j_r: R2`, `j` | a planar joint `j` |
 //!
-//! `joint` statements declare these names; coordinates that are declared one by one count as well.
+//! `joint` statements declare these names; coordinates that are declared one by one count as well, except as planar
+//! joints.
 
 use crate::names;
 use hamel_codegen::model::{Coordinate, Group, Model};
-use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
+use hamel_codegen::syntax::ast::{CoordKind, JointKind, ShapeKind};
 
 /// What a joint's coordinates are, with their places in x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +29,19 @@ pub enum Place {
     Rotation(usize),
     /// Position and rotation matrix.
     Free(usize, usize),
+    /// Position in a plane and angle about its normal.
+    Planar(usize, usize),
+}
+
+impl Place {
+    /// How many of the velocities are `linear`, where the others are `angular`.
+    pub fn linear(self) -> Option<usize> {
+        match self {
+            Place::Free(..) => Some(3),
+            Place::Planar(..) => Some(2),
+            _ => None,
+        }
+    }
 }
 
 /// A joint.
@@ -47,7 +62,7 @@ pub fn joints(model: &Model, names: &[(String, String)]) -> Vec<Joint> {
     let mut groups = model.velocities.iter().peekable();
     while let Some(group) = groups.next() {
         let found = match groups.peek() {
-            Some(next) => free(model, group, next),
+            Some(next) => free(model, group, next).or_else(|| planar(model, group, next)),
             None => None,
         };
         let found = found
@@ -101,6 +116,18 @@ fn free(model: &Model, first: &Group, second: &Group) -> Option<Found> {
         let place = Place::Free(position.offset, rotation.offset);
         (name.to_string(), place, (first.offset, 6))
     })
+}
+
+fn planar(model: &Model, first: &Group, second: &Group) -> Option<Found> {
+    let of_both = [&first.name, &second.name];
+    let joint = model
+        .joints
+        .iter()
+        .find(|joint| joint.kind == JointKind::Planar && joint.velocities.iter().eq(of_both))?;
+    let position = coordinate(model, joint.coordinates.first()?)?;
+    let angle = coordinate(model, joint.coordinates.get(1)?)?;
+    let place = Place::Planar(position.offset, angle.offset);
+    Some((joint.name.clone(), place, (first.offset, 3)))
 }
 
 fn single(model: &Model, group: &Group) -> Option<Found> {

@@ -62,19 +62,20 @@ impl State {
 
     /// The start, changed by a JSON value with coordinates; `text` is that of the description.
     pub fn of(generated: &Generated, text: &str, json: &Value) -> Result<Self, Vec<String>> {
-        State::start(&generated.active).changed(generated, text, json)
+        State::start(&generated.active).changed((generated, text), &[], json)
     }
 
-    /// The same, changed by a JSON value with coordinates.
+    /// The same, changed by a JSON value with coordinates; `names` are those of joints in the robot's file, with those in
+    /// the description.
     pub fn changed(
         self,
-        generated: &Generated,
-        text: &str,
+        (generated, text): (&Generated, &str),
+        names: &[(String, String)],
         json: &Value,
     ) -> Result<Self, Vec<String>> {
         let mut state = self.clone();
         let mut reader = Reader::new(generated, text);
-        reader.state(json, generated, &mut state);
+        reader.state(json, generated, names, &mut state);
         reader.finish(generated, &mut state, &self)?;
         Ok(state)
     }

@@ -4,6 +4,7 @@ use super::given::{Given, joints, velocities};
 use super::solved::solved;
 use super::values::State;
 use hamel_codegen::generate::Generated;
+use hamel_codegen::model::Group;
 use hamel_codegen::syntax::ast::{CoordKind, ShapeKind};
 use hamel_codegen::syntax::suggest::closest;
 use serde_json::{Map, Value};
@@ -66,8 +67,14 @@ impl Reader {
         self.given.z[place] = true;
     }
 
-    /// A whole file.
-    pub fn state(&mut self, json: &Value, generated: &Generated, state: &mut State) {
+    /// A whole file; `names` are those of joints in the robot's file, with those in the description.
+    pub fn state(
+        &mut self,
+        json: &Value,
+        generated: &Generated,
+        names: &[(String, String)],
+        state: &mut State,
+    ) {
         let model = &generated.active;
         let Value::Object(parts) = json else {
             let expected =
@@ -90,26 +97,33 @@ impl Reader {
                 _ => &mut state.xi,
             };
             let joints = if part == "velocity" {
-                joints(&generated.model)
+                joints(&generated.model, names)
             } else {
                 Vec::new()
             };
-            let mut names: Vec<&str> = groups.iter().map(|group| group.name.as_str()).collect();
-            names.extend(joints.iter().map(|(name, _)| *name));
-            let Some(given) = self.part(parts, part, &names) else {
+            let mut known: Vec<&str> = joints.iter().map(|joint| joint.name).collect();
+            // Where the file calls a joint as the description calls a velocity, the joint is meant.
+            let groups = groups.iter();
+            let groups = groups.filter(|group| !joints.iter().any(|one| one.name == group.name));
+            let groups: Vec<&Group> = groups.collect();
+            known.extend(groups.iter().map(|group| group.name.as_str()));
+            let Some(given) = self.part(parts, part, &known) else {
                 continue;
             };
-            for (name, places) in &joints {
-                let Some(value) = given.get(*name) else {
+            for joint in &joints {
+                let Some(value) = given.get(joint.name) else {
                     continue;
                 };
-                let at = format!("{part}.{name}");
-                let values = match places.as_slice() {
-                    [_] => self.shape(&at, value, ShapeKind::Scalar),
-                    places => self.vector(&at, value, places.len()),
-                };
-                for (&place, value) in places.iter().zip(values.unwrap_or_default()) {
-                    self.put_xi(place, &[value]);
+                let at = format!("{part}.{}", joint.name);
+                let places = &joint.places;
+                if places.iter().any(|&place| self.given.xi[place].is_some()) {
+                    self.twice(&at);
+                    continue;
+                }
+                for (first, values) in self.moving(&at, value, places.len(), joint.linear) {
+                    for (&place, value) in places.iter().skip(first).zip(values) {
+                        self.put_xi(place, &[value]);
+                    }
                 }
             }
             for group in groups {
@@ -125,7 +139,7 @@ impl Reader {
                             self.given.z[behind..behind + group.len].fill(true);
                         }
                     } else if self.given.xi[places].iter().any(Option::is_some) {
-                        self.error(&at, "given twice, by another of its names, too".into());
+                        self.twice(&at);
                     } else {
                         self.put_xi(group.offset, &values);
                     }
@@ -322,6 +336,10 @@ impl Reader {
             None => self.error(at, format!("a number expected, {} found", kind(value))),
         }
         None
+    }
+
+    fn twice(&mut self, at: &str) {
+        self.error(at, "given twice, by another of its names, too".into());
     }
 
     pub(super) fn error(&mut self, at: &str, message: String) {

@@ -230,31 +230,70 @@ impl Reader {
                     self.put_x(x, rotation, &read.unwrap_or_default().concat());
                 }
             }
+            Place::Planar(position, angle) => {
+                let Some(given) = self.members(at, value, &["position", "angle"]) else {
+                    return;
+                };
+                if let Some(value) = given.get("position") {
+                    let read = self.vector(&format!("{at}.position"), value, 2);
+                    self.put_x(x, position, &read.unwrap_or_default());
+                }
+                if let Some(value) = given.get("angle") {
+                    let read = self.number(&format!("{at}.angle"), value);
+                    self.put_x(x, angle, &read.into_iter().collect::<Vec<_>>());
+                }
+            }
         }
     }
 
-    /// Rates, or forces: a number, a list, or `linear` and `angular`; with their places in ξ.
+    /// Rates, or forces, with their places in ξ.
     fn motion(&mut self, at: &str, value: &Value, joint: &Joint) -> Vec<(usize, Vec<f64>)> {
         let (first, count) = joint.velocities;
-        let mut found = Vec::new();
-        if let (Place::Free(..), Value::Object(_)) = (joint.place, value) {
-            let Some(given) = self.members(at, value, &["linear", "angular"]) else {
-                return found;
-            };
-            for (part, offset) in [("linear", 0), ("angular", 3)] {
-                if let Some(value) = given.get(part) {
-                    let read = self.vector(&format!("{at}.{part}"), value, 3);
-                    found.extend(read.map(|read| (first + offset, read)));
-                }
-            }
-        } else if count == 1 {
-            let number = self.number(at, value);
-            found.extend(number.map(|number| (first, vec![number])));
-        } else {
-            let read = self.vector(at, value, count);
-            found.extend(read.map(|read| (first, read)));
+        let mut found = self.moving(at, value, count, joint.place.linear());
+        for (place, _) in &mut found {
+            *place += first;
         }
         found
+    }
+
+    /// So many rates, or forces, of a joint, each with its place among them: a number, a list, or `linear`, the first of
+    /// them, and `angular`.
+    pub(super) fn moving(
+        &mut self,
+        at: &str,
+        value: &Value,
+        count: usize,
+        linear: Option<usize>,
+    ) -> Vec<(usize, Vec<f64>)> {
+        if let (Some(linear), Value::Object(_)) = (linear, value) {
+            let Some(given) = self.members(at, value, &["linear", "angular"]) else {
+                return Vec::new();
+            };
+            let parts = [("linear", 0, linear), ("angular", linear, count - linear)];
+            let mut found = Vec::new();
+            for (part, place, count) in parts {
+                if let Some(value) = given.get(part) {
+                    found.extend(self.numbers(&format!("{at}.{part}"), value, count, place));
+                }
+            }
+            return found;
+        }
+        self.numbers(at, value, count, 0).into_iter().collect()
+    }
+
+    /// A number, or a list where several are expected, with the place where they begin.
+    fn numbers(
+        &mut self,
+        at: &str,
+        value: &Value,
+        count: usize,
+        place: usize,
+    ) -> Option<(usize, Vec<f64>)> {
+        let read = match count {
+            1 => self.number(at, value).map(|number| vec![number]),
+            _ => self.vector(at, value, count),
+        };
+        Some((place, read?))
     }
 
     fn members<'a>(

@@ -7,8 +7,14 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{apply3, cross};
 use crate::algebra::numeric::evaluate;
 use crate::diagnostics::Diagnostic;
+use crate::model::closure::normalise;
 use crate::model::twists::Moving;
 use crate::model::{Body, Model, Particle};
+
+/// Pivots that are no larger than this part of the diagonal are rounding of zero.
+const ROUNDING: f64 = 1e-13;
+/// The same where nothing is exact: what is larger is none, whatever was rounded.
+const CERTAIN: f64 = 1e-9;
 
 /// M, in the axes and about the origins of the bodies' frames: for the free body this is
 /// [[m I, m ŝᵀ], [m ŝ, Θ]], KR18 (42).
@@ -112,7 +118,7 @@ pub fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> Edge) -> Vec<V
 
 /// Whether M is not positive definite at the start, with the default parameters; in numbers alone.
 pub fn is_singular(model: &Model) -> bool {
-    let numbers = start(model);
+    let numbers = numbers(model, &model.start_x);
     let first = 1 + model.defaults.len();
     let moving = Moving {
         graph: &model.graph,
@@ -128,19 +134,35 @@ pub fn is_singular(model: &Model) -> bool {
     let more: Vec<f64> = more.collect();
     let all = mass.iter().enumerate();
     let all = all.map(|(i, entry)| entry + more.get(i).unwrap_or(&0.0));
-    failing_pivot(&all.collect::<Vec<_>>(), model.n()).is_some()
+    failing_pivot(&all.collect::<Vec<_>>(), model.n(), ROUNDING).is_some()
 }
 
-/// The numbers of the start.
-fn start(model: &Model) -> Vec<f64> {
+/// The numbers of the start, but for x.
+fn numbers(model: &Model, x: &[f64]) -> Vec<f64> {
     let (m, n) = (model.u.len(), model.n());
     model.numbers(
         &model.defaults,
-        &model.start_x,
+        x,
         &model.start_xi,
         &vec![0.0; m],
         &vec![0.0; n],
     )
+}
+
+/// A configuration near the start at which no angle is special; none where constraints between coordinates are not kept
+/// by charts alone.
+fn nearby(model: &Model) -> Option<Vec<f64>> {
+    let displaced = model.start_x.iter().zip(1..);
+    let displaced =
+        displaced.map(|(entry, place)| entry + 0.1 + 0.2 * (1.7 * f64::from(place)).sin());
+    let mut x: Vec<f64> = displaced.collect();
+    normalise(&model.blocks, &mut x);
+    let rows: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
+    let residuals = evaluate(&model.points.free, &rows, &numbers(model, &x));
+    residuals
+        .iter()
+        .all(|residual| residual.abs() < CERTAIN)
+        .then_some(x)
 }
 
 /// M + w BᵀB and w Bᵀ b, which may be added to M ξ̇ = f + Bᵀ λ where B ξ̇ = b: neither ξ̇ nor λ changes, and what has
@@ -171,8 +193,8 @@ pub fn carried(
     Some((sum, force.collect()))
 }
 
-/// M, in a graph with the model's symbols, has to be positive definite at the start, with the default parameters, for what
-/// is solved for; or, where constraints carry what has no inertia, M + w BᵀB.
+/// M, in a graph with the model's symbols, has to be positive definite at the start, or near one that nobody has chosen, with
+/// the default parameters, for what is solved for; or, where constraints carry what has no inertia, M + w BᵀB.
 pub fn positive_definite(
     model: &Model,
     graph: &Graph,
@@ -188,21 +210,28 @@ pub fn positive_definite(
             mass = sum;
         }
     }
-    let mut values = evaluate(&graph, &mass.concat(), &start(model));
-    // Where no constraint acts on it, a velocity whose rate is given takes no part in what is solved.
-    for &(place, _) in model
-        .accelerated
-        .iter()
-        .filter(|_| model.constraints.is_empty())
-    {
-        for i in 0..n {
-            let entry = f64::from(u8::from(i == place));
-            (values[place * n + i], values[i * n + place]) = (entry, entry);
+    let pivot_at = |x: &[f64], least: f64| {
+        let mut values = evaluate(&graph, &mass.concat(), &numbers(model, x));
+        // Where no constraint acts on it, a velocity whose rate is given takes no part in what is solved.
+        for &(place, _) in model
+            .accelerated
+            .iter()
+            .filter(|_| model.constraints.is_empty())
+        {
+            for i in 0..n {
+                let entry = f64::from(u8::from(i == place));
+                (values[place * n + i], values[i * n + place]) = (entry, entry);
+            }
         }
-    }
-    let Some(pivot) = failing_pivot(&values, n) else {
+        failing_pivot(&values, n, least)
+    };
+    let Some(pivot) = pivot_at(&model.start_x, ROUNDING) else {
         return Ok(());
     };
+    let elsewhere = nearby(model).filter(|_| model.starts_anywhere);
+    if elsewhere.is_some_and(|x| pivot_at(&x, CERTAIN).is_none()) {
+        return Ok(());
+    }
     let name = model
         .graph
         .symbols()
@@ -216,15 +245,15 @@ pub fn positive_definite(
     .help("every velocity needs inertia: check masses, inertias and their default values; `generate inverse_dynamics, mass_matrix;` and its like need no inverse of it").about_inverse())
 }
 
-/// The first pivot of Cholesky's factorisation that is not positive, relative to the diagonal.
-fn failing_pivot(m: &[f64], n: usize) -> Option<usize> {
+/// The first pivot of Cholesky's factorisation that is not larger than `least`, relative to the diagonal.
+fn failing_pivot(m: &[f64], n: usize, least: f64) -> Option<usize> {
     let mut l = vec![0.0; n * n];
     for i in 0..n {
         for j in 0..=i {
             let sum: f64 = m[i * n + j] - (0..j).map(|k| l[i * n + k] * l[j * n + k]).sum::<f64>();
             if i != j {
                 l[i * n + j] = sum / l[j * n + j];
-            } else if sum.is_nan() || sum <= 1e-13 * m[i * n + i].abs() {
+            } else if sum.is_nan() || sum <= least * m[i * n + i].abs() {
                 return Some(i);
             } else {
                 l[i * n + i] = sum.sqrt();

@@ -269,6 +269,7 @@ fn read_at(
         spans: true,
         overconstrained: false,
         carried: false,
+        starts_anywhere: system.starts_anywhere,
         kinetic_terms: None,
         completion: kinematics.completion,
         frames,

@@ -236,6 +236,8 @@ pub struct Model {
     pub overconstrained: bool,
     /// Whether M is singular at the start and constraints are kept: some velocities have inertia through these alone.
     pub carried: bool,
+    /// Whether nobody has chosen the start, so that M may be singular there if it is not so nearby.
+    pub starts_anywhere: bool,
     /// The user's kinetic energy where A does not span the tangent space.
     pub kinetic_terms: Option<KineticTerms>,
     /// Y as it was given, the rows of Φ, and what [Y; Φ]⁻¹ divides by.

@@ -63,6 +63,7 @@ pub fn expand(system: &System) -> Result<Written, Vec<Diagnostic>> {
             public: system.public,
             name: system.name.clone(),
             shows_frames: system.shows_frames,
+            starts_anywhere: system.starts_anywhere,
         },
         used,
         warnings,

@@ -29,6 +29,7 @@ impl SceneBuilder {
                 items: Vec::new(),
                 origins: Origins::default(),
                 shows_frames: false,
+                starts_anywhere: false,
             },
         }
     }

@@ -43,6 +43,9 @@ pub struct System {
     pub origins: Origins,
     /// Whether all frames are results, as where they are drawn: then none of them is without a use.
     pub shows_frames: bool,
+    /// Whether nobody has chosen the start, as that of a robot in URDF, whose coordinates start at 0: M may be singular
+    /// there if it is not so nearby.
+    pub starts_anywhere: bool,
 }
 
 /// A shape annotation: `vec3`, `mat3`, `sym3`, or nothing for a scalar.

@@ -54,6 +54,7 @@ fn header(cursor: &mut Cursor<'_>) -> Parsed<System> {
         items: Vec::new(),
         origins: Origins::default(),
         shows_frames: false,
+        starts_anywhere: false,
     })
 }
 

@@ -57,7 +57,10 @@ impl<'a> Reader<'a, '_, '_> {
         }
         let [lower, upper, velocity, effort] = ["lower", "upper", "velocity", "effort"]
             .map(|name| limit.and_then(|element| self.optional(&element, name)));
+        // Positions of the other types have no limits in URDF, whatever the file says.
+        let limited = matches!(kind, Some(Kind::Revolute | Kind::Prismatic));
         if let (Some(lower), Some(upper), Some(element)) = (&lower, &upper, limit)
+            && limited
             && lower.value > upper.value
         {
             self.errors.push(
@@ -111,7 +114,7 @@ impl<'a> Reader<'a, '_, '_> {
     fn axis(&mut self, element: &Node<'_, 'a>, kind: Option<Kind>) -> Option<[Decimal; 3]> {
         let attribute = self.attribute(element, "xyz")?;
         let mut axis = self.vector(&attribute)?;
-        self.clean(&mut axis, &attribute.range_value());
+        self.clean(&mut axis, &attribute.range_value(), 0.0);
         let needed = !matches!(kind, Some(Kind::Fixed | Kind::Floating));
         if needed && axis.iter().all(Decimal::is_zero) {
             self.errors.push(

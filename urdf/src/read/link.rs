@@ -49,7 +49,7 @@ impl<'a> Reader<'a, '_, '_> {
             };
             let mut entries = [xx, xy, xz, yy, yz, zz];
             let range = element.range();
-            self.clean(&mut entries, &range);
+            self.clean(&mut entries, &range, 0.0);
             Some((entries, range))
         });
         let (inertia, inertia_range) = inertia?;

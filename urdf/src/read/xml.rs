@@ -5,10 +5,10 @@ use crate::angle::{Angle, Rotation};
 use crate::decimal::Decimal;
 use crate::problem::Problems;
 use crate::robot::{Cleaned, Named, Origin};
-use roxmltree::{Attribute, Document, Node, ParsingOptions};
+use roxmltree::{Attribute, Document, Error, Node, ParsingOptions, TextPos};
 use std::ops::Range;
 
-/// Noise that stands alone in its vector is judged absolutely, by so much of the tolerance: 1e-15.
+/// A length that stands alone in its vector is judged absolutely, by so much of the tolerance: 1e-15 m.
 const ALONE: f64 = 1e-6;
 
 /// Parses XML; an error has its place.
@@ -19,16 +19,14 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, (Range<usize>, String)> 
         ..ParsingOptions::default()
     };
     Document::parse_with_options(text, options).map_err(|error| {
-        let place = error.pos();
-        let line = place.row.saturating_sub(1) as usize;
-        let start: usize = text.split_inclusive('\n').take(line).map(str::len).sum();
-        let rest = text.get(start..).unwrap_or("");
-        let column = place.col.saturating_sub(1) as usize;
-        let offset = rest
-            .char_indices()
-            .nth(column)
-            .map_or(0, |(offset, _)| offset);
-        let begin = (start + offset).min(text.len());
+        let begin = match error {
+            // What is missing at the end has no place of its own: the last sign stands for it.
+            Error::UnexpectedEndOfStream | Error::UnclosedRootNode | Error::NoRootNode => {
+                let last = text.trim_end().char_indices().next_back();
+                last.map_or(0, |(offset, _)| offset)
+            }
+            _ => offset(text, error.pos()),
+        };
         let width = text.get(begin..).and_then(|rest| rest.chars().next());
         let end = begin + width.map_or(0, char::len_utf8);
         // The place is said by its own means.
@@ -39,6 +37,16 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, (Range<usize>, String)> 
         };
         (begin..end, message.to_string())
     })
+}
+
+/// The byte at which a line and a column begin.
+fn offset(text: &str, place: TextPos) -> usize {
+    let line = place.row.saturating_sub(1) as usize;
+    let start: usize = text.split_inclusive('\n').take(line).map(str::len).sum();
+    let rest = text.get(start..).unwrap_or("");
+    let column = place.col.saturating_sub(1) as usize;
+    let within = rest.char_indices().nth(column);
+    (start + within.map_or(0, |(offset, _)| offset)).min(text.len())
 }
 
 /// The opening `<name` of an element.
@@ -192,7 +200,7 @@ impl<'a> Reader<'a, '_, '_> {
             match self.vector(&attribute) {
                 Some(mut position) => {
                     let range = attribute.range_value();
-                    self.clean(&mut position, &range);
+                    self.clean(&mut position, &range, self.tolerance * ALONE);
                     self.units(&position, &range, false);
                     origin.position = position;
                 }
@@ -220,19 +228,21 @@ impl<'a> Reader<'a, '_, '_> {
         angle
     }
 
-    /// Sets entries to 0 that are nothing beside the largest one, or nothing at all.
+    /// Sets entries to 0 that are nothing beside the largest one, and those that are not larger than `nothing`: a length
+    /// can be so small that no robot has it, whereas a direction has no size, and an inertia any size above 0.
     pub(super) fn clean<const N: usize>(
         &mut self,
         entries: &mut [Decimal; N],
         range: &Range<usize>,
+        nothing: f64,
     ) {
         let largest = entries
             .iter()
             .fold(0.0, |most: f64, entry| most.max(entry.value.abs()));
-        let bound = self.tolerance * largest;
+        let bound = nothing.max(self.tolerance * largest);
         for entry in entries {
             let size = entry.value.abs();
-            if !entry.is_zero() && (size <= bound || size <= self.tolerance * ALONE) {
+            if !entry.is_zero() && size <= bound {
                 self.changed(entry, "0", range);
                 *entry = Decimal::zero();
             }

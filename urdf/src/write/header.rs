@@ -1,6 +1,7 @@
 //! What a reader has to know before the statements: where they are from, what was changed.
 
 use super::Writer;
+use super::page::plain;
 use crate::options::Mimic;
 use crate::plan::Mobility;
 use crate::problem::place;
@@ -34,8 +35,6 @@ pub(super) fn cleaned(xml: &str, list: &[Cleaned]) -> Vec<String> {
 impl Writer<'_> {
     pub(super) fn header(&mut self, cleaned: &[String]) {
         let options = self.options;
-        // Names and paths are quoted as they are, without what would end a line.
-        let plain = |text: &str| text.replace(|c: char| c.is_control(), " ");
         let robot = plain(&self.robot.name);
         let base = if options.floating {
             "floating"

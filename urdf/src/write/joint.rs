@@ -16,7 +16,7 @@ impl Writer<'_> {
         let frame = self.names.links[edge.child].clone();
         let range = Some(&joint.name.range);
         for comment in self.comments(joint, &motion) {
-            self.page.line(range, &format!("// {comment}"));
+            self.page.comment(&joint.name.range, &comment);
         }
         let rooted = edge.parent == self.tree.root && !self.options.floating;
         let on = match rooted {

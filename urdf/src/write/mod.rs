@@ -55,7 +55,19 @@ pub(crate) fn write(
     }
     writer.page.close();
     let joints = writer.own_joints();
+    let link = |link: usize| {
+        let written = writer.robot.links[link].name.name.clone();
+        (written, writer.names.links[link].clone())
+    };
+    let root = tree.root;
+    let moved = tree.joints.iter().map(|edge| link(edge.child));
+    let (base, ground) = match options.floating {
+        true => (Some(link(root)), None),
+        false => (None, Some(link(root))),
+    };
     Imported {
+        links: base.into_iter().chain(moved).collect(),
+        ground,
         name: writer.names.system,
         joints,
         cleaned,
@@ -127,7 +139,7 @@ impl Writer<'_> {
         self.page.blank();
         if !self.options.floating {
             self.page
-                .line(Some(&range), &format!("// `{name}` stands in the world."));
+                .comment(&range, &format!("`{name}` stands in the world."));
             return;
         }
         let (root, frame) = (&self.names.root, &self.names.links[self.tree.root]);

@@ -5,6 +5,11 @@ use std::ops::Range;
 /// Lines up to this width.
 pub(super) const WIDTH: usize = 110;
 
+/// Names and paths as a comment quotes them: as they are, without what would end its line.
+pub(super) fn plain(text: &str) -> String {
+    text.replace(|c: char| c.is_control(), " ")
+}
+
 /// The text so far.
 #[derive(Default)]
 pub(super) struct Page {
@@ -18,6 +23,11 @@ impl Page {
         self.text.push_str(text);
         self.text.push('\n');
         self.origins.push(None);
+    }
+
+    /// A comment in the braces of the system, which may quote names of the file.
+    pub(super) fn comment(&mut self, origin: &Range<usize>, text: &str) {
+        self.line(Some(origin), &format!("// {}", plain(text)));
     }
 
     /// A statement in the braces of the system.
