@@ -216,12 +216,11 @@ fn count_steps(span: f64, step: f64) -> Result<u64, StepError> {
     } else if !span.is_finite() || !step.is_finite() || step == 0.0 || ratio > MOST {
         Err(StepError::InvalidStep { step, span })
     } else {
-        let whole = ratio as u64;
-        let excess = ratio - whole as f64;
-        let count = if excess > 1e-9 * ratio.max(1.0) {
-            whole + 1
+        let nearest = (ratio + 0.5) as u64;
+        let count = if (ratio - nearest as f64).abs() > 1e-9 * ratio.max(1.0) {
+            ratio as u64 + 1
         } else {
-            whole
+            nearest
         };
         Ok(count.max(1))
     }

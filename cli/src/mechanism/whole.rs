@@ -107,11 +107,10 @@ impl<'a> Whole<'a> {
         true
     }
 
-    /// The equal steps to a time, where all of them can be taken by [`glide`](Self::glide).
-    pub fn glides(&self, system: &Instance, from: f64, until: f64) -> Option<Grid> {
-        let (ready, _) = self.at_once(system, from, until)?;
-        ready.watched(system)?;
-        Grid::new(from, until, self.length).ok()
+    /// Whether all of the equal steps to a time can be taken by [`glide`](Self::glide).
+    pub fn glides(&self, system: &Instance, from: f64, until: f64) -> bool {
+        let ready = self.at_once(system, from, until);
+        ready.is_some_and(|(ready, _)| ready.watched(system).is_some())
     }
 
     /// Takes so many steps of a grid from one of its times on, where nobody looks at more than energies and constraints at
