@@ -1,5 +1,6 @@
 //! Single steps, and runs from one time to another in equal steps.
 
+use crate::clock::Clock;
 use crate::error::StepError;
 use crate::manifold;
 use crate::methods::Method;
@@ -146,15 +147,19 @@ where
     if observe(state).is_break() {
         return Ok(());
     }
+    let clock = Clock::new(system, state);
     let mut force = None;
     for index in 1..=grid.count {
         let mut next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
+        next.t = grid.time(index);
+        if let Some(clock) = &clock {
+            clock.set(&mut next);
+        }
         let led_back = !method.stays_near() && lead_back(system, &mut next);
         if project(system, &mut next)? || led_back {
             force = None;
         }
         *state = next;
-        state.t = grid.time(index);
         if observe(state).is_break() {
             break;
         }

@@ -6,7 +6,7 @@ use super::plan::{Plan, Spacing};
 use super::stretch::{Stretch, stretches};
 use crate::mechanism::{Instance, Numbers, Whole};
 use hamel::methods::Method;
-use hamel::{State, StepError, integrate_while};
+use hamel::{Clock, State, StepError, integrate_while};
 use std::ops::ControlFlow;
 
 /// A run in equal steps, who looks at it, and where it is.
@@ -33,8 +33,9 @@ impl<'a, O: Observer> Steady<'a, O> {
         if let Some(events) = &mut self.events {
             events.begin(self.system, self.state)?;
         }
+        let clock = Clock::new(self.system, self.state);
         for end in self.ends() {
-            self.go(end)?;
+            self.go(end, clock)?;
             if self.is_stopped() {
                 break;
             }
@@ -58,13 +59,14 @@ impl<'a, O: Observer> Steady<'a, O> {
         first.observer.look(first.state, Place::End);
         second.observer.look(second.state, Place::End);
         let mut outcomes = [Ok(()), Ok(())];
+        let clocks = [&first, &second].map(|run| Clock::new(run.system, run.state));
         for end in ends {
             let [one, other] = &mut outcomes;
-            if one.is_ok() && other.is_ok() && first.go_with(&mut second, end) {
+            if one.is_ok() && other.is_ok() && first.go_with(&mut second, end, clocks) {
                 continue;
             }
-            *one = one.and_then(|()| first.go(end));
-            *other = other.and_then(|()| second.go(end));
+            *one = one.and_then(|()| first.go(end, clocks[0]));
+            *other = other.and_then(|()| second.go(end, clocks[1]));
         }
         outcomes
     }
@@ -91,13 +93,14 @@ impl<'a, O: Observer> Steady<'a, O> {
         Whole::new(self.system, &method.stepper, *step, end - self.state.t)
     }
 
-    /// To a time.
-    fn go(&mut self, end: f64) -> Result<(), StepError> {
+    /// To a time, with the clock of the run.
+    fn go(&mut self, end: f64, clock: Option<Clock<f64>>) -> Result<(), StepError> {
         let from = self.state.t;
         if end > from {
             self.system.go_from(from);
             for stretch in stretches(&self.plan.spacing, self.plan.step, from, end)? {
                 self.cover(&stretch)?;
+                self.set(clock);
                 if self.is_stopped() {
                     break;
                 }
@@ -129,6 +132,7 @@ impl<'a, O: Observer> Steady<'a, O> {
         // Where an event ends the run, or why it cannot be watched.
         let mut stop = None;
         let mut index = 0;
+        let clock = Clock::new(system, self.state);
         let look = |state: &State<Instance>| {
             if state.t <= from {
                 return ControlFlow::Continue(());
@@ -141,7 +145,7 @@ impl<'a, O: Observer> Steady<'a, O> {
             match seen {
                 Ok(None) => {
                     observer.look(state, Place::End);
-                    show(*observer, stretch, index, state);
+                    show(*observer, (stretch, clock), index, state);
                     ControlFlow::Continue(())
                 }
                 Ok(Some(at)) => {
@@ -173,17 +177,19 @@ impl<'a, O: Observer> Steady<'a, O> {
     fn glide(&mut self, whole: &Whole, stretch: &Stretch) -> Result<(), StepError> {
         let (system, grid) = (self.system, &stretch.grid);
         let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+        let clock = Clock::new(system, self.state);
         let mut done = 0;
         while done < grid.count() {
             let observer = &mut *self.observer;
             let free = observer.leisure().min(stretch.ahead(done));
             if free > 0 {
                 let steps = (grid, done, free);
-                let taken =
-                    whole.glide(system, self.state, steps, |glance| observer.glance(glance));
+                let taken = whole.glide(system, self.state, steps, clock, |glance| {
+                    observer.glance(glance);
+                });
                 done += taken;
                 if taken == free {
-                    show(observer, stretch, done, self.state);
+                    show(observer, (stretch, clock), done, self.state);
                     continue;
                 }
             }
@@ -195,14 +201,23 @@ impl<'a, O: Observer> Steady<'a, O> {
             done += 1;
             next.t = grid.time(done);
             *self.state = next;
+            self.set(clock);
+            let observer = &mut *self.observer;
             observer.look(self.state, Place::End);
-            show(observer, stretch, done, self.state);
+            show(observer, (stretch, clock), done, self.state);
         }
         Ok(())
     }
 
+    /// Sets the time of the description, which the end of a stretch has but for rounding, to that of the run.
+    fn set(&mut self, clock: Option<Clock<f64>>) {
+        if let Some(clock) = clock {
+            clock.set(self.state);
+        }
+    }
+
     /// To a time together with another run; whether both are there. Else neither has moved.
-    fn go_with(&mut self, other: &mut Self, end: f64) -> bool {
+    fn go_with(&mut self, other: &mut Self, end: f64, clocks: [Option<Clock<f64>>; 2]) -> bool {
         let quiet = self.plan.quiet && other.plan.quiet;
         if !quiet || self.plan.has_multiples() || end <= self.state.t {
             return false;
@@ -215,8 +230,9 @@ impl<'a, O: Observer> Steady<'a, O> {
         if !Whole::run_both(&wholes, systems, states, end) {
             return false;
         }
-        for run in [self, other] {
+        for (run, clock) in [self, other].into_iter().zip(clocks) {
             run.observer.look(run.state, Place::End);
+            run.set(clock);
             run.sample(end);
         }
         true
@@ -231,9 +247,17 @@ impl<'a, O: Observer> Steady<'a, O> {
 }
 
 /// Shows the sample after so many steps of a stretch, where there is one.
-fn show(observer: &mut impl Observer, stretch: &Stretch, index: u64, state: &State<Instance>) {
+fn show(
+    observer: &mut impl Observer,
+    (stretch, clock): (&Stretch, Option<Clock<f64>>),
+    index: u64,
+    state: &State<Instance>,
+) {
     if let Some(t) = stretch.sample(index) {
-        let state = State { t, ..state.clone() };
+        let mut state = State { t, ..state.clone() };
+        if let Some(clock) = clock {
+            clock.set(&mut state);
+        }
         observer.look(&state, Place::Sample);
     }
 }
