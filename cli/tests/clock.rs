@@ -155,3 +155,81 @@ fn samples_are_taken_at_times_of_the_description() {
     }
     assert_eq!(found.len(), 3);
 }
+
+/// q̈ = cos(t − t₀) from rest at t₀, a time in seconds since 1970: q = 1 − cos(t − t₀).
+const LATE: &str = "system Late {
+    time t; param t0 = 1.7e9; coord q; velocity w; rate q = w; kinetic w^2/2;
+    generalized force w = cos(t - t0); start t = 1.7e9;
+}";
+
+/// How far neighbouring numbers are apart at such times.
+const APART: f64 = 2.4e-7;
+
+/// The columns t, q and w of all samples.
+fn columns(csv: &str) -> Vec<Vec<f64>> {
+    let number = |n: &str| n.parse().expect("a number");
+    let rows = csv.lines().skip(1);
+    rows.map(|row| row.split(',').map(number).collect())
+        .collect()
+}
+
+/// The time of the description is that of the run, whatever its steps and however they are taken: by machine code many at
+/// once (`rkmk4`), with samples at multiples of a time, by the method itself where they are few, by a tolerance.
+#[test]
+fn the_time_of_the_description_does_not_drift() {
+    let all: [&[&str]; 6] = [
+        &["--method", "rkmk4", "--step", "1e-4"],
+        &["--method", "rkmk4", "--step", "1e-4", "--every", "0.1s"],
+        &["--method", "rk4", "--step", "1e-4", "--every", "7"],
+        &["--method", "rkmk4", "--step", "1e-2"],
+        &["--method", "rkmk8", "--tol", "1e-6"],
+        &["--method", "rkmk54", "--tol", "1e-6", "--every", "0.1s"],
+    ];
+    for options in all {
+        let samples = columns(&run("late.csv", LATE, options));
+        for sample in &samples {
+            let t = sample[0] - 1.7e9;
+            assert!(
+                (sample[1] - (1.0 - t.cos())).abs() < 1e-6,
+                "{options:?} {sample:?}"
+            );
+            assert!((sample[2] - t.sin()).abs() < 1e-6, "{options:?} {sample:?}");
+        }
+        let last = samples.last().expect("a sample");
+        assert_eq!(last[0], 1.7e9 + 1.0, "{options:?}");
+    }
+    // At the end of steps of 0.001 from 0, and of samples at multiples of 1/8.
+    let early = LATE.replace("1.7e9", "0");
+    let fixed = ["simulate", "-", "--until", "3", "--method", "rkmk4"];
+    for (every, at) in [("1", 1e-3), ("0.125s", 0.125)] {
+        let out = file("early.csv", "").display().to_string();
+        let options = [&fixed[..], &["--every", every, "--out", &out]].concat();
+        let output = hamel(&options, &early);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let csv = std::fs::read_to_string(&out).expect("a file");
+        for (index, sample) in columns(&csv).iter().enumerate() {
+            let wanted = index as f64 * at;
+            assert!(
+                (sample[0] - wanted).abs() <= 2.0 * f64::EPSILON * wanted,
+                "{sample:?}"
+            );
+        }
+        assert_eq!(last(&csv)[0], 3.0);
+    }
+}
+
+/// Steps of 1e-7 are shorter than what a time of 1.7e9 can tell apart: the clock goes on all the same.
+#[test]
+fn the_time_of_the_description_does_not_stand_still() {
+    let out = file("still.csv", "").display().to_string();
+    let fixed = ["simulate", "-", "--until", "0.001", "--step", "1e-7"];
+    let options = ["--method", "rkmk4", "--every", "100", "--out", &out];
+    let output = hamel(&[&fixed[..], &options].concat(), LATE);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let samples = columns(&std::fs::read_to_string(&out).expect("a file"));
+    assert_eq!(samples.len(), 101);
+    for (index, sample) in samples.iter().enumerate() {
+        let t = index as f64 * 1e-5;
+        assert!((sample[0] - 1.7e9 - t).abs() <= APART, "{sample:?} {t}");
+    }
+}

@@ -5,16 +5,18 @@ use crate::{Code, Compiled, Constants, Ended, Target};
 
 impl Compiled {
     /// Calls a function as often as is asked for, or until it has no result or one that is not finite. `state` holds x and
-    /// behind it ξ; u stays as it is. Returns how many results there were; `state` is then the last of them.
+    /// behind it ξ; u stays as it is, and where there else are accelerations each call takes what `given` says of it: 1 is
+    /// the first. Returns how many results there were; `state` is then the last of them.
     pub fn repeat(
         &self,
         function: usize,
         constants: &Constants,
         state: &mut [f64],
         u: &[f64],
+        given: impl FnMut(u64) -> f64,
         times: u64,
     ) -> u64 {
-        self.repeat_watched(function, constants, (state, u), times, |_| ())
+        self.repeat_watched(function, constants, (state, u), given, times, |_| ())
     }
 
     /// The same for a function that has more results than the next state: `see` is shown what is behind each of these states.
@@ -23,15 +25,19 @@ impl Compiled {
         function: usize,
         constants: &Constants,
         (state, u): (&mut [f64], &[f64]),
+        mut given: impl FnMut(u64) -> f64,
         times: u64,
         see: impl FnMut(&[f64]),
     ) -> u64 {
         let [length, ..] = self.tapes().lengths;
         let tape = self.tapes().functions.get(function);
         let results = tape.map_or(0, |tape| tape.outputs.len());
+        let mut number = 0;
         let call = |state: &[f64], next: &mut [f64]| {
             let (x, xi) = state.split_at_checked(length).unwrap_or((state, &[]));
-            let arguments = [x, xi, u, &[], &[]];
+            number += 1;
+            let given = [given(number)];
+            let arguments = [x, xi, u, &given, &[]];
             self.call(function, constants, arguments, next).is_ok()
         };
         repeated(state, results, times, call, see)
@@ -92,16 +98,20 @@ impl Paired {
         constants: &[f64],
         [first, second]: [&mut [f64]; 2],
         u: [&[f64]; 2],
+        mut given: impl FnMut(u64) -> [f64; 2],
         times: u64,
     ) -> u64 {
         let mut states = paired(first, second);
         let u = paired(u[0], u[1]);
         let length = states.len();
+        let mut number = 0;
         let call = |states: &[f64], next: &mut [f64]| {
             let (x, xi) = states
                 .split_at_checked(2 * self.length)
                 .unwrap_or((states, &[]));
-            let arguments = [x, xi, &u, &[], &[]];
+            number += 1;
+            let given = given(number);
+            let arguments = [x, xi, &u, &given, &[]];
             self.call(function, constants, arguments, next)
         };
         let done = repeated(&mut states, length, times, call, |_| ());

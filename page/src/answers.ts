@@ -132,7 +132,8 @@ export interface Run {
   reason: string | null;
   steps: number;
   evaluations: number;
-  drift: number;
+  /** None where all energy has come from outside. */
+  drift: number | null;
   constraint: number;
   failure: string | null;
   // What there is to draw, at the start, and how many numbers say where it is at each sample; no scene where nothing

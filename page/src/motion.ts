@@ -208,8 +208,8 @@ export class Motion {
     this.run = run;
     const reason = run.reason === null ? "" : `, chosen because ${run.reason}`;
     this.summary.classList.toggle("bad", run.failure !== null);
-    this.summary.textContent =
-      run.failure ?? `${run.method}${reason}; ${run.steps.toLocaleString("en")} steps, energy changes by ${run.drift.toExponential(1)} of its size at most`;
+    const drift = run.drift === null ? "all energy comes from outside" : `energy changes by ${run.drift.toExponential(1)} of its size at most`;
+    this.summary.textContent = run.failure ?? `${run.method}${reason}; ${run.steps.toLocaleString("en")} steps, ${drift}`;
     this.summary.dataset["drift"] = String(run.drift);
     const { scene, width, numbers } = run;
     this.view.hidden = scene === null || numbers === undefined;

@@ -81,6 +81,11 @@ impl<Sys: System + ?Sized> System for Counted<'_, Sys> {
     }
 
     #[inline]
+    fn clock(&self) -> Option<usize> {
+        self.system.clock()
+    }
+
+    #[inline]
     fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates {
         self.system.rate(x, xi)
     }

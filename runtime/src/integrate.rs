@@ -1,5 +1,6 @@
 //! Single steps, and runs from one time to another in equal steps.
 
+use crate::clock::Clock;
 use crate::error::StepError;
 use crate::manifold;
 use crate::methods::Method;
@@ -146,15 +147,19 @@ where
     if observe(state).is_break() {
         return Ok(());
     }
+    let clock = Clock::new(system, state);
     let mut force = None;
     for index in 1..=grid.count {
         let mut next = method.follow(system, state, grid.step(), &inputs, &mut force)?;
+        next.t = grid.time(index);
+        if let Some(clock) = &clock {
+            clock.set(&mut next);
+        }
         let led_back = !method.stays_near() && lead_back(system, &mut next);
         if project(system, &mut next)? || led_back {
             force = None;
         }
         *state = next;
-        state.t = grid.time(index);
         if observe(state).is_break() {
             break;
         }
@@ -216,12 +221,11 @@ fn count_steps(span: f64, step: f64) -> Result<u64, StepError> {
     } else if !span.is_finite() || !step.is_finite() || step == 0.0 || ratio > MOST {
         Err(StepError::InvalidStep { step, span })
     } else {
-        let whole = ratio as u64;
-        let excess = ratio - whole as f64;
-        let count = if excess > 1e-9 * ratio.max(1.0) {
-            whole + 1
+        let nearest = (ratio + 0.5) as u64;
+        let count = if (ratio - nearest as f64).abs() > 1e-9 * ratio.max(1.0) {
+            ratio as u64 + 1
         } else {
-            whole
+            nearest
         };
         Ok(count.max(1))
     }

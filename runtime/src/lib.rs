@@ -92,6 +92,7 @@
 pub mod adapter;
 pub mod adaptive;
 mod canonical;
+mod clock;
 mod dual;
 #[cfg(feature = "nalgebra")]
 pub mod edge;
@@ -120,6 +121,7 @@ pub mod trig;
 pub mod wide;
 
 pub use canonical::Canonical;
+pub use clock::Clock;
 pub use dual::Dual;
 pub use error::{Singular, StepError};
 #[cfg(feature = "macros")]

@@ -66,16 +66,13 @@ impl<S: Scalar> Monitor<S> {
 
     /// max |T + V − E₀| divided by the larger of |E₀| and the largest kinetic energy seen, less what T + V has gained by
     /// then. E₀ alone would not do as a scale, since V has a free constant and E₀ may be zero. Zero for a system that never
-    /// moves.
+    /// moves, and infinite where all energy of a run has come from outside: there is nothing that it could be compared with.
     pub fn relative_energy_deviation(&self) -> S {
-        let zero = S::default();
-        // The second selection is for a scale of NaN, which must not become zero.
+        let (zero, infinity) = (S::default(), S::from_f64(f64::INFINITY));
         let ratio = self.deviation / self.scale;
-        zero.select_lt(
-            self.scale,
-            ratio,
-            self.scale.select_lt(S::from_f64(1.0), zero, ratio),
-        )
+        // Without a change it is the change itself, which may be NaN: so may the scale, which must not become zero.
+        let still = self.scale.select_lt(infinity, self.deviation, ratio);
+        zero.select_lt(self.deviation, ratio, still)
     }
 
     /// max |φ(x)| over all constraints and states.

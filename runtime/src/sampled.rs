@@ -1,6 +1,7 @@
 //! Digital controllers, which run at a period of their own and hold their output in between.
 
 use crate::adaptive::{Adaptive, Statistics};
+use crate::clock::Clock;
 use crate::error::StepError;
 use crate::integrate::integrate;
 use crate::methods::Method;
@@ -81,7 +82,7 @@ impl<C> Sampled<C> {
         O: FnMut(&State<Sys>),
     {
         observe(state);
-        self.periods(state, until, |state, end, u| {
+        self.periods(system, state, until, |state, end, u| {
             let from = state.t;
             let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
             // The first state was seen at the end of the period before.
@@ -114,7 +115,7 @@ impl<C> Sampled<C> {
     {
         observe(state);
         let mut all = Statistics::default();
-        self.periods(state, until, |state, end, u| {
+        self.periods(system, state, until, |state, end, u| {
             let inputs = |_: f64, _: &Sys::Coordinates, _: &Sys::Velocities| u.clone();
             let part = method.run(system, state, end, inputs)?;
             all.accepted += part.accepted;
@@ -129,6 +130,7 @@ impl<C> Sampled<C> {
     /// Goes through the periods: asks the controller, and moves the state to the end of the period.
     fn periods<Sys>(
         &mut self,
+        system: &Sys,
         state: &mut State<Sys>,
         until: f64,
         mut run: impl FnMut(&mut State<Sys>, f64, &Sys::Inputs) -> Result<(), StepError>,
@@ -148,6 +150,7 @@ impl<C> Sampled<C> {
         // A ratio that is whole but for rounding is whole.
         let whole = count as u64;
         let last = whole + u64::from(count - whole as f64 > 1e-9 * count.max(1.0));
+        let clock = Clock::new(system, state);
         for index in 1..=last {
             let u = (self.controller)(state);
             let end = match index == last {
@@ -155,6 +158,9 @@ impl<C> Sampled<C> {
                 false => from + index as f64 * step,
             };
             run(state, end, &u)?;
+            if let Some(clock) = &clock {
+                clock.set(state);
+            }
         }
         Ok(())
     }

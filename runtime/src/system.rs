@@ -86,6 +86,13 @@ pub trait System {
     /// The initial (x, ξ) of the description, with φ(x) = 0.
     fn start(&self) -> (Self::Coordinates, Self::Velocities);
 
+    /// The place in x of the time, where the description declares it. Runs set this entry to the time that has passed since
+    /// their start ([`Clock`](crate::Clock)).
+    #[inline]
+    fn clock(&self) -> Option<usize> {
+        None
+    }
+
     /// ẋ = A(x) ξ, KR18 (5), ν entries; ẋ = A(x) ξ + a(x) if time is among the coordinates.
     fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates;
 

@@ -416,3 +416,19 @@ fn a_system_at_rest_has_no_drift() {
     assert!(monitor.energy_deviation().is_nan());
     assert!(monitor.relative_energy_deviation().is_nan());
 }
+
+/// What starts without energy and has got some has changed by more than any part of it.
+#[test]
+fn energy_from_nothing_is_no_small_change() {
+    let system = Pendulum {
+        g: 0.0,
+        rate0: 0.0,
+        ..pendulum()
+    };
+    let mut state = State::start(&system);
+    let mut monitor = Monitor::new(&system, &state);
+    state.xi[0] = 1.0;
+    monitor.observe(&system, &state);
+    assert!(monitor.energy_deviation() > 0.0);
+    assert_eq!(monitor.relative_energy_deviation(), f64::INFINITY);
+}

@@ -453,3 +453,21 @@ fn methods_keep_their_orders() {
         );
     }
 }
+
+/// Generated code says where its clock is: it is the time of the run, and no sum of ten thousand steps.
+#[test]
+fn a_clock_does_not_drift() {
+    let system = Kapitza::new(KapitzaParameters {
+        m: 1.0,
+        l: 1.0,
+        g: 9.81,
+        a: 0.05,
+        omega: 60.0,
+    })
+    .expect("a pendulum");
+    let mut state = State::start(&system);
+    state.x[0] = 1.7e9;
+    let none = |_: f64, _: &[f64; 2], _: &[f64; 1]| [];
+    hamel::integrate(&system, General::Rkmk4, &mut state, 1e-4, 1.0, none, |_| {}).expect("a run");
+    assert_eq!(state.x[0], 1.7e9 + 1.0);
+}

@@ -42,6 +42,8 @@ pub struct Mechanism {
     accel: Option<Place>,
     correction: Place,
     /// Whether the correction leads back to constraints that no chart keeps.
+    /// The place in x of the time that the description declares.
+    clock: Option<usize>,
     embedded: bool,
     project_position: Option<Place>,
     project_velocity: Option<Place>,
@@ -127,6 +129,7 @@ impl Mechanism {
             chart_rate: function("chart_rate")?,
             accel: function("accel").ok(),
             correction: function("correction")?,
+            clock: program.clock,
             embedded: program.embedded,
             project_position: function("project_position").ok(),
             project_velocity: function("project_velocity").ok(),
@@ -419,6 +422,10 @@ impl System for Instance {
 
     fn start(&self) -> (Numbers, Numbers) {
         self.start.clone()
+    }
+
+    fn clock(&self) -> Option<usize> {
+        self.of.clock
     }
 
     fn rate(&self, x: &Numbers, xi: &Numbers) -> Numbers {

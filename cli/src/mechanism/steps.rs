@@ -85,7 +85,9 @@ impl Mechanism {
         compiled.interpreted_because().is_none().then_some(compiled)
     }
 
-    /// What a step does, and how often it evaluates ξ̇; with T, V and φ at its end where it is `watched`.
+    /// What a step does, and how often it evaluates ξ̇. Where the description declares a time, its value at the end is given,
+    /// in the place of accelerations, so that a run does not add up the lengths of steps. With T, V and φ at its end where it is
+    /// `watched`.
     fn tape(&self, method: &General, h: f64, watched: bool) -> Option<(Tape, u64)> {
         let explicit = matches!(
             method,
@@ -136,7 +138,10 @@ impl Mechanism {
         let inputs = |_, _: &Vec<Traced>, _: &Vec<Traced>| held.clone();
         let mut failed = false;
         let tape = traced("step", || match method.step(&written, &state, h, &inputs) {
-            Ok(end) => {
+            Ok(mut end) => {
+                if let Some(time) = self.clock.and_then(|place| end.x.get_mut(place)) {
+                    *time = Traced::argument(Source::Argument(Argument::Accelerations, 0));
+                }
                 let mut all = [&end.x[..], &end.xi].concat();
                 if watched {
                     let Places {

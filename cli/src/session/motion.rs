@@ -29,7 +29,7 @@ pub struct Motion {
     pub steps: u64,
     /// How often accelerations, forces or rates of momenta were evaluated.
     pub evaluations: u64,
-    /// The largest change of the energy in any step, relative.
+    /// The largest change of the energy, relative; infinite where the run has got all of it from outside.
     pub energy_deviation: f64,
     /// The largest |φ|.
     pub constraint: f64,

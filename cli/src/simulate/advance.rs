@@ -9,7 +9,7 @@ use crate::mechanism::{Glance, Instance, Numbers};
 use crate::method::Stepper;
 use hamel::adaptive::{Adaptive, Event, Report};
 use hamel::methods::General;
-use hamel::{State, StepError};
+use hamel::{Clock, State, StepError};
 use std::cell::Cell;
 
 /// Where an observed state is.
@@ -116,6 +116,7 @@ pub fn advance(
         events.push(event.looked_for(gauge));
     }
     events.push(Event::new(&followed).stopping());
+    let clock = Clock::new(system, state);
     let mut stopped_by = None;
     let mut outcome = Ok(());
     let jumps = system.jumps().iter().filter(|jump| **jump < until);
@@ -137,6 +138,9 @@ pub fn advance(
                 })
             }
         };
+        if let Some(clock) = clock {
+            clock.set(state);
+        }
         match run {
             Ok(run) => stopped_by = run.stopped_by,
             Err(error) => outcome = Err(error),

@@ -31,16 +31,23 @@ impl Run<'_> {
         }
     }
 
-    /// Relative changes of the energy and of the invariants that the description claims.
+    /// Relative changes of the energy and of the invariants that the description claims; changes themselves where there is
+    /// nothing to compare with.
     fn drift(&self) -> Panel {
         let first = self.monitor.initial_energy();
         let scale = self.monitor.energy_deviation() / self.monitor.relative_energy_deviation();
-        let scale = if scale.is_finite() { scale } else { 1.0 };
+        // All energy has come from outside.
+        let from_nothing = scale == 0.0;
+        let scale = match scale.is_finite() && !from_nothing {
+            true => scale,
+            false => 1.0,
+        };
         let lines = &self.invariant_names;
-        let title = if lines.is_empty() {
-            "energy, relative change"
-        } else {
-            "energy and invariants, relative change"
+        let title = match (lines.is_empty(), from_nothing) {
+            (true, false) => "energy, relative change",
+            (true, true) => "energy, change",
+            (false, false) => "energy and invariants, relative change",
+            (false, true) => "energy, change, and invariants, relative change",
         };
         let mut panel = Panel::new(title);
         let change = |of: &dyn Fn(&Sample) -> f64, first: f64, scale: f64| -> Vec<f64> {

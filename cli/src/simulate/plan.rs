@@ -27,7 +27,7 @@ pub struct Plan {
     pub step: f64,
     /// Expected number of steps.
     pub steps: u64,
-    /// A sample every so many steps.
+    /// A sample every so many steps, where samples are at ends of steps.
     pub every: u64,
     /// Whether that was left to the plan, which may then take fewer.
     pub chosen: bool,
@@ -102,8 +102,13 @@ impl Plan {
         self.tolerance.is_some() || !self.quiet && !is_law
     }
 
+    /// Whether samples are at multiples of a time.
+    pub fn has_multiples(&self) -> bool {
+        matches!(self.spacing, Spacing::Every(_))
+    }
+
     /// A plan with about a thousand samples, or as many as are asked for. Equal steps are shortened so that samples are
-    /// at their ends.
+    /// at their ends: where they are at multiples of a time, a whole number of steps leads from one to the next.
     pub fn new(
         method: Chosen,
         until: f64,
@@ -115,10 +120,12 @@ impl Plan {
             (None, _) => (None, Spacing::Steps),
             (Some(Every::Steps(steps)), _) => (Some(steps), Spacing::Steps),
             (Some(Every::Time(time)), Some(_)) => (Some(1), Spacing::Every(time)),
+            // As many equal steps as are needed from one sample to the next.
             (Some(Every::Time(time)), None) => {
-                let parts = (time / step * (1.0 - 1e-9)).ceil().max(1.0);
-                step = time / parts;
-                (Some(parts as u64), Spacing::Steps)
+                if time < until {
+                    step = time / (time / step * (1.0 - 1e-9)).ceil().max(1.0);
+                }
+                (Some(1), Spacing::Every(time))
             }
         };
         // As the integrator counts: a ratio that is whole but for rounding is whole.

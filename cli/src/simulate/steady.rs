@@ -3,9 +3,10 @@
 use super::advance::{Observer, Place};
 use super::events::Events;
 use super::plan::{Plan, Spacing};
+use super::stretch::{Stretch, stretches};
 use crate::mechanism::{Instance, Numbers, Whole};
 use hamel::methods::Method;
-use hamel::{Grid, State, StepError, integrate_while};
+use hamel::{Clock, State, StepError, integrate_while};
 use std::ops::ControlFlow;
 
 /// A run in equal steps, who looks at it, and where it is.
@@ -32,8 +33,9 @@ impl<'a, O: Observer> Steady<'a, O> {
         if let Some(events) = &mut self.events {
             events.begin(self.system, self.state)?;
         }
+        let clock = Clock::new(self.system, self.state);
         for end in self.ends() {
-            self.go(end)?;
+            self.go(end, clock)?;
             if self.is_stopped() {
                 break;
             }
@@ -57,13 +59,14 @@ impl<'a, O: Observer> Steady<'a, O> {
         first.observer.look(first.state, Place::End);
         second.observer.look(second.state, Place::End);
         let mut outcomes = [Ok(()), Ok(())];
+        let clocks = [&first, &second].map(|run| Clock::new(run.system, run.state));
         for end in ends {
             let [one, other] = &mut outcomes;
-            if one.is_ok() && other.is_ok() && first.go_with(&mut second, end) {
+            if one.is_ok() && other.is_ok() && first.go_with(&mut second, end, clocks) {
                 continue;
             }
-            *one = one.and_then(|()| first.go(end));
-            *other = other.and_then(|()| second.go(end));
+            *one = one.and_then(|()| first.go(end, clocks[0]));
+            *other = other.and_then(|()| second.go(end, clocks[1]));
         }
         outcomes
     }
@@ -90,52 +93,16 @@ impl<'a, O: Observer> Steady<'a, O> {
         Whole::new(self.system, &method.stepper, *step, end - self.state.t)
     }
 
-    /// To a time.
-    fn go(&mut self, end: f64) -> Result<(), StepError> {
+    /// To a time, with the clock of the run.
+    fn go(&mut self, end: f64, clock: Option<Clock<f64>>) -> Result<(), StepError> {
         let from = self.state.t;
         if end > from {
             self.system.go_from(from);
-            let whole = self.whole(end);
-            let (system, step) = (self.system, self.plan.step);
-            let watches = self.events.as_ref().is_some_and(|e| !e.list().is_empty());
-            if self.plan.quiet && !watches && whole.run(system, self.state, end) {
-                self.observer.look(self.state, Place::End);
-            } else if let Some(grid) = self.glides(&whole, watches, end) {
-                self.glide(&whole, &grid)?;
-            } else {
-                let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
-                let (stepper, observer) = (&self.plan.method.stepper, &mut self.observer);
-                let events = &mut self.events;
-                // Where an event ends the run, or why it cannot be watched.
-                let mut stop = None;
-                let look = |state: &State<Instance>| {
-                    if state.t <= from {
-                        return ControlFlow::Continue(());
-                    }
-                    let seen = match events {
-                        Some(events) => events.see(system, stepper, state),
-                        None => Ok(None),
-                    };
-                    match seen {
-                        Ok(None) => {
-                            observer.look(state, Place::End);
-                            ControlFlow::Continue(())
-                        }
-                        Ok(Some(at)) => {
-                            observer.look(&at, Place::End);
-                            stop = Some(Ok(at));
-                            ControlFlow::Break(())
-                        }
-                        Err(error) => {
-                            observer.look(state, Place::End);
-                            stop = Some(Err(error));
-                            ControlFlow::Break(())
-                        }
-                    }
-                };
-                integrate_while(system, &whole, self.state, step, end, inputs, look)?;
-                if let Some(stop) = stop {
-                    *self.state = stop?;
+            for stretch in stretches(&self.plan.spacing, self.plan.step, from, end)? {
+                self.cover(&stretch)?;
+                self.set(clock);
+                if self.is_stopped() {
+                    break;
                 }
             }
         }
@@ -145,26 +112,84 @@ impl<'a, O: Observer> Steady<'a, O> {
         Ok(())
     }
 
-    /// The steps to a time, where most of them may be taken without a look at their ends.
-    fn glides(&self, whole: &Whole, watches: bool, end: f64) -> Option<Grid> {
-        let free = !watches && self.observer.leisure() > 0 && self.state.is_finite();
-        free.then(|| whole.glides(self.system, self.state.t, end))?
+    /// To the end of a stretch.
+    fn cover(&mut self, stretch: &Stretch) -> Result<(), StepError> {
+        let (from, end) = (self.state.t, stretch.end);
+        let whole = self.whole(end);
+        let (system, step) = (self.system, self.plan.step);
+        let watches = self.events.as_ref().is_some_and(|e| !e.list().is_empty());
+        let skips = self.plan.quiet && !watches && !self.plan.has_multiples();
+        if skips && whole.run(system, self.state, end) {
+            self.observer.look(self.state, Place::End);
+            return Ok(());
+        }
+        if self.glides(&whole, watches, end) {
+            return self.glide(&whole, stretch);
+        }
+        let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+        let (stepper, observer) = (&self.plan.method.stepper, &mut self.observer);
+        let events = &mut self.events;
+        // Where an event ends the run, or why it cannot be watched.
+        let mut stop = None;
+        let mut index = 0;
+        let clock = Clock::new(system, self.state);
+        let look = |state: &State<Instance>| {
+            if state.t <= from {
+                return ControlFlow::Continue(());
+            }
+            index += 1;
+            let seen = match events {
+                Some(events) => events.see(system, stepper, state),
+                None => Ok(None),
+            };
+            match seen {
+                Ok(None) => {
+                    observer.look(state, Place::End);
+                    show(*observer, (stretch, clock), index, state);
+                    ControlFlow::Continue(())
+                }
+                Ok(Some(at)) => {
+                    observer.look(&at, Place::End);
+                    stop = Some(Ok(at));
+                    ControlFlow::Break(())
+                }
+                Err(error) => {
+                    observer.look(state, Place::End);
+                    stop = Some(Err(error));
+                    ControlFlow::Break(())
+                }
+            }
+        };
+        integrate_while(system, &whole, self.state, step, end, inputs, look)?;
+        if let Some(stop) = stop {
+            *self.state = stop?;
+        }
+        Ok(())
     }
 
-    /// Takes the steps of a grid: as many at once as the observer has no wish to see, and the others one by one.
-    fn glide(&mut self, whole: &Whole, grid: &Grid) -> Result<(), StepError> {
-        let system = self.system;
+    /// Whether most of the steps to a time may be taken without a look at their ends.
+    fn glides(&self, whole: &Whole, watches: bool, end: f64) -> bool {
+        let free = !watches && self.observer.leisure() > 0 && self.state.is_finite();
+        free && whole.glides(self.system, self.state.t, end)
+    }
+
+    /// Takes the steps of a stretch: as many at once as the observer has no wish to see, and the others one by one.
+    fn glide(&mut self, whole: &Whole, stretch: &Stretch) -> Result<(), StepError> {
+        let (system, grid) = (self.system, &stretch.grid);
         let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+        let clock = Clock::new(system, self.state);
         let mut done = 0;
         while done < grid.count() {
             let observer = &mut *self.observer;
-            let free = observer.leisure().min(grid.count() - done);
+            let free = observer.leisure().min(stretch.ahead(done));
             if free > 0 {
                 let steps = (grid, done, free);
-                let taken =
-                    whole.glide(system, self.state, steps, |glance| observer.glance(glance));
+                let taken = whole.glide(system, self.state, steps, clock, |glance| {
+                    observer.glance(glance);
+                });
                 done += taken;
                 if taken == free {
+                    show(observer, (stretch, clock), done, self.state);
                     continue;
                 }
             }
@@ -176,15 +201,25 @@ impl<'a, O: Observer> Steady<'a, O> {
             done += 1;
             next.t = grid.time(done);
             *self.state = next;
+            self.set(clock);
+            let observer = &mut *self.observer;
             observer.look(self.state, Place::End);
+            show(observer, (stretch, clock), done, self.state);
         }
         Ok(())
     }
 
+    /// Sets the time of the description, which the end of a stretch has but for rounding, to that of the run.
+    fn set(&mut self, clock: Option<Clock<f64>>) {
+        if let Some(clock) = clock {
+            clock.set(self.state);
+        }
+    }
+
     /// To a time together with another run; whether both are there. Else neither has moved.
-    fn go_with(&mut self, other: &mut Self, end: f64) -> bool {
+    fn go_with(&mut self, other: &mut Self, end: f64, clocks: [Option<Clock<f64>>; 2]) -> bool {
         let quiet = self.plan.quiet && other.plan.quiet;
-        if !quiet || end <= self.state.t {
+        if !quiet || self.plan.has_multiples() || end <= self.state.t {
             return false;
         }
         self.system.go_from(self.state.t);
@@ -195,8 +230,9 @@ impl<'a, O: Observer> Steady<'a, O> {
         if !Whole::run_both(&wholes, systems, states, end) {
             return false;
         }
-        for run in [self, other] {
+        for (run, clock) in [self, other].into_iter().zip(clocks) {
             run.observer.look(run.state, Place::End);
+            run.set(clock);
             run.sample(end);
         }
         true
@@ -207,5 +243,21 @@ impl<'a, O: Observer> Steady<'a, O> {
         if self.samples().contains(&end) {
             self.observer.look(self.state, Place::Sample);
         }
+    }
+}
+
+/// Shows the sample after so many steps of a stretch, where there is one.
+fn show(
+    observer: &mut impl Observer,
+    (stretch, clock): (&Stretch, Option<Clock<f64>>),
+    index: u64,
+    state: &State<Instance>,
+) {
+    if let Some(t) = stretch.sample(index) {
+        let mut state = State { t, ..state.clone() };
+        if let Some(clock) = clock {
+            clock.set(&mut state);
+        }
+        observer.look(&state, Place::Sample);
     }
 }

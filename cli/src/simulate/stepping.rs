@@ -57,6 +57,13 @@ impl Stepping {
                 )));
             }
         }
+        // Shorter times have too few digits to be divided into steps.
+        if !self.until.is_normal() {
+            return Err(Failure::usage(format!(
+                "the length of a run has to be at least {:e}",
+                f64::MIN_POSITIVE
+            )));
+        }
         if self.step.is_some() && self.tol.is_some() {
             return Err(Failure::usage(
                 "a step or a tolerance is needed, not both: by a tolerance steps are chosen",

@@ -64,7 +64,10 @@ pub fn text(run: &Run, default_step: bool) -> String {
         None => format!(
             "{} of {}{default}",
             plural(run.steps, "step"),
-            short(run.plan.until / run.plan.steps as f64)
+            short(match run.plan.has_multiples() {
+                true => run.plan.step,
+                false => run.plan.until / run.plan.steps as f64,
+            })
         ),
     };
     let mut text = format!(
@@ -138,11 +141,12 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
             .map(String::from)
             .to_vec(),
     ];
-    let change = format!(
-        "{}, {} relative",
-        error(run.monitor.energy_deviation()),
-        error(run.monitor.relative_energy_deviation())
-    );
+    let mut change = error(run.monitor.energy_deviation());
+    let relative = run.monitor.relative_energy_deviation();
+    // There is nothing to compare with where all energy has come from outside.
+    if !relative.is_infinite() {
+        change.push_str(&format!(", {} relative", error(relative)));
+    }
     rows.push(row("energy", first.energy, last.energy, change));
     // States of first order have no momentum.
     for (index, name) in run.velocity_names.iter().enumerate().take(run.program.n) {

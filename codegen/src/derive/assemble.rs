@@ -345,6 +345,7 @@ impl Builder<'_> {
             m: model.m(),
             n_z: model.state_rates.len(),
             phi: model.phi.len() + loops,
+            clock: model.clock.map(|clock| clock.x),
             embedded: model.completion.independent.len() > kinds,
             start_x: model.start_x.clone(),
             start_xi: [&model.start_xi[..], &model.start_z].concat(),

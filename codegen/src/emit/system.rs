@@ -34,6 +34,11 @@ pub fn implementation(emitter: &Emitter) -> String {
         return String::new();
     };
     let mut methods = methods;
+    if let Some(place) = program.clock {
+        methods.push_str(&format!(
+            "fn clock(&self) -> ::core::option::Option<usize> {{\n::core::option::Option::Some({place})\n}}\n\n"
+        ));
+    }
     if program.embedded {
         methods.push_str(
             "fn project_coordinates(&self, x: &Self::Coordinates) -> ::core::option::Option<Self::Coordinates> {\n::core::option::Option::Some(::hamel::System::correction(self, x))\n}\n\n",

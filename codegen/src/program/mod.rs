@@ -163,6 +163,8 @@ pub struct Program {
     pub n_z: usize,
     /// Number of rows of φ.
     pub phi: usize,
+    /// The place of the time in x, where the description declares it.
+    pub clock: Option<usize>,
     /// Whether φ has rows that the kinds of coordinates do not keep by themselves: integrators lead x back to them.
     pub embedded: bool,
     /// x at the start.

@@ -132,7 +132,7 @@ class Run:
     reason: str | None
     steps: int
     evaluations: int
-    #: The largest change of the energy, relative.
+    #: The largest change of the energy, relative; infinite where the run has got all of it from outside.
     energy_deviation: float
     #: The largest |phi(x)| on the way.
     constraint: float

@@ -66,6 +66,7 @@ pub use step::Step;
 
 use crate::adaptive::control::{Controller, power};
 use crate::adaptive::stiff::Stiffness;
+use crate::clock::Clock;
 use crate::error::StepError;
 use crate::integrate::{acceleration, lead_back, project};
 use crate::methods::tableau::{Stages, Sums};
@@ -280,6 +281,7 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
         let statistics = &mut outcome.statistics;
         let mut stages: Stages<Sys, M> = Stages::start(system, state, inputs)?;
         statistics.evaluations += 1;
+        let clock = Clock::new(system, state);
         let direction = if span < 0.0 { -1.0 } else { 1.0 };
         let mut length = match self.first {
             Some(first) => first.min(longest),
@@ -320,11 +322,15 @@ impl<const M: usize, const D: usize> Adaptive<M, D> {
             if is_last {
                 end.t = until;
             }
+            if let Some(clock) = &clock {
+                clock.set(&mut end);
+            }
             let led_back = lead_back(system, &mut end);
             let moved = project(system, &mut end)? || led_back;
             let mut stopped_by = None;
             if dense {
                 let mut step = Step::new(system, state, end, h, &stages, self.pair, change);
+                step.clock = clock;
                 stopped_by = accept(&mut step)?;
                 end = step.end;
             }

@@ -8,6 +8,7 @@
 use core::fmt;
 
 use crate::adaptive::Pair;
+use crate::clock::Clock;
 use crate::manifold;
 use crate::methods::tableau::{Stages, Sums};
 use crate::state::State;
@@ -21,6 +22,8 @@ pub struct Step<'s, Sys: System + ?Sized, const D: usize> {
     pub(crate) end: State<Sys>,
     /// The length for which the polynomials hold, also when the step is cut short by an event.
     pub(crate) h: f64,
+    /// That of the run.
+    pub(crate) clock: Option<Clock<Sys::Scalar>>,
     hermite: [Sums<Sys>; 3],
     further: [Sums<Sys>; D],
 }
@@ -50,6 +53,9 @@ impl<Sys: System + ?Sized, const D: usize> Step<'_, Sys, D> {
         } else {
             let mut state = self.within(theta);
             state.t = t;
+            if let Some(clock) = &self.clock {
+                clock.set(&mut state);
+            }
             state
         }
     }
@@ -98,6 +104,7 @@ impl<Sys: System + ?Sized, const D: usize> Step<'_, Sys, D> {
             start,
             end,
             h,
+            clock: None,
             hermite: [change, rise, fall],
             further: pair.dense.map(|weights| stages.sums(system, h, weights)),
         }

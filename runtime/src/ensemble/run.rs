@@ -5,6 +5,7 @@ use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::group::{Group, gather, scatter};
 use super::{Failure, Progress};
+use crate::clock::Clock;
 use crate::error::{Singular, StepError};
 use crate::integrate::{Grid, step};
 use crate::lanes::Lanes;
@@ -128,10 +129,12 @@ where
                 return failures;
             }
         };
+        let starts = states.to_vec();
         // Groups that still have steps to do, each with the index of its next.
         let mut open = vec![(everybody, 0)];
         while let Some((chosen, index)) = open.pop() {
-            let End::Stopped(index, error) = self.group(states, &chosen, &grid, index) else {
+            let End::Stopped(index, error) = self.group((&starts, states), &chosen, &grid, index)
+            else {
                 continue;
             };
             let rest = grid.count - index;
@@ -166,10 +169,10 @@ where
         }
     }
 
-    /// The chosen members from the step `index` on.
+    /// The chosen members from the step `index` on, with the states that all of them had at the start.
     fn group<Single>(
         &self,
-        states: &mut [State<Single>],
+        (starts, states): (&[State<Single>], &mut [State<Single>]),
         chosen: &[usize],
         grid: &Grid,
         mut index: u64,
@@ -185,6 +188,8 @@ where
             Ok(prepared) => prepared,
             Err(error) => return End::Stopped(index, error),
         };
+        let started = gather(&system, starts, chosen).ok();
+        let clock = started.and_then(|start| Clock::new(&system, &start));
         let inputs = |t: f64, x: &_, xi: &_| (self.inputs)(&group, t, x, xi);
         let members = chosen.len() as u64;
         let mut told = index;
@@ -196,6 +201,9 @@ where
             }
             index += 1;
             state.t = grid.time(index);
+            if let Some(clock) = &clock {
+                clock.set(&mut state);
+            }
             if index - told == PACE {
                 told = index;
                 if !self.watch.advance(PACE * members) {

@@ -257,6 +257,10 @@ impl<Sys: Tangent> System for Nearby<Sys> {
         self.dual.start()
     }
 
+    fn clock(&self) -> Option<usize> {
+        self.dual.clock()
+    }
+
     fn rate(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Coordinates {
         self.dual.rate(x, xi)
     }

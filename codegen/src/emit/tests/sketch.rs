@@ -107,6 +107,7 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
         n_z: 0,
         m: u.len(),
         phi: 0,
+        clock: None,
         embedded: false,
         start_x: vec![0.5; x.len()],
         start_xi: vec![0.25; xi.len()],

@@ -1,0 +1,149 @@
+//! The stretches of a run in equal steps: between two times that steps have to end at.
+
+use super::plan::Spacing;
+use hamel::{Grid, StepError};
+
+/// Equal steps to a time, with samples at the ends of some of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// The time that it leads to.
+    pub end: f64,
+    /// Its steps.
+    pub grid: Grid,
+    /// A sample after every so many of them.
+    every: u64,
+    /// The multiple of the time between samples that it starts at, and that time.
+    first: f64,
+    time: f64,
+}
+
+impl Stretch {
+    /// A stretch without samples between two times.
+    fn bare(from: f64, end: f64, step: f64) -> Result<Self, StepError> {
+        Ok(Stretch {
+            end,
+            grid: Grid::new(from, end, step)?,
+            every: u64::MAX,
+            first: 0.0,
+            time: 0.0,
+        })
+    }
+
+    /// The time of the sample after so many steps, where there is one.
+    pub fn sample(&self, index: u64) -> Option<f64> {
+        let at = match index == self.grid.count() {
+            true => self.end,
+            false => (self.first + (index / self.every) as f64) * self.time,
+        };
+        index.is_multiple_of(self.every).then_some(at)
+    }
+
+    /// How many steps there are from one of them to the next sample, or to the end.
+    pub fn ahead(&self, done: u64) -> u64 {
+        (self.grid.count() - done).min(self.every - done % self.every)
+    }
+}
+
+/// The stretches between two times at which something else happens, in steps no longer than this one. Where samples are at multiples of a time, all steps
+/// between the first and the last of these multiples are equal, and so many of them lead from one to the next; what is
+/// before and behind is covered by steps that are no longer.
+pub fn stretches(
+    spacing: &Spacing,
+    step: f64,
+    from: f64,
+    end: f64,
+) -> Result<Vec<Stretch>, StepError> {
+    let Spacing::Every(time) = *spacing else {
+        return Ok(vec![Stretch::bare(from, end, step)?]);
+    };
+    // A time that is a multiple but for rounding is that multiple.
+    let is_near = |multiple: f64, t: f64| (multiple * time - t).abs() <= 4.0 * f64::EPSILON * t;
+    let nearest = |t: f64| Some((t / time).round()).filter(|multiple| is_near(*multiple, t));
+    let (before, behind) = (nearest(from), nearest(end));
+    let first = before.unwrap_or_else(|| (from / time).floor() + 1.0);
+    let last = behind.unwrap_or_else(|| (end / time).floor());
+    let is_none = last < first || last == first && before.is_some();
+    if is_none {
+        return Ok(vec![Stretch::bare(from, end, step)?]);
+    }
+    let mut all = Vec::new();
+    let to = |multiple: f64| match behind {
+        Some(behind) if behind == multiple => end,
+        _ => multiple * time,
+    };
+    let mut here = from;
+    if before.is_none() {
+        here = to(first);
+        let mut head = Stretch::bare(from, here, step)?;
+        head.every = head.grid.count();
+        all.push(head);
+    }
+    if last > first {
+        let body = Stretch::bare(here, to(last), step)?;
+        here = body.end;
+        all.push(Stretch {
+            every: (body.grid.count() / (last - first) as u64).max(1),
+            first,
+            time,
+            ..body
+        });
+    }
+    if behind.is_none() {
+        all.push(Stretch::bare(here, end, step)?);
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The times of samples, and the lengths of steps, of all stretches between two times.
+    fn cut(time: f64, step: f64, from: f64, end: f64) -> (Vec<f64>, Vec<(u64, f64)>) {
+        let all = stretches(&Spacing::Every(time), step, from, end).expect("stretches");
+        assert_eq!(all.last().map(|stretch| stretch.end), Some(end));
+        let samples = all.iter().flat_map(|stretch| {
+            let steps = 1..=stretch.grid.count();
+            steps.filter_map(|index| stretch.sample(index))
+        });
+        let steps = all.iter().map(|s| (s.grid.count(), s.grid.step()));
+        (samples.collect(), steps.collect())
+    }
+
+    #[test]
+    fn samples_are_at_multiples_of_their_time() {
+        // Two steps of 1/8 from sample to sample: what is before and behind is no multiple.
+        let (samples, steps) = cut(0.25, 0.125, 0.1875, 1.125);
+        assert_eq!(samples, [0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(steps, [(1, 0.0625), (6, 0.125), (1, 0.125)]);
+        // From a multiple to another one there is nothing else.
+        let (samples, steps) = cut(0.25, 0.125, 0.25, 0.75);
+        assert_eq!(samples, [0.5, 0.75]);
+        assert_eq!(steps, [(4, 0.125)]);
+        // No sample, one at the end, and one on the way.
+        assert_eq!(cut(1.0, 0.25, 0.125, 0.5).0, [0.0; 0]);
+        assert_eq!(cut(1.0, 0.25, 0.0, 0.5), (vec![], vec![(2, 0.25)]));
+        assert_eq!(cut(1.0, 0.25, 0.5, 1.0), (vec![1.0], vec![(2, 0.25)]));
+        assert_eq!(cut(1.0, 0.25, 0.5, 1.25).0, [1.0]);
+        // A step that is longer than the whole.
+        assert_eq!(cut(1.0, 0.25, 0.0, 0.125), (vec![], vec![(1, 0.125)]));
+    }
+
+    /// 3 times 0.1 is not 0.3 in binary numbers: no step is as short as that.
+    #[test]
+    fn a_multiple_but_for_rounding_is_a_multiple() {
+        for n in 1..2000 {
+            let end = f64::from(n) / 10.0;
+            let (samples, steps) = cut(0.1, 0.02, 0.0, end);
+            assert_eq!(samples.len(), n as usize);
+            assert_eq!(samples.last(), Some(&end));
+            assert!(
+                steps.len() == 1 && steps[0].0 == 5 * n as u64,
+                "{n} {steps:?}"
+            );
+            let (samples, steps) = cut(0.1, 0.02, end, end + 0.5);
+            assert_eq!(samples.len(), 5, "{n} {samples:?}");
+            assert!(steps.iter().all(|(_, step)| *step > 0.019), "{n} {steps:?}");
+        }
+    }
+}
