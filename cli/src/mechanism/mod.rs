@@ -41,9 +41,9 @@ pub struct Mechanism {
     /// None where M is not positive definite.
     accel: Option<Place>,
     correction: Place,
-    /// Whether the correction leads back to constraints that no chart keeps.
     /// The place in x of the time that the description declares.
     clock: Option<usize>,
+    /// Whether the correction leads back to constraints that no chart keeps.
     embedded: bool,
     project_position: Option<Place>,
     project_velocity: Option<Place>,
