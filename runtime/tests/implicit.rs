@@ -43,8 +43,8 @@ type Sloped = Pendulum<Dual<f64, 2>>;
 fn at_rest() -> (Sloped, State<Sloped>) {
     let system = Sloped::default();
     let mut state = State::start(&system);
-    state.x = [Dual::along(0.0, 0)].into();
-    state.xi = [Dual::along(0.0, 1)].into();
+    state.x = [Dual::along(0.0, 0)];
+    state.xi = [Dual::along(0.0, 1)];
     (system, state)
 }
 
@@ -114,9 +114,8 @@ fn slopes_of_an_implicit_step_at_an_equilibrium() {
     ] {
         let system = Pendulum::<f64>::new(PendulumParameters { k }).expect("a pendulum");
         let mut state = State::start(&system);
-        state.x.as_mut()[0] = q;
-        let slopes =
-            step_slopes(&BackwardEuler, &system, &state, &[0.0].into(), h).expect("slopes");
+        state.x[0] = q;
+        let slopes = step_slopes(&BackwardEuler, &system, &state, &[0.0], h).expect("slopes");
         let k = k * q.cos();
         let scale = 1.0 / (1.0 + h * h * k);
         let wanted = [[1.0, h, h * h], [-h * k, 1.0, h]].map(|row| row.map(|entry| scale * entry));
@@ -243,7 +242,7 @@ fn small_motions_are_not_frozen() -> Result<(), StepError> {
     let coarse = Pendulum::<f32>::default();
     let fine = Pendulum::<f64>::default();
     let (mut one, mut other) = (State::start(&coarse), State::start(&fine));
-    (one.x, other.x) = ([0.4].into(), [0.4].into());
+    (one.x, other.x) = ([0.4], [0.4]);
     run(&coarse, BackwardEuler, &mut one, 1e-4, 5000)?;
     run(&fine, BackwardEuler, &mut other, 1e-4, 5000)?;
     let (q, w) = (f64::from(one.x.as_ref()[0]), f64::from(one.xi.as_ref()[0]));
@@ -277,8 +276,8 @@ fn large_neighbours_change_nothing() -> Result<(), StepError> {
         for speed in [0.0, 7700.0] {
             let system = Two::<f64>::default();
             let mut state = State::start(&system);
-            state.x.as_mut()[1] = 1.0;
-            state.xi.as_mut()[0] = speed;
+            state.x[1] = 1.0;
+            state.xi[0] = speed;
             let mut worst: f64 = 0.0;
             for _ in 0..5000 {
                 match method {
