@@ -103,20 +103,23 @@ fn runs_from_rest_have_slopes() -> Result<(), StepError> {
     Ok(())
 }
 
-/// (I − h A)⁻¹ and h (I − h A)⁻¹ B at both equilibria, of a slack pendulum and of a stiff one.
+/// (I − h A)⁻¹ and h (I − h A)⁻¹ B, A at the end of the step: at both equilibria and away from them, of a slack pendulum
+/// and of a stiff one.
 #[test]
-fn slopes_of_an_implicit_step_at_an_equilibrium() {
+fn slopes_of_an_implicit_step() {
     for (q, k, h) in [
         (0.0_f64, 9.81, 0.1),
         (0.0, 1e6, 0.1),
         (0.0, 1e10, 0.1),
         (std::f64::consts::PI, 9.81, 0.01),
+        (0.3, 9.81, 0.1),
+        (0.3, 1e5, 0.01),
     ] {
         let system = Pendulum::<f64>::new(PendulumParameters { k }).expect("a pendulum");
         let mut state = State::start(&system);
         state.x[0] = q;
         let slopes = step_slopes(&BackwardEuler, &system, &state, &[0.0], h).expect("slopes");
-        let k = k * q.cos();
+        let k = k * slopes.0.x[0].cos();
         let scale = 1.0 / (1.0 + h * h * k);
         let wanted = [[1.0, h, h * h], [-h * k, 1.0, h]].map(|row| row.map(|entry| scale * entry));
         for (i, row) in wanted.iter().enumerate() {
@@ -311,4 +314,66 @@ fn products_with_the_jacobian_beside_large_unknowns() {
             "{x:e}: {product:?}"
         );
     }
+}
+
+/// Three masses in a chain on springs that grow stiff.
+fn chain<const K: u64>(x: &[f64; 3], v: &[f64; 3]) -> Result<[f64; 3], hamel::Singular> {
+    let mut force = [0.0; 3];
+    for (i, stiffness) in [0.8, 1.2, 1.1].into_iter().enumerate() {
+        let (at, rate) = i.checked_sub(1).map_or((0.0, 0.0), |j| (x[j], v[j]));
+        let stretch = x[i] - at;
+        let elastic = K as f64 * stiffness * (stretch + 0.3 * stretch.powi(3));
+        let tension = elastic + 0.1 * (v[i] - rate);
+        force[i] -= tension;
+        if i > 0 {
+            force[i - 1] += tension;
+        }
+    }
+    Ok(force)
+}
+
+/// The iteration may fail where several springs are stiff, but where it ends the equations of the step hold.
+#[test]
+fn iterations_that_run_away_are_errors() {
+    let (h, mut seed) = (0.1, 1_u64);
+    let mut number = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let chains: [fn(&_, &_) -> _; 4] = [
+        chain::<100>,
+        chain::<1000>,
+        chain::<100_000>,
+        chain::<10_000_000>,
+    ];
+    let mut ended = [0; 4];
+    for (accel, ended) in chains.into_iter().zip(&mut ended) {
+        for _ in 0..1000 {
+            let x = std::array::from_fn(|_| 0.1 * number());
+            let v = std::array::from_fn(|_| number() - 0.5);
+            let system = Points {
+                start: (x, v),
+                accel,
+            };
+            let mut state = State::start(&system);
+            match run(&system, BackwardEuler, &mut state, h, 1) {
+                Err(StepError::NotConverged { .. } | StepError::NonFinite { .. }) => {}
+                Err(error) => panic!("{error}"),
+                Ok(()) => {
+                    *ended += 1;
+                    let force = accel(&state.x, &state.xi).expect("a force");
+                    for i in 0..3 {
+                        let moved = (state.x[i] - x[i] - h * state.xi[i]).abs();
+                        let pushed = (state.xi[i] - v[i] - h * force[i]).abs();
+                        assert!(
+                            moved < 1e-11 && pushed < 1e-8,
+                            "{x:?} {v:?}: {moved:e} {pushed:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+    println!("{ended:?} of 1000");
+    assert_eq!(ended[0], 1000);
 }

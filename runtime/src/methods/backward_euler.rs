@@ -30,6 +30,9 @@ const MOST: u32 = 64;
 /// The correction at which it ends, in units of the last place; the error that it leaves is smaller by the rate of
 /// convergence.
 const ENOUGH: f64 = 256.0;
+/// How many first corrections away the solution may be. The first is the error of the guess, or much more where the motion
+/// is stiff; an iteration that ran away has small corrections beside what it has become.
+const FARTHEST: f64 = 1e3;
 /// Corrections in a row that bring no entry nearer, after which what is left is rounding.
 const PATIENCE: u32 = 4;
 
@@ -58,11 +61,31 @@ impl<Sys: System + ?Sized> Unknowns<Sys> {
         }
     }
 
-    fn dot(&self, other: &Self) -> Sys::Scalar {
+    /// Σ aᵢ bᵢ by the function that adds one such product.
+    fn dot(
+        &self,
+        other: &Self,
+        add: impl Fn(Sys::Scalar, Sys::Scalar, Sys::Scalar) -> Sys::Scalar,
+    ) -> Sys::Scalar {
         let u = self.u.as_ref().iter().zip(other.u.as_ref());
         let xi = self.xi.as_ref().iter().zip(other.xi.as_ref());
         u.chain(xi)
-            .fold(Sys::Scalar::default(), |sum, (a, b)| a.inner_plus(*b, sum))
+            .fold(Sys::Scalar::default(), |sum, (a, b)| add(*a, *b, sum))
+    }
+
+    /// The part of another along this step. A step whose square is not above `rest` has only slopes to go by, if any.
+    fn along(&self, other: &Self, rest: Sys::Scalar) -> Sys::Scalar {
+        let (product, inner) = (Scalar::mul_add, Scalar::inner_plus);
+        let square = self.dot(self, product);
+        let by_value = ratio(self.dot(other, product), square);
+        let by_slopes = ratio(self.dot(other, inner), self.dot(self, inner));
+        rest.select_lt(square, by_value, by_slopes)
+    }
+
+    /// max(|u|, h |ξ|)
+    fn length(&self, h: f64) -> Sys::Scalar {
+        let of_xi = Sys::Scalar::from_f64(h.abs()) * largest(self.xi.as_ref());
+        Scalar::max(largest(self.u.as_ref()), of_xi)
     }
 
     fn is_finite(&self) -> bool {
@@ -94,6 +117,12 @@ struct Progress<Sys: System + ?Sized> {
     reach: Sys::Scalar,
     /// Corrections in a row that brought no unknown nearer.
     idle: u32,
+    /// The lengths of the last defect and correction.
+    last: (Sys::Scalar, Sys::Scalar),
+    /// By how much defects grew for the corrections made, at most, or 1: 1 + h L or nearly so, L the stiffest rate.
+    growth: Sys::Scalar,
+    /// How far from the start the solution may be, as a length of u; not known before the first correction.
+    room: Option<Sys::Scalar>,
 }
 
 impl<Sys: System + ?Sized> Progress<Sys> {
@@ -121,15 +150,25 @@ impl<Sys: System + ?Sized> Progress<Sys> {
             least: Unknowns::zero(system),
             reach: largest(state.x.as_ref()),
             idle: 0,
+            last: Default::default(),
+            growth: Sys::Scalar::from_f64(1.0),
+            room: None,
         }
     }
 
     /// Whether z, after a correction, is the solution: the correction is small beside the size of every unknown and its
     /// change over the step, each by itself, or the corrections no longer shrink and are of the size of rounding.
     ///
-    /// f is rounded as x is, by h k ε |x| for a spring of stiffness k, so that a velocity is no more certain than
+    /// A correction that is shorter than the defect by more than defects were seen to grow is small by what was learnt
+    /// wrong. f is rounded as x is, by h k ε |x| for a spring of stiffness k, so that a velocity is no more certain than
     /// ε (|ξ| + |x|/h) however small it is.
-    fn is_over(&mut self, z: &Unknowns<Sys>, correction: &Unknowns<Sys>, h: f64) -> bool {
+    fn is_over(
+        &mut self,
+        z: &Unknowns<Sys>,
+        correction: &Unknowns<Sys>,
+        defect: Sys::Scalar,
+        h: f64,
+    ) -> bool {
         let (zero, one) = (Sys::Scalar::default(), Sys::Scalar::from_f64(1.0));
         let enough = Sys::Scalar::from_f64(ENOUGH * Sys::Scalar::EPSILON);
         let (mut moving, mut nearer) = (zero, zero);
@@ -152,20 +191,38 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         for ((correction, xi), (start, least)) in of_xi.zip(from) {
             judge(*correction, *start, *xi - *start, least);
         }
+        let length = correction.length(h);
+        let grown = ratio(defect - self.last.0, self.last.1);
+        self.growth = Scalar::max(self.growth, grown);
+        self.last = (defect, length);
+        let credible = Sys::Scalar::from_f64(10.0) * self.growth * length;
+        let trusted = credible.select_lt(defect, one, zero).largest_lane() == 0.0;
+        let h = Sys::Scalar::from_f64(h.abs());
+        let most = largest(z.u.as_ref());
+        let room = *self.room.get_or_insert_with(|| {
+            let rounded = enough.mul_add(self.reach, most);
+            Sys::Scalar::from_f64(FARTHEST).mul_add(length, rounded)
+        });
+        let gone = z.xi.as_ref().iter().zip(self.start.xi.as_ref());
+        let gone = gone.fold(most, |most, (xi, start)| {
+            Scalar::max(most, h * (*xi - *start).size())
+        });
+        if room.select_lt(gone, one, zero).largest_lane() != 0.0 {
+            return false;
+        }
         if moving.largest_lane() == 0.0 {
-            return true;
+            return trusted;
         }
         self.idle = if nearer.largest_lane() == 0.0 {
             self.idle + 1
         } else {
             0
         };
-        let h = Sys::Scalar::from_f64(h.abs());
-        let reach = self.reach + largest(z.u.as_ref());
+        let reach = self.reach + most;
         let of_u = largest(correction.u.as_ref()) / reach;
         let of_xi = h * largest(correction.xi.as_ref()) / h.mul_add(largest(z.xi.as_ref()), reach);
         let whole = Scalar::max(of_u, of_xi).largest_lane();
-        self.idle >= PATIENCE && whole <= ENOUGH * Sys::Scalar::EPSILON
+        trusted && self.idle >= PATIENCE && whole <= ENOUGH * Sys::Scalar::EPSILON
     }
 }
 
@@ -186,6 +243,7 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
     {
         state.check_shape(system)?;
         let one = Sys::Scalar::from_f64(1.0);
+        let rounding = Sys::Scalar::from_f64(Sys::Scalar::EPSILON * Sys::Scalar::EPSILON);
         let point = |u: &Sys::Chart| {
             let mut x = state.x.clone();
             manifold::retract(system.blocks(), x.as_mut(), u.as_ref());
@@ -210,6 +268,8 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
         };
         scale(z.u.as_mut(), h);
         let mut steps: [Unknowns<Sys>; MEMORY] = from_fn(|_| Unknowns::zero(system));
+        // Steps that rounding hides have squares below these.
+        let mut rests = [Sys::Scalar::default(); MEMORY];
         let mut known = 0;
         let mut progress = Progress::new(system, state);
         for iterations in 1..=MOST {
@@ -220,10 +280,11 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
                     iterations,
                 });
             }
+            let length = next.length(h);
             // next ← B⁻¹ defect, with B⁻¹ as the product of the updates that the steps define.
             let mut latest = None;
-            for (index, s) in steps.iter().enumerate().take(known) {
-                let along = ratio(s.dot(&next), s.dot(s));
+            for (index, (s, rest)) in steps.iter().zip(&rests).enumerate().take(known) {
+                let along = s.along(&next, *rest);
                 if index + 1 == known {
                     latest = Some(along);
                 } else if let Some(following) = steps.get(index + 1) {
@@ -235,11 +296,12 @@ impl<Sys: System + ?Sized> Method<Sys> for BackwardEuler {
                 next.entries().for_each(|entry| *entry *= gain);
             }
             z.add_multiple(one, &next);
-            if progress.is_over(&z, &next, h) {
+            if progress.is_over(&z, &next, length, h) {
                 return arrive(system, state, h, point(&z.u), z.xi);
             }
             known = if known == MEMORY { 0 } else { known };
-            if let Some(slot) = steps.get_mut(known) {
+            if let (Some(slot), Some(rest)) = (steps.get_mut(known), rests.get_mut(known)) {
+                *rest = rounding * z.dot(&z, Scalar::inner_plus);
                 *slot = next;
                 known += 1;
             }
