@@ -2,7 +2,7 @@
 //!
 //! u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u, solved for z = (u, ξ₁) by Broyden's method:
 //! it starts as the fixed-point iteration, learns the stiff directions from its own steps, and needs no
-//! derivatives. Source: C. T. Kelley, *Iterative Methods for Linear and Nonlinear Equations* (1995), 7.3.
+//! derivatives. In numbers with slopes it learns from the values, and from the slopes once the values rest. Source: C. T. Kelley, *Iterative Methods for Linear and Nonlinear Equations* (1995), 7.3.
 
 use core::array::from_fn;
 
@@ -30,9 +30,8 @@ const MOST: u32 = 64;
 /// The correction at which it ends, in units of the last place; the error that it leaves is smaller by the rate of
 /// convergence.
 const ENOUGH: f64 = 256.0;
-/// How many first corrections away the solution may be. The first is the error of the guess, or much more where the motion
-/// is stiff; an iteration that ran away has small corrections beside what it has become.
-const FARTHEST: f64 = 1e3;
+/// How much longer a defect may be than the correction times the largest growth seen.
+const MARGIN: f64 = 10.0;
 /// Corrections in a row that bring no entry nearer, after which what is left is rounding.
 const PATIENCE: u32 = 4;
 
@@ -121,8 +120,6 @@ struct Progress<Sys: System + ?Sized> {
     last: (Sys::Scalar, Sys::Scalar),
     /// By how much defects grew for the corrections made, at most, or 1: 1 + h L or nearly so, L the stiffest rate.
     growth: Sys::Scalar,
-    /// How far from the start the solution may be, as a length of u; not known before the first correction.
-    room: Option<Sys::Scalar>,
 }
 
 impl<Sys: System + ?Sized> Progress<Sys> {
@@ -152,7 +149,6 @@ impl<Sys: System + ?Sized> Progress<Sys> {
             idle: 0,
             last: Default::default(),
             growth: Sys::Scalar::from_f64(1.0),
-            room: None,
         }
     }
 
@@ -195,21 +191,8 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         let grown = ratio(defect - self.last.0, self.last.1);
         self.growth = Scalar::max(self.growth, grown);
         self.last = (defect, length);
-        let credible = Sys::Scalar::from_f64(10.0) * self.growth * length;
+        let credible = Sys::Scalar::from_f64(MARGIN) * self.growth * length;
         let trusted = credible.select_lt(defect, one, zero).largest_lane() == 0.0;
-        let h = Sys::Scalar::from_f64(h.abs());
-        let most = largest(z.u.as_ref());
-        let room = *self.room.get_or_insert_with(|| {
-            let rounded = enough.mul_add(self.reach, most);
-            Sys::Scalar::from_f64(FARTHEST).mul_add(length, rounded)
-        });
-        let gone = z.xi.as_ref().iter().zip(self.start.xi.as_ref());
-        let gone = gone.fold(most, |most, (xi, start)| {
-            Scalar::max(most, h * (*xi - *start).size())
-        });
-        if room.select_lt(gone, one, zero).largest_lane() != 0.0 {
-            return false;
-        }
         if moving.largest_lane() == 0.0 {
             return trusted;
         }
@@ -218,7 +201,8 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         } else {
             0
         };
-        let reach = self.reach + most;
+        let h = Sys::Scalar::from_f64(h.abs());
+        let reach = self.reach + largest(z.u.as_ref());
         let of_u = largest(correction.u.as_ref()) / reach;
         let of_xi = h * largest(correction.xi.as_ref()) / h.mul_add(largest(z.xi.as_ref()), reach);
         let whole = Scalar::max(of_u, of_xi).largest_lane();
