@@ -90,8 +90,9 @@ where
         }
     }
 
-    /// Writes ∂f/∂y v by a central difference, (f(t, y + δ v) − f(t, y − δ v)) / 2δ with
-    /// δ |v| = ∛ε (1 + |y|): accurate to some 1e-10 of the rates, at two evaluations.
+    /// Writes ∂f/∂y v by a central difference, (f(t, y + δ v) − f(t, y − δ v)) / 2δ with the largest δ that moves no
+    /// entry by more than ∛ε (1 + |yᵢ|): accurate to some 1e-10 of the rates, at two evaluations. What v does not move
+    /// may be as large as it likes.
     pub fn jacobian_product(
         &self,
         t: f64,
@@ -100,15 +101,13 @@ where
         product: &mut [Sys::Scalar],
     ) {
         let number = Sys::Scalar::from_f64;
-        let size = |list: &[Sys::Scalar]| {
-            let largest = |most, entry: &Sys::Scalar| Scalar::max(most, entry.abs());
-            list.iter().fold(Sys::Scalar::default(), largest)
-        };
         let reach = number(power(Sys::Scalar::EPSILON, 1.0 / 3.0));
-        let length = size(v);
+        // The entry that moves most beside its own size says how far; of a direction of length zero nothing is asked.
         let zero = Sys::Scalar::default();
-        // Of a direction of length zero nothing is asked.
-        let delta = reach * (number(1.0) + size(y)) / zero.select_lt(length, length, number(1.0));
+        let fastest = y.iter().zip(v).fold(zero, |most, (y, v)| {
+            Scalar::max(most, v.size() / (number(1.0) + y.size()))
+        });
+        let delta = reach / zero.select_lt(fastest, fastest, number(1.0));
         let side = |delta: Sys::Scalar| {
             let entries = y.iter().zip(v).map(|(y, v)| delta.mul_add(*v, *y));
             let (x, xi) = self.read(entries)?;

@@ -16,7 +16,8 @@ use crate::{s3, so3};
 ///
 /// Choices go by the value: a slope at a jump or a corner is that of the side taken. |a| has the slope 0 at 0, and so
 /// has a length √(a·a) at rest, as in generated code; √a of a number that grows from 0 has a large one. Tests of
-/// convergence ([`largest_lane`](Scalar::largest_lane)) see slopes and value alike.
+/// convergence ([`size`](Scalar::size), [`beside`](Scalar::beside), [`largest_lane`](Scalar::largest_lane)) see slopes
+/// and value alike.
 ///
 /// ```
 /// use hamel::{Dual, Scalar};
@@ -62,6 +63,13 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
             value,
             slopes: self.slopes.map(|own| slope * own),
         }
+    }
+
+    /// The largest |slope|.
+    #[inline]
+    fn steepest(self) -> S {
+        let slopes = self.slopes.into_iter();
+        slopes.fold(S::default(), |largest, slope| largest.max(slope.size()))
     }
 
     /// Each part chosen by the value.
@@ -229,6 +237,25 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     }
 
     #[inline]
+    fn size(self) -> Self {
+        Dual::constant(self.value.size().max(self.steepest()))
+    }
+
+    #[inline]
+    fn beside(self, a: Self, b: Self) -> Self {
+        let of_value = self.value.beside(a.value, b.value);
+        let of_slopes = self.steepest().beside(a.steepest(), b.steepest());
+        Dual::constant(of_value.max(of_slopes))
+    }
+
+    #[inline]
+    fn inner_plus(self, a: Self, b: Self) -> Self {
+        let sum = self.value.inner_plus(a.value, b.value);
+        let slopes = self.slopes.into_iter().zip(a.slopes);
+        Dual::constant(slopes.fold(sum, |sum, (one, other)| one.inner_plus(other, sum)))
+    }
+
+    #[inline]
     fn mul_add(self, a: Self, b: Self) -> Self {
         Dual {
             value: self.value.mul_add(a.value, b.value),
@@ -359,9 +386,7 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
 
     #[inline]
     fn largest_lane(self) -> f64 {
-        let slopes = self.slopes.iter();
-        let largest = slopes.fold(self.value.abs(), |largest, slope| largest.max(slope.abs()));
-        largest.largest_lane()
+        self.size().value.largest_lane()
     }
 }
 

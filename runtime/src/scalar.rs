@@ -79,6 +79,27 @@ pub trait Scalar:
     /// Absolute value.
     fn abs(self) -> Self;
 
+    /// How large the number is for tests of convergence and estimates of errors: |self|, and for a number with slopes the
+    /// largest of |value| and |slopes|, which does not vary.
+    #[inline]
+    fn size(self) -> Self {
+        self.abs()
+    }
+
+    /// The part that the number, an error, makes of two numbers, |self|/(|a| + |b|), and 0 where it is 0. Of numbers with
+    /// slopes it is the larger one of that of their values and that of their largest slopes, and does not vary.
+    #[inline]
+    fn beside(self, a: Self, b: Self) -> Self {
+        let error = self.abs();
+        Self::default().select_lt(error, error / (a.abs() + b.abs()), error)
+    }
+
+    /// `self · a + b`, where numbers with slopes are vectors: the scalar product of `self` and `a`, which does not vary.
+    #[inline]
+    fn inner_plus(self, a: Self, b: Self) -> Self {
+        self.mul_add(a, b)
+    }
+
     /// 1 with the sign of the number; 0 of 0, NaN of NaN.
     #[inline]
     fn sign(self) -> Self {

@@ -123,6 +123,13 @@ pub(crate) fn scale<S: Scalar>(y: &mut [S], a: f64) {
     }
 }
 
+/// The largest [`size`](Scalar::size) of an element.
+#[inline]
+pub(crate) fn largest<S: Scalar>(x: &[S]) -> S {
+    x.iter()
+        .fold(S::default(), |most, x| Scalar::max(most, x.size()))
+}
+
 /// Whether every element is finite: all are asked, which a processor does several at a time.
 #[inline]
 pub(crate) fn is_finite<S: Scalar>(x: &[S]) -> bool {

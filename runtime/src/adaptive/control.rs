@@ -5,7 +5,7 @@
 
 use crate::error::StepError;
 use crate::scalar::Scalar;
-use crate::store::Store;
+use crate::store::{Store, largest};
 use crate::system::Block;
 
 /// The error that a step may make.
@@ -49,20 +49,17 @@ impl Tolerance {
     }
 
     /// The largest entry of a change (u, v) over its tolerance, in the worst lane; (x, ξ) give the
-    /// sizes. NaN where an entry is NaN.
+    /// sizes. Slopes count as entries. NaN where an entry is NaN.
     pub(crate) fn weigh<S: Scalar>(
         &self,
         blocks: &[Block],
         (u, v): (&impl Store<S>, &impl Store<S>),
         (x, xi): (&impl Store<S>, &impl Store<S>),
     ) -> f64 {
-        let size = |list: &[S]| {
-            let largest = |most, entry: &S| Scalar::max(most, entry.abs());
-            list.iter().fold(S::default(), largest)
+        let allowed = |list: &[S]| {
+            S::from_f64(self.relative).mul_add(largest(list), S::from_f64(self.absolute))
         };
-        let allowed =
-            |list: &[S]| S::from_f64(self.relative).mul_add(size(list), S::from_f64(self.absolute));
-        let mut worst = size(v.as_ref()) / allowed(xi.as_ref());
+        let mut worst = largest(v.as_ref()) / allowed(xi.as_ref());
         let (mut u, mut x) = (u.as_ref(), x.as_ref());
         for block in blocks {
             let (Some((change, u_rest)), Some((here, x_rest))) = (
@@ -75,7 +72,7 @@ impl Tolerance {
                 Block::Flat(_) => allowed(here),
                 Block::Circle | Block::Quaternion | Block::Rotation => S::from_f64(self.angle),
             };
-            worst = Scalar::max(worst, size(change) / tolerance);
+            worst = Scalar::max(worst, largest(change) / tolerance);
             (u, x) = (u_rest, x_rest);
         }
         worst.largest_lane()

@@ -59,7 +59,7 @@ fn rate<Sys: System + ?Sized, const M: usize, const D: usize>(
     let mut f = stages.f.get(pair.end)?.clone();
     add_scaled(k.as_mut(), -1.0, stages.k.get(before)?.as_ref());
     add_scaled(f.as_mut(), -1.0, stages.f.get(before)?.as_ref());
-    let square = |sum: Sys::Scalar, entry: &Sys::Scalar| entry.mul_add(*entry, sum);
+    let square = |sum: Sys::Scalar, entry: &Sys::Scalar| entry.inner_plus(*entry, sum);
     let size = |u: &[Sys::Scalar], v: &[Sys::Scalar]| {
         let sum = u.iter().fold(Sys::Scalar::default(), square);
         v.iter().fold(sum, square).sqrt()

@@ -3,7 +3,8 @@
 //! Zᵢ = z + h Σⱼ aᵢⱼ kⱼ, Pᵢ = p + h Σⱼ aᵢⱼ ṗⱼ, closed by the weights b. In every step a rotation is R₀ times
 //! an unnormalised quaternion that starts at 1 and moves by ½ z ⊗ ω, a circle likewise by a plane vector, so
 //! that |z|², the energy and |P|² of a free body are quadratic invariants, which Gauss methods keep
-//! exactly. The stages are found by fixed-point iteration to rounding. Sources: J. C. Butcher, Math.
+//! exactly. The stages are found by fixed-point iteration to rounding, that of each entry of x and of p by itself: a
+//! large momentum beside a small one does not hide how far the small one has come. Sources: J. C. Butcher, Math.
 //! Comput. 18 (1964) 50; E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration* (2006), IV.2,
 //! VIII.6.
 
@@ -15,7 +16,7 @@ use crate::manifold;
 use crate::methods::Method;
 use crate::scalar::{Scalar, epsilon};
 use crate::state::State;
-use crate::store::{add, add_scaled, is_finite};
+use crate::store::{Store, add, add_scaled, is_finite, largest};
 use crate::system::Block;
 use crate::{s1, s3, so3};
 
@@ -158,26 +159,38 @@ where
 
     let first = rates(0.0, &start, &p)?;
     let mut stages: [_; N] = from_fn(|_| first.clone());
-    let tolerance = epsilon::<Sys::Scalar>();
     let length = Sys::Scalar::from_f64(h.abs());
     let one = Sys::Scalar::from_f64(1.0);
+    let sizes = (own_sizes(blocks, state.x.clone()), p.clone());
+    let whole_x = one + largest(state.x.as_ref());
+    let whole_p = largest(p.as_ref()) + Sys::Scalar::from_f64(1e-30);
+    let mut least = stages
+        .each_ref()
+        .map(|_| (system.zero_coordinates(), system.zero_velocities()));
     let mut change = one;
     let mut found = false;
     for _ in 0..ITERATIONS {
         change = Sys::Scalar::default();
+        let mut moving = Sys::Scalar::default();
         for (i, (node, row)) in tableau.c.iter().zip(&tableau.a).enumerate() {
             let (z, p) = moved(row, &stages);
             let new = rates(*node, &z, &p)?;
-            if let Some(old) = stages.get_mut(i) {
-                let of_z = length * largest_difference(new.0.as_ref(), old.0.as_ref())
-                    / (one + largest(state.x.as_ref()));
-                let of_p = length * largest_difference(new.1.as_ref(), old.1.as_ref())
-                    / (largest(p.as_ref()) + Sys::Scalar::from_f64(1e-30));
+            if let (Some(old), Some(least)) = (stages.get_mut(i), least.get_mut(i)) {
+                let of_z = length * largest_difference(new.0.as_ref(), old.0.as_ref()) / whole_x;
+                let of_p = length * largest_difference(new.1.as_ref(), old.1.as_ref()) / whole_p;
                 change = Scalar::max(change, Scalar::max(of_z, of_p));
+                // Not before the largest entries are there: few sweeps pay for the small ones.
+                if is_below(change, ULPS) {
+                    let of_z = (old.0.as_ref(), new.0.as_ref(), sizes.0.as_ref());
+                    let of_p = (old.1.as_ref(), new.1.as_ref(), sizes.1.as_ref());
+                    let z_moving = still_moving(length, of_z, least.0.as_mut());
+                    let p_moving = still_moving(length, of_p, least.1.as_mut());
+                    moving = Scalar::max(moving, Scalar::max(z_moving, p_moving));
+                }
                 *old = new;
             }
         }
-        if (Sys::Scalar::from_f64(ULPS) * tolerance - change).is_positive() {
+        if is_below(change, ULPS) && moving.largest_lane() == 0.0 {
             found = true;
             break;
         }
@@ -185,7 +198,7 @@ where
             break;
         }
     }
-    if !found && !(Sys::Scalar::from_f64(ULPS_AT_LAST) * tolerance - change).is_positive() {
+    if !found && !is_below(change, ULPS_AT_LAST) {
         return Err(StepError::NotConverged {
             time: state.t,
             iterations: ITERATIONS,
@@ -291,16 +304,49 @@ fn slope<S: Scalar>(blocks: &[Block], z: &mut [S], w: &[S]) {
     }
 }
 
+/// Whether a change is below this many units of rounding in all lanes.
 #[inline]
-fn largest<S: Scalar>(values: &[S]) -> S {
-    values.iter().fold(S::default(), |largest, value| {
-        Scalar::max(largest, value.abs())
-    })
+fn is_below<S: Scalar>(change: S, ulps: f64) -> bool {
+    (S::from_f64(ulps) * epsilon() - change).is_positive()
 }
 
 #[inline]
 fn largest_difference<S: Scalar>(a: &[S], b: &[S]) -> S {
     a.iter().zip(b).fold(S::default(), |largest, (a, b)| {
-        Scalar::max(largest, (*a - *b).abs())
+        Scalar::max(largest, (*a - *b).size())
+    })
+}
+
+/// What the entries of an increment are judged beside: x itself (flat), 1 rad (angles).
+#[inline]
+fn own_sizes<S: Scalar, X: Store<S>>(blocks: &[Block], mut x: X) -> X {
+    let mut rest = x.as_mut();
+    for block in blocks {
+        let Some((here, after)) = rest.split_at_mut_checked(block.coordinates()) else {
+            break;
+        };
+        if !matches!(block, Block::Flat(_)) {
+            here.fill(S::from_f64(1.0));
+        }
+        rest = after;
+    }
+    x
+}
+
+/// 1 in the lanes in which an entry has yet to settle, 0 elsewhere: it changes by more than rounding beside its own
+/// size and its change over the step, and the change is well below the least of those before, or far above.
+#[inline]
+fn still_moving<S: Scalar>(length: S, (old, new, sizes): (&[S], &[S], &[S]), least: &mut [S]) -> S {
+    let (zero, one) = (S::default(), S::from_f64(1.0));
+    let rounding = S::from_f64(ULPS) * epsilon();
+    let entries = old.iter().zip(new).zip(sizes.iter().zip(least));
+    entries.fold(zero, |moving, ((old, new), (size, least))| {
+        let change = (length * (*new - *old)).beside(*size, length * *new);
+        let shrinks = change.select_lt(S::from_f64(0.75) * *least, one, zero);
+        let unsteady = (S::from_f64(16.0) * *least).select_lt(change, one, shrinks);
+        // The first has nothing before it.
+        let known = zero.select_lt(*least, *least, change);
+        *least = change.select_lt(known, change, known);
+        Scalar::max(moving, rounding.select_lt(change, unsteady, zero))
     })
 }
