@@ -115,8 +115,8 @@ impl<'a> Whole<'a> {
         ready.is_some_and(|(ready, _)| ready.watched(system).is_some())
     }
 
-    /// Takes so many steps of a grid from one of its times on, with the clock of its start, where nobody looks at more than energies and constraints at
-    /// their ends; how many there were. The next one, if one is missing, has no end by code.
+    /// Takes so many steps of a grid from one of its times on, with the clock of its start, where nobody looks at more than
+    /// energies and constraints at their ends; how many there were. The next one, if one is missing, has no end by code.
     pub fn glide(
         &self,
         system: &Instance,

@@ -44,9 +44,9 @@ impl Stretch {
     }
 }
 
-/// The stretches between two times at which something else happens, in steps no longer than this one. Where samples are at multiples of a time, all steps
-/// between the first and the last of these multiples are equal, and so many of them lead from one to the next; what is
-/// before and behind is covered by steps that are no longer.
+/// The stretches between two times at which something else happens, in steps no longer than this one. Where samples are at
+/// multiples of a time, all steps between the first and the last of these multiples are equal, and so many of them lead from
+/// one to the next; what is before and behind is covered by steps that are no longer.
 pub fn stretches(
     spacing: &Spacing,
     step: f64,

@@ -213,7 +213,7 @@ impl<S: Scalar> FreeRotation<S> {
         let mut f = so3::product(turned, transposed);
         let mut momentum = unit.map(|component| self.length * component);
         if !self.length.is_positive() {
-            let resting = so3::exp(self.from_rest(h));
+            let resting = so3::exp(self.turn_at_rest(h));
             f = from_fn(|k| zero.select_lt(self.length, f[k], resting[k]));
             momentum = from_fn(|i| zero.select_lt(self.length, momentum[i], self.momentum[i]));
         }
@@ -287,7 +287,7 @@ impl<S: Scalar> FreeRotation<S> {
     }
 
     /// The turn of a body that rests, in principal axes: h J⁻¹ P, which has slopes alone.
-    fn from_rest(&self, h: S) -> Vector<S> {
+    fn turn_at_rest(&self, h: S) -> Vector<S> {
         from_fn(|i| h * (self.flexibility[i] * self.momentum[i]))
     }
 
@@ -316,7 +316,7 @@ impl<S: Scalar> FreeRotation<S> {
         if self.length.is_positive() {
             return lifted;
         }
-        let resting = s3::exp(self.from_rest(turned.h));
+        let resting = s3::exp(self.turn_at_rest(turned.h));
         from_fn(|i| zero.select_lt(self.length, lifted[i], resting[i]))
     }
 

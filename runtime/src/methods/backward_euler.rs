@@ -2,7 +2,8 @@
 //!
 //! u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u, solved for z = (u, ξ₁) by Broyden's method:
 //! it starts as the fixed-point iteration, learns the stiff directions from its own steps, and needs no
-//! derivatives. In numbers with slopes it learns from the values, and from the slopes once the values rest. Source: C. T. Kelley, *Iterative Methods for Linear and Nonlinear Equations* (1995), 7.3.
+//! derivatives. In numbers with slopes it learns from the values, and from the slopes once the values rest. Source: C. T.
+//! Kelley, *Iterative Methods for Linear and Nonlinear Equations* (1995), 7.3.
 
 use core::array::from_fn;
 
@@ -17,9 +18,9 @@ use crate::system::{Block, System};
 
 /// Order 1, some six evaluations of ξ̇ a step and more where the system is stiff.
 ///
-/// Damps every oscillation; stable at any step that it can solve. Each unknown is found to rounding by itself, and in numbers
-/// with slopes so are the slopes.
-/// [`StepError::NotConverged`] where it cannot.
+/// Damps every oscillation; stable at any step that it can solve, and [`StepError::NotConverged`] where it cannot, as of
+/// several very stiff directions at once. Each unknown is found to rounding by itself, and in numbers with slopes so are the
+/// slopes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BackwardEuler;
 
