@@ -57,7 +57,10 @@ impl<S: Scalar> Rotor<S> {
     pub fn general(inertia: Matrix<S>) -> Self {
         let half = S::from_f64(0.5);
         let mut j: Matrix<S> = from_fn(|k| half * (inertia[k] + inertia[3 * (k % 3) + k / 3]));
-        if [j[1], j[2], j[5]].iter().all(|&entry| size(entry) == 0.0) {
+        if [j[1], j[2], j[5]]
+            .iter()
+            .all(|entry| entry.size().largest_lane() == 0.0)
+        {
             return Self::of_moments([j[0], j[4], j[8]]);
         }
         let mut axes = so3::identity();
@@ -110,20 +113,12 @@ fn rotation<S: Scalar>(j: Matrix<S>, a: usize, b: usize) -> Matrix<S> {
     turn
 }
 
-/// The largest of all lanes without their signs, slopes as well.
-fn size<S: Scalar>(number: S) -> f64 {
-    number.largest_lane().max((-number).largest_lane())
-}
-
 /// Which moments differ by less than `ulps` units of rounding of the largest, in all lanes, and have the same slopes.
 fn symmetry<S: Scalar>(moments: Vector<S>, ulps: f64) -> Symmetry {
     let [a, b, c] = moments;
     let largest = Scalar::max(Scalar::max(a.abs(), b.abs()), c.abs());
     let limit = S::from_f64(ulps) * epsilon::<S>();
-    let equal = |a: S, b: S| {
-        (limit * largest - (a - b).abs()).is_positive()
-            && size(a - b) <= ulps * S::EPSILON * size(largest)
-    };
+    let equal = |a: S, b: S| (limit * largest.size() - (a - b).size()).is_positive();
     match (equal(b, c), equal(c, a), equal(a, b)) {
         (true, true, true) => Symmetry::Spherical,
         (true, _, false) => Symmetry::Axial(0),
