@@ -203,8 +203,7 @@ pub fn positive_definite(
     let n = model.n();
     let (mut graph, mut mass) = (graph.clone(), mass.to_vec());
     if model.carried {
-        let rows = model.constraints.iter().map(|c| c.row.clone());
-        let rows: Vec<Vec<Edge>> = rows.chain(hybrid::rows(model)).collect();
+        let rows = hybrid::rows(model);
         let right = vec![graph.zero(); rows.len()];
         if let Some((sum, _)) = carried(&mut graph, &mass, &rows, &right) {
             mass = sum;

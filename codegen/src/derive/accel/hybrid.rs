@@ -60,14 +60,16 @@ pub fn pivots(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     all
 }
 
-/// Rows of B ξ̇ = b, one for each rate that is given.
-pub fn rows(model: &Model) -> impl Iterator<Item = Vec<Edge>> {
+/// The rows of B ξ̇ = b: those of the constraints, then one for each rate that is given.
+pub fn rows(model: &Model) -> Vec<Vec<Edge>> {
     let (zero, one, n) = (model.graph.zero(), model.graph.one(), model.n());
-    model.accelerated.iter().map(move |(place, _)| {
+    let constraints = model.constraints.iter().map(|c| c.row.clone());
+    let given = model.accelerated.iter().map(move |(place, _)| {
         let mut row = vec![zero; n];
         row[*place] = one;
         row
-    })
+    });
+    constraints.chain(given).collect()
 }
 
 /// ξ̇ with the rates that are given as they are given.

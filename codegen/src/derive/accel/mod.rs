@@ -121,10 +121,7 @@ fn is_long(given: &Setting, recursions: &[Recursion]) -> bool {
 /// The cheapest computation with multipliers.
 fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computation)> {
     let n = setting.model.n();
-    let rows = setting.model.constraints.iter();
-    let mut rows: Vec<Vec<Edge>> = rows.map(|constraint| constraint.row.clone()).collect();
-    // A rate that is given is a row of its own.
-    rows.extend(hybrid::rows(&setting.model));
+    let rows = hybrid::rows(&setting.model);
     let constraints = &setting.model.constraints;
     let raising = saddle::raising(constraints, rows.len() - constraints.len());
     let raising = setting.model.overconstrained.then_some(&raising[..]);
