@@ -112,7 +112,7 @@ impl Builder {
         let mut errors = Vec::new();
         let mut stems: BTreeMap<String, PathBuf> = BTreeMap::new();
         for (path, kind) in &self.files {
-            println!("cargo:rerun-if-changed={}", path.display());
+            watch(path);
             let stem = path
                 .file_stem()
                 .map(|stem| stem.to_string_lossy().into_owned())
@@ -143,6 +143,15 @@ fn name(path: &Path) -> String {
         .unwrap_or_default()
 }
 
+/// Has Cargo run the build script again when a file changes. What the script itself writes below `OUT_DIR` is newer than
+/// the script's start, and would have it run in every build.
+fn watch(path: &Path) {
+    let written = std::env::var_os("OUT_DIR").is_some_and(|folder| path.starts_with(folder));
+    if !written {
+        println!("cargo:rerun-if-changed={}", path.display());
+    }
+}
+
 impl Builder {
     fn generate_file(
         &self,
@@ -160,7 +169,7 @@ impl Builder {
                 let folder = path.parent().unwrap_or(Path::new(""));
                 let open = &mut |name: &str| {
                     let file = folder.join(name);
-                    println!("cargo:rerun-if-changed={}", file.display());
+                    watch(&file);
                     std::fs::read_to_string(file)
                 };
                 let generated = from_file(&text, open).map_err(refused)?;

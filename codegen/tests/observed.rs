@@ -15,6 +15,7 @@ use hamel_codegen::lower::build;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::render::render;
 use hamel_codegen::syntax::{parse_text, read_files};
+use rayon::prelude::*;
 use std::path::Path;
 use tree::{ALL, Kind, Link, text};
 
@@ -145,48 +146,55 @@ fn asked_for(path: &Path, asked: &str) -> Result<Case, String> {
 
 #[test]
 fn what_is_observed_agrees_with_differences() {
-    let (mut frames, mut centroidal, mut slopes) = (0, 0, 0);
-    for path in models::models(Path::new(FOLDER)) {
-        let Some(case) = case(&path) else {
-            continue;
-        };
+    let all = models::models(Path::new(FOLDER));
+    let seen = all.par_iter().filter_map(|path| {
+        let case = case(path)?;
         let asked = &case.generated.active.asked;
         for jacobian in &asked.jacobians {
             frame(&case, jacobian);
-            frames += 1;
         }
-        if case.generated.program.function("centroidal_map").is_some() {
+        let centroidal = case.generated.program.function("centroidal_map").is_some();
+        if centroidal {
             momentum(&case);
-            centroidal += 1;
         }
         for output in &asked.slopes {
             output_slopes(&case, output);
-            slopes += 1;
         }
-    }
+        Some([
+            asked.jacobians.len(),
+            usize::from(centroidal),
+            asked.slopes.len(),
+        ])
+    });
+    let [frames, centroidal, slopes] = summed(seen);
     assert!(
         frames > 60 && centroidal > 20 && slopes > 20,
         "{frames} {centroidal} {slopes}"
     );
 }
 
+/// How often each was seen.
+fn summed<const N: usize>(seen: impl ParallelIterator<Item = [usize; N]>) -> [usize; N] {
+    seen.reduce(|| [0; N], |a, b| std::array::from_fn(|i| a[i] + b[i]))
+}
+
 /// Of inverse dynamics by displacements and velocities, and of ξ̇ by parameters.
 #[test]
 fn slopes_of_dynamics_agree_with_differences() {
-    let (mut inverse, mut parameters) = (0, 0);
-    for path in models::models(Path::new(FOLDER)) {
-        if let Ok(case) = asked_for(&path, "linearize, inverse_dynamics_slopes") {
-            inverse_slopes(&case);
-            inverse += 1;
+    let all = models::models(Path::new(FOLDER));
+    let seen = all.par_iter().map(|path| {
+        let inverse = asked_for(path, "linearize, inverse_dynamics_slopes");
+        if let Ok(case) = &inverse {
+            inverse_slopes(case);
         }
-        match asked_for(&path, "parameter_slopes") {
-            Ok(case) => {
-                parameter_slopes(&case);
-                parameters += 1;
-            }
+        let parameters = asked_for(path, "parameter_slopes");
+        match &parameters {
+            Ok(case) => parameter_slopes(case),
             Err(why) => assert!(why.contains("`parameter_slopes` is not known"), "{why}"),
         }
-    }
+        [inverse.is_ok(), parameters.is_ok()].map(usize::from)
+    });
+    let [inverse, parameters] = summed(seen);
     assert!(inverse > 60 && parameters > 50, "{inverse} {parameters}");
 }
 

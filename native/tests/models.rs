@@ -8,6 +8,7 @@ use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Cause, Function, Program};
 use hamel_codegen::render::render;
 use hamel_native::Compiled;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Of the largest entry of a result.
@@ -138,8 +139,8 @@ fn generated(path: &Path) -> Generated {
 
 #[test]
 fn code_of_models_gives_what_their_graphs_give() {
-    let (mut compared, mut ended) = (0, 0);
-    for path in models() {
+    let counts = models().into_par_iter().map(|path| {
+        let (mut compared, mut ended) = (0, 0);
         let of = generated(&path);
         let program = &of.program;
         let functions: Vec<&Function> = program.functions.iter().collect();
@@ -148,7 +149,7 @@ fn code_of_models_gives_what_their_graphs_give() {
             // It has a function in Rust.
             Err(foreign) => {
                 assert!(!foreign.name.is_empty(), "{path:?}");
-                continue;
+                return (0, 0);
             }
         };
         assert_eq!(code.interpreted_because(), None);
@@ -195,6 +196,8 @@ fn code_of_models_gives_what_their_graphs_give() {
                 }
             }
         }
-    }
+        (compared, ended)
+    });
+    let (compared, ended) = counts.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     assert!(compared > 10_000, "{compared} numbers, {ended} ends");
 }

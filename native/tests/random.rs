@@ -118,71 +118,106 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
 
 #[test]
 fn code_gives_the_bits_of_tapes() {
-    let mut random = Random(42);
-    let (mut well, mut ended, mut far, mut pairs) = (0, 0, 0, 0);
-    let mut made = 0;
-    while made < TAPES {
-        let kept = random.below(4);
-        let constants = tape(&mut random, "constants", 0, kept, false);
-        let count = 1 + random.below(3);
-        let functions: Vec<Tape> = (0..count)
-            .map(|_| {
-                let outputs = random.below(9);
-                tape(&mut random, "f", kept, outputs, true)
-            })
-            .collect();
-        made += count as u64;
-        let tapes = Tapes {
-            parameters: PARAMETERS,
-            lengths: LENGTHS,
-            constants,
-            pivots: Vec::new(),
-            functions,
-        };
-        let code = Compiled::of(tapes.clone());
-        assert_eq!(code.interpreted_because(), None);
-        let steps = Compiled::interpreted(tapes.clone());
-        let paired = Paired::new(&code).expect("code for two lanes");
-        let mut before: Option<Lane> = None;
-        for _ in 0..4 {
-            let parameters: Vec<f64> = (0..PARAMETERS).map(|_| random.number()).collect();
-            let arguments = LENGTHS
-                .map(|length| -> Vec<f64> { (0..length).map(|_| random.number()).collect() });
-            let lists = arguments.clone();
-            let arguments = [0, 1, 2, 3, 4].map(|i| arguments[i].as_slice());
-            let (own, others) = (code.constants(&parameters), steps.constants(&parameters));
-            assert_eq!(bits(own.known()), bits(others.known()));
-            let mut results = Vec::new();
-            for (place, tape) in tapes.functions.iter().enumerate() {
-                let mut out = vec![1.0; tape.outputs.len()];
-                let mut expected = out.clone();
-                let result = code.call(place, &own, arguments, &mut out);
-                assert_eq!(
-                    result,
-                    steps.call(place, &others, arguments, &mut expected),
-                    "{tape:?}"
-                );
-                match result {
-                    Ok(()) => {
-                        assert_eq!(bits(&out), bits(&expected), "{tape:#?}");
-                        well += 1;
-                        far += usize::from(expected.iter().any(|value| value.is_nan()));
+    let halves = std::thread::scope(|scope| {
+        let halves = [42, 43].map(|seed| scope.spawn(move || Met::by(seed, TAPES / 2)));
+        halves.map(|half| half.join().expect("every tape gives its bits"))
+    });
+    // Each of them was met often enough to say something.
+    for Met {
+        well,
+        ended,
+        far,
+        pairs,
+    } in halves
+    {
+        assert!(
+            well > 10_000 && ended > 250 && far < well / 2 && pairs > 5_000,
+            "{well} {ended} {far} {pairs}"
+        );
+    }
+}
+
+/// What random tapes met.
+struct Met {
+    /// Calls with results, and those of them with a number that is none.
+    well: usize,
+    far: usize,
+    /// Calls that ended in an error.
+    ended: usize,
+    /// Calls of two lanes with results.
+    pairs: usize,
+}
+
+impl Met {
+    /// The code of random tapes beside their steps.
+    fn by(seed: u64, count: u64) -> Self {
+        let mut random = Random(seed);
+        let (mut well, mut ended, mut far, mut pairs) = (0, 0, 0, 0);
+        let mut made = 0;
+        while made < count {
+            let kept = random.below(4);
+            let constants = tape(&mut random, "constants", 0, kept, false);
+            let count = 1 + random.below(3);
+            let functions: Vec<Tape> = (0..count)
+                .map(|_| {
+                    let outputs = random.below(9);
+                    tape(&mut random, "f", kept, outputs, true)
+                })
+                .collect();
+            made += count as u64;
+            let tapes = Tapes {
+                parameters: PARAMETERS,
+                lengths: LENGTHS,
+                constants,
+                pivots: Vec::new(),
+                functions,
+            };
+            let code = Compiled::of(tapes.clone());
+            assert_eq!(code.interpreted_because(), None);
+            let steps = Compiled::interpreted(tapes.clone());
+            let paired = Paired::new(&code).expect("code for two lanes");
+            let mut before: Option<Lane> = None;
+            for _ in 0..4 {
+                let parameters: Vec<f64> = (0..PARAMETERS).map(|_| random.number()).collect();
+                let arguments = LENGTHS
+                    .map(|length| -> Vec<f64> { (0..length).map(|_| random.number()).collect() });
+                let lists = arguments.clone();
+                let arguments = [0, 1, 2, 3, 4].map(|i| arguments[i].as_slice());
+                let (own, others) = (code.constants(&parameters), steps.constants(&parameters));
+                assert_eq!(bits(own.known()), bits(others.known()));
+                let mut results = Vec::new();
+                for (place, tape) in tapes.functions.iter().enumerate() {
+                    let mut out = vec![1.0; tape.outputs.len()];
+                    let mut expected = out.clone();
+                    let result = code.call(place, &own, arguments, &mut out);
+                    assert_eq!(
+                        result,
+                        steps.call(place, &others, arguments, &mut expected),
+                        "{tape:?}"
+                    );
+                    match result {
+                        Ok(()) => {
+                            assert_eq!(bits(&out), bits(&expected), "{tape:#?}");
+                            well += 1;
+                            far += usize::from(expected.iter().any(|value| value.is_nan()));
+                        }
+                        Err(_) => ended += 1,
                     }
-                    Err(_) => ended += 1,
+                    results.push(result.ok().map(|()| out));
                 }
-                results.push(result.ok().map(|()| out));
-            }
-            let lane = (own, lists, results);
-            if let Some(before) = before.replace(lane.clone()) {
-                pairs += together(&paired, &before, &lane);
+                let lane = (own, lists, results);
+                if let Some(before) = before.replace(lane.clone()) {
+                    pairs += together(&paired, &before, &lane);
+                }
             }
         }
+        Self {
+            well,
+            far,
+            ended,
+            pairs,
+        }
     }
-    // Each of them was met often enough to say something.
-    assert!(
-        well > 20_000 && ended > 500 && far < well / 2 && pairs > 10_000,
-        "{well} {ended} {far} {pairs}"
-    );
 }
 
 /// Constants, arguments, and the results of all functions, where they have one.

@@ -5,6 +5,7 @@ use hamel_codegen::derive::tables::Geometry;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::proof::check::{Identity, Verdict, check};
 use hamel_codegen::proof::correction::validate;
+use rayon::prelude::*;
 use std::path::Path;
 
 fn text(name: &str) -> String {
@@ -38,9 +39,11 @@ fn models() -> Vec<(String, String)> {
 fn all_identities_hold() {
     // The models of each identity, those first for which it is proved; identities in the order in which they come up.
     let mut verdicts: Vec<(String, [Vec<String>; 2])> = Vec::new();
-    for (name, text) in models() {
+    let all = models().into_par_iter().map(|(name, text)| {
         let generated = from_text(&text).expect("correct");
-        let identities = check(&generated.model, &generated.program);
+        (name, check(&generated.model, &generated.program))
+    });
+    for (name, identities) in all.collect::<Vec<_>>() {
         assert!(identities.len() >= 10);
         for identity in identities {
             let Identity {

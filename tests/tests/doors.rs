@@ -1,7 +1,8 @@
 //! Three front ends, one generator: the same text gives the same function bodies through the macro, the
 //! build script and the generator that the command line calls.
 
-use hamel_codegen::builder::source;
+use hamel_codegen::builder::{Builder, source};
+use rayon::prelude::*;
 use std::path::Path;
 
 fn models() -> Vec<(String, String)> {
@@ -30,13 +31,13 @@ fn items(code: &str) -> &str {
 
 #[test]
 fn the_macro_expands_to_what_the_builder_writes() {
-    for (name, text) in models() {
+    models().par_iter().for_each(|(name, text)| {
         let tokens: proc_macro2::TokenStream = text.parse().expect("tokens");
         let expanded = hamel_codegen::expand(tokens);
         let formatted = prettyplease::unparse(&syn::parse2(expanded).expect("items"));
-        let written = source(&text, &name).expect("correct");
+        let written = source(text, name).expect("correct");
         assert_eq!(formatted.trim(), items(&written).trim(), "{name}");
-    }
+    });
 }
 
 #[test]
@@ -50,6 +51,43 @@ fn the_build_script_wrote_the_same() {
         written,
         source(&text, &format!("{name}.eom")).expect("correct")
     );
+}
+
+/// What a build script writes below `OUT_DIR` is newer than its start: watched, it would have the script run in every
+/// build. The script is this program once more.
+#[test]
+fn descriptions_that_a_script_writes_are_not_watched() {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let given = models.join("free_body.eom");
+    let own = "HAMEL_TESTS_SCRIPT";
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("script");
+    let written = folder.join("heavy_top.eom");
+    if std::env::var_os(own).is_some() {
+        let builder = Builder::new().file(&given).file(&written);
+        builder.generate().expect("correct");
+        return;
+    }
+    std::fs::create_dir_all(&folder).expect("a folder");
+    std::fs::copy(models.join("heavy_top.eom"), &written).expect("written");
+    let this = std::env::current_exe().expect("a program");
+    let script = std::process::Command::new(this)
+        .args([
+            "--exact",
+            "--nocapture",
+            "descriptions_that_a_script_writes_are_not_watched",
+        ])
+        .env(own, "1")
+        .env("OUT_DIR", &folder)
+        .output()
+        .expect("it runs");
+    let said = String::from_utf8_lossy(&script.stdout);
+    let watched =
+        |path: &Path| said.contains(&format!("cargo:rerun-if-changed={}", path.display()));
+    assert!(script.status.success() && watched(&given), "{said}");
+    assert!(!watched(&written), "{said}");
+    for stem in ["free_body", "heavy_top"] {
+        assert!(folder.join(stem).with_extension("rs").is_file());
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@ use hamel_codegen::generate::Generated;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{Cause, Program};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use std::path::Path;
 
 /// Roundings of M and of its inverse.
@@ -48,22 +49,17 @@ fn mass(generated: &Generated) -> DMatrix<f64> {
 
 #[test]
 fn pivots_lie_between_the_inertias_of_their_velocities() {
-    let (mut models, mut compared) = (0, 0);
-    for path in models::models(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/models"))) {
+    let all = models::models(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/models")));
+    let compared = all.par_iter().filter_map(|path| {
         let asked = "accel, mass_matrix, linearize, velocity_from_momentum";
-        let Ok(generated) = models::asked_for(&path, asked) else {
-            // M of systems with constraints is not asked for everywhere.
-            continue;
-        };
+        // M of systems with constraints is not asked for everywhere.
+        let generated = models::asked_for(path, asked).ok()?;
         let program = &generated.program;
         let mass = mass(&generated);
-        let Some(inverse) = mass.clone().try_inverse() else {
-            continue;
-        };
-        models += 1;
-        for (place, pivot) in pivots(program, &program.defaults) {
+        let inverse = mass.clone().try_inverse()?;
+        let pivots = pivots(program, &program.defaults);
+        for &(place, pivot) in &pivots {
             let (least, most) = (1.0 / inverse[(place, place)], mass[(place, place)]);
-            compared += 1;
             assert!(
                 (1.0 - CLOSE) * least <= pivot && pivot <= (1.0 + CLOSE) * most,
                 "{}: `{}`: {least} <= {pivot} <= {most}",
@@ -71,6 +67,9 @@ fn pivots_lie_between_the_inertias_of_their_velocities() {
                 program.velocity(place)
             );
         }
-    }
+        Some(pivots.len())
+    });
+    let compared: Vec<usize> = compared.collect();
+    let (models, compared) = (compared.len(), compared.iter().sum::<usize>());
     assert!(models > 40 && compared > 100, "{models}, {compared}");
 }

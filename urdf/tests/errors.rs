@@ -49,6 +49,7 @@ fn wrong_files() {
         ("two roots beside two cycles", "<robot name='r'><link name='o'/><link name='p'/><link name='a'/><link name='b'/><link name='c'/><link name='d'/>\n<joint name='l' type='fixed'><parent link='b'/><child link='d'/></joint>\n<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint>\n<joint name='m' type='fixed'><parent link='c'/><child link='c'/></joint></robot>".into()),
         ("unknown link beside a cycle", "<robot name='r'><link name='o'/><link name='a'/><link name='b'/><link name='c'/>\n<joint name='i' type='fixed'><parent link='oo'/><child link='c'/></joint>\n<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint></robot>".into()),
         ("unknown type", pendulum(&hinge("").replace("revolute", "ball"), BODY)),
+        ("unknown type, axis, pose and link", pendulum(&hinge("<origin xyz='0 0'/><axis xyz='0 0 0'/>").replace("revolute", "ball").replace("'b'", "'bb'"), BODY)),
         ("no parent", pendulum("<joint name='j' type='fixed'><child link='b'/></joint>", BODY)),
         ("zero axis", pendulum(&hinge("<axis xyz='0 0 0'/>"), BODY)),
         ("two numbers", pendulum(&hinge("<axis xyz='0 1'/>"), BODY)),

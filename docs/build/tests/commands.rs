@@ -3,6 +3,8 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use hamel_book::page::{CRATES, blocks, own};
 use hamel_book::shell::Shell;
@@ -28,43 +30,53 @@ fn pages() -> Vec<(PathBuf, String)> {
 
 #[test]
 fn commands_run_as_they_stand() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book");
-    let program = Path::new(env!("CARGO_BIN_EXE_hamel-book"));
-    let (mut commands, mut made) = (0, 0);
-    for (page, text) in pages() {
-        let name = page
-            .file_stem()
-            .expect("a name")
-            .to_string_lossy()
-            .into_owned();
-        let script: String = blocks(&text, "sh").into_iter().map(own).collect();
-        let crates = blocks(&text, CRATES).concat();
-        if script.is_empty() && crates.is_empty() {
-            continue;
-        }
-        let shell = Shell::new(
-            &root(),
-            &folder.join(name).join(commands.to_string()),
-            program,
-        );
-        let shell = shell.expect("a folder");
-        commands += script.matches("hamel ").count();
-        if let Err(error) = shell.run(&script) {
-            panic!("{}:\n{error}", page.display());
-        }
-        if !crates.is_empty() {
-            made += 1;
-            let printed = shell.run_beside(&crates);
-            let printed = printed.unwrap_or_else(|error| panic!("{}:\n{error}", page.display()));
-            assert!(
-                !printed.is_empty(),
-                "{}: the crate says nothing",
-                page.display()
-            );
-        }
-    }
+    let pages = pages();
+    let next = AtomicUsize::new(0);
+    // Pages know nothing of one another.
+    let ran = std::thread::scope(|scope| {
+        let workers = [(); 2].map(|()| {
+            let work = || std::iter::from_fn(|| pages.get(next.fetch_add(1, Relaxed)));
+            scope.spawn(move || work().map(|(page, text)| run(page, text)).collect())
+        });
+        let ran = workers.map(|worker| -> Vec<[usize; 2]> { worker.join().expect("all run") });
+        ran.concat()
+    });
+    let [commands, made] = [0, 1].map(|i| ran.iter().map(|counts| counts[i]).sum::<usize>());
     assert!(made > 0, "no page makes a crate");
     assert!(commands > 25, "{commands}");
+}
+
+/// Runs the commands of a page; how many there are of `hamel`, and of crates that are made.
+fn run(page: &Path, text: &str) -> [usize; 2] {
+    let program = Path::new(env!("CARGO_BIN_EXE_hamel-book"));
+    let script: String = blocks(text, "sh").into_iter().map(own).collect();
+    let crates = blocks(text, CRATES).concat();
+    if script.is_empty() && crates.is_empty() {
+        return [0, 0];
+    }
+    let name = page.strip_prefix(root()).expect("of the repository");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book");
+    let shell = Shell::new(&root(), &folder.join(name.with_extension("")), program);
+    let shell = shell.expect("a folder");
+    if let Err(error) = shell.run(&script) {
+        panic!("{}:\n{error}", page.display());
+    }
+    if !crates.is_empty() {
+        // They share a folder.
+        static ONE: Mutex<()> = Mutex::new(());
+        let _one = ONE.lock().expect("no page panics with its crates");
+        let printed = shell.run_beside(&crates);
+        let printed = printed.unwrap_or_else(|error| panic!("{}:\n{error}", page.display()));
+        assert!(
+            !printed.is_empty(),
+            "{}: the crate says nothing",
+            page.display()
+        );
+    }
+    [
+        script.matches("hamel ").count(),
+        usize::from(!crates.is_empty()),
+    ]
 }
 
 /// Who runs or compiles the blocks of each kind: nothing that a page shows is only shown.

@@ -9,6 +9,7 @@ use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::Function;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_tests_emitted::{At, CASES, Case, TRIED, Values};
+use rayon::prelude::*;
 
 #[path = "../../../codegen/tests/common/mod.rs"]
 mod common;
@@ -139,8 +140,7 @@ fn compiled_code_gives_what_the_interpreter_gives() {
         "{} of {TRIED} were refused",
         TRIED - CASES.len()
     );
-    let mut functions = 0;
-    for (number, case) in CASES.iter().enumerate() {
+    let functions = CASES.par_iter().enumerate().map(|(number, case)| {
         let generated = from_text(case.text).expect("it was generated");
         let states = states(&generated, &mut Random::new(number as u64));
         let of = &generated.program.functions;
@@ -153,7 +153,6 @@ fn compiled_code_gives_what_the_interpreter_gives() {
                 (function.name.as_str(), values.collect())
             })
             .collect();
-        functions += expected.len();
         let double = [1e-11, 1e-3];
         let single = [1e-4, 100.0];
         for first in 0..STATES {
@@ -167,7 +166,9 @@ fn compiled_code_gives_what_the_interpreter_gives() {
         }
         let at: &At = &|lane, argument, entry| states[lane][argument][entry];
         compare("f32x8", (case.singles)(at), 0, &expected, single, case);
-    }
+        expected.len()
+    });
+    let functions: usize = functions.sum();
     assert!(functions > 3 * CASES.len(), "{functions} functions");
 }
 
@@ -175,17 +176,16 @@ fn compiled_code_gives_what_the_interpreter_gives() {
 fn every_text_is_rust() {
     let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
     let count = if full { 2_000 } else { PARSED };
-    let mut written = 0;
-    for seed in 10_000..10_000 + count {
+    let written = (10_000..10_000 + count).into_par_iter().filter(|&seed| {
         let text = describe::description(&mut Random::new(seed), None);
         match source(&text, "random.eom") {
             Ok(code) => {
-                written += 1;
                 let file = syn::parse_file(&code)
                     .unwrap_or_else(|error| panic!("{error}\n{text}\n{code}"));
                 // The short way of laying lines out leaves what the printer leaves.
                 let (_, items) = code.split_once("\n\n").expect("a header");
                 assert!(prettyplease::unparse(&file) == items, "{text}\n{code}");
+                true
             }
             Err(errors) => {
                 for error in errors {
@@ -195,8 +195,10 @@ fn every_text_is_rust() {
                         error.message
                     );
                 }
+                false
             }
         }
-    }
+    });
+    let written = written.count() as u64;
     assert!(written * 10 > count * 7, "{written} of {count}");
 }

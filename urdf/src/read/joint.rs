@@ -2,7 +2,7 @@
 
 use super::xml::{Reader, tag};
 use crate::decimal::Decimal;
-use crate::robot::{Follows, Joint, Kind};
+use crate::robot::{Follows, Joint, Kind, Origin};
 use roxmltree::Node;
 
 /// The types of joints, as URDF names them.
@@ -29,7 +29,8 @@ const ELEMENTS: [&str; 9] = [
 ];
 
 impl<'a> Reader<'a, '_, '_> {
-    /// A joint; `None` where it cannot be read.
+    /// A joint; `None` where its name or its links cannot be read. What else is wrong with it is an error, and does not hide
+    /// what is wrong with the tree.
     pub(super) fn joint(&mut self, node: &Node<'_, 'a>) -> Option<Joint> {
         let name = self.name(node, "name");
         let kind = self.kind(node);
@@ -77,14 +78,11 @@ impl<'a> Reader<'a, '_, '_> {
             .and_then(|element| self.mimic(&element));
         Some(Joint {
             name: name?,
-            kind: kind?,
+            kind: kind.unwrap_or(Kind::Revolute),
             parent: parent?,
             child: child?,
-            origin: origin?,
-            axis: match axis {
-                Some(axis) => Some(axis?),
-                None => None,
-            },
+            origin: origin.unwrap_or_else(Origin::identity),
+            axis: axis.flatten(),
             damping,
             friction,
             lower,

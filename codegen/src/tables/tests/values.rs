@@ -9,6 +9,7 @@ use crate::model::layout::Block;
 use crate::tables::expression::{Atom, Term};
 use crate::tables::{Listing, Table, tables};
 use num_traits::ToPrimitive;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Rounding of some hundred operations on numbers near 1.
@@ -93,8 +94,8 @@ fn compare(what: &str, listing: &Listing, mut values: Values, expected: &[f64]) 
 
 #[test]
 fn printed_values_are_those_of_the_graph() {
-    for name in super::fixtures() {
-        let generated = fixture(&name);
+    super::fixtures().par_iter().for_each(|name| {
+        let generated = fixture(name);
         let model = &generated.model;
         let numbered =
             |n: usize, scale: f64| (1..=n).map(|i| scale * i as f64).collect::<Vec<f64>>();
@@ -158,5 +159,5 @@ fn printed_values_are_those_of_the_graph() {
                 &expected,
             );
         }
-    }
+    });
 }
