@@ -1,6 +1,7 @@
 //! The command line: its subcommands, and what runs them.
 
 use crate::failure::{self, Failure};
+use crate::simulate::stop::Stop;
 use crate::{
     check, compare, draw, emit, eval, import, linearize, ops, regressor, simulate, sweep, tables,
 };
@@ -61,14 +62,20 @@ pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
     line.command.run().map_or_else(Failure::report, |()| 0)
 }
 
-/// Runs a command for a program, which gets what is wrong in place of its user.
+/// Runs a command for a program, which gets what is wrong in place of its user. A sweep may be given up on its way.
 ///
 /// # Errors
 /// What is wrong with the words, or with what they ask for.
-pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+pub fn asked(
+    words: impl IntoIterator<Item = OsString>,
+    stop: Option<&Stop>,
+) -> Result<(), Failure> {
     let line = Line::try_parse_from(words);
     let line = line.map_err(|said| Failure::Usage(said.render().to_string()))?;
-    line.command.run()
+    match line.command {
+        Command::Sweep(arguments) => sweep::run(&arguments, stop),
+        other => other.run(),
+    }
 }
 
 impl Command {
@@ -83,7 +90,7 @@ impl Command {
             Command::Linearize(arguments) => linearize::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
             Command::Draw(arguments) => draw::run(arguments),
-            Command::Sweep(arguments) => sweep::run(arguments),
+            Command::Sweep(arguments) => sweep::run(arguments, None),
             Command::Compare(arguments) => compare::run(arguments),
             Command::Import(arguments) => import::run(arguments),
         }

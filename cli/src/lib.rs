@@ -85,6 +85,7 @@ pub use simulate::events::{Event, Gauge, Watched};
 pub use simulate::inputs::{Asked, Control, Law};
 pub use simulate::plan::Every;
 pub use simulate::stepping::Stepping;
+pub use simulate::stop::Stop;
 pub use state::State;
 pub use tables::Format;
 

@@ -273,7 +273,7 @@ fn a_point_that_is_pulled_comes_to_where_it_can_be() {
             lambda: None,
         };
         let inputs = (&Asked::default(), None);
-        let run = session.simulate(&start, &stepping, (None, None), inputs, &[]);
+        let run = session.simulate(&start, &stepping, (None, None), inputs, &[], None);
         let run = run.unwrap_or_else(|failure| panic!("{}", failure.text()));
         let end = &run.x[run.x.len() - start.x.len()..];
         let target = place(&drawn.scene(end));

@@ -18,11 +18,21 @@ interface Waiting {
 // The answer to a request that a newer text has made pointless.
 export class Dropped extends Error {}
 
+// How long somebody who wants something else waits for older work, in ms.
+const PATIENCE = 2000;
+
 export class Generator {
   private worker: Worker;
   private standby: Worker;
   private waiting = new Map<number, Waiting>();
   private next = 0;
+  // The description that requests are about, and whether the worker has yet to open it: one that stood by knows of none.
+  private last: { text: string; name: string } | undefined;
+  private unopened = false;
+  // Who waits until nothing is worked on.
+  private readonly idle: (() => void)[] = [];
+  // Counts what somebody waits for.
+  private urgent = 0;
 
   constructor(
     private readonly module: WebAssembly.Module,
@@ -35,10 +45,36 @@ export class Generator {
   // Reads and derives a text. Whatever was being done for an older one is dropped.
   open(text: string, name: string): Promise<Opened> {
     this.drop();
-    return this.ask<Opened>("open", { text, name });
+    this.last = { text, name };
+    this.unopened = false;
+    return this.post<Opened>("open", this.last);
   }
 
   async ask<T>(what: string, request: object = {}): Promise<T> {
+    if (this.unopened && this.last !== undefined) {
+      this.unopened = false;
+      this.post("open", this.last).catch(() => {});
+    }
+    return this.post<T>(what, request);
+  }
+
+  // Asks for what is wanted in place of anything older: work that goes on for too long is ended.
+  async instead<T>(what: string, request: object): Promise<T> {
+    const urgent = ++this.urgent;
+    if (this.waiting.size > 0) {
+      await new Promise<void>((resolve) => {
+        setTimeout(resolve, PATIENCE);
+        this.idle.push(resolve);
+      });
+      if (urgent !== this.urgent) {
+        throw new Dropped("something newer is wanted");
+      }
+      this.drop();
+    }
+    return this.ask<T>(what, request);
+  }
+
+  private async post<T>(what: string, request: object): Promise<T> {
     const number = this.next++;
     const answer = new Promise<unknown>((resolve, reject) => {
       this.waiting.set(number, { resolve, reject });
@@ -52,11 +88,16 @@ export class Generator {
     if (this.waiting.size === 0) {
       return;
     }
+    this.replace();
+    this.refuse(new Dropped("a newer text has come"));
+  }
+
+  // The worker that stands by takes over.
+  private replace(): void {
     this.worker.terminate();
     this.worker = this.standby;
     this.standby = this.started();
-    this.refuse(new Dropped("a newer text has come"));
-    this.worker.onmessage = (event: MessageEvent<Reply>) => this.take(event.data);
+    this.unopened = true;
   }
 
   private started(): Worker {
@@ -77,11 +118,10 @@ export class Generator {
     if (reply.fault !== undefined || reply.answer === undefined) {
       waiting.reject(new Error(`the generator stopped: ${reply.fault}`));
       this.refuse(new Error(`the generator stopped: ${reply.fault}`));
-      this.worker.terminate();
-      this.worker = this.standby;
-      this.standby = this.started();
+      this.replace();
       return;
     }
+    this.rest();
     const answer = JSON.parse(reply.answer) as { done?: unknown; error?: string };
     if (answer.error !== undefined) {
       waiting.reject(new Error(answer.error));
@@ -96,5 +136,13 @@ export class Generator {
       waiting.reject(error);
     }
     this.waiting.clear();
+    this.rest();
+  }
+
+  // Tells those who wait for older work that there is none.
+  private rest(): void {
+    if (this.waiting.size === 0) {
+      this.idle.splice(0).forEach((resolve) => resolve());
+    }
   }
 }

@@ -26,6 +26,8 @@ class Page {
   // Counts texts, so that answers about an old one are not shown.
   private age = 0;
   private system: System | null = null;
+  // Whether any text was without errors.
+  private derived = false;
   // Panels that show the present text.
   private readonly shown = new Set<string>();
   private name = "system.eom";
@@ -78,9 +80,11 @@ class Page {
       if (opened.system === null) {
         const errors = Math.max(1, opened.marks.filter((mark) => mark.severity === "error").length);
         document.body.dataset["answered"] = "yes";
-        this.status(`${errors} error${errors === 1 ? "" : "s"} in the description; below is what the last one without errors gave`, true);
+        const below = this.derived ? "; below is what the last one without errors gave" : "";
+        this.status(`${errors} error${errors === 1 ? "" : "s"} in the description${below}`, true);
         return;
       }
+      this.derived = true;
       await this.show();
       this.status(`${opened.system.name}, in ${Math.round(performance.now() - begin)} ms`);
       document.body.dataset["latency"] = String(performance.now() - begin);
@@ -178,7 +182,9 @@ class Page {
   private say(marks: Mark[], said: string): void {
     const list: Node[] = marks.map((mark) => {
       const line = mark.range === null ? null : this.editor.view.state.doc.lineAt(Math.min(mark.range[0], this.editor.view.state.doc.length));
-      const place = line === null || mark.range === null ? "" : ` at ${line.number}:${mark.range[0] - line.from + 1}`;
+      // Columns are letters, as the command line counts them: some are two units of a string.
+      const before = line === null || mark.range === null ? "" : line.text.slice(0, mark.range[0] - line.from);
+      const place = line === null ? "" : ` at ${line.number}:${[...before].length + 1}`;
       const button = element(
         "button",
         { type: "button", class: `message ${mark.severity}` },

@@ -9,6 +9,8 @@ import { Start } from "./start";
 
 // How long numbers rest before a run is made again, in ms.
 const REST = 120;
+// After how long somebody is told that a run is under way, in ms.
+const SLOW = 500;
 // Lines of one plot.
 const MOST = 8;
 // Numbers of steps of a comparison, and its length at most.
@@ -34,6 +36,8 @@ export class Motion {
   // Entries of ξ.
   private names: string[] = [];
   private resting: number | undefined;
+  // Counts runs.
+  private turn = 0;
 
   private readonly method = element("select", { id: "method" });
   private readonly until = element("input", { type: "number", min: "0", step: "any", value: "10", id: "until" });
@@ -186,8 +190,9 @@ export class Motion {
   private asked(): object {
     const step = this.step.valueAsNumber;
     return {
-      until: this.until.valueAsNumber > 0 ? this.until.valueAsNumber : 10,
-      ...(step > 0 ? { step } : {}),
+      // What is no length is refused by the generator, in its words.
+      until: Number.isNaN(this.until.valueAsNumber) ? 10 : this.until.valueAsNumber,
+      ...(Number.isNaN(step) ? {} : { step }),
       method: this.method.value,
       scenes: true,
       ...this.start?.asked(),
@@ -195,15 +200,22 @@ export class Motion {
   }
 
   private async integrate(fresh: boolean): Promise<void> {
+    const turn = ++this.turn;
+    const slow = window.setTimeout(() => (this.summary.textContent = "running…"), SLOW);
     let run: Run;
     try {
-      run = await this.generator.ask<Run>("simulate", this.asked());
+      run = await this.generator.instead<Run>("simulate", this.asked());
     } catch (error) {
-      this.refused(error);
-      if (error instanceof Dropped) {
-        throw error;
+      // A newer run is shown in its place.
+      if (turn === this.turn) {
+        this.refused(error);
+        if (error instanceof Dropped) {
+          throw error;
+        }
       }
       return;
+    } finally {
+      clearTimeout(slow);
     }
     this.run = run;
     const reason = run.reason === null ? "" : `, chosen because ${run.reason}`;
@@ -338,9 +350,8 @@ export class Motion {
         element("p", { class: "note" }, `Errors are differences from ${compared.reference}; further down and to the left is better.`),
       );
     } catch (error) {
-      if (!(error instanceof Dropped)) {
-        this.comparison.replaceChildren(element("pre", {}, error instanceof Error ? error.message : String(error)));
-      }
+      // A run that was wanted in its place has ended it.
+      this.comparison.replaceChildren(...(error instanceof Dropped ? [] : [element("pre", {}, error instanceof Error ? error.message : String(error))]));
     }
   }
 }

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { answered, opened, picture, root, stopped, typed } from "./browser.mjs";
+import { answered, model, opened, picture, root, stopped, typed } from "./browser.mjs";
 
 after(stopped);
 
@@ -113,6 +113,46 @@ test("a run keeps its energy, and can be played, moved through and changed", asy
   await page.click("#compare");
   await page.waitForSelector('svg[aria-label^="error at t"] polyline', { timeout: 120_000 });
   assert.ok((await page.$$eval('svg[aria-label^="error at t"] polyline', (list) => list.length)) >= 4);
+  assert.deepEqual(left, []);
+  await close();
+});
+
+test("a run without an end gives way to what is wanted next", async () => {
+  const { page, left, close } = await opened();
+  await answered(page);
+  await typed(page, await model("pendulum"));
+  await shown(page);
+  const summary = (pattern) =>
+    page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector("#summary").textContent), pattern, { timeout: 20_000 });
+  const step = async (text) => {
+    await page.fill("#step", text);
+    await page.press("#step", "Enter");
+  };
+  await page.selectOption("#method", "rkmk4");
+  await summary("^rkmk4; [0-9,]+ steps");
+  await step("0.0000000001");
+  await summary("^running…$");
+  await step("0.01");
+  await summary("^rkmk4; 1,000 steps");
+  // All else is asked of a generator that knows the description, too, and so it is where a robot that is none takes its place.
+  await page.click("#tab-identities");
+  await page.waitForSelector("#panel-identities .verdict");
+  await page.click("#tab-motion");
+  await step("0.0000000001");
+  await summary("^running…$");
+  await page.setInputFiles("#file", { name: "broken.urdf", mimeType: "application/xml", buffer: Buffer.from("<robot>") });
+  await page.waitForFunction(() => /cannot be read as a robot/.test(document.querySelector("#status").textContent));
+  await step("0.01");
+  await summary("^rkmk4; 1,000 steps");
+  // What is no length is no run of another length.
+  await page.fill("#until", "-5");
+  await page.press("#until", "Enter");
+  await summary("the length of a run has to be a number greater than zero");
+  await page.fill("#until", "2");
+  await step("0");
+  await summary("a step has to be a number greater than zero");
+  await step("");
+  await summary("^rkmk4; 2,000 steps");
   assert.deepEqual(left, []);
   await close();
 });

@@ -75,6 +75,12 @@ test("an error is underlined where it is, in the words of the command line", asy
   // The place, as the command line counts it.
   const place = /-->\s*\S+?:(\d+:\d+)/.exec(stderr)[1];
   assert.match(await page.textContent(".message.error b"), new RegExp(` at ${place}$`));
+  // Behind letters that are two units of a string, too.
+  const behind = "system S { /* 𝔸𝔹 */ velcity w; }";
+  await typed(page, behind);
+  const [, column] = /-->\s*\S+?:(\d+:\d+)/.exec(said(["check", "-"], behind).stderr);
+  assert.match(await page.textContent(".message.error b"), new RegExp(` at ${column}$`));
+  await typed(page, text);
   assert.deepEqual(left, []);
   await picture(page, "error");
   // The error goes when its cause goes.
@@ -149,8 +155,12 @@ test("a link holds the system", async () => {
   const broken = await opened(`${url.split("#")[0]}#not-a-link`);
   await answered(broken.page);
   assert.ok((await broken.page.textContent("#panel-tables")).length > 100);
-  assert.deepEqual([...left, ...other.left, ...broken.left], []);
-  await Promise.all([close(), other.close(), broken.close()]);
+  // One whose text has an error says nothing of what is not there.
+  const wrong = await opened(`${url.split("#")[0]}#K64sLknNVQguLUgFAA`);
+  await answered(wrong.page);
+  assert.equal(await wrong.page.textContent("#status"), "1 error in the description");
+  assert.deepEqual([...left, ...other.left, ...broken.left, ...wrong.left], []);
+  await Promise.all([close(), other.close(), broken.close(), wrong.close()]);
 });
 
 test("tabs, editor and motion are reached by the keyboard", async () => {

@@ -1,13 +1,17 @@
 //! Functions of (t, x, ξ) in Python: those that give inputs, and those that are watched for events.
 
 use crate::rows::numbers;
-use hamel_cli::{Control, Gauge, Law};
+use hamel_cli::{Control, Gauge, Law, Stop};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-/// The first exception of a function.
+/// How often Python is asked during long work whether it is interrupted.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// The first exception of a function, or that of an interruption.
 #[derive(Clone, Default)]
 pub struct Raised(Arc<Mutex<Option<PyErr>>>);
 
@@ -50,6 +54,39 @@ pub fn law(function: Py<PyAny>, raised: &Raised) -> Law {
     };
     let control: Arc<Control> = Arc::new(control);
     Law(control)
+}
+
+/// What gives up a run: an exception, or an interruption of Python, by Ctrl-C for one, which is kept as one.
+pub fn stop(raised: &Raised) -> Stop {
+    let (raised, signals) = (raised.clone(), Signals::default());
+    Stop(Arc::new(move || {
+        if let Err(error) = signals.check() {
+            raised.set(error);
+        }
+        raised.is_set()
+    }))
+}
+
+/// Signals that Python has got, which it is asked for from time to time.
+pub struct Signals(Mutex<Instant>);
+
+impl Default for Signals {
+    fn default() -> Self {
+        Signals(Mutex::new(Instant::now()))
+    }
+}
+
+impl Signals {
+    /// Runs what Python has to say of its signals, where it was not asked just now.
+    pub fn check(&self) -> PyResult<()> {
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.elapsed() < PATIENCE {
+            return Ok(());
+        }
+        *last = Instant::now();
+        drop(last);
+        Python::attach(|py| py.check_signals())
+    }
 }
 
 /// A function in Python that gives a number. Where it raises an exception, it has no value from then on, which ends the run,

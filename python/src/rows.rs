@@ -1,9 +1,13 @@
 //! Arrays of states: the last axis has the entries of one, those before it are looped over.
 
 use numpy::ndarray::{ArrayViewD, Axis, IxDyn};
-use numpy::{AllowTypeChange, PyArrayLikeDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyMemoryError, PyTypeError, PyValueError};
+use numpy::{
+    AllowTypeChange, PyArrayDyn, PyArrayLikeDyn, PyArrayMethods, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyMemoryError, PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::type_object::PyTypeInfo;
 
 /// Most axes of an array.
 const AXES: usize = 32;
@@ -13,21 +17,10 @@ pub type Given<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
 
 /// The numbers that were given as `what`.
 pub fn numbers<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py>> {
-    // NumPy would leave out imaginary parts, and make numbers of dates.
-    if let Ok(kind) = value.getattr("dtype").and_then(|kind| kind.getattr("kind"))
-        && !"biufO".contains(&kind.str()?.to_string())
-    {
-        let kind = value.getattr("dtype")?.str()?;
-        let message = format!("{what} has real numbers, this array has the dtype {kind}");
-        return Err(PyTypeError::new_err(message));
-    }
-    let array: Given<'py> = value.extract().map_err(|why: PyErr| {
-        let message = format!("{what}: {}", why.value(value.py()));
-        match why.is_instance_of::<PyTypeError>(value.py()) {
-            true => PyTypeError::new_err(message),
-            false => PyValueError::new_err(message),
-        }
-    })?;
+    let array: Given<'py> = match is_plain(value) {
+        true => value.extract()?,
+        false => made(what, value)?.extract()?,
+    };
     if array.ndim() > AXES {
         let message = format!(
             "{what} has {AXES} axes at most, this array has {}",
@@ -36,6 +29,63 @@ pub fn numbers<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Given<'py
         return Err(PyValueError::new_err(message));
     }
     Ok(array)
+}
+
+/// Whether it is an array of NumPy that can be read where it is: its numbers stand at multiples of their size, which those
+/// of records that are packed do not.
+fn is_plain(value: &Bound<'_, PyAny>) -> bool {
+    let Ok(array) = value.cast::<PyArrayDyn<f64>>() else {
+        return false;
+    };
+    let size = size_of::<f64>();
+    value.get_type().is(PyUntypedArray::type_object(value.py()))
+        && array.data().addr().is_multiple_of(size)
+        && array
+            .strides()
+            .iter()
+            .all(|stride| stride.unsigned_abs().is_multiple_of(size))
+}
+
+/// A new array of what was given. By itself NumPy would leave out imaginary parts and what masks hide, and make numbers of
+/// dates and of nothing.
+fn made<'py>(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let py = value.py();
+    let own = |why: PyErr| {
+        let message = format!("{what}: {}", why.value(py));
+        match why {
+            why if why.is_instance_of::<PyTypeError>(py) => PyTypeError::new_err(message),
+            why if why.is_instance_of::<PyValueError>(py) => PyValueError::new_err(message),
+            why if why.is_instance_of::<PyOverflowError>(py) => PyValueError::new_err(message),
+            other => other,
+        }
+    };
+    let numpy = py.import("numpy")?;
+    if numpy
+        .getattr("ma")?
+        .call_method1("is_masked", (value,))?
+        .is_truthy()?
+    {
+        return Err(PyValueError::new_err(format!(
+            "{what} has entries that are masked"
+        )));
+    }
+    let array = numpy.call_method1("asarray", (value,)).map_err(own)?;
+    let dtype = array.getattr("dtype")?;
+    let kind = dtype.getattr("kind")?.to_string();
+    if !"biufO".contains(&kind) {
+        let message = format!("{what} has real numbers, this array has the dtype {dtype}");
+        return Err(PyTypeError::new_err(message));
+    }
+    if kind == "O" {
+        for entry in array.getattr("flat")?.try_iter()? {
+            let entry = entry?;
+            if entry.is_none() || numpy.call_method1("iscomplexobj", (&entry,))?.is_truthy()? {
+                let message = format!("{what} has real numbers, {} was given", entry.repr()?);
+                return Err(PyTypeError::new_err(message));
+            }
+        }
+    }
+    array.call_method1("astype", ("float64",)).map_err(own)
 }
 
 /// The numbers that were given as `what`, with so many entries along the last axis.

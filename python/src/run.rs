@@ -2,7 +2,7 @@
 
 use crate::failure::{HamelError, raised};
 use crate::function::axes;
-use crate::law::{Raised, gauge, law};
+use crate::law::{Raised, gauge, law, stop};
 use hamel_cli::{Asked, Direction, Event, Every, Happened, Session, State, Stepping, Watched};
 use hamel_codegen::program::Shape;
 use numpy::ndarray::IxDyn;
@@ -100,8 +100,11 @@ pub fn simulate<'py>(
         Some(all) => watched(py, all.extract()?, &thrown)?,
         None => Vec::new(),
     };
-    let run =
-        py.detach(|| session.simulate(state, &stepping, (every, times), (&asked, own), &events));
+    let stop = Some(stop(&thrown));
+    let run = py.detach(|| {
+        let inputs = (&asked, own);
+        session.simulate(state, &stepping, (every, times), inputs, &events, stop)
+    });
     if let Some(error) = thrown.take() {
         return Err(error);
     }

@@ -2,11 +2,14 @@
 
 use crate::failure::{HamelError, SingularError, raised};
 use crate::function::Function;
+use crate::law::{Raised, Signals, stop};
 use crate::rows::{Rows, common, entries_last, given, next, together, unknown};
 use crate::run;
 use hamel_cli::{Format, Mimic, Names, RobotOptions, State};
 use numpy::ndarray::{ArrayViewD, IxDyn};
-use numpy::{Complex64, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
+use numpy::{
+    Complex64, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -23,7 +26,13 @@ pub fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
 /// Runs a command; what is wrong is raised.
 #[pyfunction]
 pub fn asked(py: Python<'_>, words: Vec<OsString>) -> PyResult<()> {
-    py.detach(|| hamel_cli::asked(words)).map_err(raised)
+    let thrown = Raised::default();
+    let stop = stop(&thrown);
+    let done = py.detach(|| hamel_cli::asked(words, Some(&stop)));
+    match thrown.take() {
+        Some(error) => Err(error),
+        None => done.map_err(raised),
+    }
 }
 
 /// A description, derived.
@@ -32,10 +41,10 @@ pub struct Session(Arc<hamel_cli::Session>);
 
 /// Numbers of a state: x, ξ with z, u, parameters.
 type Numbers<'py> = (
-    PyReadonlyArray1<'py, f64>,
-    PyReadonlyArray1<'py, f64>,
-    PyReadonlyArray1<'py, f64>,
-    PyReadonlyArray1<'py, f64>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
 );
 
 /// The same, to Python.
@@ -83,6 +92,25 @@ fn length(h: f64) -> PyResult<()> {
     }
 }
 
+/// So many finite numbers, the only ones of their kind.
+fn list(what: &str, length: usize, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let array = given(what, length, value)?;
+    if array.ndim() > 1 {
+        let shape = array.shape();
+        return Err(PyValueError::new_err(format!(
+            "{what} has {length} entries and no other axes, this array has the shape {shape:?}"
+        )));
+    }
+    let numbers: Vec<f64> = array.as_array().iter().copied().collect();
+    match numbers.iter().position(|number| !number.is_finite()) {
+        None => Ok(numbers),
+        Some(place) => Err(HamelError::new_err(format!(
+            "{what} has finite numbers, {} stands at the index {place}",
+            numbers[place]
+        ))),
+    }
+}
+
 /// Rows as a matrix.
 fn matrix<'py>(
     py: Python<'py>,
@@ -94,30 +122,25 @@ fn matrix<'py>(
 }
 
 impl Session {
-    /// A state of arrays of the right lengths.
-    fn of(&self, (x, xi, u, params): Numbers<'_>) -> PyResult<State> {
+    /// A state of finite numbers, in arrays of the right lengths.
+    fn of(&self, py: Python<'_>, (x, xi, u, params): Numbers<'_>) -> PyResult<State> {
         let start = self.0.start();
         let parts = [
-            ("x", x, start.x.len()),
-            ("xi", xi, start.xi.len()),
-            ("u", u, start.u.len()),
-            ("the list of parameters", params, start.params.len()),
+            ("`x` of a state", x, start.x.len()),
+            ("`xi` of a state", xi, start.xi.len()),
+            ("`u` of a state", u, start.u.len()),
+            ("`parameters` of a state", params, start.params.len()),
         ];
-        let mut wrong = Vec::new();
-        let mut list = |(what, array, length): (&str, PyReadonlyArray1<'_, f64>, usize)| {
-            let numbers = array.as_array().to_vec();
-            if numbers.len() != length {
-                wrong.push(format!(
-                    "{what} has {length} entries, {} of these were given",
-                    numbers.len()
-                ));
-            }
-            numbers
-        };
-        let [x, xi, u, params] = parts.map(&mut list);
-        match wrong.is_empty() {
+        let mut errors = Vec::new();
+        let [x, xi, u, params] = parts.map(|(what, array, length)| {
+            list(what, length, &array).unwrap_or_else(|error| {
+                errors.push(error);
+                Vec::new()
+            })
+        });
+        match errors.is_empty() {
             true => Ok(State { x, xi, u, params }),
-            false => Err(PyValueError::new_err(wrong.join("\n"))),
+            false => Err(together(py, errors)),
         }
     }
 }
@@ -148,6 +171,10 @@ impl Session {
                 return Err(PyValueError::new_err(message));
             }
         };
+        if let Some(other) = rounding.filter(|angle| !(0.0..=0.1).contains(angle)) {
+            let message = format!("`rounding` is a number from 0 to 0.1, not {other}");
+            return Err(HamelError::new_err(message));
+        }
         let options = RobotOptions {
             floating,
             locks,
@@ -252,7 +279,7 @@ impl Session {
 
     /// What `hamel eval` prints, as JSON.
     fn evaluate(&self, py: Python<'_>, state: Numbers<'_>) -> PyResult<String> {
-        let state = self.of(state)?;
+        let state = self.of(py, state)?;
         py.detach(|| self.0.evaluate(&state)).map_err(raised)
     }
 
@@ -263,7 +290,7 @@ impl Session {
         state: Numbers<'py>,
         options: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        run::simulate(py, &self.0, &self.of(state)?, options)
+        run::simulate(py, &self.0, &self.of(py, state)?, options)
     }
 
     /// x and ξ after a step of each of many states.
@@ -278,7 +305,7 @@ impl Session {
         h: f64,
         method: &str,
     ) -> PyResult<Ends<'py>> {
-        let state = self.of(state)?;
+        let state = self.of(py, state)?;
         length(h)?;
         let lengths = [state.x.len(), state.xi.len(), state.u.len()];
         let (mut all, mut errors) = (Vec::new(), Vec::new());
@@ -306,6 +333,7 @@ impl Session {
         let (mut all_x, mut all_xi) = (unknown(&lead, lengths[0])?, unknown(&lead, lengths[1])?);
         let stepped = py.detach(|| -> PyResult<()> {
             let stepped = self.0.stepped(&state, method).map_err(raised)?;
+            let signals = Signals::default();
             let mut place = vec![0; lead.len()];
             let ends = all_x
                 .chunks_exact_mut(lengths[0].max(1))
@@ -318,6 +346,7 @@ impl Session {
                     [] => SingularError::new_err(why),
                     place => SingularError::new_err(format!("{why}, at the index {place:?}")),
                 })?;
+                signals.check()?;
                 end_x.copy_from_slice(&x);
                 end_xi.copy_from_slice(&xi);
                 next(&mut place, &lead);
@@ -341,7 +370,7 @@ impl Session {
         h: f64,
         method: &str,
     ) -> PyResult<Stepped<'py>> {
-        let state = self.of(state)?;
+        let state = self.of(py, state)?;
         length(h)?;
         let stepped = py.detach(|| {
             let (varied, method) = self.0.varied(&state, method).map_err(raised)?;
@@ -363,7 +392,7 @@ impl Session {
         state: Numbers<'py>,
         full: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let state = self.of(state)?;
+        let state = self.of(py, state)?;
         let linear = py
             .detach(|| self.0.linearize(&state, full))
             .map_err(raised)?;

@@ -26,6 +26,7 @@ use crate::simulate::inputs::{Asked, Inputs, Law};
 use crate::simulate::plan::{Every, Spacing};
 use crate::simulate::record::Run;
 use crate::simulate::stepping::Stepping;
+use crate::simulate::stop::Stop;
 use crate::singular;
 use crate::source::Source;
 use crate::state::State;
@@ -343,7 +344,8 @@ impl Session {
         Ok(instance)
     }
 
-    /// A run from a state; inputs are those of the state, of what is asked for, or of a law; it may end at an event.
+    /// A run from a state; inputs are those of the state, of what is asked for, or of a law; it may end at an event, or be
+    /// given up.
     ///
     /// # Errors
     /// What cannot be run; a run that ends early has its reason in [`Motion::failure`].
@@ -354,6 +356,7 @@ impl Session {
         (every, times): (Option<Every>, Option<Vec<f64>>),
         (asked, law): (&Asked, Option<Law>),
         events: &[Event],
+        stop: Option<Stop>,
     ) -> Result<Motion, Failure> {
         stepping.check()?;
         let until = stepping.until;
@@ -372,6 +375,7 @@ impl Session {
         if let Some(times) = times {
             plan.spacing = Spacing::at(times, until)?;
         }
+        plan.stop = stop;
         let events = Events::new(events.to_vec(), &system, added::name);
         let run = Run::watched(generated, &system, plan, events)?;
         Ok(Motion::of(&run, &system))

@@ -94,8 +94,11 @@ pub fn advance(
     }
     let until = plan.until;
     let spacing = until / plan.points as f64;
-    // A run that has lost the motion ends there.
+    // A run that has lost the motion ends there, and so does one that is given up.
     let followed = |state: &State<Instance>| {
+        if plan.is_given_up() {
+            return f64::NAN;
+        }
         let here = balance.get().after(system, state);
         if here.lost(Some(tolerance)).is_some() {
             -1.0

@@ -16,6 +16,7 @@ mod rotor;
 pub mod sample;
 pub mod steady;
 pub mod stepping;
+pub mod stop;
 mod stretch;
 mod summary;
 mod write;

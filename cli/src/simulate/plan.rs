@@ -1,6 +1,7 @@
 //! What is to be run: the method, its steps, and where samples are taken.
 
 use super::inputs::Inputs;
+use super::stop::Stop;
 use crate::failure::Failure;
 use crate::mechanism::Instance;
 use crate::method::Chosen;
@@ -39,6 +40,8 @@ pub struct Plan {
     pub points: u64,
     /// Whether nobody looks at the ends of steps.
     pub quiet: bool,
+    /// What may give up the run on its way, where nobody is quiet.
+    pub stop: Option<Stop>,
 }
 
 /// Where samples are.
@@ -102,6 +105,11 @@ impl Plan {
         self.tolerance.is_some() || !self.quiet && !is_law
     }
 
+    /// Whether the run is given up.
+    pub fn is_given_up(&self) -> bool {
+        self.stop.as_ref().is_some_and(|Stop(asked)| asked())
+    }
+
     /// Whether samples are at multiples of a time.
     pub fn has_multiples(&self) -> bool {
         matches!(self.spacing, Spacing::Every(_))
@@ -146,6 +154,7 @@ impl Plan {
             spacing,
             points: POINTS,
             quiet: false,
+            stop: None,
         }
     }
 }

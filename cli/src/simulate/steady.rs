@@ -43,10 +43,10 @@ impl<'a, O: Observer> Steady<'a, O> {
         Ok(())
     }
 
-    /// Whether an event has ended it.
+    /// Whether an event has ended it, or it is given up.
     fn is_stopped(&self) -> bool {
         let events = self.events.as_ref();
-        events.is_some_and(|events| events.stopped_by.is_some())
+        events.is_some_and(|events| events.stopped_by.is_some()) || self.plan.is_given_up()
     }
 
     /// Two runs of one mechanism to their ends. As long as both of them take the same steps, two of these are taken by one
@@ -116,7 +116,7 @@ impl<'a, O: Observer> Steady<'a, O> {
     fn cover(&mut self, stretch: &Stretch) -> Result<(), StepError> {
         let (from, end) = (self.state.t, stretch.end);
         let whole = self.whole(end);
-        let (system, step) = (self.system, self.plan.step);
+        let (system, plan, step) = (self.system, self.plan, self.plan.step);
         let watches = self.events.as_ref().is_some_and(|e| !e.list().is_empty());
         let skips = self.plan.quiet && !watches && !self.plan.has_multiples();
         if skips && whole.run(system, self.state, end) {
@@ -146,7 +146,10 @@ impl<'a, O: Observer> Steady<'a, O> {
                 Ok(None) => {
                     observer.look(state, Place::End);
                     show(*observer, (stretch, clock), index, state);
-                    ControlFlow::Continue(())
+                    match plan.is_given_up() {
+                        true => ControlFlow::Break(()),
+                        false => ControlFlow::Continue(()),
+                    }
                 }
                 Ok(Some(at)) => {
                     observer.look(&at, Place::End);
@@ -179,7 +182,7 @@ impl<'a, O: Observer> Steady<'a, O> {
         let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
         let clock = Clock::new(system, self.state);
         let mut done = 0;
-        while done < grid.count() {
+        while done < grid.count() && !self.plan.is_given_up() {
             let observer = &mut *self.observer;
             let free = observer.leisure().min(stretch.ahead(done));
             if free > 0 {

@@ -4,6 +4,7 @@ use super::plan::{Every, Plan};
 use crate::failure::Failure;
 use crate::mechanism::Instance;
 use crate::method::{self, AUTO, Chosen, Stepper};
+use crate::number::short;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use hamel::methods::General;
@@ -13,6 +14,8 @@ use hamel_codegen::generate::Generated;
 const STEP: f64 = 1e-3;
 const FEWEST: f64 = 1e3;
 const MOST: f64 = 1e6;
+/// Samples that are kept at most: what is more is a slip, and fills the memory.
+const SAMPLES: f64 = 1e8;
 /// λ where --lambda is left out.
 const LAMBDA: f64 = 10.0;
 /// The tolerance where `auto` takes a method that chooses its steps.
@@ -69,6 +72,11 @@ impl Stepping {
                 "a step or a tolerance is needed, not both: by a tolerance steps are chosen",
             ));
         }
+        if !self.lambda.is_none_or(is_rate) {
+            return Err(Failure::usage(
+                "the rate at which rk4 leads back to the constraint has to be a number, zero or greater",
+            ));
+        }
         match self.lambda.is_some() && self.method != "rk4" {
             true => Err(Failure::usage(
                 "--lambda goes with --method rk4 alone: the other methods keep the constraint by themselves",
@@ -87,6 +95,18 @@ impl Stepping {
         let step = self
             .step
             .unwrap_or_else(|| STEP.clamp(self.until / MOST, self.until / FEWEST));
+        let samples = match every {
+            Some(Every::Time(time)) => self.until / time,
+            Some(Every::Steps(steps)) => self.until / step / steps as f64,
+            None => 0.0,
+        };
+        if samples > SAMPLES {
+            return Err(Failure::usage(format!(
+                "there would be {} samples, and no more than {} are kept: take them less often",
+                short(samples),
+                short(SAMPLES)
+            )));
+        }
         let steps = (self.until / step).ceil() as u64;
         let method = self.chosen(generated, system, steps)?;
         let tolerance = self.tolerance(&method)?;
@@ -142,6 +162,10 @@ fn is_positive(value: f64) -> bool {
     value.is_finite() && value > 0.0
 }
 
+fn is_rate(value: f64) -> bool {
+    value.is_finite() && value >= 0.0
+}
+
 /// A number greater than zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -152,7 +176,7 @@ pub fn positive(text: &str) -> Result<f64, String> {
 
 fn rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        Ok(value) if is_rate(value) => Ok(value),
         _ => Err("a number, zero or greater, is needed".into()),
     }
 }

@@ -36,6 +36,7 @@ use crate::robot::RobotOptions;
 use crate::simulate::inputs::{self, Inputs};
 use crate::simulate::plan::Spacing;
 use crate::simulate::stepping::Stepping;
+use crate::simulate::stop::Stop;
 use crate::source::Source;
 use crate::state::State;
 use crate::state::file::File;
@@ -53,7 +54,7 @@ use std::sync::Arc;
 use submit::{Engine, Job};
 use vary::Vary;
 use watch::Keeping;
-use work::{Done, Work};
+use work::{Done, Stopping, Work};
 
 /// Members of a shard where --shard-size is left out: a part of all, but no fewer and no more than these.
 const SHARDS: u64 = 64;
@@ -171,8 +172,8 @@ it is empty, and `error` says why. Readers take all files of a folder at once:
   duckdb.sql(\"SELECT * FROM 'runs/*.parquet'\")
   pandas.read_parquet(\"runs\")";
 
-/// Computes, submits, or tells what is there.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// Computes, submits, or tells what is there. What is computed may be given up.
+pub fn run(arguments: &Arguments, stop: Option<&Stop>) -> Result<(), Failure> {
     if let Some(folder) = &arguments.status {
         return status::run(folder);
     }
@@ -201,7 +202,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "--submit takes a description in a file: tasks read it, too",
         ));
     }
-    let (sweep, columns) = prepared(arguments, &source, vary, stepping)?;
+    let (mut sweep, columns) = prepared(arguments, &source, vary, stepping)?;
     let manifest = fixed(arguments, &source, &sweep, vary, stepping)?;
     let part = arguments.shard.unwrap_or(Part::WHOLE);
     let threads = arguments.threads.map(usize::from);
@@ -226,7 +227,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let there = folder::there(out, &manifest)?;
     let own = (0..manifest.shards()).filter(|shard| part.has(*shard));
     let missing = own.filter(|shard| there.shards.binary_search(shard).is_err());
+    let stopping = stop.map(Stopping::new);
+    sweep.plan.stop = stopping.as_ref().map(Stopping::of_members);
     let work = Work {
+        stopping,
         sweep: &sweep,
         manifest: &manifest,
         columns: &columns,

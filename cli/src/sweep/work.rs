@@ -6,12 +6,18 @@ use super::member::{Row, Sweep};
 use super::shard::Columns;
 use crate::failure::Failure;
 use crate::progress;
+use crate::simulate::stop::Stop;
 use std::collections::BTreeMap;
 use std::collections::VecDeque;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::ScopedJoinHandle;
+use std::time::Duration;
 
 /// Members that a thread takes at once, at most.
 const MOST: u64 = 64;
+/// How long it takes at most to see that work is done, or given up.
+const WAIT: Duration = Duration::from_millis(2);
 /// In how many portions a shard is taken at least, by a thread.
 const PORTIONS: u64 = 4;
 
@@ -39,8 +45,55 @@ pub struct Done {
     pub shards: u64,
 }
 
+/// What gives up the work.
+pub struct Stopping<'a> {
+    /// Asked by the thread that the work was asked of.
+    asked: &'a Stop,
+    /// What members are told.
+    told: Arc<AtomicBool>,
+}
+
+impl<'a> Stopping<'a> {
+    /// That of a program.
+    pub fn new(asked: &'a Stop) -> Self {
+        Stopping {
+            asked,
+            told: Arc::default(),
+        }
+    }
+
+    /// The same for runs of members, on any thread.
+    pub fn of_members(&self) -> Stop {
+        let told = Arc::clone(&self.told);
+        Stop(Arc::new(move || told.load(Ordering::Relaxed)))
+    }
+
+    fn is_told(&self) -> bool {
+        self.told.load(Ordering::Relaxed)
+    }
+
+    /// Waits for threads, or for the end of all work.
+    fn wait(&self, desk: &Mutex<Desk>, threads: &[ScopedJoinHandle<'_, ()>]) {
+        let Stop(asked) = self.asked;
+        while !threads.iter().all(ScopedJoinHandle::is_finished) {
+            if asked() {
+                self.told.store(true, Ordering::Relaxed);
+                at(desk).failure.get_or_insert_with(|| {
+                    Failure::failed(
+                        "the sweep was given up; the same sweep computes what is missing",
+                    )
+                });
+                return;
+            }
+            std::thread::sleep(WAIT);
+        }
+    }
+}
+
 /// All that a thread needs.
 pub struct Work<'a> {
+    /// What may give it up.
+    pub stopping: Option<Stopping<'a>>,
     /// What members have in common.
     pub sweep: &'a Sweep,
     /// Their shards.
@@ -69,7 +122,7 @@ impl Work<'_> {
             done: Done::default(),
         });
         std::thread::scope(|scope| {
-            for _ in 0..threads {
+            let work = |_| {
                 scope.spawn(|| {
                     loop {
                         // The desk is free again before members run.
@@ -81,7 +134,11 @@ impl Work<'_> {
                         bar.inc(rows.len() as u64);
                         self.hand_in(&desk, shard, rows);
                     }
-                });
+                })
+            };
+            let threads: Vec<_> = (0..threads).map(work).collect();
+            if let Some(stopping) = &self.stopping {
+                stopping.wait(&desk, &threads);
             }
         });
         bar.finish_and_clear();
@@ -120,6 +177,10 @@ impl Work<'_> {
         let range = self.manifest.range(shard);
         let mut whole = {
             let mut desk = at(desk);
+            // Members that are told to stop have no end.
+            if self.stopping.as_ref().is_some_and(Stopping::is_told) {
+                return;
+            }
             let open = desk.open.entry(shard).or_default();
             open.extend(rows);
             if (open.len() as u64) < range.end - range.start {

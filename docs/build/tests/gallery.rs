@@ -83,6 +83,7 @@ fn run(exhibit: &Exhibit) -> Vec<String> {
         (None, None),
         (&Asked::default(), None),
         &[],
+        None,
     );
     let motion = match motion {
         Ok(motion) => motion,

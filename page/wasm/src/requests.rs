@@ -184,7 +184,7 @@ fn simulate(session: &Session, request: &Value, numbers: &mut Vec<f32>) -> Resul
     };
     let drawn = request["scenes"] == true;
     let run = |times| {
-        let run = session.simulate(&state, &stepping, (None, times), (&inputs, None), &[]);
+        let run = session.simulate(&state, &stepping, (None, times), (&inputs, None), &[], None);
         run.map_err(said)
     };
     let mut ran = run(None)?;

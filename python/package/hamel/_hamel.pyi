@@ -1,13 +1,15 @@
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __version__: str
+__all__ = ["__version__", "HamelError", "SingularError", "Function", "Session", "asked", "command"]
 
 _Array = NDArray[np.float64]
 _Numbers = tuple[_Array, _Array, _Array, _Array]
+_Given = tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]
 _Named = tuple[list[str], list[tuple[str, int, int]]]
 
 class HamelError(ValueError):
@@ -16,11 +18,14 @@ class HamelError(ValueError):
 class SingularError(ArithmeticError):
     """A function has no value: M is not positive definite there, or constraints depend on one another."""
 
+@final
 class Function:
     """A function of a system: machine code that is called with NumPy arrays."""
 
     @property
     def name(self) -> str: ...
+    @property
+    def __name__(self) -> str: ...
     @property
     def arguments(self) -> list[str]:
         """The names of its arguments, in order."""
@@ -40,6 +45,7 @@ class Function:
     ) -> Any:
         """The result for one state, or for all states that arrays have along their first axes."""
 
+@final
 class Session:
     @staticmethod
     def open(
@@ -70,13 +76,13 @@ class Session:
     def state(self, params: _Array, json: str) -> _Numbers: ...
     def function(self, name: str, params: _Array) -> Function: ...
     def tables(self, of: list[str], format: str, all: bool) -> str: ...
-    def evaluate(self, state: _Numbers) -> str: ...
-    def simulate(self, state: _Numbers, options: Mapping[str, Any]) -> dict[str, Any]: ...
+    def evaluate(self, state: _Given) -> str: ...
+    def simulate(self, state: _Given, options: Mapping[str, Any]) -> dict[str, Any]: ...
     def step(
-        self, state: _Numbers, x: ArrayLike, xi: ArrayLike, u: ArrayLike, h: float, method: str
+        self, state: _Given, x: ArrayLike, xi: ArrayLike, u: ArrayLike, h: float, method: str
     ) -> tuple[_Array, _Array]: ...
-    def step_slopes(self, state: _Numbers, h: float, method: str) -> tuple[_Array, _Array, _Array]: ...
-    def linearize(self, state: _Numbers, full: bool) -> dict[str, Any]: ...
+    def step_slopes(self, state: _Given, h: float, method: str) -> tuple[_Array, _Array, _Array]: ...
+    def linearize(self, state: _Given, full: bool) -> dict[str, Any]: ...
     def base_parameters(self) -> dict[str, str]: ...
 
 def command(words: list[str]) -> int: ...

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,6 +24,9 @@ Inputs = Union[
 ]
 
 
+# The largest number.
+LARGEST = float(np.finfo(np.float64).max)
+
 Watched = Union[str, Callable[[float, Array, Array], float]]
 
 
@@ -35,6 +39,10 @@ class RunError(HamelError):
 
     def __reduce__(self) -> Any:
         return (RunError, (str(self), self.run))
+
+
+class NoFunction(HamelError, AttributeError):
+    """A function that a system cannot have, asked for as an attribute: for `hasattr` and `getattr` there is none."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +60,9 @@ class State:
 
     def _numbers(self) -> tuple[Array, Array, Array, Array]:
         return (self.x, self.xi, self.u, self.parameters)
+
+    def _copy(self) -> State:
+        return State(*(part.copy() for part in self._numbers()))
 
 
 class Names(Sequence[str]):
@@ -253,7 +264,7 @@ def _plain(value: Any, place: str = "state") -> Any:
         return _plain(value.tolist(), place)
     if isinstance(value, list | tuple):
         return [_plain(part, place) for part in value]
-    if isinstance(value, float) and not np.isfinite(value):
+    if isinstance(value, int | float) and not abs(value) <= LARGEST:
         raise HamelError(f"{place}: a finite number is needed, {value} was given")
     if not isinstance(value, str | int | float | None):
         raise HamelError(f"{place}: a number, a list or names with numbers are needed, {value!r} was given")
@@ -264,6 +275,33 @@ def _array(value: ArrayLike) -> Array:
     if np.iscomplexobj(value):
         raise HamelError("real numbers are needed, complex ones were given")
     return np.ascontiguousarray(value, dtype=np.float64)
+
+
+def _number(name: str, value: Any) -> float:
+    """A number that was given by this name."""
+    if not isinstance(value, str | bytes) and not np.iscomplexobj(value):
+        try:
+            return float(value)
+        except (TypeError, ValueError, OverflowError):
+            pass
+    raise HamelError(f"`{name}` is a number, {value!r} was given")
+
+
+def _method(name: Any) -> str:
+    if not isinstance(name, str):
+        raise HamelError(f"`method` is the name of a method, {name!r} was given")
+    return name
+
+
+def _read(path: str | os.PathLike[str]) -> tuple[str, str]:
+    """The path of a file as a text, and the text in the file."""
+    name = os.fspath(path)
+    with open(name, "rb") as file:
+        found = file.read()
+    try:
+        return name, found.decode("utf-8")
+    except UnicodeDecodeError as why:
+        raise HamelError(f"cannot read {name}: byte {why.start} is not UTF-8") from None
 
 
 class System:
@@ -300,14 +338,20 @@ class System:
         cls, path: str | os.PathLike[str], *, constants: Mapping[str, object] | None = None
     ) -> System:
         """The system that a file describes; `constants` are other values of its constants, such as the length of a chain."""
-        given = [(name, str(value)) for name, value in (constants or {}).items()]
-        return cls._open(os.fspath(path), None, {"constants": given})
+        given = [(constant, str(value)) for constant, value in (constants or {}).items()]
+        try:
+            name, text = _read(path)
+        except OSError as why:
+            raise HamelError(f"cannot read {os.fspath(path)}: {why.strerror}") from why
+        return cls._open(name, text, {"constants": given})
 
     @classmethod
     def from_text(
         cls, text: str, *, name: str = "<text>", constants: Mapping[str, object] | None = None
     ) -> System:
         """The system that a text describes; messages call it `name`."""
+        if not isinstance(text, str):
+            raise TypeError(f"a description is a text, {text!r} was given")
         given = [(constant, str(value)) for constant, value in (constants or {}).items()]
         return cls._open(name, text, {"constants": given})
 
@@ -330,18 +374,17 @@ class System:
         """
         options: dict[str, Any] = {
             "floating": floating,
-            "locks": [(joint, repr(value)) for joint, value in (lock or {}).items()],
+            "locks": [(joint, repr(_number(f"lock[{joint!r}]", value))) for joint, value in (lock or {}).items()],
             "params": parameters,
             # What it is without a word.
             "mimic": None if mimic == "follow" else mimic,
             "name": name,
             "rounding": rounding,
         }
-        with open(path, encoding="utf-8") as file:
-            text = file.read()
-        if not text.lstrip().startswith("<"):
-            raise HamelError(f"{os.fspath(path)} is no robot in URDF; `System.from_file` reads descriptions")
-        return cls._open(os.fspath(path), text, options)
+        file, text = _read(path)
+        if not text.lstrip("\ufeff \t\r\n").startswith("<"):
+            raise HamelError(f"{file} is no robot in URDF; `System.from_file` reads descriptions")
+        return cls._open(file, text, options)
 
     def with_parameters(self, **values: ArrayLike) -> System:
         """The same system with other values of parameters, by their names."""
@@ -424,7 +467,10 @@ class System:
             return self._functions[name]
         if name not in self._session.functions():
             raise AttributeError(f"{self._session.name} has no function `{name}`; `functions` lists them")
-        return self.function(name)
+        try:
+            return self.function(name)
+        except HamelError as why:
+            raise NoFunction(str(why)) from None
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self._session.functions()})
@@ -437,7 +483,7 @@ class System:
 
     def start(self) -> State:
         """The start of the description, with zero inputs."""
-        return self._start
+        return self._start._copy()
 
     def state(self, **parts: Mapping[str, Any]) -> State:
         """A state by names: `system.state(coord={"q": 0.3}, velocity={"q_dot": 1.0}, input={"F": 2.0})`.
@@ -447,14 +493,14 @@ class System:
         """
         return State(*self._session.state(self._parameters, json.dumps(_plain(parts))))
 
-    def _at(self, at: State | Mapping[str, Any] | None) -> tuple[Array, Array, Array, Array]:
+    def _at(self, at: State | Mapping[str, Any] | None) -> tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]:
         if at is None:
             at = self._start
         elif isinstance(at, Mapping):
             at = self.state(**at)
         elif not isinstance(at, State):
             raise HamelError(f"a state is a `hamel.State`, or a dictionary of what `System.state` takes, not {at!r}")
-        return tuple(map(_array, at._numbers()))  # type: ignore[return-value]
+        return at._numbers()
 
     # --- what is asked ----------------------------------------------------------------------------------------------
 
@@ -515,20 +561,23 @@ class System:
             raise HamelError("`rate` goes with the method rk4 alone: the other methods keep the constraint by themselves")
         if hold and not isinstance(inputs, str | os.PathLike):
             raise HamelError("`hold` goes with a file of inputs, whose values it holds until the next row")
+        numbers = {"step": step, "tol": tol, "rate": rate, "spacing": spacing}
         options: dict[str, Any] = {
-            "until": float(until),
-            "method": method,
-            "step": step,
-            "tol": tol,
-            "rate": rate,
-            "every": every,
-            "spacing": spacing,
+            "until": _number("until", until),
+            "method": _method(method),
+            **{name: None if value is None else _number(name, value) for name, value in numbers.items()},
             "times": None if times is None else _array(times).ravel().tolist(),
         }
+        if every is not None:
+            try:
+                # More steps than can be counted are as good as all of them.
+                options["every"] = min(operator.index(every), 2**62)
+            except TypeError:
+                raise HamelError(f"`every` is a number of steps, 1 or greater, {every!r} was given") from None
         if callable(inputs):
             options["law"] = inputs
         elif isinstance(inputs, Mapping):
-            fixed, expressions = state[2].copy(), []
+            fixed, expressions = _array(state[2]).copy(), []
             names = self.inputs
             for name, value in inputs.items():
                 if isinstance(value, str):
@@ -579,7 +628,7 @@ class System:
         """
         state = self._at(None)
         held = state[2] if u is None else u
-        return self._session.step(state, x, xi, held, h, method)
+        return self._session.step(state, x, xi, held, _number("h", h), _method(method))
 
     def step_slopes(
         self,
@@ -593,7 +642,7 @@ class System:
         They are those of the step itself, to rounding, not of the motion; with `full` displacements where constraints act.
         """
         state = self._at(at)
-        x, xi, slopes = self._session.step_slopes(state, h, method)
+        x, xi, slopes = self._session.step_slopes(state, _number("h", h), _method(method))
         rows = slopes.shape[0]
         return StepSlopes(x, xi, slopes[:, :rows], slopes[:, rows:])
 

@@ -69,7 +69,7 @@ fn runs() {
         };
         let simulate = || {
             let nothing = (None, None);
-            let motion = session.simulate(&start, &stepping, nothing, (&Asked::default(), None), &[]);
+            let motion = session.simulate(&start, &stepping, nothing, (&Asked::default(), None), &[], None);
             motion.expect("a run")
         };
         let first = simulate();
@@ -116,7 +116,7 @@ fn sweeps() {
         });
         let words = words.chain([out.into_os_string()]);
         timed(|| {
-            hamel_cli::asked(words)
+            hamel_cli::asked(words, None)
                 .map_err(|why| why.text())
                 .expect("a sweep");
         })
