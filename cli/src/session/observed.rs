@@ -19,7 +19,7 @@ const EVENTS: &str = "events";
 
 /// Those that were asked for last, by the texts of their events.
 #[derive(Default)]
-pub struct AllObserved(Mutex<Vec<(String, Arc<Observed>)>>);
+pub struct AllObserved(Mutex<Vec<(Vec<String>, Arc<Observed>)>>);
 
 impl AllObserved {
     /// The one for these events; none where no event is an expression.
@@ -28,17 +28,17 @@ impl AllObserved {
         if texts.is_empty() {
             return Ok(None);
         }
-        let said = texts.join("; ");
         let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, found)) = known().iter().find(|(of, _)| *of == said) {
+        if let Some((_, found)) = known().iter().find(|(of, _)| *of == texts) {
             return Ok(Some(Arc::clone(found)));
         }
-        let made = Arc::new(Observed::new(source, &said, &texts)?);
+        let made = Arc::new(Observed::new(source, &texts.join("; "), &texts)?);
         let mut all = known();
         if all.len() >= KEPT {
             all.remove(0);
         }
-        all.push((said, Arc::clone(&made)));
+        let own = texts.into_iter().map(str::to_owned).collect();
+        all.push((own, Arc::clone(&made)));
         Ok(Some(made))
     }
 }

@@ -208,6 +208,14 @@ impl Points {
         found.is_some_and(|found| self.roots != Roots::OfSquares || found.iter().all(inside))
     }
 
+    /// The same variety with roots of squares of F_p(i), which every number of F_p is; `None` where they have values already.
+    pub fn extended(&self) -> Option<Self> {
+        (self.roots == Roots::OfSquares).then(|| Points {
+            roots: Roots::Extended,
+            ..self.clone()
+        })
+    }
+
     /// The same variety where roots need no values.
     pub(crate) fn without_roots(&self) -> Self {
         Points {
