@@ -177,7 +177,8 @@ impl<'a> Reader<'a> {
 
     /// `{ return Err(…); }`
     fn leaves(&mut self) -> bool {
-        let returns = self.take(b'{') && self.word("return") && self.result("Err") && self.take(b'(');
+        let returns =
+            self.take(b'{') && self.word("return") && self.result("Err") && self.take(b'(');
         let error = returns && self.path();
         let of = self.take(b'(') && self.what() && self.take(b')');
         error && of && self.take(b')') && self.take(b';') && self.take(b'}')
