@@ -12,8 +12,8 @@ use crate::syntax::parse_text;
 
 /// Builds a [`Scene`] statement by statement, in the order in which a text would have them.
 ///
-/// Names are checked when the scene is [built](Self::build), everything else when it is
-/// [generated](Scene::generate), by the checks that texts go through; errors show the statement that they are about.
+/// Names, and whether numbers are finite, are checked when the scene is [built](Self::build), everything else when it
+/// is [generated](Scene::generate), by the checks that texts go through; errors show the statement that they are about.
 #[derive(Clone, Debug)]
 pub struct SceneBuilder {
     system: System,

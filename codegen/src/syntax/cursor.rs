@@ -195,12 +195,12 @@ impl<'a> Cursor<'a> {
             self.at += 1;
             return Ok(());
         }
-        let bracket = closing(delimiter);
-        let error = self.unexpected(&if separator {
-            format!("`,` or `{bracket}`")
-        } else {
-            format!("`{bracket}`")
-        });
+        let bracket = match closing(delimiter) {
+            "" => "the end of what the macro matched".to_owned(),
+            bracket => format!("`{bracket}`"),
+        };
+        let separated = if separator { "`,` or " } else { "" };
+        let error = self.unexpected(&format!("{separated}{bracket}"));
         Err(match operator_help(self.peek()) {
             Some(help) => error.help(help),
             None => error,

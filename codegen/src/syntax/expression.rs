@@ -258,6 +258,7 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             let error = cursor.unexpected("an expression");
             Err(match token.kind {
                 Kind::Punct('+') => error.help("a sum has a term on both sides of `+`"),
+                Kind::Punct('.') => error.help("numbers have a digit before their point: `0.5`"),
                 Kind::Open(Delimiter::Brace, _) => {
                     error.help("parts of an expression are grouped with `(` and `)`")
                 }

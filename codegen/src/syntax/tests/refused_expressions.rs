@@ -29,6 +29,8 @@ fn expressions() {
         r#"let x = a::b;"#,
         r#"let x = 1e;"#,
         r#"let x = 1u8;"#,
+        r#"let x = 1_f64;"#,
+        r#"let x = .5;"#,
         r#"let x = 0x1;"#,
         r#"let x = "a";"#,
         r#"let x = 1e999;"#,
