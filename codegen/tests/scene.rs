@@ -378,7 +378,7 @@ fn errors_show_the_statement_that_they_are_about() {
     arm.body(
         Body::on(&rod)
             .mass("m".len() as f64)
-            .com([0.0, f64::NAN, 1.0]),
+            .com([0.into(), Expr::name("high"), 1.into()]),
     );
     arm.body(Body::on("upper").inertia_about_com(diagonal([1, 1, 1])));
     let error = arm

@@ -131,7 +131,7 @@ mod tests {
             ] {
                 let text = format!(
                     "impl A {{\nfn f(&self) -> B {{\nslots[3] = x[0][1] / a;\n\
-                     if !a.is_positive() {{ return Err(::hamel::Singular::inertia(\"v{count}\")); }}\nOk({list})\n}}\n\
+                     if !a.is_positive() {{ return ::core::result::Result::Err(::hamel::Singular::inertia(\"v{count}\")); }}\n::core::result::Result::Ok({list})\n}}\n\
                      fn g(&self) -> C {{\nlet a = k[1];\n{list}\n}}\n}}\n"
                 );
                 assert_eq!(formatted(&text), Ok(printed(&text)));

@@ -182,7 +182,7 @@ impl Drawing<'_> {
     /// The end of the function.
     pub fn value(&self, value: &str) -> String {
         if self.spec.fallible {
-            format!("Ok({value})\n")
+            format!("::core::result::Result::Ok({value})\n")
         } else {
             format!("{value}\n")
         }

@@ -111,6 +111,6 @@ impl Language for Rust {
             Cause::Kinematics(number) => format!("::hamel::Singular::kinematics({number})"),
         };
         let pivot = pivot.receiver();
-        format!("if !{pivot}.is_positive() {{ return Err({error}); }}\n")
+        format!("if !{pivot}.is_positive() {{ return ::core::result::Result::Err({error}); }}\n")
     }
 }

@@ -145,7 +145,7 @@ fn line_of<'a>(line: &'a str, next: Option<&&str>) -> Option<Line<'a>> {
         && is_simple(condition)
         && condition.len() + 2 <= SHORT
         && let Some(statement) = rest.strip_suffix(" }")
-        && statement.starts_with("return Err(")
+        && statement.starts_with("return ::core::result::Result::Err(")
         && statement.ends_with(");")
         && statement.len() + 4 <= SHORT
     {
@@ -158,7 +158,7 @@ fn line_of<'a>(line: &'a str, next: Option<&&str>) -> Option<Line<'a>> {
     if line.len() <= SHORT && is_simple(line) && plain::is_sum(line) {
         return Some(Line::Plain(line));
     }
-    for (before, after) in [("[", "]"), ("Ok([", "])")] {
+    for (before, after) in [("[", "]"), ("::core::result::Result::Ok([", "])")] {
         if let Some(list) = line.strip_prefix(before)
             && let Some(list) = list.strip_suffix(after)
             && !list.is_empty()

@@ -114,7 +114,7 @@ fn canonical(emitter: &Emitter) -> Option<String> {
     let call = if fallible {
         call
     } else {
-        format!("Ok({call})")
+        format!("::core::result::Result::Ok({call})")
     };
     let body = format!(
         "fn momentum(&self, x: &Self::Coordinates, xi: &Self::Velocities) -> Self::Velocities {{\nself.{momentum}(x, xi)\n}}\n\n\
@@ -265,7 +265,7 @@ fn slopes(emitter: &Emitter, together: bool) -> Option<String> {
     };
     let body = match fallible {
         true => table + &rates,
-        false => format!("{table}Ok({rates})"),
+        false => format!("{table}::core::result::Result::Ok({rates})"),
     };
     let arguments = arguments.join(", ");
     Some(format!(

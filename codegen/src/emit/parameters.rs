@@ -109,7 +109,7 @@ fn accessor(emitter: &Emitter, index: usize) -> String {
         false => format!("self.{field} = {value};\n"),
     };
     format!(
-        "/// Parameter `{written}`, {shape}.\n#[must_use]\npub fn {name}(&self) -> {of} {{\nself.{field}\n}}\n\n{}pub fn set_{name}(&mut self, value: {of}) -> {RESULT} {{\n{body}Ok(())\n}}\n\n",
+        "/// Parameter `{written}`, {shape}.\n#[must_use]\npub fn {name}(&self) -> {of} {{\nself.{field}\n}}\n\n{}pub fn set_{name}(&mut self, value: {of}) -> {RESULT} {{\n{body}::core::result::Result::Ok(())\n}}\n\n",
         docs::comment(&lines)
     )
 }
@@ -135,7 +135,7 @@ fn update(emitter: &Emitter) -> String {
         &expressions(emitter.program, &names.fields, "self."),
     ));
     format!(
-        "/// Brings the kept constants in step with the parameters.\nfn {}(&mut self) -> {RESULT} {{\n{body}Ok(())\n}}\n\n",
+        "/// Brings the kept constants in step with the parameters.\nfn {}(&mut self) -> {RESULT} {{\n{body}::core::result::Result::Ok(())\n}}\n\n",
         names.update
     )
 }

@@ -54,7 +54,7 @@ impl Drawing<'_> {
             let (result, end) = match used.checks {
                 true => (
                     "-> ::core::result::Result<(), ::hamel::Singular> ",
-                    "Ok(())\n",
+                    "::core::result::Result::Ok(())\n",
                 ),
                 false => ("", ""),
             };

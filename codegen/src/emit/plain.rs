@@ -1,8 +1,8 @@
 //! The part of Rust that most lines of the generated text are written in, and its parser.
 //!
 //! ```text
-//! statement  let PATTERN = SUM;   OPERAND = SUM;   OPERAND;   if !SUM { return Err(PATH(WHAT)); }
-//! value      SUM   [ENTRY, …]   Ok([ENTRY, …])                    entries are sums, or rows of them
+//! statement  let PATTERN = SUM;   OPERAND = SUM;   OPERAND;   if !SUM { return RESULT::Err(PATH(WHAT)); }
+//! value      SUM   [ENTRY, …]   RESULT::Ok([ENTRY, …])            entries are sums, or rows of them
 //! WHAT       nothing, NUMBER or "NAME"
 //! attribute  #[PATH]   #[PATH(PATH, …, name = "text")]
 //! SUM        OPERAND (+ - * /) OPERAND …
@@ -29,7 +29,7 @@ pub fn is_sum(text: &str) -> bool {
 /// Whether a text is a list that stands as the value of a function.
 pub fn is_value(text: &str) -> bool {
     let mut reader = Reader::new(text);
-    let whole = match reader.word("Ok") {
+    let whole = match reader.result("Ok") {
         true => reader.take(b'(') && reader.list(true) && reader.take(b')'),
         false => reader.list(true),
     };
@@ -114,6 +114,19 @@ impl<'a> Reader<'a> {
         found
     }
 
+    /// Reads a variant of `Result` with its whole path, which says the same wherever the text stands.
+    fn result(&mut self, variant: &str) -> bool {
+        let before = self.at;
+        let path = ["core", "result", "Result", variant];
+        let found = path
+            .iter()
+            .all(|word| self.take_colons() && self.word(word));
+        if !found {
+            self.at = before;
+        }
+        found
+    }
+
     /// Reads a name that is no keyword.
     fn name(&mut self) -> bool {
         let word = self.next_word();
@@ -164,7 +177,8 @@ impl<'a> Reader<'a> {
 
     /// `{ return Err(…); }`
     fn leaves(&mut self) -> bool {
-        let returns = self.take(b'{') && self.word("return") && self.word("Err") && self.take(b'(');
+        let returns =
+            self.take(b'{') && self.word("return") && self.result("Err") && self.take(b'(');
         let error = returns && self.path();
         let of = self.take(b'(') && self.what() && self.take(b')');
         error && of && self.take(b')') && self.take(b';') && self.take(b'}')
@@ -327,10 +341,10 @@ mod tests {
             "*self = next;",
             "self.theta[1] = value;",
             "next.update()?;",
-            "if !(-a).is_positive() { return Err(::hamel::Singular::inertia(\"w[2]\")); }",
-            "if !(-a).is_positive() { return Err(::hamel::Singular::inertia(\"ω\")); }",
-            "if !a.is_positive() { return Err(::hamel::Singular::mass()); }",
-            "if !k[3].is_positive() { return Err(::hamel::Singular::kinematics(1)); }",
+            "if !(-a).is_positive() { return ::core::result::Result::Err(::hamel::Singular::inertia(\"w[2]\")); }",
+            "if !(-a).is_positive() { return ::core::result::Result::Err(::hamel::Singular::inertia(\"ω\")); }",
+            "if !a.is_positive() { return ::core::result::Result::Err(::hamel::Singular::mass()); }",
+            "if !k[3].is_positive() { return ::core::result::Result::Err(::hamel::Singular::kinematics(1)); }",
         ] {
             assert!(is_statement(text), "{text}");
             syn::parse_str::<syn::Block>(&format!("{{{text}}}")).expect(text);
@@ -339,7 +353,7 @@ mod tests {
             "[]",
             "[t1, -t2,]",
             "[[t1, k[15]], [a, b]]",
-            "Ok([[x[0]], [k[1],\n]])",
+            "::core::result::Result::Ok([[x[0]], [k[1],\n]])",
         ] {
             assert!(is_value(text), "{text}");
             syn::parse_str::<syn::Expr>(text).expect(text);
@@ -348,7 +362,7 @@ mod tests {
             "a",
             "-self.theta[1]",
             "self.rate(x, xi)",
-            "Ok(())",
+            "::core::result::Result::Ok(())",
             "a * b?",
         ] {
             assert!(is_sum(text), "{text}");
@@ -387,9 +401,9 @@ mod tests {
             "a = ;",
             "a b;",
             "a??b;",
-            "if !a.is_positive() { return Err(::hamel::Singular::inertia(1); }",
-            "if !a.is_positive() { return Err(::hamel::Singular::inertia(\"w)); }",
-            "if !a.is_positive() { return Err(::hamel::Singular::inertia(w)); }",
+            "if !a.is_positive() { return ::core::result::Result::Err(::hamel::Singular::inertia(1); }",
+            "if !a.is_positive() { return ::core::result::Result::Err(::hamel::Singular::inertia(\"w)); }",
+            "if !a.is_positive() { return ::core::result::Result::Err(::hamel::Singular::inertia(w)); }",
             "",
         ] {
             assert!(!is_statement(text), "{text}");
@@ -403,7 +417,7 @@ mod tests {
             "[,]",
             "[[a], k[1]",
             "[[a, k[1,], b]",
-            "Ok([a]",
+            "::core::result::Result::Ok([a]",
             "[[[a]]]",
         ] {
             assert!(!is_value(text), "{text}");

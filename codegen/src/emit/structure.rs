@@ -104,7 +104,7 @@ fn constructor(emitter: &Emitter) -> String {
         false => ("", String::new()),
     };
     format!(
-        "{}pub fn new({argument}) -> ::core::result::Result<Self, ::hamel::Singular> {{\nlet {mutable}system = {};\n{update}Ok(system)\n}}\n\n",
+        "{}pub fn new({argument}) -> ::core::result::Result<Self, ::hamel::Singular> {{\nlet {mutable}system = {};\n{update}::core::result::Result::Ok(system)\n}}\n\n",
         docs::comment(&lines),
         literal(emitter, values.collect(), None)
     )

@@ -67,7 +67,7 @@ pub fn text(emitter: &Emitter, linearize: &Spec, both: &Spec) -> String {
         .collect();
     let question = if both.fallible { "?" } else { "" };
     let value = match both.fallible {
-        true => format!("Ok({SLOPES})"),
+        true => format!("::core::result::Result::Ok({SLOPES})"),
         false => SLOPES.into(),
     };
     let body = format!(

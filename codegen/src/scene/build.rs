@@ -1,19 +1,19 @@
 //! The builder of scenes: a method for each statement of the language.
 
+use super::claim::{Claim, claimed};
 use super::expression::ident;
 use super::parts::{Body, Element, Frame, Joint, Load};
-use super::{Scene, SceneError, print};
-use crate::diagnostics::Diagnostic;
+use super::{Scene, SceneError, check};
 use crate::syntax::ast::{
-    Between, Beyond, Condition, Conserved, CoordKind, Declaration, Expr, External, Function, Item,
-    ItemKind, Origins, Shape, ShapeKind, Source, Span, System, Table, Target, Wanted,
+    Between, Beyond, Condition, CoordKind, Declaration, Expr, External, Function, Item, ItemKind,
+    Origins, Shape, ShapeKind, Source, Span, System, Table, Target, Wanted,
 };
 use crate::syntax::parse_text;
 
 /// Builds a [`Scene`] statement by statement, in the order in which a text would have them.
 ///
-/// Names are checked when the scene is [built](Self::build), everything else when it is
-/// [generated](Scene::generate), by the checks that texts go through; errors show the statement that they are about.
+/// Names, and whether numbers are finite, are checked when the scene is [built](Self::build), everything else when it
+/// is [generated](Scene::generate), by the checks that texts go through; errors show the statement that they are about.
 #[derive(Clone, Debug)]
 pub struct SceneBuilder {
     system: System,
@@ -36,7 +36,9 @@ impl SceneBuilder {
 
     pub(super) fn add(&mut self, kind: ItemKind) {
         let span = Span::NOWHERE;
-        self.system.items.push(Item { kind, span });
+        let mut item = Item { kind, span };
+        check::cut(&mut item);
+        self.system.items.push(item);
     }
 
     /// Statements that stand inside of another one.
@@ -46,9 +48,12 @@ impl SceneBuilder {
         inner.system.items
     }
 
-    /// Adds a line to the documentation of the generated type.
+    /// Adds a line to the documentation of the generated type, or several.
     pub fn doc(&mut self, line: &str) {
-        self.system.docs.extend(line.lines().map(str::to_string));
+        let lines = line.replace("\r\n", "\n").replace('\r', "\n");
+        let none = lines.is_empty().then(String::new);
+        let lines = lines.lines().map(str::to_string);
+        self.system.docs.extend(lines.chain(none));
     }
 
     /// Whether the generated type is `pub`; it is by default.
@@ -152,6 +157,17 @@ impl SceneBuilder {
         }));
     }
 
+    /// The same with its values in a file: a scene has no folder, so it can be printed, and is derived where its text
+    /// stands.
+    pub fn table_from(&mut self, name: &str, path: &str, between: Between, beyond: Beyond) {
+        self.add(ItemKind::Table(Table {
+            name: ident(name),
+            source: Source::File(path.to_string(), Span::NOWHERE),
+            between,
+            beyond,
+        }));
+    }
+
     /// A configuration coordinate.
     pub fn coordinate(&mut self, name: &str, kind: CoordKind) -> Expr {
         self.add(ItemKind::Coord(vec![(ident(name), kind)]));
@@ -248,12 +264,40 @@ impl SceneBuilder {
         });
     }
 
+    /// The same; what starts off it decays at a rate (1/s).
+    pub fn nonholonomic_stabilized(
+        &mut self,
+        left: impl Into<Expr>,
+        right: impl Into<Expr>,
+        rate: impl Into<Expr>,
+    ) {
+        self.add(ItemKind::Nonholonomic {
+            left: left.into(),
+            right: right.into(),
+            stabilized: Some(rate.into()),
+        });
+    }
+
     /// A closed loop, kept by multipliers: left = right.
     pub fn closed_loop(&mut self, left: impl Into<Expr>, right: impl Into<Expr>) {
         self.add(ItemKind::Loop {
             left: left.into(),
             right: right.into(),
             stabilized: None,
+        });
+    }
+
+    /// The same; what starts off it decays at a rate (1/s).
+    pub fn closed_loop_stabilized(
+        &mut self,
+        left: impl Into<Expr>,
+        right: impl Into<Expr>,
+        rate: impl Into<Expr>,
+    ) {
+        self.add(ItemKind::Loop {
+            left: left.into(),
+            right: right.into(),
+            stabilized: Some(rate.into()),
         });
     }
 
@@ -377,11 +421,16 @@ impl SceneBuilder {
         let when = when.into_iter();
         self.add(ItemKind::Invariant {
             name: ident(name),
-            conserved: Conserved::Value(value.into()),
+            conserved: claimed(value.into()),
             when: when
                 .map(|(target, value)| Condition { target, value })
                 .collect(),
         });
+    }
+
+    /// That energy or momentum is constant along the motion.
+    pub fn claim(&mut self, claim: Claim) {
+        self.add(claim.item());
     }
 
     /// The functions to generate, such as `accel`; all by default.
@@ -402,23 +451,10 @@ impl SceneBuilder {
     /// The scene.
     ///
     /// # Errors
-    /// Names that the language does not have, each with the statement in which it stands.
+    /// Names that the language does not have, numbers that are not finite and expressions that are too deep, each with
+    /// the statement in which it stands.
     pub fn build(&self) -> Result<Scene, SceneError> {
-        let text = print::text(&self.system);
-        let errors = match parse_text(&text) {
-            Ok(system) if system == self.system => return Ok(Scene { system, text }),
-            Ok(system) => {
-                let differs = |(ours, read): &(&Item, &Item)| ours != read;
-                let statements = self.system.items.iter().zip(&system.items);
-                let place = statements.clone().find(differs);
-                let span = place.map_or(system.name.span, |(_, read)| read.span);
-                let error =
-                    Diagnostic::new(span, "this statement has a name that is more than one word");
-                vec![error.help("names are made of letters, digits and `_`")]
-            }
-            Err(errors) => errors,
-        };
-        Err(SceneError::new(errors, &text))
+        check::checked(&self.system)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Expressions written in Rust: numbers, arrays, operators and the functions of the language.
 
+use super::check::not_finite;
 use crate::syntax::ast::{BinaryOp, Choice, Comparison, Expr, ExprKind, Ident, Span};
 use crate::syntax::path;
 use num_bigint::BigInt;
@@ -34,8 +35,9 @@ fn number(number: BigRational) -> Expr {
 /// let r = Expr::name("r");
 /// assert_eq!(call("dot", [r.clone(), r]).to_string(), "dot(r, r)");
 /// ```
-pub fn call<const N: usize>(function: &str, arguments: [Expr; N]) -> Expr {
-    expr(ExprKind::Call(ident(function), arguments.into()))
+pub fn call(function: &str, arguments: impl IntoIterator<Item = Expr>) -> Expr {
+    let arguments = arguments.into_iter().collect();
+    expr(ExprKind::Call(ident(function), arguments))
 }
 
 /// Components of the motion of a frame in the axes of another: `velocity(f, p) in g`; the `motion` is a [`call`].
@@ -67,9 +69,20 @@ pub fn if_less(
     then: impl Into<Expr>,
     otherwise: impl Into<Expr>,
 ) -> Expr {
+    choice(a, Comparison::Less, b, then, otherwise)
+}
+
+/// Of two values of one shape the first where a comparison holds: `if a >= b { then } else { otherwise }`.
+pub fn choice(
+    a: impl Into<Expr>,
+    comparison: Comparison,
+    b: impl Into<Expr>,
+    then: impl Into<Expr>,
+    otherwise: impl Into<Expr>,
+) -> Expr {
     expr(ExprKind::If(Box::new(Choice {
         left: a.into(),
-        comparison: Comparison::Less,
+        comparison,
         right: b.into(),
         then: then.into(),
         otherwise: otherwise.into(),
@@ -119,13 +132,19 @@ impl Expr {
     }
 
     /// An entry of a vector; the first one has the index 1, as in the paper.
-    pub fn entry(&self, index: i32) -> Expr {
+    pub fn entry(&self, index: impl Into<Expr>) -> Expr {
         let index = vec![index.into()];
         expr(ExprKind::Index(Box::new(self.clone()), index))
     }
 
-    /// An integer power.
-    pub fn pow(&self, exponent: i32) -> Expr {
+    /// An entry of a matrix by its row and column, from 1.
+    pub fn element(&self, row: impl Into<Expr>, column: impl Into<Expr>) -> Expr {
+        let indices = vec![row.into(), column.into()];
+        expr(ExprKind::Index(Box::new(self.clone()), indices))
+    }
+
+    /// A power; the exponent is a whole number or a quotient of two.
+    pub fn pow(&self, exponent: impl Into<Expr>) -> Expr {
         binary(BinaryOp::Pow, self.clone(), exponent.into())
     }
 }
@@ -143,12 +162,12 @@ impl From<&Expr> for Expr {
     }
 }
 
-/// The decimal number that `{}` prints, exactly: 0.1 is 1/10. What is not finite becomes a name that nothing has,
-/// so that the scene is refused where it stands.
+/// The decimal number that `{}` prints, exactly: 0.1 is 1/10. A scene with what is not finite is refused where it is
+/// [built](super::SceneBuilder::build).
 impl From<f64> for Expr {
     fn from(value: f64) -> Expr {
         if !value.is_finite() {
-            return Expr::name(&format!("{value}").replace('-', "minus_"));
+            return not_finite(value);
         }
         number(decimal(value).unwrap_or_else(|| BigRational::from_integer(0.into())))
     }
@@ -219,6 +238,20 @@ macro_rules! operators {
         }
 
         impl $operator<&Expr> for f64 {
+            type Output = Expr;
+            fn $method(self, right: &Expr) -> Expr {
+                binary(BinaryOp::$op, self.into(), right.clone())
+            }
+        }
+
+        impl $operator<Expr> for i32 {
+            type Output = Expr;
+            fn $method(self, right: Expr) -> Expr {
+                binary(BinaryOp::$op, self.into(), right)
+            }
+        }
+
+        impl $operator<&Expr> for i32 {
             type Output = Expr;
             fn $method(self, right: &Expr) -> Expr {
                 binary(BinaryOp::$op, self.into(), right.clone())

@@ -35,6 +35,8 @@
 //! ```
 
 mod build;
+mod check;
+mod claim;
 mod expression;
 mod parts;
 mod print;
@@ -49,10 +51,11 @@ use crate::syntax::parse_text;
 use std::fmt;
 
 pub use crate::syntax::ast::{
-    Between as Interpolation, Beyond as Extrapolation, CoordKind, Expr, ShapeKind,
+    Between as Interpolation, Beyond as Extrapolation, Comparison, CoordKind, Expr, ShapeKind,
 };
 pub use build::SceneBuilder;
-pub use expression::{call, cos, diagonal, if_less, in_axes, pose, shifted, sin, sqrt};
+pub use claim::Claim;
+pub use expression::{call, choice, cos, diagonal, if_less, in_axes, pose, shifted, sin, sqrt};
 pub use parts::{Between, Body, Element, Frame, Joint, Load, Point, WORLD};
 pub use reuse::Parameter;
 

@@ -191,6 +191,16 @@ impl Joint {
     pub fn limit(self, lower: impl Into<Expr>, upper: impl Into<Expr>) -> Joint {
         self.field(JointField::Limit, [lower.into(), upper.into()])
     }
+
+    /// The greatest rate of its coordinate, as information (m/s, rad/s).
+    pub fn max_speed(self, speed: impl Into<Expr>) -> Joint {
+        self.field(JointField::MaxSpeed, [speed.into()])
+    }
+
+    /// The greatest force or torque of its drive, as information (N, N m).
+    pub fn max_force(self, force: impl Into<Expr>) -> Joint {
+        self.field(JointField::MaxForce, [force.into()])
+    }
 }
 
 /// A rigid body fixed to a frame.
@@ -324,6 +334,12 @@ impl From<(Point, Point)> for Between {
 impl From<Expr> for Between {
     fn from(value: Expr) -> Between {
         Between(Acting::On(value))
+    }
+}
+
+impl From<&Expr> for Between {
+    fn from(value: &Expr) -> Between {
+        value.clone().into()
     }
 }
 

@@ -15,7 +15,13 @@ use crate::syntax::{joint_field, joint_kind};
 pub fn text(system: &System) -> String {
     let mut text = String::new();
     for line in &system.docs {
-        text.push_str(format!("/// {line}").trim_end());
+        let line = match line {
+            line if line.is_empty() => "///".into(),
+            // No comment has a carriage return.
+            line if line.contains('\r') => format!("#[doc = {:?}]", format!(" {line}")),
+            line => format!("/// {line}"),
+        };
+        text.push_str(&line);
         text.push('\n');
     }
     let public = if system.public { "pub " } else { "" };

@@ -83,22 +83,22 @@ impl SceneBuilder {
 
     /// A part of the mechanism that is a component, with the parameters of that by their names. What it declares is
     /// called `NAME.knee`.
-    pub fn part(
+    pub fn part<'a>(
         &mut self,
         name: &str,
         component: &str,
-        arguments: impl IntoIterator<Item = (&'static str, Expr)>,
+        arguments: impl IntoIterator<Item = (&'a str, Expr)>,
     ) {
         self.add(made(name, None, component, arguments));
     }
 
     /// An array of parts, with a counter that the arguments mention; the parts are `NAME[1]` and so on.
-    pub fn parts(
+    pub fn parts<'a>(
         &mut self,
         name: &str,
         (counter, first, last): (&str, impl Into<Expr>, impl Into<Expr>),
         component: &str,
-        arguments: impl IntoIterator<Item = (&'static str, Expr)>,
+        arguments: impl IntoIterator<Item = (&'a str, Expr)>,
     ) {
         let counter = self::counter(counter, first, last);
         self.add(made(name, Some(counter), component, arguments));
@@ -113,11 +113,11 @@ fn counter(name: &str, first: impl Into<Expr>, last: impl Into<Expr>) -> Counter
     }
 }
 
-fn made(
+fn made<'a>(
     name: &str,
     counter: Option<Counter>,
     component: &str,
-    arguments: impl IntoIterator<Item = (&'static str, Expr)>,
+    arguments: impl IntoIterator<Item = (&'a str, Expr)>,
 ) -> ItemKind {
     let arguments = arguments.into_iter().map(|(name, value)| Argument {
         name: Some(ident(name)),

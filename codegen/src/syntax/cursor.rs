@@ -4,7 +4,7 @@ use proc_macro2::Delimiter;
 
 use super::ast::{Ident, Span};
 use super::tokens::{Kind, Token, closing};
-use super::words::{CONNECTIVES, RUST_WORDS, is_statement};
+use super::words::{CLAUSES, CONNECTIVES, RUST_WORDS, is_statement};
 use crate::diagnostics::Diagnostic;
 
 /// Errors reported for one description; what follows is rarely read.
@@ -195,12 +195,12 @@ impl<'a> Cursor<'a> {
             self.at += 1;
             return Ok(());
         }
-        let bracket = closing(delimiter);
-        let error = self.unexpected(&if separator {
-            format!("`,` or `{bracket}`")
-        } else {
-            format!("`{bracket}`")
-        });
+        let bracket = match closing(delimiter) {
+            "" => "the end of what the macro matched".to_owned(),
+            bracket => format!("`{bracket}`"),
+        };
+        let separated = if separator { "`,` or " } else { "" };
+        let error = self.unexpected(&format!("{separated}{bracket}"));
         Err(match operator_help(self.peek()) {
             Some(help) => error.help(help),
             None => error,
@@ -270,10 +270,17 @@ impl<'a> Cursor<'a> {
     /// Whether the next two tokens are the start of a statement, and no names.
     pub fn starts_statement(&self) -> bool {
         let follows = self.ahead(1);
+        // `spring stiffness force length 2 …`: what is called as a statement stands before a part of one.
+        let clause = CLAUSES.contains(&follows.text.as_str())
+            && !matches!(
+                self.ahead(2).kind,
+                Kind::Punct('=' | ':' | ';' | '~' | ',' | '.')
+            );
         self.is_any_word()
             && is_statement(&self.peek().text)
             && follows.kind == Kind::Word
             && !is_connective(follows)
+            && !clause
     }
 
     /// The error for a token in the place of something else.

@@ -27,7 +27,7 @@ use crate::diagnostics::Diagnostic;
 const MAX_OPERANDS: usize = 500;
 
 /// The deepest tree of one expression: a longest chain and what its operands hold.
-const MAX_DEPTH: usize = 600;
+pub(crate) const MAX_DEPTH: usize = 600;
 
 /// An expression and the depth of its tree.
 struct Node {
@@ -258,6 +258,7 @@ fn primary(cursor: &mut Cursor<'_>) -> Parsed<Node> {
             let error = cursor.unexpected("an expression");
             Err(match token.kind {
                 Kind::Punct('+') => error.help("a sum has a term on both sides of `+`"),
+                Kind::Punct('.') => error.help("numbers have a digit before their point: `0.5`"),
                 Kind::Open(Delimiter::Brace, _) => {
                     error.help("parts of an expression are grouped with `(` and `)`")
                 }

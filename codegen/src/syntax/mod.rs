@@ -56,6 +56,8 @@ pub use tokens::Places;
 pub use joint::kind_name as joint_kind;
 
 pub(crate) use body::fields_of as body_fields;
+#[cfg(feature = "files")]
+pub(crate) use expression::MAX_DEPTH;
 pub(crate) use joint::{
     endings as joint_endings, field_name as joint_field, fields_of as joint_fields,
     kinds as joint_kinds,

@@ -57,6 +57,7 @@ pub(super) fn value(text: &str, shown: &str) -> Result<BigRational, Refusal> {
     let (exponent, suffix) = exponent(rest);
     if !suffix.is_empty() {
         let number = text.strip_suffix(suffix).unwrap_or(text);
+        let number = number.trim_end_matches('_');
         return match suffix {
             "e" | "E" => refuse(
                 format!("the exponent of `{shown}` is missing"),

@@ -74,8 +74,8 @@ pub(super) fn of_stream(stream: TokenStream) -> (Vec<Token>, Places) {
 
 /// The tokens in source order, with a last one that marks the end.
 ///
-/// Invisible brackets, which the compiler puts around what a `macro_rules!` matched, stay where they hold more than one
-/// token: they group like parentheses.
+/// Invisible brackets, which the compiler puts around what a `macro_rules!` matched, stay where they hold an operator:
+/// there they group like parentheses. Elsewhere, as around a doc comment, a path or nothing at all, they say nothing.
 fn flatten(stream: TokenStream, place: &mut dyn FnMut(TokenSpan) -> Span) -> Vec<Token> {
     let mut tokens: Vec<Token> = Vec::new();
     let mut outer: Vec<Frame> = Vec::new();
@@ -84,13 +84,17 @@ fn flatten(stream: TokenStream, place: &mut dyn FnMut(TokenSpan) -> Span) -> Vec
         let (kind, text, span) = match inner.next() {
             Some(TokenTree::Group(group)) => {
                 let delimiter = group.delimiter();
+                let seen = delimiter != Delimiter::None || has_operator(group.stream());
                 let frame = Frame {
                     rest: std::mem::replace(&mut inner, group.stream().into_iter()),
-                    open: tokens.len(),
+                    open: seen.then_some(tokens.len()),
                     delimiter,
                     close: group.span_close(),
                 };
                 outer.push(frame);
+                if !seen {
+                    continue;
+                }
                 // The matching index is filled in when the bracket closes.
                 (
                     Kind::Open(delimiter, 0),
@@ -114,12 +118,11 @@ fn flatten(stream: TokenStream, place: &mut dyn FnMut(TokenSpan) -> Span) -> Vec
             None => match outer.pop() {
                 Some(frame) => {
                     inner = frame.rest;
-                    if frame.delimiter == Delimiter::None && tokens.len() == frame.open + 2 {
-                        tokens.remove(frame.open);
+                    let Some(open) = frame.open else {
                         continue;
-                    }
+                    };
                     let close = tokens.len();
-                    if let Some(open) = tokens.get_mut(frame.open) {
+                    if let Some(open) = tokens.get_mut(open) {
                         open.kind = Kind::Open(frame.delimiter, close);
                     }
                     (
@@ -146,9 +149,21 @@ fn flatten(stream: TokenStream, place: &mut dyn FnMut(TokenSpan) -> Span) -> Vec
 /// A bracket whose content is being listed.
 struct Frame {
     rest: token_stream::IntoIter,
-    open: usize,
+    /// The place of its opening token, where it has one.
+    open: Option<usize>,
     delimiter: Delimiter,
     close: TokenSpan,
+}
+
+/// Whether an operator or a choice stands in a stream, outside of further brackets.
+fn has_operator(stream: TokenStream) -> bool {
+    stream.into_iter().any(|tree| match tree {
+        TokenTree::Punct(punct) => "+-*/^<>".contains(punct.as_char()),
+        TokenTree::Ident(ident) => ident == "if" || ident == "in",
+        TokenTree::Group(_) => false,
+        // `-1` is one literal where a macro wrote it.
+        TokenTree::Literal(literal) => literal.to_string().starts_with('-'),
+    })
 }
 
 /// The text of a literal that stands in `#[doc = …]`.

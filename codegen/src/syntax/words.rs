@@ -141,6 +141,9 @@ const STATEMENTS: [(&str, &str); 41] = [
 /// Words that end an expression, and can name nothing.
 pub(super) const CONNECTIVES: [&str; 5] = ["at", "on", "in", "about", "stabilized"];
 
+/// Words that may stand behind an expression, and can be names.
+pub(super) const CLAUSES: [&str; 7] = ["length", "from", "to", "moves", "follows", "along", "when"];
+
 /// Words that no item of the generated code can have for a name.
 pub(super) const RUST_WORDS: [&str; 53] = [
     "_", "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",

@@ -153,7 +153,19 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "a description that was built in Rust has a part with a name such as `a[1][2]`",
     ),
     (
-        "scene/build.rs",
+        "scene/check.rs",
+        "\"a number that is not finite was given here\"",
+        "a number that is not finite was given here",
+        "a description that was built in Rust has a number that is NaN or infinite",
+    ),
+    (
+        "scene/check.rs",
+        "an expression that is more than {MAX_DEPTH} operations deep was given here",
+        "an expression that is more than … operations deep was given here",
+        "a description that was built in Rust has a sum or product that a loop made longer and longer",
+    ),
+    (
+        "scene/check.rs",
         "\"this statement has a name that is more than one word\"",
         "this statement has a name that is more than one word",
         "a description that was built in Rust has a name with a space in it",

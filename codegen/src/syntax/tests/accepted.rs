@@ -259,6 +259,28 @@ fn invisible_groups_are_parentheses() {
         told(&system.items[0].kind),
         "let x: Vector(3) = (2 * (a + b))"
     );
+
+    // What groups nothing is as if it were not there: a visibility that is empty, a doc comment, a path, a block.
+    let (none, docs) = (hidden(""), hidden("doc = \" A.\""));
+    let (path, block) = (hidden("left.hip"), hidden("{ 1 - 2 }"));
+    let tokens = quote::quote!(#[#docs] #none system S {
+        let x = if -#sum < 1 #block else #block;
+        body on #path { mass 1; }
+    });
+    let system = parse_tokens(tokens).1.unwrap();
+    let text = "/// A.
+        system S {
+            let x = if -(a + b) < 1 { 1 - 2 } else { 1 - 2 };
+            body on left.hip { mass 1; }
+        }";
+    assert_eq!(system, crate::syntax::parse_text(text).unwrap());
+    let wrong = hidden("a < b");
+    let tokens = quote::quote!(system S { let x = 2 * #wrong; });
+    let errors = parse_tokens(tokens).1.unwrap_err();
+    assert_eq!(
+        errors[0].message,
+        "expected the end of what the macro matched, found `<`"
+    );
 }
 
 #[test]

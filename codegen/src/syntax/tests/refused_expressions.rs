@@ -29,6 +29,8 @@ fn expressions() {
         r#"let x = a::b;"#,
         r#"let x = 1e;"#,
         r#"let x = 1u8;"#,
+        r#"let x = 1_f64;"#,
+        r#"let x = .5;"#,
         r#"let x = 0x1;"#,
         r#"let x = "a";"#,
         r#"let x = 1e999;"#,
@@ -91,6 +93,10 @@ fn expressions() {
       exponents are written `1e-3`
     2:9 the number `1u8` has a suffix <1u8>
       numbers are exact and have no type: write `1`
+    2:9 the number `1_f64` has a suffix <1_f64>
+      numbers are exact and have no type: write `1`
+    2:9 expected an expression, found `.` <.>
+      numbers have a digit before their point: `0.5`
     2:9 `0x1` is not a decimal number <0x1>
       write it with decimal digits
     2:9 a string is not a value: `"a"` <"a">

@@ -1,0 +1,155 @@
+//! What a scene cannot say, found when it is built: numbers that are not finite, expressions that are too deep, and
+//! names that are none.
+//!
+//! What has no text stands in a scene as a name that no text has; so it is shown where it stands.
+
+use super::{Scene, SceneError, print};
+use crate::diagnostics::Diagnostic;
+use crate::syntax::ast::visit::{Visit, parts, visit};
+use crate::syntax::ast::{Counter, Expr, ExprKind, Ident, Item, ItemKind, Span, System, Target};
+use crate::syntax::{MAX_DEPTH, parse_text};
+
+/// What is printed, since no name has it, for what no text can say.
+const NO_NUMBER: &str = "((0 / 0))";
+const INFINITE: &str = "((1 / 0))";
+const TOO_DEEP: &str = "((deeper))";
+
+/// The name that stands for a number that is not finite.
+pub(super) fn not_finite(value: f64) -> Expr {
+    let name = if value.is_nan() { NO_NUMBER } else { INFINITE };
+    let inner = named(name);
+    if value < 0.0 { -inner } else { inner }
+}
+
+fn named(name: &str) -> Expr {
+    Expr {
+        kind: ExprKind::Name(name.to_string()),
+        span: Span::NOWHERE,
+    }
+}
+
+/// The scene with a system's statements, which its text says, too.
+pub(super) fn checked(system: &System) -> Result<Scene, SceneError> {
+    let text = print::text(system);
+    // Docs may say anything, a line each.
+    let docs = text.split_inclusive('\n').take(system.docs.len());
+    let mut errors = strange(&text, docs.map(str::len).sum());
+    match parse_text(&text) {
+        Ok(read) if errors.is_empty() && read == *system => {
+            let system = read;
+            return Ok(Scene { system, text });
+        }
+        Ok(read) => {
+            let of_a_number = |span: Span| errors.iter().any(|error| inside(error.span, span));
+            let same = system.items.len() == read.items.len();
+            let both = system.items.iter().zip(&read.items);
+            let differing = both.filter(|(ours, read)| ours != read);
+            let differing = differing.map(|(_, read)| read.span);
+            let differing = differing.filter(|span| !of_a_number(*span));
+            let mut places: Vec<Span> = differing.collect();
+            if !same {
+                // Behind the first one statements stand beside others.
+                places.truncate(1);
+            }
+            if places.is_empty() && errors.is_empty() {
+                places.push(read.name.span);
+            }
+            errors.extend(places.into_iter().map(|place| {
+                Diagnostic::new(
+                    place,
+                    "this statement has a name that is more than one word",
+                )
+                .help("names are made of letters, digits and `_`")
+            }));
+        }
+        Err(more) => errors.extend(more),
+    }
+    Err(SceneError::new(errors, &text))
+}
+
+fn inside(inner: Span, outer: Span) -> bool {
+    let both = inner.range().zip(outer.range());
+    both.is_some_and(|(inner, outer)| outer.start <= inner.start && inner.end <= outer.end)
+}
+
+/// An error for each thing behind a place in a text that no text can say.
+fn strange(text: &str, docs: usize) -> Vec<Diagnostic> {
+    let all = |of: &'static str| {
+        let found = text.match_indices(of).filter(move |(at, _)| *at >= docs);
+        found.map(move |(at, _)| at..at + of.len())
+    };
+    let number = |range| {
+        Diagnostic::new(
+            Span::new(range),
+            "a number that is not finite was given here",
+        )
+        .help("numbers of a description are finite: see where the program computes this one")
+    };
+    let deep = |range| {
+        let message =
+            format!("an expression that is more than {MAX_DEPTH} operations deep was given here");
+        Diagnostic::new(Span::new(range), message)
+            .help("name parts of it with `define`, and go on with their names")
+    };
+    let numbers = all(NO_NUMBER).chain(all(INFINITE)).map(number);
+    numbers.chain(all(TOO_DEEP).map(deep)).collect()
+}
+
+/// Replaces expressions that are so deep that no walk along them should be begun.
+pub(super) fn cut(item: &mut Item) {
+    visit(item, &mut Cut);
+    let counted = |counter: &mut Counter| {
+        Cut.expr(&mut counter.first);
+        Cut.expr(&mut counter.last);
+    };
+    match &mut item.kind {
+        ItemKind::Repeat(repeat) => counted(&mut repeat.counter),
+        ItemKind::Part(part) => {
+            part.counter.iter_mut().for_each(counted);
+            let values = part.arguments.iter_mut().map(|one| &mut one.value);
+            values.for_each(|value| Cut.expr(value));
+        }
+        ItemKind::Component(component) => {
+            let parameters = component.parameters.iter_mut();
+            let defaults = parameters.filter_map(|one| one.default.as_mut());
+            defaults.for_each(|value| Cut.expr(value));
+        }
+        _ => {}
+    }
+}
+
+struct Cut;
+
+impl Visit for Cut {
+    fn declares(&mut self, _: &mut Ident, _: bool) {}
+    fn uses(&mut self, _: &mut Ident) {}
+    fn target(&mut self, _: &mut Target) {}
+    fn place(&mut self, _: &mut Span) {}
+
+    fn expr(&mut self, expr: &mut Expr) {
+        if !is_deep(expr) {
+            return;
+        }
+        // Taken apart piece by piece: to drop it whole would walk along it.
+        let mut rest = vec![std::mem::replace(expr, named(TOO_DEEP))];
+        while let Some(mut piece) = rest.pop() {
+            let pieces = parts(&mut piece);
+            rest.extend(
+                pieces
+                    .into_iter()
+                    .map(|part| std::mem::replace(part, named(""))),
+            );
+        }
+    }
+}
+
+fn is_deep(expr: &Expr) -> bool {
+    let mut level = vec![expr];
+    for _ in 0..MAX_DEPTH {
+        level = level.iter().flat_map(|expr| expr.parts()).collect();
+        if level.is_empty() {
+            return false;
+        }
+    }
+    true
+}
