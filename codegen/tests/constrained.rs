@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{Random, attack, value};
+use common::{Random, attack, generated, value};
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
 
@@ -208,4 +208,46 @@ fn faults(seed: u64) -> Vec<String> {
 #[test]
 fn constraints_under_functions_of_velocities() {
     attack(80, 2000, faults);
+}
+
+/// Constraints may make velocities multiples of one another, and the norm of them √c |ξ| with a c that is no square: of
+/// two bars, whatever the field of the proof is, one is of this kind. Drag along a rail: m ṡ = −|s| s.
+#[test]
+fn norms_of_velocities_that_are_tied_have_roots() {
+    for slope in ["2", "3", "5", "1.3 / 0.372"] {
+        let of = generated(&format!(
+            "system Dragged {{
+                coord x, y;
+                velocity u, v;
+                rate x = u;
+                rate y = v;
+                particle mass 2 at [x, y, 0];
+                nonholonomic v - {slope} * u = 0;
+                generalized force u = -norm([u, v]) * u;
+                generalized force v = -norm([u, v]) * v;
+                start u = 1;
+            }}"
+        ));
+        let (x, xi) = ([0.3, -0.2], [1.5, 1.5 * ratio(slope)]);
+        let left: Vec<f64> = match of.active.n() {
+            1 => vec![xi[0]],
+            _ => xi.to_vec(),
+        };
+        let found = value(&of, "accel", [&x, &left, &[], &[]]);
+        let speed = f64::hypot(xi[0], xi[1]);
+        for (found, xi) in found.iter().zip(left) {
+            let expected = -speed * xi / 2.0;
+            assert!(
+                (found - expected).abs() < 1e-13 * expected.abs(),
+                "{slope}: {found} for {expected}"
+            );
+        }
+    }
+}
+
+/// The value of a/b.
+fn ratio(text: &str) -> f64 {
+    let parts = text.split('/').map(|part| part.trim().parse::<f64>());
+    let parts: Vec<f64> = parts.map(|part| part.expect("a number")).collect();
+    parts[0] / parts.get(1).unwrap_or(&1.0)
 }

@@ -79,9 +79,7 @@ pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Resu
     let Some(full) = Full::new(model, reduction) else {
         return Err(failure(model, "Y A = I"));
     };
-    // Where constraints make velocities multiples of one another, their norm is √c |ξ|, and c may be no square of F_p.
-    let wider = || compare(&full, &model.points.extended()?, reduction, program);
-    let Some(failed) = compare(&full, &model.points, reduction, program).or_else(wider) else {
+    let Some(failed) = compare(&full, model, reduction, program) else {
         return Err(nowhere(model));
     };
     let mut rows = IDENTITIES.iter().zip(&failed);
@@ -95,9 +93,21 @@ pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Resu
 }
 
 /// What fails at fresh points; `None` where there are none.
+///
+/// Where constraints make velocities multiples of one another, their norm is √c |ξ|, and c may be no square of F_p.
 fn compare(
     full: &Full,
+    model: &Model,
+    reduction: &Reduction,
+    program: &Program,
+) -> Option<[Option<String>; IDENTITIES.len()]> {
+    let wider = || compare_at(&model.points.extended()?, full, reduction, program);
+    compare_at(&model.points, full, reduction, program).or_else(wider)
+}
+
+fn compare_at(
     points: &Points,
+    full: &Full,
     reduction: &Reduction,
     program: &Program,
 ) -> Option<[Option<String>; IDENTITIES.len()]> {
