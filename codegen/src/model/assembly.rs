@@ -12,12 +12,16 @@ const DESCENT: usize = 200;
 const SOLVED: f64 = 1e-12;
 /// A descent whose next step is shorter than this, relative to the distance, is at its end.
 const STILL: f64 = 1e-11;
+/// Steps behind it, which find the digits that distances do not tell.
+const SETTLING: usize = 20;
 /// How often a step is halved.
 const HALVED: usize = 24;
 /// The longest step of Newton's method (rad, m), beside the size of the coordinates.
 const REACH: f64 = 0.1;
 /// The longest step of the descent, as a multiple of the one that a flat surface would ask for.
 const LONGER: f64 = 16.0;
+/// The shortest of those behind it.
+const SHORTER: f64 = 1e-4;
 /// How many neighbours of the guess are tried at most, times the number of directions.
 const NEIGHBOURS: usize = 240;
 /// The most of them.
@@ -140,6 +144,34 @@ fn descend(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
             break;
         };
         (x, before) = (next, after);
+    }
+    settle(problem, x)
+}
+
+/// The rest of the descent. Near its end distances differ by less than their rounding, while half of the digits are still
+/// missing; the steps tell more, which are taken as long as they become shorter.
+fn settle(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
+    let ahead = |x: &[f64]| step(problem, x, &problem.residuals(x), true);
+    let mut step = ahead(&x)?;
+    let mut factor = 1.0;
+    for _ in 0..SETTLING {
+        let taken: Vec<f64> = step.iter().map(|h| factor * h).collect();
+        let next = close(problem, problem.moved(&x, &taken));
+        let both = next.and_then(|next| ahead(&next).map(|after| (next, after)));
+        let Some((next, after)) = both else {
+            break;
+        };
+        let left = dot(&after, &step) / square(&step);
+        let shorter = square(&after) < 0.5 * square(&step);
+        if shorter {
+            (x, step) = (next, after);
+        }
+        // What a step leaves of itself tells how long it should have been.
+        let better = (factor / (1.0 - left)).clamp(SHORTER, LONGER);
+        if !shorter && (better / factor - 1.0).abs() < 0.1 || better.is_nan() {
+            break;
+        }
+        factor = better;
     }
     Some(x)
 }
@@ -313,6 +345,10 @@ mod tests {
             assert!(circle.residuals(&x)[0].abs() < 1e-11);
             // The points are 3e-4 apart.
             assert!(distance(&x) < least + 1e-7, "{} {least}", distance(&x));
+            // The distance does not change along the circle.
+            let (apart, slopes) = circle.apart(&x);
+            let slope = apart[1] * slopes[1][1] * x[0] - apart[0] * slopes[0][0] * x[1];
+            assert!(slope.abs() < 1e-12, "{slope}");
         }
     }
 

@@ -209,7 +209,7 @@ impl Points {
     }
 
     /// The same variety with roots of squares of F_p(i), which every number of F_p is; `None` where they have values already.
-    pub fn extended(&self) -> Option<Self> {
+    pub(crate) fn extended(&self) -> Option<Self> {
         (self.roots == Roots::OfSquares).then(|| Points {
             roots: Roots::Extended,
             ..self.clone()
