@@ -1,4 +1,4 @@
-"""Where descriptions and robots are, and a pendulum."""
+"""Where descriptions and robots are, a pendulum, and a heavy top."""
 
 import os
 from pathlib import Path
@@ -27,6 +27,11 @@ def robots() -> Path:
     found = list(target.glob("robots/**/example-robot-data/robots"))
     assert found, "run tests/robots/install.sh"
     return found[0]
+
+
+@pytest.fixture
+def top(models):
+    return hamel.System.from_file(models / "heavy_top.eom")
 
 
 @pytest.fixture

@@ -2,6 +2,9 @@
 
 import numpy as np
 
+# Angular velocities of a heavy top, body axes (rad/s).
+XI = np.array([0.3, 0.2, 5.0])
+
 PENDULUM = """
 system Pendulum {
     param m = 2, l = 0.5, g = 9.81;

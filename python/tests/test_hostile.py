@@ -13,15 +13,7 @@ import numpy as np
 import pytest
 
 import hamel
-from known import PENDULUM
-
-
-@pytest.fixture
-def top(models):
-    return hamel.System.from_file(models / "heavy_top.eom")
-
-
-XI = np.array([0.3, 0.2, 5.0])
+from known import PENDULUM, XI
 
 
 def test_numbers_that_stand_at_odd_places(top):

@@ -6,19 +6,12 @@ import numpy as np
 import pytest
 
 import hamel
-
-
-@pytest.fixture
-def top(models):
-    return hamel.System.from_file(models / "heavy_top.eom")
+from known import XI
 
 
 @pytest.fixture
 def cart(models):
     return hamel.System.from_file(models / "cart_pole.eom")
-
-
-XI = np.array([0.3, 0.2, 5.0])
 
 
 def test_arrays_of_any_layout_and_of_any_real_type(top):

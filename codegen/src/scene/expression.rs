@@ -230,28 +230,17 @@ macro_rules! operators {
             }
         }
 
-        impl $operator<Expr> for f64 {
+        operators!(@left $operator $method $op f64 i32);
+    )*};
+    (@left $operator:ident $method:ident $op:ident $($number:ty)*) => {$(
+        impl $operator<Expr> for $number {
             type Output = Expr;
             fn $method(self, right: Expr) -> Expr {
                 binary(BinaryOp::$op, self.into(), right)
             }
         }
 
-        impl $operator<&Expr> for f64 {
-            type Output = Expr;
-            fn $method(self, right: &Expr) -> Expr {
-                binary(BinaryOp::$op, self.into(), right.clone())
-            }
-        }
-
-        impl $operator<Expr> for i32 {
-            type Output = Expr;
-            fn $method(self, right: Expr) -> Expr {
-                binary(BinaryOp::$op, self.into(), right)
-            }
-        }
-
-        impl $operator<&Expr> for i32 {
+        impl $operator<&Expr> for $number {
             type Output = Expr;
             fn $method(self, right: &Expr) -> Expr {
                 binary(BinaryOp::$op, self.into(), right.clone())
