@@ -5,7 +5,7 @@ use hamel_codegen::urdf::{Options, import};
 
 #[path = "../src/chain.rs"]
 mod chain;
-#[path = "../../cli/tests/common/installed.rs"]
+#[path = "../../cli/tests/suite/common/installed.rs"]
 mod installed;
 
 fn main() {

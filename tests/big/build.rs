@@ -6,14 +6,14 @@ use std::path::PathBuf;
 
 #[path = "../src/chain.rs"]
 mod chain;
-#[path = "../../codegen/tests/common/mod.rs"]
+#[path = "../../codegen/tests/suite/common/mod.rs"]
 mod common;
-#[path = "../../codegen/tests/common/tree/mod.rs"]
+#[path = "../../codegen/tests/suite/common/tree/mod.rs"]
 mod tree;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=../src/chain.rs");
-    println!("cargo:rerun-if-changed=../../codegen/tests/common");
+    println!("cargo:rerun-if-changed=../../codegen/tests/suite/common");
     let folder = PathBuf::from(std::env::var("OUT_DIR")?);
     let chain = chain::chain(16).replace("accel, rate;", "accel, rate, linearize;");
     let humanoid = tree::text(&tree::humanoid(), "accel, inverse_dynamics");

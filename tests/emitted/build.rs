@@ -11,7 +11,7 @@ use hamel_codegen::syntax::ast::ShapeKind;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-#[path = "../../codegen/tests/common/mod.rs"]
+#[path = "../../codegen/tests/suite/common/mod.rs"]
 mod common;
 #[path = "src/describe.rs"]
 mod describe;
@@ -19,7 +19,7 @@ mod describe;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-env-changed=HAMEL_ATTACK");
     println!("cargo:rerun-if-changed=src/describe.rs");
-    println!("cargo:rerun-if-changed=../../codegen/tests/common/mod.rs");
+    println!("cargo:rerun-if-changed=../../codegen/tests/suite/common/mod.rs");
     println!("cargo:rerun-if-env-changed=HAMEL_PART");
     let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
     let part = std::env::var("HAMEL_PART").ok();

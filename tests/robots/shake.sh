@@ -6,5 +6,5 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 tests/robots/install.sh
-HAMEL_ATTACK=full cargo test -p hamel-codegen --test rounding
-HAMEL_ATTACK=full cargo test -p hamel-cli --test shaken -- --nocapture
+HAMEL_ATTACK=full cargo test -p hamel-codegen --test suite rounding::
+HAMEL_ATTACK=full cargo test -p hamel-cli --test suite shaken:: -- --nocapture

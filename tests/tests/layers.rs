@@ -421,6 +421,27 @@ fn the_generator_is_built_once() {
     );
 }
 
+/// Libraries of generated code are not compiled once more for tests that they do not have.
+#[test]
+fn no_test_is_left_out() {
+    let workspace = fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
+    let members = workspace.lines().find(|line| line.starts_with("members"));
+    let mut without = 0;
+    for folder in members.expect("members").split('"').skip(1).step_by(2) {
+        let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml"));
+        if !manifest.expect("a manifest").contains("test = false") {
+            continue;
+        }
+        without += 1;
+        for (path, text) in sources(&format!("{folder}/src")) {
+            for mark in ["#[test]", "cfg(test)", "/// ```", "//! ```"] {
+                assert!(!text.contains(mark), "{}: {mark}", path.display());
+            }
+        }
+    }
+    assert_eq!(without, 6);
+}
+
 /// What nobody can read again is no review: snapshots stay below 25,000 lines.
 #[test]
 fn snapshots_can_be_read() {

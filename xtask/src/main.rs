@@ -67,13 +67,13 @@ const CI: Task = &[
 
 /// The random attacks at full size: some two hours.
 const ATTACK: Task = &[
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test expressions --test mounts --test rounding --test constrained --test prescribed --test trees --test work --test observed",
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test functions",
-    "HAMEL_FUZZ_CASES=100000 cargo test --release --locked -p hamel-tests --test mutations",
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test free_rotation --test stiff",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test suite -- expressions:: mounts:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite functions::",
+    "HAMEL_FUZZ_CASES=100000 cargo test --release --locked -p hamel-tests --test suite mutations::",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test suite -- free_rotation:: stiff::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files",
     "bash tests/robots/install.sh",
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --lib --test states --test emitted --test shaken",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-cli --lib --test suite -- states:: emitted:: shaken:: eigenvalues::",
     "HAMEL_ATTACK=full cargo test --locked -p hamel-tests-c99",
     // Not optimised, and a fifth at a time: compiling is all of the work.
     "HAMEL_ATTACK=full HAMEL_PART=0 cargo test --locked -p hamel-tests-emitted",

@@ -47,9 +47,10 @@ fn number(cell: &str) -> u64 {
         .unwrap_or_else(|_| panic!("no number: {cell}"))
 }
 
-const MODELS: &str = "tests/tests/snapshots/snapshots__operation_counts.snap";
-const ROBOTS: &str = "cli/tests/snapshots/counts__robots_cost_no_more_than_their_bars.snap";
-const CHAINS: &str = "cli/tests/snapshots/counts__chains_grow_by_the_link.snap";
+const MODELS: &str = "tests/tests/suite/snapshots/suite__snapshots__operation_counts.snap";
+const ROBOTS: &str =
+    "cli/tests/suite/snapshots/suite__counts__robots_cost_no_more_than_their_bars.snap";
+const CHAINS: &str = "cli/tests/suite/snapshots/suite__counts__chains_grow_by_the_link.snap";
 
 /// Rows of the chapter on costs, with the models behind them.
 const SYSTEMS: [(&str, &str); 10] = [

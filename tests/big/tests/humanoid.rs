@@ -4,9 +4,9 @@ use common::{Random, generated};
 use hamel_tests_big::humanoid::Humanoid;
 use tree::{Tree, humanoid, text};
 
-#[path = "../../../codegen/tests/common/mod.rs"]
+#[path = "../../../codegen/tests/suite/common/mod.rs"]
 mod common;
-#[path = "../../../codegen/tests/common/tree/mod.rs"]
+#[path = "../../../codegen/tests/suite/common/tree/mod.rs"]
 mod tree;
 
 /// Rounding of some thousand operations, relative to the largest force.

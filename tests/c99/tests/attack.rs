@@ -4,13 +4,13 @@
 
 #[path = "c99/case.rs"]
 mod case;
-#[path = "../../../codegen/tests/common/mod.rs"]
+#[path = "../../../codegen/tests/suite/common/mod.rs"]
 mod common;
 #[path = "c99/compile.rs"]
 mod compile;
 #[path = "../../emitted/src/describe.rs"]
 mod describe;
-#[path = "../../../codegen/tests/common/models.rs"]
+#[path = "../../../codegen/tests/suite/common/models.rs"]
 mod models;
 #[path = "c99/names.rs"]
 mod names;

@@ -11,7 +11,7 @@ use hamel_codegen::program::interpret::Interpreter;
 use hamel_tests_emitted::{At, CASES, Case, TRIED, Values};
 use rayon::prelude::*;
 
-#[path = "../../../codegen/tests/common/mod.rs"]
+#[path = "../../../codegen/tests/suite/common/mod.rs"]
 mod common;
 #[path = "../src/describe.rs"]
 mod describe;

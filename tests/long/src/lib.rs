@@ -3,6 +3,6 @@
 //! A million steps unoptimised would take minutes; this crate is optimised in the dev profile as well.
 
 /// The systems of the runtime's own tests.
-#[path = "../../../runtime/tests/common/mod.rs"]
+#[path = "../../../runtime/tests/suite/common/mod.rs"]
 #[allow(missing_docs)]
 pub mod common;

@@ -1,0 +1,51 @@
+//! The command as it is run; a module alone: `cargo test -p hamel-cli --test suite sweep::`.
+
+mod available;
+#[cfg(target_os = "linux")]
+mod c;
+mod cli;
+mod clock;
+mod common;
+mod compare;
+mod control;
+mod counts;
+#[path = "common/described.rs"]
+mod described;
+mod draw;
+mod drawing;
+mod emitted;
+#[cfg(target_os = "linux")]
+mod files;
+mod first_run;
+mod given;
+mod identified;
+mod inputs;
+#[path = "common/installed.rs"]
+mod installed;
+mod kept;
+mod linearize;
+mod methods;
+#[path = "common/pinocchio.rs"]
+mod pinocchio;
+mod regressor;
+mod robots;
+mod sampling;
+mod shaken;
+#[path = "common/shards.rs"]
+mod shards;
+mod shown;
+mod states;
+mod sweep;
+#[cfg(target_os = "linux")]
+mod sweep_folder;
+mod sweep_runs;
+#[cfg(unix)]
+mod sweep_submit;
+#[path = "common/swept.rs"]
+mod swept;
+#[path = "common/table.rs"]
+mod table;
+#[path = "common/undamped.rs"]
+mod undamped;
+mod urdf;
+mod warnings;

@@ -1,0 +1,242 @@
+//! Starts by guesses: the branch in which a loop is assembled, against the intersections of two circles in closed form,
+//! and the distance from the guesses against all of them.
+
+use hamel_codegen::algebra::fp::Random;
+use hamel_codegen::lower::build;
+use hamel_codegen::syntax::parse_text;
+use std::f64::consts::{PI, TAU};
+
+const FIVE_BAR: &str = include_str!("../../../tests/models/five_bar.eom");
+/// Cranks, rods, distance of the pivots, as the model has them.
+const LENGTHS: (f64, f64, f64) = (0.3, 0.5, 0.25);
+
+/// x at the start of the five-bar with other starts, in the order q1, q2, p1, p2.
+fn started(starts: &str) -> Vec<f64> {
+    let (text, _) = FIVE_BAR.split_once("start q1").expect("starts");
+    let text = format!("{text}{starts} output tip = tip1; }}");
+    build(&parse_text(&text).expect("a description"))
+        .expect("a start")
+        .start_x
+}
+
+/// The relative angles of the two rods for the two points in which the circles about the ends of the cranks meet.
+fn modes(q1: f64, q2: f64) -> [[f64; 2]; 2] {
+    let (a, b, d) = LENGTHS;
+    let (left, right) = (
+        [a * q1.cos(), a * q1.sin()],
+        [d + a * q2.cos(), a * q2.sin()],
+    );
+    let way = [right[0] - left[0], right[1] - left[1]];
+    let half = way[0].hypot(way[1]) / 2.0;
+    let height = (b * b - half * half).sqrt();
+    [1.0, -1.0].map(|side| {
+        let tip = [
+            left[0] + way[0] / 2.0 - side * height * way[1] / (2.0 * half),
+            left[1] + way[1] / 2.0 + side * height * way[0] / (2.0 * half),
+        ];
+        let angle = |from: [f64; 2]| (tip[1] - from[1]).atan2(tip[0] - from[0]);
+        [angle(left) - q1, angle(right) - q2]
+    })
+}
+
+/// An angle in −π to π of another one.
+fn near(angle: f64, other: f64) -> f64 {
+    other + (angle - other + PI).rem_euclid(TAU) - PI
+}
+
+/// Where a crank is prescribed to be is known before the guesses are asked: a four-bar is assembled as guessed at any
+/// angle of its crank, in both modes.
+#[test]
+fn guesses_beside_a_driven_crank_choose_the_mode() {
+    let (l1, l2, l3, d) = (0.4, 1.2, 0.8, 0.9);
+    for k in 0..24 {
+        let crank = 0.1 + TAU * f64::from(k) / 24.0;
+        let (px, py) = (l1 * f64::cos(crank), l1 * f64::sin(crank));
+        let way = f64::hypot(d - px, -py);
+        let towards = f64::atan2(-py, d - px);
+        for side in [1.0, -1.0] {
+            let opening = (l2 * l2 + way * way - l3 * l3) / (2.0 * l2 * way);
+            let b = towards + side * opening.acos();
+            let c = (py + l2 * b.sin()).atan2(px + l2 * b.cos() - d);
+            let text = format!(
+                "system A {{
+                    time t;
+                    coord a, b, c;
+                    velocity u, v, w;
+                    rate a = u, b = v, c = w;
+                    kinetic u^2 + v^2 + w^2;
+                    loop {l1} * cos(a) + {l2} * cos(b) = {d} + {l3} * cos(c);
+                    loop {l1} * sin(a) + {l2} * sin(b) = {l3} * sin(c);
+                    prescribe a = {crank} + 2 * t;
+                    start b ~ {}, c ~ {};
+                }}",
+                b + 0.05,
+                c - 0.05
+            );
+            let model = build(&parse_text(&text).expect("a description")).expect("a start");
+            for (found, expected) in model.start_x.iter().zip([0.0, crank, b, c]) {
+                let off = (found - expected).abs();
+                assert!(off < 1e-12, "{side} {:?} {crank} {b} {c}", model.start_x);
+            }
+        }
+    }
+}
+
+#[test]
+fn guesses_choose_between_both_ways_to_assemble_a_five_bar() {
+    let (q1, q2) = (2.0, 1.0);
+    for (mode, guess) in [(0, [-1.0, 1.0]), (1, [-2.9, 2.9])] {
+        let x = started(&format!(
+            "start q1 = {q1}, q2 = {q2}; start p1 ~ {}, p2 ~ {};",
+            guess[0], guess[1]
+        ));
+        let expected = modes(q1, q2)[mode];
+        assert_eq!(x[..2], [q1, q2], "exact starts stay exact");
+        for k in 0..2 {
+            let expected = near(expected[k], guess[k]);
+            assert!((x[2 + k] - expected).abs() < 1e-10, "{x:?} {expected}");
+        }
+    }
+}
+
+/// With the cranks fixed, M of the two rods is a multiple of 1, so that the nearest is so in the plane of the angles.
+#[test]
+fn what_is_found_is_the_nearest_of_all_assemblies() {
+    let mut random = Random::new(0x5ba2);
+    let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+    for _ in 0..150 {
+        let (q1, q2) = (1.6 + 0.6 * number(), 1.2 + 0.6 * number());
+        let guess = [2.5 * number(), 2.5 * number()];
+        let away = |angles: [f64; 2]| {
+            let k = |k: usize| near(angles[k], guess[k]) - guess[k];
+            k(0).hypot(k(1))
+        };
+        let [one, other] = modes(q1, q2);
+        // Where both are as near, either will do.
+        if (away(one) - away(other)).abs() < 0.05 {
+            continue;
+        }
+        let expected = if away(one) < away(other) { one } else { other };
+        let x = started(&format!(
+            "start q1 = {q1}, q2 = {q2}; start p1 ~ {}, p2 ~ {};",
+            guess[0], guess[1]
+        ));
+        for k in 0..2 {
+            let expected = near(expected[k], guess[k]);
+            let close = (x[2 + k] - expected).abs() < 1e-12;
+            assert!(close, "{q1} {q2} {guess:?}: {x:?} {:?}", [one, other]);
+        }
+    }
+}
+
+/// The kinetic metric at the guess: a light crank gives way to a heavy one, by the ratio that Lagrange's multipliers say.
+#[test]
+fn what_is_light_gives_way() {
+    let text = "system S {
+        coord x, y;
+        velocity u, v;
+        rate x = u, y = v;
+        particle mass 1 at [x, 0, 0];
+        particle mass 9 at [0, y, 0];
+        loop x + y = 3;
+        start x ~ 1, y ~ 1, u ~ 2, v ~ 1;
+    }";
+    let model = build(&parse_text(text).expect("a description")).expect("a start");
+    // The least of (x - 1)² + 9 (y - 1)² with x + y = 3, and of (u - 2)² + 9 (v - 1)² with u + v = 0.
+    for (found, expected) in [(&model.start_x, [1.9, 1.1]), (&model.start_xi, [-0.7, 0.7])] {
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+        }
+    }
+}
+
+/// Constraints among the coordinates themselves, too: the nearest point of an ellipse has its normal through the guess.
+#[test]
+fn constraints_are_solved_near_the_guesses() {
+    let mut random = Random::new(3);
+    let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+    for _ in 0..20 {
+        let guess = [3.0 * number(), 2.0 * number()];
+        let text = format!(
+            "system S {{ coord x, y; velocity u; constraint x^2 / 4 + y^2 = 1;
+                rate x = -2 * y * u, y = x * u / 2;
+                particle mass 1 at [x, y, 0]; start x ~ {}, y ~ {}; }}",
+            guess[0], guess[1]
+        );
+        let x = build(&parse_text(&text).expect("a description"))
+            .expect("a start")
+            .start_x;
+        assert!((x[0] * x[0] / 4.0 + x[1] * x[1] - 1.0).abs() < 1e-11);
+        let distance = |x: f64, y: f64| (x - guess[0]).hypot(y - guess[1]);
+        let least = (0..10_000)
+            .map(|k| f64::from(k) * TAU / 10_000.0)
+            .map(|angle| distance(2.0 * angle.cos(), angle.sin()))
+            .fold(f64::INFINITY, f64::min);
+        assert!(distance(x[0], x[1]) < least + 1e-5, "{x:?} {guess:?}");
+        let turn = (x[0] - guess[0]) * 2.0 * x[1] - (x[1] - guess[1]) * x[0] / 2.0;
+        assert!(turn.abs() < 1e-12, "{turn} {x:?} {guess:?}");
+    }
+}
+
+/// Of the parabola b = a², (1, 1) is nearest to (3, 0): 2 (a − 3) + 4 a³ vanishes there; however the axes are turned, and
+/// to all digits, which distances do not tell.
+#[test]
+fn the_nearest_is_found_to_all_digits() {
+    for axes in [
+        ["[1, 0, 0]", "[0, 1, 0]"],
+        ["[1, 1, 0]", "[1, -1, 0]"],
+        ["[1, 2, 2]", "[2, 1, -2]"],
+    ] {
+        let [first, second] = axes;
+        let text = format!(
+            "system S {{
+                joint a: prismatic {first} moves f;
+                joint b: prismatic {second} on f moves g;
+                body on g {{ mass 2; }}
+                loop b = a^2;
+                start a ~ 3, b ~ 0;
+            }}"
+        );
+        let model = build(&parse_text(&text).expect("a description")).expect("a start");
+        let x = &model.start_x;
+        assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-14), "{axes:?} {x:?}");
+    }
+}
+
+/// A hanging body on a ball joint and a rod: rotations and quaternions take part.
+#[test]
+fn rotations_are_guessed_by_rotations() {
+    for (kind, guess) in [
+        ("spherical", "rotx(0.4)"),
+        (
+            "spherical S3",
+            "[0.98, 0.2, 0, 0] / norm([0.98, 0.2, 0, 0])",
+        ),
+    ] {
+        let text = format!(
+            "system S {{
+                joint ball: {kind} moves arm;
+                body on arm {{ mass 1; com [0, 0, -1]; inertia diag(0.3, 0.2, 0.1) about com; }}
+                let tip = position(arm, [0, 0, -1]);
+                loop tip[3] = -0.8;
+                start ball ~ {guess};
+            }}"
+        );
+        let model = build(&parse_text(&text).expect("a description")).expect("a start");
+        let x = &model.start_x;
+        let tip = match x.len() {
+            9 => [-x[2], -x[5], -x[8]],
+            _ => [
+                -2.0 * (x[1] * x[3] + x[0] * x[2]),
+                -2.0 * (x[2] * x[3] - x[0] * x[1]),
+                -(x[0] * x[0] - x[1] * x[1] - x[2] * x[2] + x[3] * x[3]),
+            ],
+        };
+        // A turn about the first axis is the shortest way, as it is the axis of the guess.
+        let expected = [0.0, 0.6, -0.8];
+        assert!(
+            (0..3).all(|k| (tip[k] - expected[k]).abs() < 1e-13),
+            "{tip:?}"
+        );
+    }
+}

@@ -1,0 +1,42 @@
+//! Laws of what is derived and emitted, one module for each subject; a module alone: `cargo test -p hamel-codegen --test suite mounts::`.
+
+#[path = "common/arm.rs"]
+mod arm;
+mod assembly;
+mod built;
+mod common;
+mod components;
+mod constrained;
+mod continuous;
+mod coordinates;
+mod degenerate;
+mod entries;
+mod expressions;
+mod externals;
+mod fixtures;
+mod functions;
+mod include;
+mod inerter;
+mod joints;
+mod loops;
+#[path = "common/models.rs"]
+mod models;
+mod mounts;
+mod observed;
+mod powers;
+#[path = "common/precise.rs"]
+mod precise;
+mod prescribed;
+mod regressions;
+mod reuse;
+mod roots;
+mod rounding;
+mod said;
+mod scene;
+#[path = "common/tree/mod.rs"]
+mod tree;
+mod trees;
+mod unsaid;
+mod work;
+
+use common::Random;

@@ -1,0 +1,74 @@
+//! Powers with a half-integer exponent where their base is 0: contacts in the air, friction and drag at rest.
+
+use crate::common::{generated, value};
+
+/// The slopes of ẇ by (z, w) at a state, as A ends in them.
+fn slopes(of: &hamel_codegen::generate::Generated, x: &[f64], xi: &[f64]) -> [f64; 2] {
+    let all = value(of, "linearize", [x, xi, &[], &[]]);
+    assert!(all.iter().all(|entry| entry.is_finite()), "{all:?}");
+    [all[2], all[3]]
+}
+
+fn system(statements: &str) -> String {
+    format!(
+        "system S {{ param k = 100; coord z; velocity w; rate z = w; kinetic w^2 / 2;
+            {statements} start z = 1; generate all, linearize; }}"
+    )
+}
+
+/// A contact by Hertz does nothing in the air, and has the slopes of its law in the ground.
+#[test]
+fn a_contact_in_the_air_does_nothing() {
+    let of = generated(&system("potential k * max(0, -z)^(5/2);"));
+    let force = |z: f64| value(&of, "potential_force", [&[z], &[0.0], &[], &[]])[0];
+    assert_eq!(force(1.0), 0.0);
+    assert_eq!(value(&of, "accel", [&[1.0], &[0.3], &[], &[]]), [0.0]);
+    assert_eq!(slopes(&of, &[1.0], &[0.3]), [0.0, 0.0]);
+    assert!((force(-0.25) + 100.0 * 2.5 * 0.125).abs() < 1e-12);
+    let [by_z, _] = slopes(&of, &[-0.25], &[0.0]);
+    assert!((by_z + 100.0 * 2.5 * 1.5 * 0.5).abs() < 1e-11);
+}
+
+/// Slopes of forces at 0 are 0 where the exponent is above 1; beside it they are those of the laws.
+#[test]
+fn forces_by_powers_have_slopes_at_zero() {
+    let cases: [(&str, f64, f64); 9] = [
+        ("k * max(0, -z)^(3/2)", 0.0, 0.0),
+        ("k * max(0, -z)^(5/2)", 0.0, 0.0),
+        ("-abs(w)^(3/2) * sign(w)", 0.0, -1.5 * 0.5),
+        ("abs(z)^(3/2) * sign(z)", 1.5 * 0.5, 0.0),
+        ("z^(3/2)", 1.5 * 0.5, 0.0),
+        ("abs(z)^(5/2)", 2.5 * 0.125, 0.0),
+        ("-0.3 * w * sqrt(abs(w))", 0.0, -0.3 * 1.5 * 0.5),
+        ("k * z * sqrt(k * z)", 1000.0 * 1.5 * 0.5, 0.0),
+        ("-w * k * sqrt(abs(w))", 0.0, -150.0 * 0.5),
+    ];
+    for (law, by_z, by_w) in cases {
+        let of = generated(&system(&format!("generalized force w = {law};")));
+        assert_eq!(slopes(&of, &[0.0], &[0.0]), [0.0, 0.0], "{law}");
+        let found = slopes(&of, &[0.25], &[0.25]);
+        for (found, expected) in found.into_iter().zip([by_z, by_w]) {
+            assert!(
+                (found - expected).abs() < 1e-12 * expected.abs().max(1.0),
+                "{law}: {found}"
+            );
+        }
+    }
+}
+
+/// A mass whose inverse is infinite is no mass.
+#[test]
+fn a_subnormal_pivot_is_refused() {
+    use hamel_codegen::program::interpret::Interpreter;
+    let of = generated(
+        "system P { param m = 1e-310; coord q; velocity w; rate q = w; kinetic m * (1 + q^2) * w^2 / 2;
+            potential q; }",
+    );
+    let accel = of.program.function("accel").expect("it is there");
+    for (m, fine) in [(1e-310, false), (3e-308, true), (0.0, false), (1.0, true)] {
+        let compiled = Interpreter::new(&of.program, accel, &[m]);
+        let found = compiled.call_with([&[0.0], &[0.0], &[], &[], &[]]);
+        assert_eq!(found.is_ok(), fine, "{m}: {found:?}");
+        assert!(found.iter().flatten().all(|entry| entry.is_finite()));
+    }
+}

@@ -1,0 +1,63 @@
+//! The models of `models/` and `models/multibody/`, each derived once for all tests that look at it.
+
+use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::render::render;
+use std::path::Path;
+use std::sync::{LazyLock, OnceLock};
+
+/// A model and, once a test has asked for it, what is derived from it.
+pub struct Derived {
+    pub name: String,
+    pub text: String,
+    once: OnceLock<Generated>,
+}
+
+impl Derived {
+    pub fn generated(&self) -> &Generated {
+        self.once.get_or_init(|| {
+            from_text(&self.text).unwrap_or_else(|errors| {
+                panic!("{}", render(&errors, &self.name, &self.text, false))
+            })
+        })
+    }
+}
+
+fn read(folder: &str) -> Vec<Derived> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|extension| extension == "eom") {
+            let name = path.file_stem().expect("a name").to_string_lossy();
+            found.push(Derived {
+                name: name.into_owned(),
+                text: std::fs::read_to_string(&path).expect("readable"),
+                once: OnceLock::new(),
+            });
+        }
+    }
+    found.sort_by(|a, b| a.name.cmp(&b.name));
+    found
+}
+
+static MODELS: LazyLock<Vec<Derived>> = LazyLock::new(|| read("models"));
+static MULTIBODY: LazyLock<Vec<Derived>> = LazyLock::new(|| read("models/multibody"));
+
+/// The models of `models/`, in the order of their names.
+pub fn models() -> &'static [Derived] {
+    assert!(MODELS.len() >= 60, "the models have gone");
+    &MODELS
+}
+
+/// Those and the models of `models/multibody/`, in the order of their names.
+pub fn all() -> Vec<&'static Derived> {
+    let mut all: Vec<&Derived> = models().iter().chain(MULTIBODY.iter()).collect();
+    all.sort_by(|a, b| a.name.cmp(&b.name));
+    all
+}
+
+/// One of `models/`.
+pub fn model(name: &str) -> &'static Derived {
+    let found = models().iter().find(|model| model.name == name);
+    found.unwrap_or_else(|| panic!("no model `{name}`"))
+}

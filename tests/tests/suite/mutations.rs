@@ -1,0 +1,173 @@
+//! No text makes the generator panic, overflow or hang: mutations of all fixtures.
+//!
+//! Every case has its own seed, `HAMEL_FUZZ_SEED` plus its number, and can be had again alone.
+//! `HAMEL_FUZZ_CASES` is the number of cases that go through the whole pipeline instead of the
+//! parser alone; what was found wrong is printed in its smallest form.
+
+mod mutator;
+
+use hamel_codegen::generate::from_text;
+use hamel_codegen::render::render;
+use hamel_codegen::reuse::expand;
+use hamel_codegen::syntax::ast::{Item, ItemKind};
+use hamel_codegen::syntax::parse_text;
+use mutator::{Corpus, Random};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// Cases that go through the parser.
+const PARSED: usize = 100_000;
+/// Cases that go through all stages, unless `HAMEL_FUZZ_CASES` says otherwise.
+const GENERATED: usize = 4_000;
+/// Time for one case, generous: the machine may be busy with other tests.
+const PATIENCE: Duration = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 10 });
+/// Threads need as much stack as a program's main thread has.
+const STACK: usize = 8 << 20;
+
+fn number(variable: &str, otherwise: usize) -> usize {
+    let text = std::env::var(variable).ok();
+    text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
+}
+
+/// What a worker does now: the text, and since when.
+type Work = Mutex<Option<(String, Instant)>>;
+
+/// Runs all cases; the text of the first that panics. Prints the slowest.
+fn run(
+    count: usize,
+    make: impl Fn(usize) -> String + Sync,
+    check: impl Fn(&str) + Sync,
+) -> Option<String> {
+    let workers = std::thread::available_parallelism().map_or(1, |n| n.get().min(8));
+    let work: Vec<Work> = (0..workers).map(|_| Mutex::new(None)).collect();
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let failure: Mutex<Option<String>> = Mutex::new(None);
+    let slowest: Mutex<(Duration, String)> = Mutex::default();
+    let set = |text: &str| *failure.lock().expect("unpoisoned") = Some(text.to_string());
+    std::thread::scope(|scope| {
+        for work in &work {
+            let worker = || {
+                loop {
+                    let case = next.fetch_add(1, Ordering::Relaxed);
+                    if case >= count || failure.lock().expect("unpoisoned").is_some() {
+                        break;
+                    }
+                    let text = make(case);
+                    *work.lock().expect("unpoisoned") = Some((text.clone(), Instant::now()));
+                    let start = Instant::now();
+                    let panicked = panics(&text, &check);
+                    let mut slow = slowest.lock().expect("unpoisoned");
+                    if start.elapsed() > slow.0 {
+                        *slow = (start.elapsed(), text.clone());
+                    }
+                    drop(slow);
+                    if panicked {
+                        set(&smallest(&text, |text| panics(text, &check)));
+                    }
+                }
+                *work.lock().expect("unpoisoned") = None;
+                done.fetch_add(1, Ordering::Relaxed);
+            };
+            let thread = std::thread::Builder::new().stack_size(STACK);
+            thread.spawn_scoped(scope, worker).expect("a thread");
+        }
+        while done.load(Ordering::Relaxed) < workers {
+            std::thread::sleep(Duration::from_millis(20));
+            for work in &work {
+                let work = work.lock().expect("unpoisoned");
+                if let Some((text, since)) = work.as_ref()
+                    && since.elapsed() > PATIENCE
+                    && failure.lock().expect("unpoisoned").is_none()
+                {
+                    // The thread cannot be stopped, so the process is.
+                    eprintln!("more than {PATIENCE:?} for:\n{text}");
+                    std::process::exit(1);
+                }
+            }
+        }
+    });
+    let (time, text) = slowest.into_inner().expect("unpoisoned");
+    println!("{count} cases, the slowest in {time:?}:\n{text}");
+    failure.into_inner().expect("unpoisoned")
+}
+
+fn panics(text: &str, check: &(impl Fn(&str) + Sync)) -> bool {
+    catch_unwind(AssertUnwindSafe(|| check(text))).is_err()
+}
+
+/// A text from which nothing more can be left out.
+fn smallest(text: &str, fails: impl Fn(&str) -> bool) -> String {
+    let mut tokens = mutator::tokens(text);
+    if !fails(&tokens.join(" ")) {
+        return text.to_string();
+    }
+    let mut width = tokens.len().max(1);
+    while width > 0 {
+        let mut at = 0;
+        while at < tokens.len() {
+            let end = (at + width).min(tokens.len());
+            let rest: Vec<String> = tokens[..at].iter().chain(&tokens[end..]).cloned().collect();
+            if fails(&rest.join(" ")) {
+                tokens = rest;
+            } else {
+                at = end;
+            }
+        }
+        width /= 2;
+    }
+    tokens.join(" ")
+}
+
+/// Joints and coordinates of a description that takes its time by right.
+const LONG: usize = 24;
+
+/// Whether a description repeats so much that its equations of motion are long, not its derivation.
+fn is_long(text: &str) -> bool {
+    let Ok(system) = parse_text(text) else {
+        return false;
+    };
+    let moves = |item: &&Item| matches!(item.kind, ItemKind::Joint(_) | ItemKind::Coord(_));
+    expand(&system).is_ok_and(|written| written.system.items.iter().filter(moves).count() > LONG)
+}
+
+/// All stages, and the text of the errors; whether the text is right.
+fn generate(text: &str) -> bool {
+    if is_long(text) {
+        return true;
+    }
+    let generated = from_text(text);
+    if let Err(errors) = &generated {
+        assert!(!errors.is_empty(), "refused without a reason");
+        let text = render(errors, "mutated.eom", text, false);
+        assert!(!text.contains("internal check failed"), "{text}");
+    }
+    generated.is_ok()
+}
+
+#[test]
+fn no_text_panics() {
+    let corpus = Corpus::read();
+    let seed = number("HAMEL_FUZZ_SEED", 0x4a6d) as u64;
+    let cases = number("HAMEL_FUZZ_CASES", GENERATED);
+    println!("seed {seed}, {PARSED} parsed, {cases} generated");
+    let mutate = |case: usize| corpus.mutate(&mut Random::new(seed + case as u64), false);
+    let failure = run(PARSED, mutate, |text| drop(parse_text(text)));
+    assert!(
+        failure.is_none(),
+        "the parser panics on:\n{}",
+        failure.unwrap_or_default()
+    );
+    let mutate = |case: usize| corpus.mutate(&mut Random::new(seed + case as u64), true);
+    let right = AtomicUsize::new(0);
+    let failure = run(cases, mutate, |text| {
+        right.fetch_add(usize::from(generate(text)), Ordering::Relaxed);
+    });
+    println!("{} of them are right", right.into_inner());
+    assert!(
+        failure.is_none(),
+        "the generator fails on:\n{}",
+        failure.unwrap_or_default()
+    );
+}

@@ -1,0 +1,30 @@
+//! What each library crate offers to others, locked as text: a change of the public interface is seen in review.
+//!
+//! The sources are read by `syn`; what a macro of the crate itself writes is listed as its invocation.
+
+mod crates;
+mod signature;
+
+use crates::Crate;
+use std::path::Path;
+
+/// The lines of one crate, whose folder has this name.
+fn public(folder: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let lines = Crate::read(&root.join(folder).join("src")).public();
+    assert!(!lines.is_empty(), "{folder} offers nothing");
+    lines.join("\n")
+}
+
+macro_rules! locked {
+    ($($folder:ident),*) => {$(
+        #[test]
+        fn $folder() {
+            insta::assert_snapshot!(stringify!($folder), public(stringify!($folder)));
+        }
+    )*};
+}
+
+locked!(
+    algebra, codegen, files, macros, native, report, runtime, urdf
+);
