@@ -4,9 +4,11 @@ use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape, Tapes};
 use hamel_native::{Compiled, Constants, Paired, evaluate};
+use size::size;
 
-/// Tapes in every run.
-const TAPES: u64 = 10_000;
+#[path = "../../codegen/tests/suite/common/size.rs"]
+mod size;
+
 const PARAMETERS: usize = 3;
 const LENGTHS: [usize; 5] = [7, 5, 2, 5, 4];
 
@@ -118,8 +120,9 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
 
 #[test]
 fn code_gives_the_bits_of_tapes() {
+    let tapes = size(2_500, 100_000) as usize;
     let halves = std::thread::scope(|scope| {
-        let halves = [42, 43].map(|seed| scope.spawn(move || Met::by(seed, TAPES / 2)));
+        let halves = [42, 43].map(|seed| scope.spawn(move || Met::by(seed, tapes as u64 / 2)));
         halves.map(|half| half.join().expect("every tape gives its bits"))
     });
     // Each of them was met often enough to say something.
@@ -131,7 +134,7 @@ fn code_gives_the_bits_of_tapes() {
     } in halves
     {
         assert!(
-            well > 10_000 && ended > 250 && far < well / 2 && pairs > 5_000,
+            well > tapes && ended > tapes / 40 && far < well / 2 && pairs > tapes / 2,
             "{well} {ended} {far} {pairs}"
         );
     }

@@ -1,5 +1,5 @@
 //! Writes random descriptions, generates their code, and a function for each that calls all that was
-//! generated: a module of this crate for each. `HAMEL_ATTACK=full` makes 500 instead of 20, or 100 of them where
+//! generated: a module of this crate for each. `HAMEL_ATTACK=more` makes 20 instead of 5, `HAMEL_ATTACK=full` 500, or 100 of them where
 //! `HAMEL_PART` is 0, 1, 2, 3 or 4: all at once take more memory than small machines have.
 
 use common::Random;
@@ -21,14 +21,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=src/describe.rs");
     println!("cargo:rerun-if-changed=../../codegen/tests/suite/common/mod.rs");
     println!("cargo:rerun-if-env-changed=HAMEL_PART");
-    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
     let part = std::env::var("HAMEL_PART").ok();
     let part: Option<u64> = part.as_deref().map(str::parse).transpose()?;
-    let count = match (full, part) {
-        (false, _) => 20,
-        (true, None) => 500,
-        (true, Some(_)) => 100,
-    };
+    let count = common::size(5, if part.is_some() { 100 } else { 500 }) as usize;
     let folder = PathBuf::from(std::env::var("OUT_DIR")?);
     let mut modules = String::new();
     let mut list = String::new();

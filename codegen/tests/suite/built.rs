@@ -399,7 +399,7 @@ fn stated(kind: usize, random: &mut Random, scene: &mut SceneBuilder) -> String 
 
 #[test]
 fn what_is_built_at_random_is_what_the_text_says() {
-    crate::common::attack(150, 4_000, |seed| {
+    crate::common::attack(40, 4_000, |seed| {
         let random = &mut Random::new(seed);
         let mut scene = Scene::builder("Θ2");
         let doc = ["", "  two blanks  ", "\t/ tab", "\"quotes\" and \\"][random.below(4)];

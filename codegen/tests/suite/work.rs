@@ -1,6 +1,7 @@
 //! Bounded work: descriptions whose expansion would never end, and large ones in which little depends on
 //! little. Work is measured in nodes of the graph, which repeat to the one.
 
+use crate::common::size;
 use hamel_codegen::generate::{Generated, from_text};
 
 fn derived(text: &str) -> Generated {
@@ -35,10 +36,8 @@ fn towers_of_products_are_not_expanded() {
     }
 }
 
-/// At full size with `HAMEL_ATTACK=full`.
 #[test]
 fn towers_of_anything_take_nodes_for_their_height() {
-    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|size| size == "full");
     let mut state = 13u64;
     let mut number = move |below: u64| {
         state = state
@@ -46,7 +45,7 @@ fn towers_of_anything_take_nodes_for_their_height() {
             .wrapping_add(1442695040888963407);
         (state >> 33) % below
     };
-    for _ in 0..if full { 300 } else { 12 } {
+    for _ in 0..size(3, 300) {
         let height = 10 + number(20);
         let steps: Vec<String> = (0..height)
             .map(|i| match number(5) {

@@ -1,6 +1,7 @@
 //! Functions with branches: random expressions against another evaluator, their slopes against differences, and
 //! what must not be found equal.
 
+use crate::size::size;
 use hamel_codegen::algebra::fp;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::interpret::Interpreter;
@@ -180,10 +181,7 @@ fn call(generated: &Generated, name: &str, at: &[f64; 5]) -> Vec<f64> {
 
 /// How far it goes: number of systems of five expressions each.
 fn systems() -> u64 {
-    match std::env::var("HAMEL_ATTACK").as_deref() {
-        Ok("full") => 4000,
-        _ => 400,
-    }
+    size(100, 4_000)
 }
 
 #[test]

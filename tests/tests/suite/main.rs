@@ -33,6 +33,8 @@ mod physics_long;
 mod pivots;
 mod public_api;
 mod references;
+#[path = "../../../codegen/tests/suite/common/size.rs"]
+mod size;
 mod snapshots;
 mod states;
 mod step_slopes;

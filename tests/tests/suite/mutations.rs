@@ -6,6 +6,7 @@
 
 mod mutator;
 
+use crate::size::size;
 use hamel_codegen::generate::from_text;
 use hamel_codegen::render::render;
 use hamel_codegen::reuse::expand;
@@ -17,10 +18,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Cases that go through the parser.
-const PARSED: usize = 100_000;
-/// Cases that go through all stages, unless `HAMEL_FUZZ_CASES` says otherwise.
-const GENERATED: usize = 4_000;
+/// Cases that go through the parser, and at full size.
+const PARSED: [u64; 2] = [25_000, 1_000_000];
+/// Cases that go through all stages, and at full size, unless `HAMEL_FUZZ_CASES` says otherwise.
+const GENERATED: [u64; 2] = [1_000, 100_000];
 /// Time for one case, generous: the machine may be busy with other tests.
 const PATIENCE: Duration = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 10 });
 /// Threads need as much stack as a program's main thread has.
@@ -150,10 +151,11 @@ fn generate(text: &str) -> bool {
 fn no_text_panics() {
     let corpus = Corpus::read();
     let seed = number("HAMEL_FUZZ_SEED", 0x4a6d) as u64;
-    let cases = number("HAMEL_FUZZ_CASES", GENERATED);
-    println!("seed {seed}, {PARSED} parsed, {cases} generated");
+    let [parsed, generated] = [PARSED, GENERATED].map(|[few, many]| size(few, many) as usize);
+    let cases = number("HAMEL_FUZZ_CASES", generated);
+    println!("seed {seed}, {parsed} parsed, {cases} generated");
     let mutate = |case: usize| corpus.mutate(&mut Random::new(seed + case as u64), false);
-    let failure = run(PARSED, mutate, |text| drop(parse_text(text)));
+    let failure = run(parsed, mutate, |text| drop(parse_text(text)));
     assert!(
         failure.is_none(),
         "the parser panics on:\n{}",

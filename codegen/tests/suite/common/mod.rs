@@ -97,10 +97,13 @@ pub fn difference(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs() / scale))
 }
 
-/// What is wrong with any of some seeds, on all cores; more of them where `HAMEL_ATTACK` is `full`.
+#[path = "size.rs"]
+mod size;
+pub use size::size;
+
+/// What is wrong with any of some seeds, on all cores; there are as many as `size` says.
 pub fn attack(few: u64, many: u64, faults: impl Fn(u64) -> Vec<String> + Sync) {
-    let full = std::env::var("HAMEL_ATTACK").is_ok_and(|tier| tier == "full");
-    let count = if full { many } else { few };
+    let count = size(few, many);
     let workers = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
     let work = |worker: u64| -> Vec<String> {
         let seeds = (worker..count).step_by(workers as usize);
