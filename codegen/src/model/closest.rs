@@ -8,7 +8,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::{evaluate, least_norm};
 use crate::algebra::slopes::slopes;
 
-/// What is added to M, relative to its largest entry: something may be without mass.
+/// What a pivot of M has of its entry at least; else it is added to M, relative to its largest entry.
 const LEAST: f64 = 1e-9;
 
 /// Loops to be closed near a guess.
@@ -44,7 +44,7 @@ impl<'c, 'a> Loops<'c, 'a> {
     /// S = Lᵀ (CᵀC)⁻¹ Cᵀ with M = L Lᵀ and the rates C ξ of the charts at the guess.
     fn weights(&self, mass: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         let n = self.closure.n;
-        let factor = cholesky(&regular(mass))?;
+        let factor = root(mass)?;
         let rates = self.chart_rates(self.guess);
         let gram: Vec<Vec<f64>> = (0..n)
             .map(|i| {
@@ -242,7 +242,7 @@ pub fn velocities(
     guess: &[f64],
 ) -> Option<Vec<f64>> {
     let n = guess.len();
-    let factor = cholesky(&regular(mass))?;
+    let factor = root(mass)?;
     let unit = |i: usize| (0..n).map(|j| f64::from(i == j)).collect::<Vec<f64>>();
     let kept = (0..n).filter(|&i| given[i]).map(|i| (unit(i), -guess[i]));
     let rows = rows.iter().cloned().zip(shifts.iter().copied());
@@ -261,13 +261,17 @@ pub fn velocities(
     Some(xi)
 }
 
-/// M with a little on its diagonal.
-fn regular(mass: &[Vec<f64>]) -> Vec<Vec<f64>> {
+/// L with M = L Lᵀ; with a little on the diagonal of M where something is without mass, or as good as that.
+fn root(mass: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+    let whole = |l: &Vec<Vec<f64>>| (0..l.len()).all(|i| l[i][i] * l[i][i] > LEAST * mass[i][i]);
+    if let Some(root) = cholesky(mass).filter(whole) {
+        return Some(root);
+    }
     let scale = (0..mass.len()).map(|i| mass[i][i]).fold(0.0, f64::max);
     let scale = if scale > 0.0 { scale } else { 1.0 };
-    let mut mass = mass.to_vec();
-    (0..mass.len()).for_each(|i| mass[i][i] += LEAST * scale);
-    mass
+    let mut regular = mass.to_vec();
+    (0..mass.len()).for_each(|i| regular[i][i] += LEAST * scale);
+    cholesky(&regular)
 }
 
 /// A list of what each block gives at its place.

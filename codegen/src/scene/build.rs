@@ -66,7 +66,8 @@ impl SceneBuilder {
     /// # Errors
     /// Everything in the text that is no statement.
     pub fn text(&mut self, statements: &str) -> Result<(), SceneError> {
-        let text = format!("system S {{\n{statements}\n}}");
+        // On one line, so that the lines of errors are those of the statements.
+        let text = format!("system S {{ {statements}\n}}");
         let parsed = parse_text(&text).map_err(|errors| SceneError::new(errors, &text))?;
         self.system.items.extend(parsed.items);
         Ok(())

@@ -145,7 +145,7 @@ fn what_is_light_gives_way() {
     // The least of (x - 1)² + 9 (y - 1)² with x + y = 3, and of (u - 2)² + 9 (v - 1)² with u + v = 0.
     for (found, expected) in [(&model.start_x, [1.9, 1.1]), (&model.start_xi, [-0.7, 0.7])] {
         for (found, expected) in found.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
         }
     }
 }
