@@ -108,6 +108,19 @@ pub fn files(program: &Program, options: &Options) -> Files {
     }
 }
 
+/// Whether a file of this name before `.h` can be included.
+pub fn includable(stem: &str) -> bool {
+    let strange = |letter: char| letter.is_control() || matches!(letter, '"' | '\\' | '?');
+    !stem.is_empty() && !stem.contains(strange)
+}
+
+/// What the functions of a program are called by which a linker knows them.
+pub(crate) fn functions(program: &Program) -> Vec<String> {
+    let (names, _) = Identifiers::of(program);
+    let own = ["default_parameters", "set_parameters", "start"].map(|name| names.own(name));
+    own.into_iter().chain(names.functions).collect()
+}
+
 /// The documentation of a function in C: what it evaluates, its cost, arguments and result.
 fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
     let mut lines = docs::described(program, function, nodes);
