@@ -89,7 +89,8 @@ impl Builder {
         self
     }
 
-    /// Writes C99 as well: `stem.h` and `stem.c` for every file, into this folder, which exists.
+    /// Writes C99 as well: `stem.h` and `stem.c` for every file, into this folder, which exists. The names of functions
+    /// begin with that of their system, so that no two systems of a program may have one name.
     pub fn c_files(mut self, folder: impl Into<PathBuf>, precision: Precision) -> Self {
         self.c = Some((folder.into(), precision));
         self
