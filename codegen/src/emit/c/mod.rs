@@ -115,6 +115,7 @@ pub fn includable(stem: &str) -> bool {
 }
 
 /// What the functions of a program are called by which a linker knows them.
+#[cfg(feature = "files")]
 pub(crate) fn functions(program: &Program) -> Vec<String> {
     let (names, _) = Identifiers::of(program);
     let own = ["default_parameters", "set_parameters", "start"].map(|name| names.own(name));
