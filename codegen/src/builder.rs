@@ -156,7 +156,9 @@ impl Builder {
         if let Some(other) = stems.get(&stem) {
             return Err(
                 match place(path).is_some_and(|file| place(other) == Some(file)) {
-                    true => format!("{shown} is given twice; leave one of them out"),
+                    true => format!(
+                        "{shown} is given twice, and has one {stem}.rs; leave it out, or write it to another folder by a `Builder` of its own"
+                    ),
                     false => format!(
                         "{} and {shown} would both be written to {stem}.rs; rename one of them",
                         other.display()

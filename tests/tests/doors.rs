@@ -130,8 +130,11 @@ fn descriptions_that_a_script_writes_are_not_watched() {
 /// Cargo: with two colons, packages with an old `rust-version` would not be built.
 #[test]
 fn what_a_script_says_is_for_every_cargo() {
+    // A name with a line break would be an instruction to Cargo.
+    let told = BLOCK.replace("kinetic", "include \"x\\ncargo:rustc-cfg=told\"; kinetic");
     let wrong = BLOCK.replace("kinetic", "include \"parts/a.eom\"; kinetic");
     let files = [
+        ("models/told.eom", told.as_str()),
         ("models/wrong.eom", wrong.as_str()),
         ("models/parts/a.eom", "include \"../b.eom\";"),
         ("models/b.eom", "\nkinetic y^2;"),
@@ -148,7 +151,7 @@ fn what_a_script_says_is_for_every_cargo() {
     let folder = folder("said", &files);
     let models = folder.join("models");
     let builder = || {
-        let files = ["wrong.eom", "twice.eom", "unused.eom"];
+        let files = ["told.eom", "wrong.eom", "twice.eom", "unused.eom"];
         let add = |builder: Builder, file| builder.file(models.join(file));
         files.into_iter().fold(Builder::new(), add)
     };
@@ -168,7 +171,8 @@ fn what_a_script_says_is_for_every_cargo() {
         let place = models.join(place).display().to_string();
         assert!(wrong.contains(&place), "{place}: {wrong}");
     }
-    assert_eq!(wrong.matches("error: ").count(), 1, "{wrong}");
+    assert!(!said.contains("rustc-cfg"), "{said}");
+    assert_eq!(wrong.matches("error: ").count(), 2, "{wrong}");
 }
 
 /// The command in a header is one that a shell reads as it is meant.
@@ -217,7 +221,7 @@ fn wrong_files_are_told_at_once() {
         return;
     };
     for told in [
-        "b/../a.eom is given twice; leave one of them out",
+        "b/../a.eom is given twice, and has one a.rs; leave it out, or ",
         "b/a.eom would both be written to a.rs; rename one of them",
         "robot.xml is no description: ",
         "folder.eom: Is a directory",

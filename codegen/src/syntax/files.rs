@@ -165,7 +165,10 @@ fn joined(folder: &str, name: &str) -> String {
             _ => parts.push(part),
         }
     }
-    parts.join("/")
+    match parts.is_empty() {
+        true => name.to_owned(),
+        false => parts.join("/"),
+    }
 }
 
 /// The statements of a text whose first byte has this place.
