@@ -136,7 +136,7 @@ fn stem(out: &Path) -> Result<String, Failure> {
     match stem {
         Some(stem) if includable(stem) => Ok(stem.into()),
         _ => Err(Failure::usage(format!(
-            "{}: no name that C can include; name the files without their ending, as in `-o src/arm`",
+            "{}: no name that C can include, or that of a header of C; name the files without their ending, as in `-o src/arm`",
             out.display()
         ))),
     }

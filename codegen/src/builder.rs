@@ -150,7 +150,7 @@ impl Builder {
         let stem = stem.to_string_lossy().into_owned();
         if self.c.is_some() && !emit::c::includable(&stem) {
             return Err(format!(
-                "{shown} is called what C cannot include; rename it without quotes, `?`, `\\` and line breaks"
+                "{shown}: C cannot include `{stem}.h`, or has such a header; rename it, without quotes, `?`, `\\` and line breaks"
             ));
         }
         if let Some(other) = stems.get(&stem) {

@@ -277,6 +277,7 @@ fn names_in_c_are_of_one_file() {
         ),
         ("c.eom", &BLOCK.replace("Block", "LongName")),
         ("d\".eom", &BLOCK.replace("Block", "Other")),
+        ("Math.eom", &BLOCK.replace("Block", "Math")),
     ];
     let folder = folder("names", &files);
     let out = folder.join("out");
@@ -293,7 +294,8 @@ fn names_in_c_are_of_one_file() {
         "b.eom:1:12",
         "error: `long_name_accel` in C would be a function of ",
         "c.eom:1:12",
-        "d\".eom is called what C cannot include; rename it",
+        "d\".eom: C cannot include `d\".h`, or has such a header; rename it",
+        "Math.eom: C cannot include `Math.h`, or has such a header; rename it",
     ] {
         assert_eq!(wrong.matches(told).count(), 1, "{told}: {wrong}");
     }

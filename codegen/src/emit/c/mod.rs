@@ -108,10 +108,49 @@ pub fn files(program: &Program, options: &Options) -> Files {
     }
 }
 
-/// Whether a file of this name before `.h` can be included.
+/// The headers of C: with the folder of another one of that name among those that are searched, nobody finds them.
+const HEADERS: &[&str] = &[
+    "assert",
+    "complex",
+    "ctype",
+    "errno",
+    "fenv",
+    "float",
+    "inttypes",
+    "iso646",
+    "limits",
+    "locale",
+    "math",
+    "setjmp",
+    "signal",
+    "stdalign",
+    "stdarg",
+    "stdatomic",
+    "stdbit",
+    "stdbool",
+    "stdckdint",
+    "stddef",
+    "stdint",
+    "stdio",
+    "stdlib",
+    "stdnoreturn",
+    "string",
+    "tgmath",
+    "threads",
+    "time",
+    "uchar",
+    "wchar",
+    "wctype",
+];
+
+/// Whether a file of this name before `.h` can be included, and is in nobody's way.
 pub fn includable(stem: &str) -> bool {
     let strange = |letter: char| letter.is_control() || matches!(letter, '"' | '\\' | '?');
-    !stem.is_empty() && !stem.contains(strange)
+    // Some systems do not tell `Math.h` from `math.h`.
+    let known = HEADERS
+        .iter()
+        .any(|header| header.eq_ignore_ascii_case(stem));
+    !stem.is_empty() && !stem.contains(strange) && !known
 }
 
 /// What the functions of a program are called by which a linker knows them.
