@@ -24,6 +24,9 @@ const LINEAR: &[&str] = &[
     "two_wheeled_robot",
 ];
 
+/// What users may have switched on for the crate that includes generated code.
+const LINTS: &str = "#[warn(clippy::pedantic, clippy::nursery)]\n";
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rerun-if-changed=models");
     let mut paths: Vec<PathBuf> = Vec::new();
@@ -49,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .to_string_lossy()
             .into_owned();
         modules.push_str(&format!(
-            "/// Generated from `{}`.\npub mod {stem} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{stem}.rs\"));\n}}\n",
+            "/// Generated from `{}`.\n{LINTS}pub mod {stem} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/{stem}.rs\"));\n}}\n",
             path.display()
         ));
         builder = builder.file(path);
@@ -63,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let path = PathBuf::from(&out_dir).join(format!("linear_{stem}.eom"));
         std::fs::write(&path, format!("{body}    generate all, linearize;\n}}\n"))?;
         linear.push_str(&format!(
-            "/// Generated from `{stem}.eom`, linearised.\npub mod {stem} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/linear_{stem}.rs\"));\n}}\n"
+            "/// Generated from `{stem}.eom`, linearised.\n{LINTS}pub mod {stem} {{\n    include!(concat!(env!(\"OUT_DIR\"), \"/linear_{stem}.rs\"));\n}}\n"
         ));
         builder = builder.file(path);
     }

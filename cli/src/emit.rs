@@ -6,7 +6,7 @@ use crate::robot::RobotOptions;
 use crate::source::Source;
 use clap::{Args, ValueEnum};
 use hamel_codegen::builder;
-use hamel_codegen::emit::c::{Files, Precision};
+use hamel_codegen::emit::c::{Files, Precision, includable};
 use std::path::{Path, PathBuf};
 
 /// Writes the generated Rust, or C99.
@@ -133,11 +133,10 @@ fn stem(out: &Path) -> Result<String, Failure> {
         let stem = name.strip_suffix(".h").or_else(|| name.strip_suffix(".c"));
         stem.unwrap_or(name)
     });
-    let strange = |letter: char| letter.is_control() || matches!(letter, '"' | '\\' | '?');
     match stem {
-        Some(stem) if !stem.is_empty() && !stem.contains(strange) => Ok(stem.into()),
+        Some(stem) if includable(stem) => Ok(stem.into()),
         _ => Err(Failure::usage(format!(
-            "{}: no name that C can include; name the files without their ending, as in `-o src/arm`",
+            "{}: no name that C can include, or that of a header of C; name the files without their ending, as in `-o src/arm`",
             out.display()
         ))),
     }

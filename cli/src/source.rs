@@ -6,7 +6,7 @@ use crate::progress;
 use crate::robot::{Robot, RobotOptions};
 use hamel_codegen::diagnostics::Diagnostic;
 use hamel_codegen::functions::{Asked, FunctionId, Jacobian};
-use hamel_codegen::generate::{Generated, at_some_point, available_in, from_file};
+use hamel_codegen::generate::{Generated, at_some_point, available_in, from_file, text_of};
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
@@ -205,7 +205,7 @@ impl Source {
     /// The text of a file that the description names, by its path from there.
     fn file(&self, name: &str) -> std::io::Result<String> {
         let folder = Path::new(&self.path).parent();
-        std::fs::read_to_string(folder.unwrap_or(Path::new("")).join(name))
+        text_of(&folder.unwrap_or(Path::new("")).join(name))
     }
 
     /// Other files that the description has statements or numbers of.

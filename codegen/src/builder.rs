@@ -11,10 +11,11 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::emit::{self, c::Precision};
-use crate::generate::{Generated, from_file, from_text};
+use crate::generate::{Generated, from_file, from_text, text_of};
 use crate::render::{render, warnings};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Generates files in a build script.
@@ -88,15 +89,16 @@ impl Builder {
         self
     }
 
-    /// Writes C99 as well: `stem.h` and `stem.c` for every file, into this folder, which exists.
+    /// Writes C99 as well: `stem.h` and `stem.c` for every file, into this folder, which exists. The names of functions
+    /// begin with that of their system, so that no two systems of a program may have one name.
     pub fn c_files(mut self, folder: impl Into<PathBuf>, precision: Precision) -> Self {
         self.c = Some((folder.into(), precision));
         self
     }
 
-    /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before anything is reported;
-    /// files whose bytes would not change are not touched. What a description declares and does not use becomes
-    /// a warning of the package.
+    /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before anything is reported, and before
+    /// anything is written; files whose bytes would not change are not touched, and none that was read is written over.
+    /// What a description declares and does not use becomes a warning of the package.
     pub fn generate(self) -> Result<(), BuildError> {
         let out_dir = match self
             .out_dir
@@ -111,22 +113,23 @@ impl Builder {
         };
         let mut errors = Vec::new();
         let mut stems: BTreeMap<String, PathBuf> = BTreeMap::new();
+        let mut made = Made::default();
         for (path, kind) in &self.files {
-            watch(path);
-            let stem = path
-                .file_stem()
-                .map(|stem| stem.to_string_lossy().into_owned())
-                .unwrap_or_default();
-            if let Some(other) = stems.insert(stem.clone(), path.clone()) {
-                errors.push(format!(
-                    "{} and {} would both be written to {stem}.rs; rename one of them",
-                    other.display(),
-                    path.display()
-                ));
-                continue;
-            }
-            if let Err(error) = self.generate_file(path, kind, &out_dir, &stem) {
-                errors.push(error);
+            let stem = self.stem(path, &mut stems);
+            let done = stem.and_then(|stem| self.make(path, kind, &stem, &mut made));
+            errors.extend(done.err());
+        }
+        let mut missing = BTreeSet::new();
+        for (file, text) in &made.files {
+            let file = out_dir.join(file);
+            let folder = file.parent().filter(|folder| *folder != Path::new(""));
+            match folder.filter(|folder| !folder.is_dir()) {
+                None => errors.extend(made.write(&file, text).err()),
+                Some(folder) if missing.insert(folder.to_owned()) => errors.push(format!(
+                    "there is no folder {} to write to; make it first",
+                    folder.display()
+                )),
+                Some(_) => {}
             }
         }
         if errors.is_empty() {
@@ -135,6 +138,73 @@ impl Builder {
             Err(BuildError(errors.join("\n")))
         }
     }
+
+    /// What the files that are made from a path are called before their endings: no two are called the same.
+    fn stem(&self, path: &Path, stems: &mut BTreeMap<String, PathBuf>) -> Result<String, String> {
+        let shown = path.display();
+        let Some(stem) = path.file_stem() else {
+            return Err(format!(
+                "`{shown}` names no file: give the path of a description, such as `models/arm.eom`"
+            ));
+        };
+        let stem = stem.to_string_lossy().into_owned();
+        if self.c.is_some() && !emit::c::includable(&stem) {
+            return Err(format!(
+                "{shown}: C cannot include `{stem}.h`, or has such a header; rename it, without quotes, `?`, `\\` and line breaks"
+            ));
+        }
+        if let Some(other) = stems.get(&stem) {
+            return Err(
+                match place(path).is_some_and(|file| place(other) == Some(file)) {
+                    true => format!(
+                        "{shown} is given twice, and has one {stem}.rs; leave it out, or write it to another folder by a `Builder` of its own"
+                    ),
+                    false => format!(
+                        "{} and {shown} would both be written to {stem}.rs; rename one of them",
+                        other.display()
+                    ),
+                },
+            );
+        }
+        stems.insert(stem.clone(), path.to_owned());
+        Ok(stem)
+    }
+}
+
+/// What was read and derived.
+#[derive(Default)]
+struct Made {
+    /// All files that were read.
+    read: Vec<PathBuf>,
+    /// Names below the folder of the Rust, or whole paths, and texts.
+    files: Vec<(PathBuf, String)>,
+    /// The functions in C, each with the file that it comes from.
+    named: BTreeMap<String, String>,
+}
+
+impl Made {
+    /// Reads a file; Cargo runs the build script again when it changes.
+    fn open(&mut self, path: &Path) -> io::Result<String> {
+        watch(path)?;
+        let text = text_of(path)?;
+        self.read.extend(place(path));
+        Ok(text)
+    }
+
+    fn write(&self, file: &Path, text: &str) -> Result<(), String> {
+        if place(file).is_some_and(|file| self.read.contains(&file)) {
+            return Err(format!(
+                "cannot write {}: this file is read; write to another folder, or rename it",
+                file.display()
+            ));
+        }
+        hamel_files::update(file, text).map_err(|error| error.to_string())
+    }
+}
+
+/// What a path stands for, whatever way leads there; nothing where there is no such file.
+fn place(path: &Path) -> Option<PathBuf> {
+    path.canonicalize().ok()
 }
 
 fn name(path: &Path) -> String {
@@ -145,36 +215,54 @@ fn name(path: &Path) -> String {
 
 /// Has Cargo run the build script again when a file changes. What the script itself writes below `OUT_DIR` is newer than
 /// the script's start, and would have it run in every build.
-fn watch(path: &Path) {
-    let written = std::env::var_os("OUT_DIR").is_some_and(|folder| path.starts_with(folder));
-    if !written {
-        println!("cargo:rerun-if-changed={}", path.display());
+fn watch(path: &Path) -> io::Result<()> {
+    let folder = std::env::var_os("OUT_DIR").map(PathBuf::from);
+    let written = folder.is_some_and(|folder| match (place(&folder), place(path)) {
+        (Some(folder), Some(path)) => path.starts_with(folder),
+        _ => path.starts_with(folder),
+    });
+    if written {
+        return Ok(());
     }
+    // Cargo reads lines, and takes blanks from their ends.
+    let said = |path: &&str| !path.contains(['\n', '\r']) && path.trim_end() == *path;
+    let Some(path) = path.to_str().filter(said) else {
+        return Err(io::Error::other(
+            "Cargo cannot be told of a path that has a line break, ends in a blank or is not UTF-8; rename it",
+        ));
+    };
+    writeln!(io::stdout(), "cargo:rerun-if-changed={path}")
+        .map_err(|error| io::Error::other(format!("Cargo cannot be told to watch it: {error}")))
 }
 
 impl Builder {
-    fn generate_file(
-        &self,
-        path: &Path,
-        kind: &Kind,
-        out_dir: &Path,
-        stem: &str,
-    ) -> Result<(), String> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    /// Reads a file, and makes the texts that are to be written.
+    fn make(&self, path: &Path, kind: &Kind, stem: &str, made: &mut Made) -> Result<(), String> {
         let shown = path.display().to_string();
-        let files = match kind {
+        let text = made.open(path).map_err(|error| {
+            let here = match std::env::current_dir() {
+                Ok(folder) if path.is_relative() && error.kind() == io::ErrorKind::NotFound => {
+                    format!("; its path starts at {}", folder.display())
+                }
+                _ => String::new(),
+            };
+            format!("cannot read {shown}: {error}{here}")
+        })?;
+        match kind {
             Kind::Description => {
+                if text
+                    .trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n'])
+                    .starts_with('<')
+                {
+                    return Err(format!("{shown} is no description: {ROBOTS}"));
+                }
                 let refused = |errors: Vec<Diagnostic>| render(&errors, &shown, &text, false);
                 let folder = path.parent().unwrap_or(Path::new(""));
-                let open = &mut |name: &str| {
-                    let file = folder.join(name);
-                    watch(&file);
-                    std::fs::read_to_string(file)
-                };
+                let open = &mut |name: &str| made.open(&folder.join(name));
                 let generated = from_file(&text, open).map_err(refused)?;
                 warn(&warnings(&generated.model.warnings, &shown, &text, false));
-                self.texts(&generated, &name(path), stem).map_err(refused)
+                let texts = self.texts(&generated, &name(path), stem, &shown, &mut made.named);
+                made.files.extend(texts.map_err(refused)?);
             }
             #[cfg(feature = "urdf")]
             Kind::Urdf(options) => {
@@ -191,12 +279,9 @@ impl Builder {
                         "{shown}: {message}; what needs its inverse is left out"
                     ));
                 }
-                self.texts(&generated, &description, stem).map_err(refused)
+                let texts = self.texts(&generated, &description, stem, &shown, &mut made.named);
+                made.files.extend(texts.map_err(refused)?);
             }
-        }?;
-        for (file, text) in files {
-            let file = out_dir.join(file);
-            hamel_files::update(&file, &text).map_err(|error| error.to_string())?;
         }
         Ok(())
     }
@@ -207,12 +292,15 @@ impl Builder {
         generated: &Generated,
         name: &str,
         stem: &str,
+        shown: &str,
+        named: &mut BTreeMap<String, String>,
     ) -> Result<Vec<(PathBuf, String)>, Vec<Diagnostic>> {
         let mut files = vec![(format!("{stem}.rs").into(), written(generated, name)?)];
         if let Some((folder, precision)) = &self.c {
             // The Rust stands elsewhere.
             let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
             let c = written_in_c(generated, name, Some(stem), *precision)?;
+            apart(generated, shown, named).map_err(|error| vec![error])?;
             files.push((folder.join(format!("{stem}.h")), c.header));
             files.push((folder.join(format!("{stem}.c")), c.source));
         }
@@ -220,10 +308,33 @@ impl Builder {
     }
 }
 
-/// Cargo shows these lines as warnings of the package.
+/// Refuses functions in C that are called as those of another file: a linker may take one of them for the other.
+fn apart(
+    generated: &Generated,
+    shown: &str,
+    named: &mut BTreeMap<String, String>,
+) -> Result<(), Diagnostic> {
+    let names = emit::c::functions(&generated.program);
+    if let Some((name, other)) = names.iter().find_map(|name| named.get_key_value(name)) {
+        let message = format!("`{name}` in C would be a function of {other}, too");
+        return Err(Diagnostic::new(generated.model.span, message)
+            .help("give one of the two systems another name"));
+    }
+    named.extend(names.into_iter().map(|name| (name, shown.to_owned())));
+    Ok(())
+}
+
+/// What is said of XML in the place of a description.
+#[cfg(feature = "urdf")]
+const ROBOTS: &str = "a robot in URDF has a name that ends in `.urdf`, or is added by `urdf`";
+#[cfg(not(feature = "urdf"))]
+const ROBOTS: &str = "robots in URDF need the feature `urdf` of hamel-codegen";
+
+/// Cargo shows these lines as warnings of the package. With one colon, it does for packages of any `rust-version`.
 fn warn(text: &str) {
     for line in text.lines() {
-        println!("cargo::warning={line}");
+        // Where nobody listens, nobody misses a warning.
+        let _ = writeln!(io::stdout(), "cargo:warning={line}");
     }
 }
 
@@ -236,7 +347,7 @@ pub fn source(text: &str, name: &str) -> Result<String, Vec<Diagnostic>> {
 pub fn written(generated: &Generated, name: &str) -> Result<String, Vec<Diagnostic>> {
     let options = emit::Options {
         source_hash: generated.hash,
-        command: format!("hamel emit {name}"),
+        command: format!("hamel emit {}", quoted(name)),
         ..Default::default()
     };
     emit::file(&generated.program, &options).map_err(|error| vec![generated.fault(&error)])
@@ -262,7 +373,8 @@ pub fn written_in_c(
         Precision::Double => "",
         Precision::Float => " --precision float",
     };
-    let out = stem.map_or_else(String::new, |stem| format!(" -o {stem}"));
+    let out = stem.map_or_else(String::new, |stem| format!(" -o {}", quoted(stem)));
+    let name = quoted(name);
     let options = emit::c::Options {
         source_hash: generated.hash,
         command: format!("hamel emit --language c{numbers} {name}{out}"),
@@ -270,4 +382,13 @@ pub fn written_in_c(
         precision,
     };
     Ok(emit::c::files(&generated.program, &options))
+}
+
+/// A word of a command, as a shell reads it.
+fn quoted(name: &str) -> String {
+    let plain = |letter: char| letter.is_alphanumeric() || "-_./+,:@%".contains(letter);
+    match name.is_empty() || name.contains(|letter| !plain(letter)) {
+        true => format!("'{}'", name.replace('\'', r"'\''")),
+        false => name.to_owned(),
+    }
 }

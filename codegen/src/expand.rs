@@ -2,7 +2,7 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::emit;
-use crate::generate::from_tokens;
+use crate::generate::{from_tokens, text_of};
 use crate::render::{to_compile_errors, to_compile_warnings};
 use proc_macro2::TokenStream;
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
     let mut read = TokenStream::new();
     let open = &mut |name: &str| {
         let path = folder.join(name);
-        let text = std::fs::read_to_string(&path)?;
+        let text = text_of(&path)?;
         let path = path.to_string_lossy();
         read.extend(quote::quote!(
             const _: &[u8] = ::core::include_bytes!(#path);

@@ -14,6 +14,7 @@ use crate::program::Program;
 use crate::proof;
 use crate::syntax::{self, Places, ast};
 use proc_macro2::TokenStream;
+use std::path::Path;
 
 /// A description, read and derived.
 #[derive(Clone, Debug)]
@@ -51,6 +52,17 @@ pub fn from_tokens(
 
 /// Gives the text of a file by the name that a description has for it.
 pub type Open<'a> = dyn FnMut(&str) -> std::io::Result<String> + 'a;
+
+/// The text of a file.
+///
+/// # Errors
+/// Where it cannot be read, or is no text; the message says from which byte on.
+pub fn text_of(path: &Path) -> std::io::Result<String> {
+    String::from_utf8(std::fs::read(path)?).map_err(|error| {
+        let place = error.utf8_error().valid_up_to();
+        std::io::Error::other(format!("byte {place} is not UTF-8; save it as UTF-8"))
+    })
+}
 
 /// Derives the description in a text; what it includes and its tables in files are opened as `open` says.
 #[cfg(feature = "files")]

@@ -81,7 +81,9 @@ pub use text::{render, warnings};
 
 #[cfg(feature = "files")]
 mod text {
+    use std::borrow::Cow;
     use std::ops::Range;
+    use std::path::Path;
 
     use annotate_snippets::renderer::DecorStyle;
     use annotate_snippets::{AnnotationKind, Group, Origin, Renderer, Snippet};
@@ -187,17 +189,27 @@ mod text {
         rendered
     }
 
-    /// A region of the description, or of a text that it includes: the name of the text, the text, its bytes.
+    /// A region of the description, or of a text that it includes: the path of the text, the text, its bytes.
     fn found<'a>(
         span: Span,
         error: &'a Diagnostic,
         path: &'a str,
         source: &'a str,
-    ) -> Option<(&'a str, &'a str, Range<usize>)> {
+    ) -> Option<(Cow<'a, str>, &'a str, Range<usize>)> {
         if let Some((text, range)) = error.texts.find(span) {
-            return Some((&text.name, &text.text, within(range, &text.text)));
+            let range = within(range, &text.text);
+            return Some((beside(path, &text.name), &text.text, range));
         }
-        Some((path, source, place(span, source)?))
+        Some((path.into(), source, place(span, source)?))
+    }
+
+    /// The path of what a description names, from where the path of the description starts.
+    fn beside<'a>(path: &str, name: &'a str) -> Cow<'a, str> {
+        let folder = Path::new(path).parent();
+        match folder.filter(|folder| !folder.as_os_str().is_empty()) {
+            Some(folder) => folder.join(name).display().to_string().into(),
+            None => name.into(),
+        }
     }
 
     fn group<'a>(error: &'a Diagnostic, level: Level, path: &'a str, source: &'a str) -> Group<'a> {
@@ -213,7 +225,7 @@ mod text {
         let primary = primary.clone().map(Some).into_iter();
         let primary = primary.map(|place| (AnnotationKind::Primary, place, ""));
         // One snippet a text, that of the error first.
-        let mut snippets: Vec<(&str, &str, Vec<_>)> = Vec::new();
+        let mut snippets: Vec<(Cow<'a, str>, &str, Vec<_>)> = Vec::new();
         for (kind, place, label) in primary.chain(notes) {
             let Some((name, text, range)) = place else {
                 messages.push(annotate_snippets::Level::NOTE.message(label));
@@ -239,7 +251,7 @@ mod text {
     /// The lines from the first place to the last, underlined.
     fn snippet<'a>(
         places: Vec<(AnnotationKind, Range<usize>, &'a str)>,
-        path: &'a str,
+        path: impl Into<Cow<'a, str>>,
         source: &'a str,
     ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
         let start = places
@@ -279,7 +291,7 @@ mod text {
         });
         Snippet::source(&source[first..last])
             .line_start(line)
-            .path(path)
+            .path(path.into())
             .annotations(annotations)
     }
 

@@ -111,7 +111,7 @@ fn what_the_terminal_shows_compiles_alone() {
 #[test]
 fn what_makes_no_sense_is_refused_with_the_way_out() {
     let file = model("kapitza.eom");
-    let cases: [(&[&str], &str); 5] = [
+    let cases: [(&[&str], &str); 6] = [
         (
             &["--precision", "float"],
             "`--precision` is for `--language c`",
@@ -127,6 +127,10 @@ fn what_makes_no_sense_is_refused_with_the_way_out() {
         (
             &["--language", "c", "-o", ".c"],
             "no name that C can include",
+        ),
+        (
+            &["--language", "c", "-o", "src/math"],
+            "or that of a header of C; name the files",
         ),
         (&["--language", "fortran"], "possible values: rust, c"),
     ];

@@ -78,7 +78,7 @@ pub fn functions(emitter: &Emitter) -> String {
         "is not that of its slopes, the linearisation is wrong and nothing says so.".into(),
     ];
     format!(
-        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::too_many_arguments, reason = \"the description's names and uses\")]\n{public}trait {}<S: ::hamel::Scalar>: ::core::clone::Clone {{\n{methods}}}\n\n",
+        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, clippy::too_many_arguments, reason = \"the description's names and uses\")]\n{public}trait {}<S: ::hamel::Scalar>: ::core::clone::Clone {{\n{methods}}}\n\n",
         docs::comment(&lines),
         names.of
     )

@@ -90,10 +90,10 @@ const LOCALS: &[&str] = &[
     "x", "xi", "u", "xi_dot", "momentum", "k", "slots", "out", "slopes",
 ];
 
-/// The generic parameter, and the primitive types: the text mentions some of them.
+/// The generic parameter, the primitive types, and the tool of `#[rustfmt::skip]`: the text mentions some of them.
 const TYPES: &[&str] = &[
-    "S", "bool", "char", "str", "f16", "f32", "f64", "f128", "i8", "i16", "i32", "i64", "i128",
-    "isize", "u8", "u16", "u32", "u64", "u128", "usize",
+    "S", "rustfmt", "bool", "char", "str", "f16", "f32", "f64", "f128", "i8", "i16", "i32", "i64",
+    "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize",
 ];
 
 /// Whether a word is one of Rust's own.

@@ -10,14 +10,14 @@ pub const ALLOW: &str = concat!(
     "#[rustfmt::skip]\n",
     "#[allow(dead_code, unreachable_pub, reason = \"a program may use a part of what is generated\")]\n",
     "#[allow(unused_qualifications, reason = \"full paths are right whatever is imported\")]\n",
-    "#[allow(clippy::approx_constant, clippy::let_and_return, clippy::too_many_arguments, \
-     clippy::type_complexity, clippy::wrong_self_convention, \
+    "#[allow(clippy::approx_constant, clippy::let_and_return, clippy::nursery, clippy::pedantic, \
+     clippy::too_many_arguments, clippy::type_complexity, clippy::wrong_self_convention, \
      reason = \"numbers, names and shapes are those of the description\")]\n",
 );
 
 /// Lints that generated implementations of traits cannot obey in general.
 pub const ALLOW_TRAIT: &str = r#"#[rustfmt::skip]
-#[allow(unused_qualifications, clippy::approx_constant, reason = "full paths are right whatever is imported")]
+#[allow(unused_qualifications, clippy::approx_constant, clippy::nursery, clippy::pedantic, reason = "full paths are right whatever is imported")]
 "#;
 
 /// Whether there is a field of constants: the type has at least one field.
@@ -57,7 +57,7 @@ pub fn structure(emitter: &Emitter) -> String {
     fields.push_str(&externals::field(emitter));
     let public = if program.public { "pub " } else { "" };
     format!(
-        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, reason = \"the description's names and uses\")]\n#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
+        "{}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, reason = \"the description's names and uses\")]\n#[derive(Clone, Debug)]\n{public}struct {} {{\n{fields}}}\n\n",
         docs::comment(&lines),
         externals::applied(emitter)
     )

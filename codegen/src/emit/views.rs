@@ -164,7 +164,7 @@ impl View<'_> {
         });
         let values: Vec<String> = values.collect();
         format!(
-            "{docs}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, reason = \"the description's names and uses\")]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S> {{\n{list}}}\n\n\
+            "{docs}#[rustfmt::skip]\n#[allow(dead_code, non_camel_case_types, unreachable_pub, clippy::nursery, clippy::pedantic, reason = \"the description's names and uses\")]\n#[derive(Clone, Copy, Debug, PartialEq)]\n{public}struct {name}<S> {{\n{list}}}\n\n\
              {ALLOW_TRAIT}impl<S: ::hamel::Scalar> ::core::default::Default for {name}<S> {{\n/// {default}\nfn default() -> Self {{\nSelf {{ {} }}\n}}\n}}\n\n",
             values.join(", ")
         )

@@ -63,8 +63,8 @@ pub(super) fn docs(cursor: &mut Cursor<'_>) -> Parsed<Vec<String>> {
         cursor.bump();
         cursor.expect_close(Delimiter::Bracket, false)?;
         lines.extend(
-            text.text
-                .lines()
+            undecorated(&text.text)
+                .into_iter()
                 .map(|line| line.strip_prefix(' ').unwrap_or(line).to_owned()),
         );
         if text.text.is_empty() {
@@ -72,6 +72,26 @@ pub(super) fn docs(cursor: &mut Cursor<'_>) -> Parsed<Vec<String>> {
         }
     }
     Ok(lines)
+}
+
+/// The lines of a doc comment, without the stars at the beginnings of `/** … */`, which would be points of a list.
+fn undecorated(text: &str) -> Vec<&str> {
+    let lines: Vec<&str> = text.lines().collect();
+    let Some((first, rest)) = lines.split_first() else {
+        return lines;
+    };
+    // The end of the comment stands on a line of its own.
+    let rest = match rest.split_last() {
+        Some((last, before)) if last.trim().is_empty() => before,
+        _ => rest,
+    };
+    let starred = |line: &&str| line.trim_start().starts_with('*');
+    if rest.is_empty() || !rest.iter().all(starred) {
+        return lines;
+    }
+    let first = Some(*first).filter(|line| !line.trim().is_empty());
+    let rest = rest.iter().map(|line| &line.trim_start()[1..]);
+    first.into_iter().chain(rest).collect()
 }
 
 /// The region from a first token to the one before the cursor.

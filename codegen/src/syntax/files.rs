@@ -153,18 +153,22 @@ impl Reader<'_, '_> {
 
 /// A path from a folder, without `.` and, where that is possible, without `..`.
 fn joined(folder: &str, name: &str) -> String {
-    if folder.is_empty() || name.starts_with('/') || name.contains(':') {
+    if name.starts_with('/') || name.contains(':') {
         return name.to_owned();
     }
+    let folder = folder.split('/').filter(|_| !folder.is_empty());
     let mut parts: Vec<&str> = Vec::new();
-    for part in folder.split('/').chain(name.split('/')) {
+    for part in folder.chain(name.split('/')) {
         match (part, parts.last()) {
             (".", _) => {}
             ("..", Some(last)) if *last != ".." && !last.is_empty() => _ = parts.pop(),
             _ => parts.push(part),
         }
     }
-    parts.join("/")
+    match parts.is_empty() {
+        true => name.to_owned(),
+        false => parts.join("/"),
+    }
 }
 
 /// The statements of a text whose first byte has this place.

@@ -475,3 +475,20 @@ fn given_circles_have_a_linearisation() {
     // ḣ of q is δu, that of c is 0; δu̇ = −3 h − 2 δu.
     assert_eq!(found, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -3.0, 0.0, -2.0]);
 }
+
+/// The stars of a block comment are no points of a list, as rustdoc has it; those of other texts stay.
+#[test]
+fn stars_of_block_comments_are_no_docs() {
+    let docs = |docs: &str| {
+        let text = format!("{docs}\nsystem A {{ coord x; velocity v; rate x = v; kinetic v^2; }}");
+        generated(&text).program.docs
+    };
+    let starred = "/** A block\n *\n *  - set in\r\n * of wood.\n */";
+    assert_eq!(docs(starred), ["A block", "", " - set in", "of wood."]);
+    assert_eq!(docs("/**\n  * A block\n  */"), ["A block"]);
+    assert_eq!(
+        docs("/** A\n * list\nin prose */"),
+        ["A", "* list", "in prose "]
+    );
+    assert_eq!(docs("/// * a\n/// * b\n///"), ["* a", "* b", ""]);
+}

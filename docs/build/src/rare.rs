@@ -9,6 +9,13 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "C is asked for, and the description has an `extern fn`: write what it gives as an expression or a table",
     ),
     (
+        "builder.rs",
+        "in C would be a function of {other}",
+        "`…` in C would be a function of …, too",
+        "a build script asks for the C of two systems whose functions would be called the same, and a linker could take one \
+         for the other: give one of the systems another name",
+    ),
+    (
         "derive/assemble.rs",
         "\"the mass matrix is singular for every configuration\"",
         "the mass matrix is singular for every configuration",

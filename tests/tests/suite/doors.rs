@@ -2,8 +2,9 @@
 //! build script and the generator that the command line calls.
 
 use hamel_codegen::builder::{Builder, source};
+use hamel_codegen::emit::c::Precision;
 use rayon::prelude::*;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 fn models() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
@@ -53,41 +54,252 @@ fn the_build_script_wrote_the_same() {
     );
 }
 
-/// What a build script writes below `OUT_DIR` is newer than its start: watched, it would have the script run in every
-/// build. The script is this program once more.
-#[test]
-fn descriptions_that_a_script_writes_are_not_watched() {
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
-    let given = models.join("free_body.eom");
+/// Calls a builder in a program of its own, which is this one once more, as a build script that writes to a folder; what
+/// it says to Cargo, and to people. Nothing within that program.
+fn script(test: &str, folder: &Path, builder: impl FnOnce() -> Builder) -> Option<[String; 2]> {
     let own = "HAMEL_TESTS_SCRIPT";
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("script");
-    let written = folder.join("heavy_top.eom");
     if std::env::var_os(own).is_some() {
-        let builder = Builder::new().file(&given).file(&written);
-        builder.generate().expect("correct");
-        return;
+        if let Err(error) = builder().generate() {
+            eprintln!("{error}");
+        }
+        return None;
     }
-    std::fs::create_dir_all(&folder).expect("a folder");
-    std::fs::copy(models.join("heavy_top.eom"), &written).expect("written");
     let this = std::env::current_exe().expect("a program");
     let script = std::process::Command::new(this)
-        .args([
-            "--exact",
-            "--nocapture",
-            "doors::descriptions_that_a_script_writes_are_not_watched",
-        ])
+        .args(["--exact", "--nocapture", &format!("doors::{test}")])
         .env(own, "1")
-        .env("OUT_DIR", &folder)
+        .env("OUT_DIR", folder)
         .output()
         .expect("it runs");
-    let said = String::from_utf8_lossy(&script.stdout);
-    let watched =
-        |path: &Path| said.contains(&format!("cargo:rerun-if-changed={}", path.display()));
-    assert!(script.status.success() && watched(&given), "{said}");
-    assert!(!watched(&written), "{said}");
-    for stem in ["free_body", "heavy_top"] {
-        assert!(folder.join(stem).with_extension("rs").is_file());
+    let said = [script.stdout, script.stderr].map(|said| String::from_utf8_lossy(&said).into());
+    assert!(script.status.success(), "{said:?}");
+    Some(said)
+}
+
+/// An empty folder for a test, with files.
+fn folder(name: &str, files: &[(&str, &str)]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    if std::env::var_os("HAMEL_TESTS_SCRIPT").is_some() {
+        return folder;
     }
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(folder.join("out")).expect("a folder");
+    for (file, text) in files {
+        let file = folder.join(file);
+        std::fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+        std::fs::write(file, text).expect("written");
+    }
+    folder
+}
+
+/// Whether a line of what a script says has Cargo watch a file.
+fn watches(said: &str, file: &Path) -> bool {
+    let line = format!("cargo:rerun-if-changed={}", file.display());
+    said.lines().any(|said| said.ends_with(&line))
+}
+
+const BLOCK: &str = "pub system Block { coord x; velocity v; rate x = v; kinetic v^2; }";
+
+/// What a build script writes below `OUT_DIR` is newer than its start: watched, it would have the script run in every
+/// build. What it includes from elsewhere is watched.
+#[test]
+fn descriptions_that_a_script_writes_are_not_watched() {
+    let including = BLOCK.replace("coord", "include \"../part.eom\"; coord");
+    let files = [
+        ("out/written.eom", including.as_str()),
+        ("given.eom", BLOCK),
+        ("part.eom", "param m = 1;"),
+    ];
+    let folder = folder("written", &files);
+    let [given, written] = ["given.eom", "out/written.eom"].map(|file| folder.join(file));
+    let test = "descriptions_that_a_script_writes_are_not_watched";
+    let out = folder.join("out");
+    let builder = || Builder::new().file(&given).file(&written);
+    let Some([said, wrong]) = script(test, &out, builder) else {
+        return;
+    };
+    assert!(watches(&said, &given), "{said}{wrong}");
+    assert!(!watches(&said, &written), "{said}");
+    assert!(watches(&said, &out.join("../part.eom")), "{said}");
+    for stem in ["given", "written"] {
+        assert!(out.join(stem).with_extension("rs").is_file());
+    }
+}
+
+/// What a description includes is shown by its own path, and is watched however deep it stands; warnings are said to any
+/// Cargo: with two colons, packages with an old `rust-version` would not be built.
+#[test]
+fn what_a_script_says_is_for_every_cargo() {
+    // A name with a line break would be an instruction to Cargo.
+    let told = BLOCK.replace("kinetic", "include \"x\\ncargo:rustc-cfg=told\"; kinetic");
+    let wrong = BLOCK.replace("kinetic", "include \"parts/a.eom\"; kinetic");
+    let files = [
+        ("models/told.eom", told.as_str()),
+        ("models/wrong.eom", wrong.as_str()),
+        ("models/parts/a.eom", "include \"../b.eom\";"),
+        ("models/b.eom", "\nkinetic y^2;"),
+        (
+            "models/twice.eom",
+            "system Twice { include \"./m.eom\"; include \"m.eom\"; coord x; velocity v; rate x = v; kinetic m * v^2; }",
+        ),
+        ("models/m.eom", "param m = 1;"),
+        (
+            "models/unused.eom",
+            &BLOCK.replace("coord", "param m = 1; coord"),
+        ),
+    ];
+    let folder = folder("said", &files);
+    let models = folder.join("models");
+    let builder = || {
+        let files = ["told.eom", "wrong.eom", "twice.eom", "unused.eom"];
+        let add = |builder: Builder, file| builder.file(models.join(file));
+        files.into_iter().fold(Builder::new(), add)
+    };
+    let test = "what_a_script_says_is_for_every_cargo";
+    let Some([said, wrong]) = script(test, &folder.join("out"), builder) else {
+        return;
+    };
+    for file in ["wrong.eom", "parts/a.eom", "b.eom", "m.eom", "unused.eom"] {
+        assert!(watches(&said, &models.join(file)), "{file}: {said}");
+    }
+    let warning = "cargo:warning=warning: the parameter `m` is never used";
+    assert!(
+        said.contains(warning) && !said.contains("cargo::"),
+        "{said}"
+    );
+    for place in ["b.eom:2:9", "parts/a.eom:1:9", "wrong.eom:1:"] {
+        let place = models.join(place).display().to_string();
+        assert!(wrong.contains(&place), "{place}: {wrong}");
+    }
+    assert!(!said.contains("rustc-cfg"), "{said}");
+    assert_eq!(wrong.matches("error: ").count(), 2, "{wrong}");
+}
+
+/// The command in a header is one that a shell reads as it is meant.
+#[test]
+fn names_of_files_are_quoted_in_commands() {
+    for (name, command) in [
+        ("größe-2.eom", "`hamel emit größe-2.eom`"),
+        ("two words.eom", "`hamel emit 'two words.eom'`"),
+        ("it's.eom", r"`hamel emit 'it'\''s.eom'`"),
+    ] {
+        let code = source(BLOCK, name).expect("correct");
+        assert!(code.contains(command), "{code}");
+    }
+}
+
+/// All files that cannot be read, or would be written to one place, are told at once, each with what to do.
+#[test]
+fn wrong_files_are_told_at_once() {
+    let files = [
+        ("a.eom", BLOCK),
+        ("b/a.eom", BLOCK),
+        ("robot.xml", "\u{feff}<robot name=\"a\"/>"),
+        ("folder.eom/a", ""),
+        ("line\nbreak.eom", BLOCK),
+        ("missing/a.eom", BLOCK),
+    ];
+    let folder = folder("files", &files);
+    std::fs::write(folder.join("latin.eom"), b"system \xc4").expect("written");
+    let builder = || {
+        let add = |builder: Builder, file| builder.file(folder.join(file));
+        let files = [
+            "a.eom",
+            "b/../a.eom",
+            "b/a.eom",
+            "robot.xml",
+            "folder.eom",
+            "line\nbreak.eom",
+            "latin.eom",
+        ];
+        let builder = files.into_iter().fold(Builder::new(), add);
+        let none = folder.join("none");
+        builder.file("..").file("none.eom").out_dir(none)
+    };
+    let test = "wrong_files_are_told_at_once";
+    let Some([said, wrong]) = script(test, &folder.join("out"), builder) else {
+        return;
+    };
+    for told in [
+        "b/../a.eom is given twice, and has one a.rs; leave it out, or ",
+        "b/a.eom would both be written to a.rs; rename one of them",
+        "robot.xml is no description: ",
+        "folder.eom: Is a directory",
+        "break.eom: Cargo cannot be told of a path that has a line break, ",
+        "latin.eom: byte 7 is not UTF-8; save it as UTF-8",
+        "`..` names no file: give the path of a description",
+        "; its path starts at ",
+        "/none to write to; make it first",
+    ] {
+        assert_eq!(wrong.matches(told).count(), 1, "{told}: {wrong}");
+    }
+    assert!(!said.contains("=break"), "{said}");
+}
+
+/// A description is not lost to what is made from it, nor is what it includes.
+#[test]
+fn nothing_that_is_read_is_written_over() {
+    let including = BLOCK.replace("kinetic", "include \"b.h\"; kinetic");
+    let including = including.replace("Block", "Other");
+    let files = [
+        ("out/a.rs", BLOCK),
+        ("out/b.eom", including.as_str()),
+        ("out/b.h", "param m = 1;"),
+    ];
+    let folder = folder("over", &files);
+    let out = folder.join("out");
+    let test = "nothing_that_is_read_is_written_over";
+    let builder = || {
+        let builder = Builder::new().file(out.join("a.rs"));
+        let builder = builder.file(out.join("b.eom"));
+        builder.c_files(out.join("../out"), Precision::Double)
+    };
+    let Some([_, wrong]) = script(test, &out, builder) else {
+        return;
+    };
+    for (file, text) in files {
+        let now = std::fs::read_to_string(folder.join(file)).expect("readable");
+        assert_eq!(now, text, "{file}");
+    }
+    let told = wrong.matches("this file is read; write to another folder, or rename it");
+    assert_eq!(told.count(), 2, "{wrong}");
+}
+
+/// In C, where no module keeps names apart, no two files have functions of one name, and all of them can be included.
+#[test]
+fn names_in_c_are_of_one_file() {
+    let files = [
+        ("a.eom", BLOCK),
+        ("b.eom", BLOCK),
+        (
+            "with_output.eom",
+            "system Long { coord x; velocity v; rate x = v; kinetic v^2; output name_accel = x; }",
+        ),
+        ("c.eom", &BLOCK.replace("Block", "LongName")),
+        ("d\".eom", &BLOCK.replace("Block", "Other")),
+        ("Math.eom", &BLOCK.replace("Block", "Math")),
+    ];
+    let folder = folder("names", &files);
+    let out = folder.join("out");
+    let builder = || {
+        let add = |builder: Builder, (file, _): &(&str, &str)| builder.file(folder.join(file));
+        let builder = files.iter().fold(Builder::new(), add);
+        builder.c_files(&out, Precision::Double)
+    };
+    let Some([_, wrong]) = script("names_in_c_are_of_one_file", &out, builder) else {
+        return;
+    };
+    for told in [
+        "error: `block_default_parameters` in C would be a function of ",
+        "b.eom:1:12",
+        "error: `long_name_accel` in C would be a function of ",
+        "c.eom:1:12",
+        "d\".eom: C cannot include `d\".h`, or has such a header; rename it",
+        "Math.eom: C cannot include `Math.h`, or has such a header; rename it",
+    ] {
+        assert_eq!(wrong.matches(told).count(), 1, "{told}: {wrong}");
+    }
+    assert!(out.join("a.c").is_file() && !out.join("b.c").exists());
 }
 
 #[test]

@@ -108,6 +108,59 @@ pub fn files(program: &Program, options: &Options) -> Files {
     }
 }
 
+/// The headers of C: with the folder of another one of that name among those that are searched, nobody finds them.
+const HEADERS: &[&str] = &[
+    "assert",
+    "complex",
+    "ctype",
+    "errno",
+    "fenv",
+    "float",
+    "inttypes",
+    "iso646",
+    "limits",
+    "locale",
+    "math",
+    "setjmp",
+    "signal",
+    "stdalign",
+    "stdarg",
+    "stdatomic",
+    "stdbit",
+    "stdbool",
+    "stdckdint",
+    "stddef",
+    "stdint",
+    "stdio",
+    "stdlib",
+    "stdnoreturn",
+    "string",
+    "tgmath",
+    "threads",
+    "time",
+    "uchar",
+    "wchar",
+    "wctype",
+];
+
+/// Whether a file of this name before `.h` can be included, and is in nobody's way.
+pub fn includable(stem: &str) -> bool {
+    let strange = |letter: char| letter.is_control() || matches!(letter, '"' | '\\' | '?');
+    // Some systems do not tell `Math.h` from `math.h`.
+    let known = HEADERS
+        .iter()
+        .any(|header| header.eq_ignore_ascii_case(stem));
+    !stem.is_empty() && !stem.contains(strange) && !known
+}
+
+/// What the functions of a program are called by which a linker knows them.
+#[cfg(feature = "files")]
+pub(crate) fn functions(program: &Program) -> Vec<String> {
+    let (names, _) = Identifiers::of(program);
+    let own = ["default_parameters", "set_parameters", "start"].map(|name| names.own(name));
+    own.into_iter().chain(names.functions).collect()
+}
+
 /// The documentation of a function in C: what it evaluates, its cost, arguments and result.
 fn documentation(program: &Program, function: &Function, nodes: &[NodeId]) -> Vec<String> {
     let mut lines = docs::described(program, function, nodes);

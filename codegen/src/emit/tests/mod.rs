@@ -156,6 +156,7 @@ fn names_are_legal() {
         syn::parse_str::<syn::Ident>(&snake(written)).expect(written);
     }
     assert_eq!(type_name("S"), "S_");
+    assert_eq!(type_name("rustfmt"), "rustfmt_");
     assert_eq!(type_name("Self"), "Self_");
     assert_eq!(type_name("θBody"), "ThetaBody");
     assert_eq!(type_name("heavy_top"), "heavy_top");
