@@ -11,26 +11,36 @@ use crate::algebra::graph::Edge;
 use crate::derive::tables::Geometry;
 use crate::generate::{Generated, from_text};
 use crate::model::layout::Block;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::{LazyLock, OnceLock};
 
-fn fixture(name: &str) -> Generated {
-    let path = format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect(&path);
-    from_text(&text).expect(name)
+/// The models, each derived once for all tests that look at it.
+static FIXTURES: LazyLock<BTreeMap<String, OnceLock<Generated>>> = LazyLock::new(|| {
+    let folder = format!("{}/../tests/models", env!("CARGO_MANIFEST_DIR"));
+    let files = std::fs::read_dir(folder).expect("models").flatten();
+    let name = |file: std::fs::DirEntry| {
+        let name = file.file_name().into_string().ok()?;
+        name.strip_suffix(".eom").map(str::to_string)
+    };
+    files
+        .filter_map(name)
+        .map(|name| (name, OnceLock::new()))
+        .collect()
+});
+
+fn fixture(name: &str) -> &'static Generated {
+    FIXTURES[name].get_or_init(|| {
+        let path = format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(&path).expect(&path);
+        from_text(&text).expect(name)
+    })
 }
 
 /// The names of all models, in order; those of many bodies, in a folder of their own, have tests in
-/// `tests/fixtures.rs`.
-fn fixtures() -> Vec<String> {
-    let folder = format!("{}/../tests/models", env!("CARGO_MANIFEST_DIR"));
-    let files = std::fs::read_dir(folder).expect("models").flatten();
-    let mut names: Vec<String> = files
-        .filter_map(|file| {
-            let name = file.file_name().into_string().ok()?;
-            name.strip_suffix(".eom").map(str::to_string)
-        })
-        .collect();
-    names.sort();
-    names
+/// `tests/suite/fixtures.rs`.
+fn fixtures() -> Vec<&'static str> {
+    FIXTURES.keys().map(String::as_str).collect()
 }
 
 fn listing(generated: &Generated, table: Table) -> Listing {
@@ -63,8 +73,7 @@ fn entries_contain_only_coordinates_that_they_depend_on() {
     for name in fixtures {
         let generated = fixture(name);
         let mut geometry = Geometry::new(&generated.model).expect(name);
-        let shown =
-            tables(&generated, &[Table::Gamma, Table::Mass, Table::Connection]).expect(name);
+        let shown = tables(generated, &[Table::Gamma, Table::Mass, Table::Connection]).expect(name);
         for listing in &shown.listings {
             for entry in &listing.entries {
                 let i: Vec<usize> = entry.index.iter().map(|i| i - 1).collect();
@@ -119,7 +128,7 @@ fn check_blocks(geometry: &mut Geometry, edge: Edge, printed: &[usize], what: &s
 
 #[test]
 fn curvilinear_gamma_keeps_its_coordinate() {
-    let listing = listing(&fixture("polar_particle"), Table::Gamma);
+    let listing = listing(fixture("polar_particle"), Table::Gamma);
     let expected = [
         (vec![1, 2, 2], "-1/rho".to_string()),
         (vec![2, 1, 2], "1/rho".to_string()),
@@ -129,13 +138,13 @@ fn curvilinear_gamma_keeps_its_coordinate() {
 
 #[test]
 fn every_table_of_every_fixture_prints() {
-    for name in fixtures() {
-        let generated = fixture(&name);
+    fixtures().par_iter().for_each(|name| {
+        let generated = fixture(name);
         let all: Vec<Table> = Table::names()
             .into_iter()
             .map(|name| Table::parse(name).expect("known"))
             .collect();
-        let shown = tables(&generated, &all).expect(&name);
+        let shown = tables(generated, &all).expect(name);
         for all in [false, true] {
             let json = json(&shown, all).to_string();
             let out = [
@@ -146,7 +155,7 @@ fn every_table_of_every_fixture_prints() {
             ];
             assert!(out.iter().all(|text| !text.is_empty()), "{name}");
         }
-    }
+    });
 }
 
 #[test]

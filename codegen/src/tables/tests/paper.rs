@@ -22,7 +22,7 @@ fn gamma_of_the_free_body_is_that_of_the_paper() {
         paper.push((index, "1".to_string()));
     }
     paper.sort();
-    assert_eq!(values(&listing(&fixture("free_body"), Table::Gamma)), paper);
+    assert_eq!(values(&listing(fixture("free_body"), Table::Gamma)), paper);
     for entry in &mut paper {
         entry.1 = if entry.1 == "1" {
             "-1".into()
@@ -33,7 +33,7 @@ fn gamma_of_the_free_body_is_that_of_the_paper() {
     // In world axes spin commutes with the opposite sign, and not with the velocity.
     paper.retain(|(index, _)| index.iter().all(|&i| i > 3));
     assert_eq!(
-        values(&listing(&fixture("free_body_world"), Table::Gamma)),
+        values(&listing(fixture("free_body_world"), Table::Gamma)),
         paper
     );
 }
@@ -63,7 +63,7 @@ fn connection_of_the_free_body_is_that_of_the_paper() {
         .map(|(value, plus, minus)| (value.to_string(), list(plus), list(minus)))
         .collect();
     paper.sort();
-    let listing = listing(&fixture("free_body"), Table::Connection);
+    let listing = listing(fixture("free_body"), Table::Connection);
     assert_eq!(listing.entries.len(), 48);
     let groups = listing.groups.iter();
     let mut ours: Vec<_> = groups

@@ -100,7 +100,7 @@ fn printed_values_are_those_of_the_graph() {
         let numbered =
             |n: usize, scale: f64| (1..=n).map(|i| scale * i as f64).collect::<Vec<f64>>();
         let (xi, u) = (numbered(model.n(), 0.3), numbered(model.u.len(), -0.4));
-        let x = point(&generated);
+        let x = point(generated);
         let numbers = model.numbers(&model.defaults, &x, &xi, &u, &numbered(model.n(), 0.0));
         let symbols = model.graph.symbols().iter();
         let values: Values = symbols
