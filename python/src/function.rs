@@ -21,6 +21,8 @@ pub struct Function {
     compiled: Compiled,
     /// Parameters, and what depends on them alone; or why there is nothing.
     constants: Result<Constants, Cause>,
+    /// What makes it once more elsewhere: a function of Python and its arguments.
+    pickled: Py<PyTuple>,
 }
 
 /// The name that an argument has in Python.
@@ -45,12 +47,18 @@ pub fn axes(shape: Shape) -> Vec<usize> {
 
 impl Function {
     /// A function by its name, with these parameters.
-    pub fn new(session: &Arc<Session>, name: &str, params: &[f64]) -> PyResult<Self> {
+    pub fn new(
+        session: &Arc<Session>,
+        name: &str,
+        params: &[f64],
+        pickled: Py<PyTuple>,
+    ) -> PyResult<Self> {
         let compiled = session.function(name).map_err(raised)?;
         Ok(Function {
             constants: compiled.constants(params),
             session: Arc::clone(session),
             compiled,
+            pickled,
         })
     }
 
@@ -165,6 +173,10 @@ impl Function {
     #[getter]
     fn shape(&self, py: Python<'_>) -> PyResult<Py<PyTuple>> {
         Ok(PyTuple::new(py, axes(self.compiled.shape))?.unbind())
+    }
+
+    fn __reduce__(&self, py: Python<'_>) -> Py<PyTuple> {
+        self.pickled.clone_ref(py)
     }
 
     fn __repr__(&self) -> String {

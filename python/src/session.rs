@@ -12,7 +12,7 @@ use numpy::{
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -251,15 +251,16 @@ impl Session {
         Ok(arrays(py, &state))
     }
 
-    /// A function, with these parameters.
+    /// A function, with these parameters; `pickled` is what makes it once more elsewhere.
     fn function(
         &self,
         py: Python<'_>,
         name: &str,
         params: PyReadonlyArray1<'_, f64>,
+        pickled: Py<PyTuple>,
     ) -> PyResult<Function> {
         let params = params.as_array().to_vec();
-        py.detach(|| Function::new(&self.0, name, &params))
+        py.detach(|| Function::new(&self.0, name, &params, pickled))
     }
 
     fn tables(&self, py: Python<'_>, of: Vec<String>, format: &str, all: bool) -> PyResult<String> {

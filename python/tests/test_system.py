@@ -1,6 +1,7 @@
 """Functions over arrays, states, runs, slopes, tables; laws and errors."""
 
 import json
+import multiprocessing
 import pickle
 import re
 import subprocess
@@ -148,6 +149,15 @@ def test_systems_are_pickled(pendulum):
     other = pickle.loads(pickle.dumps(pendulum.with_parameters(l=2.0)))
     assert list(other.parameter_values) == [2.0, 2.0, 9.81]
     assert other.accel([0.3], [0.0], [1.0]) == pendulum.with_parameters(l=2.0).accel([0.3], [0.0], [1.0])
+
+
+def test_functions_are_pickled(pendulum):
+    accel = pendulum.with_parameters(l=2.0).accel
+    again = pickle.loads(pickle.dumps(accel))
+    assert (again.name, again.shape) == (accel.name, accel.shape)
+    assert again([0.3], [0.0], [1.0]) == accel([0.3], [0.0], [1.0]) != pendulum.accel([0.3], [0.0], [1.0])
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert pool.starmap(accel, [([0.3], [0.0], [1.0])]) == [accel([0.3], [0.0], [1.0])]
 
 
 def test_states_by_names(models, robots):

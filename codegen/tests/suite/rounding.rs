@@ -103,10 +103,10 @@ fn awkward_axes_keep_their_digits() {
                 continue;
             }
         };
-        let worst = errors(&arm, &system, case as u64);
+        let worst = errors(&arm, &system, case);
         let mut tables = 0.0;
         if arm.0.len() <= 3 {
-            tables = error_of_tables(&arm, &system, case as u64);
+            tables = error_of_tables(&arm, &system, case);
         }
         if worst
             .iter()

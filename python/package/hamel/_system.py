@@ -457,7 +457,8 @@ class System:
         """A function by its name; it is compiled when it is first asked for. Its docstring has the shapes of its arrays."""
         found = self._functions.get(name)
         if found is None:
-            found = self._functions[name] = self._session.function(name, self._parameters)
+            pickled = (_function, (*self.__reduce__()[1], name))
+            found = self._functions[name] = self._session.function(name, self._parameters, pickled)
         return found
 
     def __getattr__(self, name: str) -> Function:
@@ -692,3 +693,7 @@ def _restored(source: tuple[str, str | None, dict[str, Any]], parameters: Array,
     system = System(session, source, parameters)
     system._start = start
     return system
+
+
+def _function(source: tuple[str, str | None, dict[str, Any]], parameters: Array, start: State, name: str) -> Function:
+    return _restored(source, parameters, start).function(name)

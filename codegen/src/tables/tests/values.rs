@@ -148,7 +148,7 @@ fn printed_values_are_those_of_the_graph() {
                 &numbers
             };
             let expected = evaluate(graph, &edges, numbers);
-            let listing = tables(&generated, &[table])
+            let listing = tables(generated, &[table])
                 .expect("derivable")
                 .listings
                 .remove(0);
