@@ -233,12 +233,24 @@ fn step(problem: &impl Assembly, x: &[f64], residuals: &[f64], towards: bool) ->
 
 /// L with L Lᵀ = M; `None` where M is not positive definite.
 pub fn cholesky(m: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+    cholesky_with(m, |_, pivot| pivot)
+}
+
+/// The same with other pivots, by their places and values.
+pub fn cholesky_with(
+    m: &[Vec<f64>],
+    mut pivot: impl FnMut(usize, f64) -> f64,
+) -> Option<Vec<Vec<f64>>> {
     let n = m.len();
     let mut l = vec![vec![0.0; n]; n];
     for i in 0..n {
         for j in 0..=i {
             let sum = m[i][j] - dot(&l[i][..j], &l[j][..j]);
-            l[i][j] = if i == j { sum.sqrt() } else { sum / l[j][j] };
+            l[i][j] = if i == j {
+                pivot(i, sum).sqrt()
+            } else {
+                sum / l[j][j]
+            };
         }
         if !(l[i][i] > 0.0 && l[i][i].is_finite()) {
             return None;

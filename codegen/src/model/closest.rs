@@ -1,14 +1,14 @@
 //! Configurations nearest to a guess: of loops in the metric of M, of the description's own constraints in that of
 //! the coordinates, where velocities are not yet known.
 
-use super::assembly::{Assembly, backward, cholesky, forward};
+use super::assembly::{Assembly, backward, cholesky, cholesky_with, forward};
 use super::closure::{Closure, normalise};
 use super::layout::Block;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::{evaluate, least_norm};
 use crate::algebra::slopes::slopes;
 
-/// What a pivot of M has of its entry at least; else it is added to M, relative to its largest entry.
+/// What a pivot of M has of its entry at least; else it has so much of the largest entry.
 const LEAST: f64 = 1e-9;
 
 /// Loops to be closed near a guess.
@@ -261,17 +261,14 @@ pub fn velocities(
     Some(xi)
 }
 
-/// L with M = L Lᵀ; with a little on the diagonal of M where something is without mass, or as good as that.
+/// L with M = L Lᵀ; pivots of what is without mass, or as good as that, and of the time are raised.
 fn root(mass: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    let whole = |l: &Vec<Vec<f64>>| (0..l.len()).all(|i| l[i][i] * l[i][i] > LEAST * mass[i][i]);
-    if let Some(root) = cholesky(mass).filter(whole) {
-        return Some(root);
-    }
     let scale = (0..mass.len()).map(|i| mass[i][i]).fold(0.0, f64::max);
-    let scale = if scale > 0.0 { scale } else { 1.0 };
-    let mut regular = mass.to_vec();
-    (0..mass.len()).for_each(|i| regular[i][i] += LEAST * scale);
-    cholesky(&regular)
+    let raised = LEAST * if scale > 0.0 { scale } else { 1.0 };
+    cholesky_with(mass, |i, pivot| match pivot <= LEAST * mass[i][i] {
+        true => raised,
+        false => pivot,
+    })
 }
 
 /// A list of what each block gives at its place.

@@ -130,22 +130,37 @@ fn what_is_found_is_the_nearest_of_all_assemblies() {
 }
 
 /// The kinetic metric at the guess: a light crank gives way to a heavy one, by the ratio that Lagrange's multipliers say.
+/// The time has no mass, and what moves with it makes M singular; neither changes what gives way, nor does what is without mass
+/// and takes no part.
 #[test]
 fn what_is_light_gives_way() {
-    let text = "system S {
-        coord x, y;
-        velocity u, v;
-        rate x = u, y = v;
-        particle mass 1 at [x, 0, 0];
-        particle mass 9 at [0, y, 0];
-        loop x + y = 3;
-        start x ~ 1, y ~ 1, u ~ 2, v ~ 1;
-    }";
-    let model = build(&parse_text(text).expect("a description")).expect("a start");
-    // The least of (x - 1)² + 9 (y - 1)² with x + y = 3, and of (u - 2)² + 9 (v - 1)² with u + v = 0.
-    for (found, expected) in [(&model.start_x, [1.9, 1.1]), (&model.start_xi, [-0.7, 0.7])] {
-        for (found, expected) in found.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    for [more, moved] in [
+        ["", ""],
+        ["time t;", ""],
+        ["time t;", "+ 0.2 * sin(t)"],
+        ["coord z; velocity w; rate z = w;", ""],
+    ] {
+        let text = format!(
+            "system S {{
+                coord x, y;
+                velocity u, v;
+                rate x = u, y = v;
+                {more}
+                particle mass 1 at [x {moved}, 0, 0];
+                particle mass 9 at [0, y, 0];
+                loop x + y = 3;
+                start x ~ 1, y ~ 1, u ~ 2, v ~ 1;
+            }}"
+        );
+        let model = build(&parse_text(&text).expect("a description")).expect("a start");
+        // The least of (x - 1)² + 9 (y - 1)² with x + y = 3, and of (u - 2)² + 9 (v - 1)² with u + v = 0.
+        for (found, expected) in [(&model.start_x, [1.9, 1.1]), (&model.start_xi, [-0.7, 0.7])] {
+            for (found, expected) in found.iter().zip(expected) {
+                assert!(
+                    (found - expected).abs() < 1e-14,
+                    "{text}: {found} {expected}"
+                );
+            }
         }
     }
 }
