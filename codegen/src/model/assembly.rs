@@ -237,7 +237,7 @@ pub fn cholesky(m: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
 }
 
 /// The same with other pivots, by their places and values.
-pub fn cholesky_with(
+pub(super) fn cholesky_with(
     m: &[Vec<f64>],
     mut pivot: impl FnMut(usize, f64) -> f64,
 ) -> Option<Vec<Vec<f64>>> {
