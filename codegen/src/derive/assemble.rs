@@ -376,6 +376,3 @@ fn names(model: &Model, graph: &mut Graph) -> Vec<(String, Edge)> {
     }
     names
 }
-
-#[cfg(test)]
-mod tests;

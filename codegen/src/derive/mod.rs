@@ -51,8 +51,10 @@ pub(crate) mod normal;
 mod program;
 pub(crate) mod quantity;
 mod reactions;
-pub(crate) mod reduction;
+pub mod reduction;
 pub mod regressor;
 pub mod structure;
 pub mod tables;
-pub(crate) mod tree;
+// Open to tests, which compare the recursions with derivations that know no trees.
+#[doc(hidden)]
+pub mod tree;

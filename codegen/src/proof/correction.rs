@@ -57,38 +57,3 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     )
     .map_err(|_| failure())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::validate;
-    use crate::generate::from_text;
-    use crate::program::FunctionId;
-
-    /// What is wrong in one entry alone is noticed: in its value, in its sign, and where it is left out.
-    #[test]
-    fn a_wrong_entry_is_noticed() {
-        let text = "system A {
-            coord q: S3, R: SO3; velocity w: vec3, o: vec3; rate q = qmul(q, [0, w[1], w[2], w[3]]) / 2; rate R = R * hat(o);
-            kinetic dot(w, w) / 2 + dot(o, o) / 2;
-        }";
-        let generated = from_text(text).unwrap_or_else(|errors| panic!("{errors:?}"));
-        let (model, program) = (&generated.model, &generated.program);
-        assert!(validate(model, program).is_ok());
-        let index = (program.functions.iter())
-            .position(|function| function.id == Some(FunctionId::Correction))
-            .expect("it is there");
-        for place in 0..program.functions[index].outputs.len() {
-            let mut wrong = program.clone();
-            let entry = wrong.functions[index].outputs[place];
-            let others = [
-                -entry,
-                wrong.graph.zero(),
-                wrong.graph.add(entry, wrong.graph.one()),
-            ];
-            for other in others {
-                wrong.functions[index].outputs[place] = other;
-                assert!(validate(model, &wrong).is_err(), "entry {place}");
-            }
-        }
-    }
-}

@@ -138,37 +138,3 @@ fn increase(sum: &mut [Fp], by: &[Fp], k: Fp) {
         *sum = *sum + by * k;
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::validate;
-    use crate::derive::regressor::regressor;
-    use crate::generate::from_text;
-
-    #[test]
-    fn one_wrong_entry_is_refused() {
-        let text = "system Arm {
-            param l = 0.3;
-            joint a: revolute [0, 1, 0] moves f { armature 0.02; damping 0.1; }
-            joint b: revolute [1, 2, 2] on f at translation([l, 0, 0]) moves g;
-            body on f { mass 2; com [0.1, 0, 0]; inertia diag(0.03, 0.03, 0.04) about com; }
-            body on g { mass 1; com [0.2, 0.1, 0]; inertia diag(0.02, 0.03, 0.04) about com; }
-            gravity [0, 0, -9.81];
-            generate regressor;
-        }";
-        let generated = from_text(text).expect("a program");
-        let model = &generated.model;
-        let derived = regressor(model).expect("base parameters");
-        assert!(validate(model, &derived, &generated.program).is_ok());
-        for name in ["regressor", "base_parameters"] {
-            let mut program = generated.program.clone();
-            let function = program.functions.iter_mut().find(|f| f.name == name);
-            let outputs = &mut function.expect("a function").outputs;
-            let zero = program.graph.zero();
-            let place = outputs.iter().rposition(|edge| *edge != zero);
-            let place = place.expect("an entry that is not 0");
-            outputs[place] = -outputs[place];
-            assert!(validate(model, &derived, &program).is_err(), "{name}");
-        }
-    }
-}

@@ -91,7 +91,7 @@ struct Emitted {
 }
 
 /// What is compared here; outputs of the description beside it.
-pub(super) const COMPARED: [&str; 14] = [
+pub const COMPARED: [&str; 14] = [
     "accel",
     "bias",
     "dissipation",

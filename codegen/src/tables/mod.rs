@@ -33,8 +33,6 @@ pub mod regressor;
 mod rows;
 mod simplify;
 mod style;
-#[cfg(test)]
-mod tests;
 mod text;
 mod typeset;
 mod write;

@@ -4,6 +4,7 @@
 mod arm;
 mod assembly;
 mod built;
+mod care;
 mod common;
 mod components;
 mod constrained;
@@ -15,6 +16,7 @@ mod expressions;
 mod externals;
 mod fixtures;
 mod functions;
+mod headers;
 mod include;
 mod inerter;
 mod joints;
@@ -27,6 +29,8 @@ mod powers;
 #[path = "common/precise.rs"]
 mod precise;
 mod prescribed;
+mod proofs;
+mod recursions;
 mod regressions;
 mod reuse;
 mod roots;
@@ -37,6 +41,8 @@ mod scene;
 mod tree;
 mod trees;
 mod unsaid;
+#[cfg(feature = "urdf")]
+mod urdf;
 mod work;
 
 use common::Random;

@@ -39,6 +39,7 @@ mod snapshots;
 mod states;
 mod step_slopes;
 mod structure;
+mod tables;
 mod time;
 mod twins;
 mod views;

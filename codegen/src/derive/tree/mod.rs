@@ -17,8 +17,6 @@ mod reframe;
 mod regroup;
 mod revolute;
 mod safe;
-#[cfg(test)]
-mod tests;
 pub mod turn;
 pub mod twin;
 pub mod uniform;

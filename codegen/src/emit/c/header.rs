@@ -267,32 +267,3 @@ pub fn prototype(texts: &Texts, spec: &Spec, name: &str) -> String {
     }
     format!("{returned} {name}(\n    {})", arguments.join(",\n    "))
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::emit::c::{Options, Precision, files};
-    use crate::generate::from_text;
-
-    #[test]
-    fn what_a_header_names_it_includes() {
-        let header = |most: &str, precision| {
-            let text = format!(
-                "system A {{ joint j: revolute [0, 0, 1] moves f {{ max_force {most}; }}
-                    body on f {{ mass 1; inertia diag(1, 1, 1) about com; }} }}"
-            );
-            let program = from_text(&text)
-                .unwrap_or_else(|errors| panic!("{errors:?}"))
-                .program;
-            let options = Options {
-                precision,
-                ..Options::default()
-            };
-            files(&program, &options).header
-        };
-        let infinite = header("1e300", Precision::Float);
-        let include = infinite.find("#include <math.h>").expect("for HUGE_VALF");
-        assert!(include < infinite.find("HUGE_VALF").expect("it is no float"));
-        assert!(!header("1e300", Precision::Double).contains("#include"));
-        assert!(!header("100", Precision::Float).contains("#include"));
-    }
-}

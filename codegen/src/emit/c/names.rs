@@ -160,8 +160,7 @@ impl Identifiers {
 
 #[cfg(test)]
 mod tests {
-    use super::{Identifiers, legal};
-    use crate::generate::from_text;
+    use super::legal;
 
     #[test]
     fn words_of_c_and_of_its_headers_are_left_to_them() {
@@ -171,18 +170,5 @@ mod tests {
         for word in ["of", "f", "sine", "m", "k", "infinity"] {
             assert_eq!(legal(word.into()), word);
         }
-    }
-
-    #[test]
-    fn members_are_not_called_as_types() {
-        let text = "system A { param a_real = 1, a_system = 2, fmin = 3, b = 4; coord q; velocity v; rate q = v;
-            kinetic a_real * v^2 / 2; potential (a_system + fmin + b) * q; }";
-        let program = from_text(text).expect("right").program;
-        let (identifiers, _) = Identifiers::of(&program);
-        let [real, system, least, other] = &identifiers.fields[..] else {
-            panic!("{:?}", identifiers.fields);
-        };
-        assert!(*real != identifiers.real() && *system != identifiers.own("system"));
-        assert!(least == "fmin_" && other == "b");
     }
 }

@@ -194,8 +194,9 @@ fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::agrees;
-    use crate::generate::from_text;
+    use crate::lower::build;
     use crate::proof::reference::Reference;
+    use crate::syntax::parse_text;
 
     /// A wrong sign in any entry is noticed, with constraints of several kinds beside it.
     #[test]
@@ -210,9 +211,8 @@ mod tests {
             nonholonomic v = 0;
             prescribe l = 0.2 * sin(t);
         }";
-        let model = from_text(text)
-            .unwrap_or_else(|errors| panic!("{errors:?}"))
-            .model;
+        let system = parse_text(text).expect("a description");
+        let model = build(&system).expect("a model");
         let reference = Reference::new(&model).expect("regular");
         assert_eq!(agrees(&model, &reference), Some(true));
         let zero = model.graph.zero();

@@ -10,6 +10,8 @@ use syn::{Item, ItemImpl, Type, UseTree, Visibility};
 struct Module {
     name: String,
     public: bool,
+    /// Whether it is left out of the documentation: open to the tests of this repository, and no part of the interface.
+    hidden: bool,
     condition: String,
     items: Vec<Item>,
     modules: Vec<Module>,
@@ -35,7 +37,7 @@ impl Crate {
     pub fn read(sources: &Path) -> Self {
         let items = parse(&sources.join("lib.rs"));
         Crate {
-            root: Module::new("crate".into(), true, String::new(), items, sources),
+            root: Module::new("crate".into(), (true, false), String::new(), items, sources),
         }
     }
 
@@ -63,8 +65,13 @@ impl Crate {
             let mut path = path.to_vec();
             path.push(inner.name.clone());
             let name = path.join("::");
-            found.lines.insert(format!("{}mod {name}", inner.condition));
-            self.list(inner, &path, found);
+            let hidden = if inner.hidden { "hidden " } else { "" };
+            found
+                .lines
+                .insert(format!("{}{hidden}mod {name}", inner.condition));
+            if !inner.hidden {
+                self.list(inner, &path, found);
+            }
         }
     }
 
@@ -121,7 +128,13 @@ impl Crate {
 
 impl Module {
     /// Takes the modules out of the items; those in files of their own are below `folder`.
-    fn new(name: String, public: bool, condition: String, items: Vec<Item>, folder: &Path) -> Self {
+    fn new(
+        name: String,
+        (public, hidden): (bool, bool),
+        condition: String,
+        items: Vec<Item>,
+        folder: &Path,
+    ) -> Self {
         let (mut rest, mut modules) = (Vec::new(), Vec::new());
         for item in items {
             let Item::Mod(item) = item else {
@@ -145,11 +158,22 @@ impl Module {
                 }
             };
             let public = is_public(&item.vis);
-            modules.push(Module::new(name, public, condition, items, &inside));
+            let hidden = item
+                .attrs
+                .iter()
+                .any(|attr| attr == &syn::parse_quote!(#[doc(hidden)]));
+            modules.push(Module::new(
+                name,
+                (public, hidden),
+                condition,
+                items,
+                &inside,
+            ));
         }
         Module {
             name,
             public,
+            hidden,
             condition,
             items: rest,
             modules,

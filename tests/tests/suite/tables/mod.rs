@@ -3,58 +3,37 @@
 mod paper;
 mod values;
 
-use super::expression::Term;
-use super::print::Notation;
-use super::{Listing, Table, Tables, json, latex, markdown, tables, text};
-use crate::algebra::derivation::Derivation;
-use crate::algebra::graph::Edge;
-use crate::derive::tables::Geometry;
-use crate::generate::{Generated, from_text};
-use crate::model::layout::Block;
+use crate::derived::{model, models};
+use hamel_codegen::algebra::derivation::Derivation;
+use hamel_codegen::algebra::graph::Edge;
+use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::model::layout::Block;
+use hamel_codegen::tables::expression::Term;
+use hamel_codegen::tables::{Listing, Table, Tables, json, latex, markdown, tables, text};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-use std::sync::{LazyLock, OnceLock};
+use serde_json::Value;
 
-/// The models, each derived once for all tests that look at it.
-static FIXTURES: LazyLock<BTreeMap<String, OnceLock<Generated>>> = LazyLock::new(|| {
-    let folder = format!("{}/../tests/models", env!("CARGO_MANIFEST_DIR"));
-    let files = std::fs::read_dir(folder).expect("models").flatten();
-    let name = |file: std::fs::DirEntry| {
-        let name = file.file_name().into_string().ok()?;
-        name.strip_suffix(".eom").map(str::to_string)
-    };
-    files
-        .filter_map(name)
-        .map(|name| (name, OnceLock::new()))
-        .collect()
-});
-
-fn fixture(name: &str) -> &'static Generated {
-    FIXTURES[name].get_or_init(|| {
-        let path = format!("{}/../tests/models/{name}.eom", env!("CARGO_MANIFEST_DIR"));
-        let text = std::fs::read_to_string(&path).expect(&path);
-        from_text(&text).expect(name)
-    })
+/// A table as it is printed.
+fn printed(generated: &Generated, table: Table) -> Value {
+    let shown = tables(generated, &[table]).expect("derivable");
+    json(&shown, false)["tables"][table.name()].clone()
 }
 
-/// The names of all models, in order; those of many bodies, in a folder of their own, have tests in
-/// `tests/suite/fixtures.rs`.
-fn fixtures() -> Vec<&'static str> {
-    FIXTURES.keys().map(String::as_str).collect()
+/// The indices in a list of JSON.
+fn index(value: &Value) -> Vec<usize> {
+    let entries = value.as_array().expect("a list").iter();
+    let entries = entries.map(|entry| entry.as_u64().expect("an index") as usize);
+    entries.collect()
 }
 
-fn listing(generated: &Generated, table: Table) -> Listing {
-    tables(generated, &[table])
-        .expect("derivable")
-        .listings
-        .remove(0)
-}
-
-fn values(listing: &Listing) -> Vec<(Vec<usize>, String)> {
-    listing
-        .entries
-        .iter()
-        .map(|e| (e.index.clone(), Notation::Text.term(&e.value)))
+/// The entries of a table that are not 0: their indices and what is printed.
+fn values(generated: &Generated, table: Table) -> Vec<(Vec<usize>, String)> {
+    let printed = printed(generated, table);
+    let entries = printed["entries"].as_array().expect("a list").iter();
+    let value = |entry: &Value| entry["value"].as_str().expect("a text").to_string();
+    entries
+        .map(|entry| (index(&entry["index"]), value(entry)))
         .collect()
 }
 
@@ -71,7 +50,7 @@ fn entries_contain_only_coordinates_that_they_depend_on() {
         "heavy_top_world",
     ];
     for name in fixtures {
-        let generated = fixture(name);
+        let generated = model(name).generated();
         let mut geometry = Geometry::new(&generated.model).expect(name);
         let shown = tables(generated, &[Table::Gamma, Table::Mass, Table::Connection]).expect(name);
         for listing in &shown.listings {
@@ -128,18 +107,20 @@ fn check_blocks(geometry: &mut Geometry, edge: Edge, printed: &[usize], what: &s
 
 #[test]
 fn curvilinear_gamma_keeps_its_coordinate() {
-    let listing = listing(fixture("polar_particle"), Table::Gamma);
     let expected = [
         (vec![1, 2, 2], "-1/rho".to_string()),
         (vec![2, 1, 2], "1/rho".to_string()),
     ];
-    assert_eq!(values(&listing), expected);
+    assert_eq!(
+        values(model("polar_particle").generated(), Table::Gamma),
+        expected
+    );
 }
 
 #[test]
 fn every_table_of_every_fixture_prints() {
-    fixtures().par_iter().for_each(|name| {
-        let generated = fixture(name);
+    models().par_iter().for_each(|model| {
+        let (name, generated) = (&model.name, model.generated());
         let all: Vec<Table> = Table::names()
             .into_iter()
             .map(|name| Table::parse(name).expect("known"))

@@ -1,13 +1,13 @@
 //! What is printed has the value of what it stands for, in floating point at a point of X.
 
-use super::fixture;
-use crate::algebra::graph::{Edge, Function, Graph};
-use crate::algebra::numeric::evaluate;
-use crate::derive::tables::Geometry;
-use crate::generate::Generated;
-use crate::model::layout::Block;
-use crate::tables::expression::{Atom, Term};
-use crate::tables::{Listing, Table, tables};
+use crate::derived::models;
+use hamel_codegen::algebra::graph::{Edge, Function, Graph};
+use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::derive::tables::Geometry;
+use hamel_codegen::generate::Generated;
+use hamel_codegen::model::layout::Block;
+use hamel_codegen::tables::expression::{Atom, Term};
+use hamel_codegen::tables::{Listing, Table, tables};
 use num_traits::ToPrimitive;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -94,8 +94,8 @@ fn compare(what: &str, listing: &Listing, mut values: Values, expected: &[f64]) 
 
 #[test]
 fn printed_values_are_those_of_the_graph() {
-    super::fixtures().par_iter().for_each(|name| {
-        let generated = fixture(name);
+    models().par_iter().for_each(|model| {
+        let (name, generated) = (&model.name, model.generated());
         let model = &generated.model;
         let numbered =
             |n: usize, scale: f64| (1..=n).map(|i| scale * i as f64).collect::<Vec<f64>>();

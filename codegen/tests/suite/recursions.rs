@@ -1,14 +1,14 @@
 //! Recursions against the derivation that knows no trees: the same values on X.
 
-use super::inverse::{inverse, wrenches};
-use super::{Placement, Tree, articulated, composite, nearby};
-use crate::algebra::derivation::Derivation;
-use crate::algebra::graph::{Edge, Graph};
-use crate::derive::accel::branches::Branches;
-use crate::derive::accel::parts::{Reference, Variant, parts};
-use crate::derive::calculus::Calculus;
-use crate::model::Model;
-use crate::syntax::ast::Axes;
+use hamel_codegen::algebra::derivation::Derivation;
+use hamel_codegen::algebra::graph::{Edge, Graph};
+use hamel_codegen::derive::accel::branches::Branches;
+use hamel_codegen::derive::accel::parts::{Reference, Variant, parts};
+use hamel_codegen::derive::calculus::Calculus;
+use hamel_codegen::derive::tree::inverse::{inverse, wrenches};
+use hamel_codegen::derive::tree::{Placement, Tree, articulated, composite, nearby};
+use hamel_codegen::model::Model;
+use hamel_codegen::syntax::ast::Axes;
 
 fn chain(n: usize, placement: &str) -> Model {
     let mut text = String::from("system Chain { gravity [0, 0, -9.81];\n");
@@ -56,8 +56,8 @@ const FLAT: &str = "system Flat {
 }";
 
 fn built(text: &str) -> Model {
-    let system = crate::syntax::parse_text(text).expect("parses");
-    crate::lower::build(&system).expect("is a model")
+    let system = hamel_codegen::syntax::parse_text(text).expect("parses");
+    hamel_codegen::lower::build(&system).expect("is a model")
 }
 
 /// Legs of three hinges on a free hull, of which two are parallel; one leg hangs at awkward angles, and an arm slides.
