@@ -120,7 +120,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
 
 #[test]
 fn code_gives_the_bits_of_tapes() {
-    let tapes = size(600, 100_000) as usize;
+    let tapes = size(1_000, 100_000) as usize;
     let halves = std::thread::scope(|scope| {
         let halves = [42, 43].map(|seed| scope.spawn(move || Met::by(seed, tapes as u64 / 2)));
         halves.map(|half| half.join().expect("every tape gives its bits"))
