@@ -52,12 +52,13 @@ use crate::system::System;
 ///     /// Two masses on springs of 10⁸ N/m.
 ///     system Masses {
 ///         param k = 100000000;
-///         coord q: vec2;
-///         velocity v: vec2;
-///         rate q = v;
-///         kinetic dot(v, v) / 2;
-///         potential k * (q[1]^2 + (q[2] - q[1])^2) / 2;
-///         start q = [0.001, 0.002];
+///         coord a, b;
+///         velocity v, w;
+///         rate a = v;
+///         rate b = w;
+///         kinetic (v^2 + w^2) / 2;
+///         potential k * (a^2 + (b - a)^2) / 2;
+///         start a = 0.001, b = 0.002;
 ///         generate all, linearize;
 ///     }
 /// }
@@ -104,7 +105,7 @@ fn reach<Sys: System + ?Sized>(
 ) -> Option<Sys::Coordinates> {
     let (zero, one) = (Sys::Scalar::default(), Sys::Scalar::from_f64(1.0));
     let rounding = Sys::Scalar::from_f64(ULPS * Sys::Scalar::EPSILON);
-    let mut least = one;
+    let mut nearest = one;
     for _ in 0..TURNS {
         let place = moved(system, x, u);
         let mut next = system.chart_rate(&place, xi);
@@ -121,12 +122,12 @@ fn reach<Sys: System + ?Sized>(
         // Small beside all of u, and no longer shrinking: rounding.
         let whole = change.beside(largest(u.as_ref()), zero);
         let unsettled = rounding.select_lt(whole, one, zero);
-        let shrinks = own.select_lt(Sys::Scalar::from_f64(0.5) * least, one, unsettled);
+        let shrinks = own.select_lt(Sys::Scalar::from_f64(0.5) * nearest, one, unsettled);
         let moves = rounding.select_lt(own, shrinks, zero);
         if moves.largest_lane() == 0.0 {
             return Some(moved(system, x, u));
         }
-        least = own.select_lt(least, own, least);
+        nearest = own.select_lt(nearest, own, nearest);
     }
     None
 }
@@ -322,10 +323,9 @@ where
         let mut step = correction::<Sys>(&factors, &here.defect);
         'nearer: loop {
             let mut part = one;
-            let (next, raw, fed) = loop {
+            let (next, raw, fed, rounding) = loop {
                 iterations += 1;
-                if iterations > MOST || !is_finite(step.as_ref()) || -(-part).largest_lane() < LEAST
-                {
+                if iterations > MOST || !is_finite(step.as_ref()) || least(part) < LEAST {
                     return Err(StepError::NotConverged { time, iterations });
                 }
                 let mut next = z.clone();
@@ -341,18 +341,17 @@ where
                             u: system.zero_chart(),
                             xi: step.clone(),
                         };
-                        let whole = progress.whole(&next, &small, h).largest_lane();
-                        let length = largest(raw.as_ref());
+                        let whole = progress.whole(&next, &small, h);
+                        let moves = of(ENOUGH * Sys::Scalar::EPSILON).select_lt(whole, one, zero);
                         let limit = of(-0.25).mul_add(part, one) * largest(step.as_ref());
-                        let nearer = length.select_lt(limit, one, zero);
-                        let all = -(-nearer).largest_lane() == 1.0;
-                        if fed || all || whole.is_nan() || whole <= ENOUGH * Sys::Scalar::EPSILON {
+                        let farther = largest(raw.as_ref()).select_lt(limit, zero, moves);
+                        if fed || farther.largest_lane() == 0.0 {
                             here = there;
-                            break (next, raw, fed);
+                            break (next, raw, fed, moves.largest_lane() == 0.0);
                         }
-                        part = length.select_lt(limit, part, of(0.5) * part);
+                        part = zero.select_lt(farther, of(0.5) * part, part);
                     }
-                    Err(error) if fresh && -(-part).largest_lane() < 2.0 * LEAST => {
+                    Err(error) if fresh && least(part) < 2.0 * LEAST => {
                         return Err(error);
                     }
                     _ => part *= of(0.5),
@@ -364,11 +363,12 @@ where
                     continue 'nearer;
                 }
             };
-            fresh = false;
-            let whole_step = -(-part).largest_lane() == 1.0;
+            let exact = core::mem::take(&mut fresh) && !fed;
+            let whole_step = least(part) == 1.0;
             let length = of(h.abs()) * largest(raw.as_ref());
             let mut after = raw;
-            if whole_step {
+            // Rounding teaches nothing.
+            if whole_step && !rounding {
                 if let Some(slot) = steps.get_mut(known) {
                     *slot = step.clone();
                     known += 1;
@@ -387,7 +387,9 @@ where
                 for (by, before) in by.u.as_mut().iter_mut().zip(next.u.as_ref()) {
                     *by -= *before;
                 }
-                if progress.is_over(&end, &by, length, h) {
+                let over = progress.is_over(&end, &by, length, h);
+                // What exact factors do not make shorter is rounding.
+                if over || rounding && exact && progress.idle > 1 {
                     return Ok((x, end.xi));
                 }
             }
@@ -402,6 +404,11 @@ where
             }
         }
     }
+}
+
+/// The least of parts between 0 and 1.
+fn least<S: Scalar>(part: S) -> f64 {
+    1.0 / (S::from_f64(1.0) / part).largest_lane()
 }
 
 /// −(∂g/∂ξ₁)⁻¹ g
