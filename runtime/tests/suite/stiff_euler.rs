@@ -620,6 +620,7 @@ fn evaluations_are_few() {
         (1e8, 0.0, 6.0),
         (1e2, 0.3, 6.0),
         (1e5, 0.3, 8.0),
+        (1e8, 0.3, 8.0),
     ] {
         let system = chain(k, hardening);
         let mut start = State::start(&system);
