@@ -216,7 +216,7 @@ mod tests {
                 core::array::from_fn(|j| if i == j { 0.0 } else { number() })
             });
             let b: [f64; 7] = core::array::from_fn(|_| number());
-            let scaled = core::array::from_fn(|i| {
+            let scaled: [[f64; 7]; 7] = core::array::from_fn(|i| {
                 core::array::from_fn(|j| rows[i] * columns[j] * plain[i][j])
             });
             let (a, worst) = solved(plain, b);
@@ -247,7 +247,7 @@ mod tests {
             [[0.0; 2]; 2],
             [[1.0, 0.0], [1.0, 0.0]],
         ] {
-            let mut a = [1.0, 1.0];
+            let mut a = [1.0_f64, 1.0];
             Factors::new(j, 0, [0.0; 2]).solve(&mut a);
             assert!(a.iter().any(|a| !a.is_finite()), "{a:?}");
         }
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn the_matrix_may_stand_within_a_table() {
         let table = [[7.0; 4], [7.0, 0.0, 2.0, 7.0], [7.0, 4.0, 0.0, 7.0]];
-        let mut a = [6.0, 8.0];
+        let mut a = [6.0_f64, 8.0];
         Factors::new(table, 1, [0.0; 2]).solve(&mut a);
         assert_eq!(a, [2.0, 3.0]);
     }
