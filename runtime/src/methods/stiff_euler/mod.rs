@@ -42,6 +42,8 @@ use equations::{Equations, TURNS, factored, point, reach, still, varied};
 /// [`StepError::Singular`] and [`StepError::NonFinite`] where ξ̇ has no value at the start, or wherever the iteration turns.
 ///
 /// ```
+/// # #[cfg(feature = "macros")]
+/// # fn main() -> Result<(), hamel::StepError> {
 /// use hamel::methods::StiffEuler;
 /// use hamel::{State, step};
 ///
@@ -65,7 +67,10 @@ use equations::{Equations, TURNS, factored, point, reach, still, varied};
 /// // 160 periods of the slower oscillation, which is damped at once.
 /// step(&system, StiffEuler, &mut state, 0.1, &|_, _, _| [])?;
 /// assert!(state.x.iter().all(|q| q.abs() < 1e-8));
-/// # Ok::<(), hamel::StepError>(())
+/// # Ok(())
+/// # }
+/// # #[cfg(not(feature = "macros"))]
+/// # fn main() {}
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StiffEuler;
