@@ -31,8 +31,9 @@ use equations::{Equations, TURNS, factored, point, reach, still, varied};
 /// ([`step_slopes`](crate::step_slopes)): those of the implicit function.
 ///
 /// Inputs are a function whose slopes are not known. Those that depend on the time alone cost nothing. Of a controller,
-/// u(t, x, ξ), the iteration learns from its own steps how the inputs follow the state: it takes more of them, and as many
-/// stiff loops as [`BackwardEuler`](crate::methods::BackwardEuler) can close are closed. A stiff spring or damper is better a
+/// u(t, x, ξ), the iteration learns from its own steps how the inputs follow the state, as
+/// [`BackwardEuler`](crate::methods::BackwardEuler) learns everything: it takes more of them, and may not converge where many
+/// loops of a controller are stiff. A stiff spring or damper is better a
 /// load of the description.
 ///
 /// # Errors
