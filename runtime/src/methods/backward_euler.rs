@@ -19,31 +19,31 @@ use crate::system::{Block, System};
 /// Order 1, some six evaluations of ξ̇ a step and more where the system is stiff.
 ///
 /// Damps every oscillation; stable at any step that it can solve, and [`StepError::NotConverged`] where it cannot, as of
-/// several very stiff directions at once. Each unknown is found to rounding by itself, and in numbers with slopes so are the
+/// several very stiff directions at once, which [`StiffEuler`](crate::methods::StiffEuler) solves. Each unknown is found to rounding by itself, and in numbers with slopes so are the
 /// slopes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BackwardEuler;
 
 /// Steps that the iteration remembers before it starts anew.
-const MEMORY: usize = 16;
+pub(super) const MEMORY: usize = 16;
 /// Evaluations after which the iteration has failed.
 const MOST: u32 = 64;
 /// The correction at which it ends, in units of the last place; the error that it leaves is smaller by the rate of
 /// convergence.
-const ENOUGH: f64 = 256.0;
+pub(super) const ENOUGH: f64 = 256.0;
 /// How much longer a defect may be than the correction times the largest growth seen.
 const MARGIN: f64 = 10.0;
 /// Corrections in a row that bring no entry nearer, after which what is left is rounding.
 const PATIENCE: u32 = 4;
 
 /// (u, ξ₁), or a change or a residual of it.
-struct Unknowns<Sys: System + ?Sized> {
-    u: Sys::Chart,
-    xi: Sys::Velocities,
+pub(super) struct Unknowns<Sys: System + ?Sized> {
+    pub(super) u: Sys::Chart,
+    pub(super) xi: Sys::Velocities,
 }
 
 impl<Sys: System + ?Sized> Unknowns<Sys> {
-    fn zero(system: &Sys) -> Self {
+    pub(super) fn zero(system: &Sys) -> Self {
         Self {
             u: system.zero_chart(),
             xi: system.zero_velocities(),
@@ -54,7 +54,7 @@ impl<Sys: System + ?Sized> Unknowns<Sys> {
         self.u.as_mut().iter_mut().chain(self.xi.as_mut())
     }
 
-    fn add_multiple(&mut self, a: Sys::Scalar, other: &Self) {
+    pub(super) fn add_multiple(&mut self, a: Sys::Scalar, other: &Self) {
         let others = other.u.as_ref().iter().chain(other.xi.as_ref());
         for (own, other) in self.entries().zip(others) {
             *own = a.mul_add(*other, *own);
@@ -103,12 +103,12 @@ impl<Sys: System + ?Sized> Clone for Unknowns<Sys> {
 }
 
 /// a / b, and 0 in the lanes where b is zero: those have converged.
-fn ratio<S: Scalar>(a: S, b: S) -> S {
+pub(super) fn ratio<S: Scalar>(a: S, b: S) -> S {
     S::default().select_lt(b.abs(), a / b, S::default())
 }
 
 /// How far the iteration has come.
-struct Progress<Sys: System + ?Sized> {
+pub(super) struct Progress<Sys: System + ?Sized> {
     /// What each unknown starts from: x (flat) or 1 rad (angles), and ξ.
     start: Unknowns<Sys>,
     /// The least corrections so far, each beside the size of its unknown; 0 before the first.
@@ -116,7 +116,7 @@ struct Progress<Sys: System + ?Sized> {
     /// The largest |x|.
     reach: Sys::Scalar,
     /// Corrections in a row that brought no unknown nearer.
-    idle: u32,
+    pub(super) idle: u32,
     /// The lengths of the last defect and correction.
     last: (Sys::Scalar, Sys::Scalar),
     /// By how much defects grew for the corrections made, at most, or 1: 1 + h L or nearly so, L the stiffest rate.
@@ -124,7 +124,7 @@ struct Progress<Sys: System + ?Sized> {
 }
 
 impl<Sys: System + ?Sized> Progress<Sys> {
-    fn new(system: &Sys, state: &State<Sys>) -> Self {
+    pub(super) fn new(system: &Sys, state: &State<Sys>) -> Self {
         let mut start = Unknowns::zero(system);
         start.xi = state.xi.clone();
         let (mut u, mut x) = (start.u.as_mut(), state.x.as_ref());
@@ -159,7 +159,7 @@ impl<Sys: System + ?Sized> Progress<Sys> {
     /// A correction that is shorter than the defect by more than defects were seen to grow is small by what was learnt
     /// wrong. f is rounded as x is, by h k ε |x| for a spring of stiffness k, so that a velocity is no more certain than
     /// ε (|ξ| + |x|/h) however small it is.
-    fn is_over(
+    pub(super) fn is_over(
         &mut self,
         z: &Unknowns<Sys>,
         correction: &Unknowns<Sys>,
@@ -202,12 +202,22 @@ impl<Sys: System + ?Sized> Progress<Sys> {
         } else {
             0
         };
+        let whole = self.whole(z, correction, h).largest_lane();
+        trusted && self.idle >= PATIENCE && whole <= ENOUGH * Sys::Scalar::EPSILON
+    }
+
+    /// The part that a correction makes of the whole of z and of where the step begins: rounding is of the size ε.
+    pub(super) fn whole(
+        &self,
+        z: &Unknowns<Sys>,
+        correction: &Unknowns<Sys>,
+        h: f64,
+    ) -> Sys::Scalar {
         let h = Sys::Scalar::from_f64(h.abs());
         let reach = self.reach + largest(z.u.as_ref());
         let of_u = largest(correction.u.as_ref()) / reach;
         let of_xi = h * largest(correction.xi.as_ref()) / h.mul_add(largest(z.xi.as_ref()), reach);
-        let whole = Scalar::max(of_u, of_xi).largest_lane();
-        trusted && self.idle >= PATIENCE && whole <= ENOUGH * Sys::Scalar::EPSILON
+        Scalar::max(of_u, of_xi)
     }
 }
 

@@ -17,12 +17,14 @@
 //! | [`Gauss4`], [`Gauss6`] | 4, 6 | long runs of systems with M(x) ([`Canonical`](crate::Canonical)); implicit |
 //! | [`Rk4`] | 4 | starts off the manifold, which the stabilising term leads back; on the coordinates x |
 //! | [`BackwardEuler`] | 1 | implicit: damps whatever is fast, and all else as well |
+//! | [`StiffEuler`] | 1 | the same step of systems with a linearisation ([`Tangent`]), however many directions are stiff |
 //! | [`SemiImplicitEuler`] | 1 | short steps of controllers; one evaluation |
 //!
 //! [`Adaptive`](crate::adaptive::Adaptive) chooses the steps of [`Rkmk54`] and [`Rkmk8`] itself.
 
 mod backward_euler;
 mod cf4;
+mod factors;
 pub mod free;
 mod gauss;
 mod general;
@@ -35,6 +37,7 @@ pub mod rkmk8;
 mod scheme;
 mod semi_implicit_euler;
 mod splitting;
+mod stiff_euler;
 pub mod tableau;
 
 pub use backward_euler::BackwardEuler;
@@ -50,6 +53,7 @@ pub use rkmk54::Rkmk54;
 pub use scheme::Scheme;
 pub use semi_implicit_euler::SemiImplicitEuler;
 pub use splitting::Splitting;
+pub use stiff_euler::StiffEuler;
 
 use crate::error::StepError;
 use crate::manifold;
@@ -142,6 +146,7 @@ impl InChart for Cf4 {}
 impl InChart for Free {}
 impl InChart for Lgvi {}
 impl InChart for Splitting {}
+impl InChart for StiffEuler {}
 
 impl<M: InChart + ?Sized> InChart for &M {
     #[inline]

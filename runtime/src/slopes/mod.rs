@@ -199,10 +199,15 @@ impl<Sys: Tangent> Nearby<Sys> {
             compressed: system.compressed(),
         }
     }
+
+    /// The system, in numbers without slopes.
+    pub(crate) fn plain(&self) -> &Sys {
+        &self.system
+    }
 }
 
 /// The values of numbers.
-fn values<N: Directions>(values: &mut [N::Value], numbers: &[N]) {
+pub(crate) fn values<N: Directions>(values: &mut [N::Value], numbers: &[N]) {
     for (value, number) in values.iter_mut().zip(numbers) {
         *value = number.value();
     }

@@ -10,7 +10,7 @@ use hamel::{Monitor, Scalar, State, StepError, s3, so3};
 
 /// Two lanes.
 #[derive(Clone, Copy, Debug, Default)]
-struct Pair([f64; 2]);
+pub struct Pair(pub [f64; 2]);
 
 macro_rules! operators {
     ($($operator:ident $method:ident $assign:ident $method_assign:ident),*) => {$(

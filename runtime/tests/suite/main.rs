@@ -24,6 +24,8 @@ mod rotations;
 mod rotor_slopes;
 mod sampled;
 mod stiff;
+#[cfg(feature = "macros")]
+mod stiff_euler;
 mod tableaux;
 mod trigonometry;
 #[cfg(feature = "wide")]

@@ -3,6 +3,7 @@
 
 use hamel::methods::{
     BackwardEuler, Cf4, InChart, Lgvi, Rkmk4, Rkmk8, Rkmk54, Scheme, SemiImplicitEuler, Splitting,
+    StiffEuler,
 };
 use hamel::{
     Block, Method, Nearby, State, StepError, System, Table, Tangent, manifold, step, step_nearby,
@@ -272,6 +273,42 @@ where
         u,
         0.02,
     );
+    agree(
+        &format!("{name}, stiff-euler"),
+        &StiffEuler,
+        system,
+        &start,
+        u,
+        0.02,
+    );
+    solve_the_same_equations(name, system, &start, u);
+}
+
+/// Euler's implicit step by secants and by Newton's method, forwards and backwards: the same end, and the same slopes.
+fn solve_the_same_equations<Sys>(name: &str, system: &Sys, start: &State<Sys>, u: &[f64])
+where
+    Sys: Tangent<Scalar = f64>,
+{
+    let mut inputs = system.zero_inputs();
+    inputs.as_mut().copy_from_slice(u);
+    for h in [0.02, -0.02, 0.2] {
+        let one = step_slopes(&BackwardEuler, system, start, &inputs, h);
+        let other = step_slopes(&StiffEuler, system, start, &inputs, h);
+        // Too long for secants, and for some motions without a solution.
+        if h > 0.1 && one.is_err() {
+            continue;
+        }
+        let (other, slopes) = other.expect("a step");
+        let (one, learnt) = one.expect("a step by secants");
+        let numbers = |state: &State<Sys>, slopes: &Sys::Slopes| {
+            [state.x.as_ref(), state.xi.as_ref(), &rows(slopes).concat()].concat()
+        };
+        let (one, other) = (numbers(&one, &learnt), numbers(&other, &slopes));
+        let size = one.iter().fold(1.0_f64, |size, a| size.max(a.abs()));
+        for (a, b) in one.iter().zip(&other) {
+            assert!((a - b).abs() < 1e-11 * size, "{name}, h = {h}: {a} {b}");
+        }
+    }
 }
 
 macro_rules! fixtures {
@@ -471,6 +508,7 @@ fn short_steps_have_the_slopes_of_the_motion() {
             of(step_slopes(&Rkmk54, &drone, &start, &u, h)),
             of(step_slopes(&Rkmk8, &drone, &start, &u, h)),
             of(step_slopes(&BackwardEuler, &drone, &start, &u, h)),
+            of(step_slopes(&StiffEuler, &drone, &start, &u, h)),
         ]
     };
     let errors = |h: f64| {
