@@ -19,7 +19,8 @@ use crate::system::{Block, System};
 /// Order 1, some six evaluations of ξ̇ a step and more where the system is stiff.
 ///
 /// Damps every oscillation; stable at any step that it can solve, and [`StepError::NotConverged`] where it cannot, as of
-/// several very stiff directions at once, which [`StiffEuler`](crate::methods::StiffEuler) solves. Each unknown is found to rounding by itself, and in numbers with slopes so are the
+/// several very stiff directions at once, which [`StiffEuler`](crate::methods::StiffEuler) solves. Each unknown is found to
+/// rounding by itself, and in numbers with slopes so are the
 /// slopes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BackwardEuler;
