@@ -32,7 +32,9 @@ mod centroidal;
 mod charts;
 pub mod check;
 pub mod confidence;
-pub(crate) mod constrained;
+// Open to tests, which put wrong signs in.
+#[doc(hidden)]
+pub mod constrained;
 pub mod correction;
 mod derivatives;
 pub mod forms;
@@ -46,7 +48,9 @@ pub(crate) mod motion;
 mod numbers;
 mod outputs;
 mod points;
-mod reference;
+// As above.
+#[doc(hidden)]
+pub mod reference;
 pub mod regressor;
 mod slopes;
 mod splitting;

@@ -8,28 +8,28 @@ use crate::derive::{commutation, connection, energy, inertia, kinematics};
 use crate::model::Model;
 
 /// M, h = Γ ξ ξ, ∂V, f, T, V.
-pub(super) struct Reference {
+pub struct Reference {
     /// The model, its graph holding the rest.
-    pub(super) model: Model,
+    pub model: Model,
     /// M.
-    pub(super) mass: Vec<Vec<Edge>>,
+    pub mass: Vec<Vec<Edge>>,
     /// h.
-    pub(super) bias: Vec<Edge>,
+    pub bias: Vec<Edge>,
     /// ∂V.
-    pub(super) slope: Vec<Edge>,
+    pub slope: Vec<Edge>,
     /// f.
-    pub(super) force: Vec<Edge>,
+    pub force: Vec<Edge>,
     /// T.
-    pub(super) kinetic: Edge,
+    pub kinetic: Edge,
     /// V.
-    pub(super) potential: Edge,
+    pub potential: Edge,
     /// D.
-    pub(super) dissipation: Edge,
+    pub dissipation: Edge,
 }
 
 impl Reference {
     /// Hamel's form (30a), from T and γ, not from traced bodies.
-    pub(super) fn new(model: &Model) -> Option<Self> {
+    pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let mut calculus = Calculus::new(&model);
         let mass = inertia::mass_matrix(&mut model, &mut calculus);

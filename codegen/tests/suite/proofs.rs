@@ -3,8 +3,12 @@
 use hamel_codegen::derive::reduction::reduce;
 use hamel_codegen::derive::regressor::regressor as derived;
 use hamel_codegen::generate::{Generated, from_text};
+use hamel_codegen::lower::build;
 use hamel_codegen::program::{FunctionId, Program};
+use hamel_codegen::proof::constrained::frame::agrees;
+use hamel_codegen::proof::reference::Reference;
 use hamel_codegen::proof::{correction, prove, regressor, validate};
+use hamel_codegen::syntax::parse_text;
 
 /// Everything that has a route of its own: bodies with their centres beside the origin, a particle, a
 /// kinetic energy that was written, noncommuting velocities, loads and dampers of all kinds.
@@ -202,4 +206,40 @@ fn a_wrong_sign_in_the_rate_of_the_chart_is_refused() {
             );
         }
     }
+}
+
+/// A wrong sign in any entry of what reduced systems are compared with is noticed, with constraints of several kinds beside it.
+#[test]
+fn a_wrong_sign_in_the_full_frame_is_noticed() {
+    let text = "system Sleigh {
+        param m = 2, s = 0.3; input F; time t;
+        coord x, y, a: S1, l; velocity u, v, w, e; rate x = u * a.c - v * a.s, y = u * a.s + v * a.c, a = w, l = e;
+        kinetic m * (u^2 + (v + s * w)^2) / 2 + w^2 * (1 + l^2) / 2 + e^2 / 2;
+        potential 3 * (l - s)^2 / 2 + x^2 * a.c;
+        generalized force u = F - 0.2 * u^2;
+        damper coefficient 0.4 on e - w;
+        nonholonomic v = 0;
+        prescribe l = 0.2 * sin(t);
+    }";
+    let system = parse_text(text).expect("a description");
+    let model = build(&system).expect("a model");
+    let reference = Reference::new(&model).expect("regular");
+    assert_eq!(agrees(&model, &reference), Some(true));
+    let zero = model.graph.zero();
+    let mut broken = 0;
+    for list in 0..3 {
+        for place in 0..model.n() {
+            let mut wrong = Reference::new(&model).expect("regular");
+            let list = [&mut wrong.bias, &mut wrong.slope, &mut wrong.force]
+                .into_iter()
+                .nth(list)
+                .expect("three");
+            if list[place] != zero {
+                list[place] = -list[place];
+                assert_eq!(agrees(&model, &wrong), Some(false), "{place}");
+                broken += 1;
+            }
+        }
+    }
+    assert!(broken > 6, "{broken}");
 }

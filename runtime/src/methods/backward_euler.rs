@@ -20,8 +20,7 @@ use crate::system::{Block, System};
 ///
 /// Damps every oscillation; stable at any step that it can solve, and [`StepError::NotConverged`] where it cannot, as of
 /// several very stiff directions at once, which [`StiffEuler`](crate::methods::StiffEuler) solves. Each unknown is found to
-/// rounding by itself, and in numbers with slopes so are the
-/// slopes.
+/// rounding by itself, and in numbers with slopes so are the slopes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BackwardEuler;
 

@@ -155,7 +155,7 @@ pub(super) fn given(model: &Model) -> Vec<(usize, Edge)> {
 
 /// Whether they agree at fresh points of X; `None` where there are none, as where roots have values only on a prescribed
 /// motion.
-fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
+pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
     let numbers = Numbers::new(model)?;
     let mut roots = reference.mass.concat();
     for list in [&reference.bias, &reference.slope, &reference.force] {
@@ -188,49 +188,5 @@ fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
         Ok(()) => Some(true),
         Err(Unequal::Differs(())) => Some(false),
         Err(Unequal::Nowhere) => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::agrees;
-    use crate::lower::build;
-    use crate::proof::reference::Reference;
-    use crate::syntax::parse_text;
-
-    /// A wrong sign in any entry is noticed, with constraints of several kinds beside it.
-    #[test]
-    fn a_wrong_sign_is_noticed() {
-        let text = "system Sleigh {
-            param m = 2, s = 0.3; input F; time t;
-            coord x, y, a: S1, l; velocity u, v, w, e; rate x = u * a.c - v * a.s, y = u * a.s + v * a.c, a = w, l = e;
-            kinetic m * (u^2 + (v + s * w)^2) / 2 + w^2 * (1 + l^2) / 2 + e^2 / 2;
-            potential 3 * (l - s)^2 / 2 + x^2 * a.c;
-            generalized force u = F - 0.2 * u^2;
-            damper coefficient 0.4 on e - w;
-            nonholonomic v = 0;
-            prescribe l = 0.2 * sin(t);
-        }";
-        let system = parse_text(text).expect("a description");
-        let model = build(&system).expect("a model");
-        let reference = Reference::new(&model).expect("regular");
-        assert_eq!(agrees(&model, &reference), Some(true));
-        let zero = model.graph.zero();
-        let mut broken = 0;
-        for list in 0..3 {
-            for place in 0..model.n() {
-                let mut wrong = Reference::new(&model).expect("regular");
-                let list = [&mut wrong.bias, &mut wrong.slope, &mut wrong.force]
-                    .into_iter()
-                    .nth(list)
-                    .expect("three");
-                if list[place] != zero {
-                    list[place] = -list[place];
-                    assert_eq!(agrees(&model, &wrong), Some(false), "{place}");
-                    broken += 1;
-                }
-            }
-        }
-        assert!(broken > 6, "{broken}");
     }
 }

@@ -2,7 +2,7 @@
 //! multipliers satisfy M ξ̇ + h + ∂V = f + Bᵀ λ in every row of the full frame, and d/dt (B ξ) is what
 //! the constraints ask for; M, h, V and f come from T and γ of the full frame.
 
-mod frame;
+pub mod frame;
 mod point;
 
 use super::confidence::Confidence;
