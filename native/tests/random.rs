@@ -120,7 +120,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
 
 #[test]
 fn code_gives_the_bits_of_tapes() {
-    let tapes = size(1_000, 100_000) as usize;
+    let tapes = size(400, 100_000) as usize;
     let halves = std::thread::scope(|scope| {
         let halves = [42, 43].map(|seed| scope.spawn(move || Met::by(seed, tapes as u64 / 2)));
         halves.map(|half| half.join().expect("every tape gives its bits"))
@@ -352,12 +352,14 @@ fn long_tape(random: &mut Random, steps: usize) -> Tape {
 #[test]
 fn long_tapes_are_several_functions_with_the_same_bits() {
     let mut random = Random(5);
+    // Two parts, and three with `HAMEL_ATTACK`.
+    let steps = size(11_000, 20_001).min(20_001) as usize;
     let tapes = Tapes {
         parameters: PARAMETERS,
         lengths: LENGTHS,
         constants: tape(&mut random, "constants", 0, 0, false),
         pivots: Vec::new(),
-        functions: vec![long_tape(&mut random, 20_001)],
+        functions: vec![long_tape(&mut random, steps)],
     };
     let code = Compiled::of(tapes.clone());
     assert_eq!(code.interpreted_because(), None);

@@ -37,6 +37,8 @@ mod roots;
 mod rounding;
 mod said;
 mod scene;
+#[path = "common/some.rs"]
+mod some;
 #[path = "common/tree/mod.rs"]
 mod tree;
 mod trees;

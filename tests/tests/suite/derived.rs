@@ -2,6 +2,7 @@
 
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::render::render;
+use hamel_codegen::tables::{Table, Tables, tables};
 use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
 
@@ -10,6 +11,7 @@ pub struct Derived {
     pub name: String,
     pub text: String,
     once: OnceLock<Generated>,
+    tables: OnceLock<Tables>,
 }
 
 impl Derived {
@@ -20,6 +22,20 @@ impl Derived {
             })
         })
     }
+
+    /// All of its tables.
+    pub fn tables(&self) -> &Tables {
+        self.tables
+            .get_or_init(|| tables(self.generated(), &every_table()).expect("derivable"))
+    }
+}
+
+/// All tables that there are.
+fn every_table() -> Vec<Table> {
+    let names = Table::names().into_iter();
+    names
+        .map(|name| Table::parse(name).expect("known"))
+        .collect()
 }
 
 fn read(folder: &str) -> Vec<Derived> {
@@ -33,6 +49,7 @@ fn read(folder: &str) -> Vec<Derived> {
                 name: name.into_owned(),
                 text: std::fs::read_to_string(&path).expect("readable"),
                 once: OnceLock::new(),
+                tables: OnceLock::new(),
             });
         }
     }

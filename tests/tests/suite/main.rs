@@ -36,6 +36,8 @@ mod references;
 #[path = "../../../codegen/tests/suite/common/size.rs"]
 mod size;
 mod snapshots;
+#[path = "../../../codegen/tests/suite/common/some.rs"]
+mod some;
 mod states;
 mod step_slopes;
 mod structure;
