@@ -45,7 +45,9 @@ pub(crate) mod invariants;
 mod kernel;
 pub mod levi_civita;
 pub(crate) mod motion;
-mod numbers;
+// As above.
+#[doc(hidden)]
+pub mod numbers;
 mod outputs;
 mod points;
 // As above.

@@ -1,11 +1,16 @@
-//! What is wrong in one entry alone of an emitted function is refused: its value, its sign, or that it is left out.
+//! The numbers that proofs compare with are those of the symbolic derivations, and what is wrong in one entry alone of an emitted
+//! function is refused: its value, its sign, or that it is left out.
 
+use hamel_codegen::algebra::graph::Edge;
+use hamel_codegen::algebra::numeric::evaluate_at;
 use hamel_codegen::derive::reduction::reduce;
 use hamel_codegen::derive::regressor::regressor as derived;
 use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::lower::build;
 use hamel_codegen::program::{FunctionId, Program};
 use hamel_codegen::proof::constrained::frame::agrees;
+use hamel_codegen::proof::forms::Symbols;
+use hamel_codegen::proof::numbers::Numbers;
 use hamel_codegen::proof::reference::Reference;
 use hamel_codegen::proof::{correction, prove, regressor, validate};
 use hamel_codegen::syntax::parse_text;
@@ -38,6 +43,28 @@ const WHOLE: &str = "system Whole {
     dissipation c / 2 * u^2;
 
 }";
+
+#[test]
+fn the_numbers_are_those_of_the_symbolic_derivations() {
+    let system = parse_text(WHOLE).expect("a description");
+    let model = build(&system).expect("a model");
+    let symbols = Symbols::new(&model).expect("Y");
+    let graph = &symbols.geometry.model.graph;
+    let numbers = Numbers::new(&model).expect("Y");
+    for seed in 1..4 {
+        let lane = model.points.lane(seed).expect("a point");
+        let values = numbers.at(&lane).expect("values").expect("Y A = I");
+        let at = |edges: &[Edge]| evaluate_at(graph, edges, &mut lane.clone()).expect("values");
+        assert_eq!(values.left[0], values.left[1], "(30a) = (30b)");
+        assert_eq!(values.left[0], values.left[2], "(30a) = (30c)");
+        assert_eq!(values.left[0], at(&symbols.hamel));
+        assert_eq!(values.left[1], at(&symbols.gibbs));
+        assert_eq!(values.mass.concat(), at(&symbols.geometry.mass.concat()));
+        assert_eq!(values.force, at(&symbols.virtual_work));
+        assert_eq!(vec![values.kinetic], at(&[symbols.kinetic]));
+        assert_eq!(vec![values.potential], at(&[symbols.geometry.potential]));
+    }
+}
 
 #[test]
 fn a_wrong_term_of_any_function_is_refused() {
@@ -93,8 +120,7 @@ fn one_wrong_entry_of_what_is_observed_is_refused() {
         let mut program = generated.program.clone();
         let function = program.functions.iter_mut().find(|f| f.name == name);
         let outputs = &mut function.expect("a function").outputs;
-        let varying =
-            |edge: &hamel_codegen::algebra::graph::Edge| program.graph.class(edge.node()) != 0;
+        let varying = |edge: &Edge| program.graph.class(edge.node()) != 0;
         let place = outputs
             .iter()
             .rposition(varying)

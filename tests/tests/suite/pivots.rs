@@ -47,6 +47,7 @@ fn mass(generated: &Generated) -> DMatrix<f64> {
 #[test]
 fn pivots_lie_between_the_inertias_of_their_velocities() {
     let all = crate::models::models(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/models")));
+    let all = crate::some::some(all);
     let compared = all.par_iter().filter_map(|path| {
         let asked = "accel, mass_matrix, linearize, velocity_from_momentum";
         // M of systems with constraints is not asked for everywhere.
@@ -68,5 +69,8 @@ fn pivots_lie_between_the_inertias_of_their_velocities() {
     });
     let compared: Vec<usize> = compared.collect();
     let (models, compared) = (compared.len(), compared.iter().sum::<usize>());
-    assert!(models > 40 && compared > 100, "{models}, {compared}");
+    assert!(
+        2 * models > all.len() && compared > 2 * models,
+        "{models}, {compared}"
+    );
 }

@@ -91,10 +91,17 @@ fn generated_code() {
 fn coefficient_tables() {
     let mut known = BTreeMap::new();
     for model in models() {
-        let (name, generated) = (&model.name, model.generated());
-        let of = |which: &[Table]| text(&tables(generated, which).expect("tables"), false);
+        let (name, shown) = (&model.name, model.tables());
+        let states = !model.generated().model.states.is_empty();
+        let wanted =
+            |table: Table| Table::DEFAULT.contains(&table) || table == Table::States && states;
+        let mut plain = shown.clone();
+        plain.listings.retain(|listing| wanted(listing.table));
+        plain.geometry = None;
+        let mut geometry = shown.clone();
+        geometry.listings.clear();
         // Both begin with the names of x and ξ.
-        let (all, geometry) = (of(&[]), of(&[Table::Geometry]));
+        let (all, geometry) = (text(&plain, false), text(&geometry, false));
         let (_, geometry) = geometry.split_once("\n\n").expect("a head");
         let mut parts = Vec::new();
         for part in all.split("\n\n").chain(geometry.split("\n\n")) {

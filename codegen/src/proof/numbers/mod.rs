@@ -24,8 +24,6 @@ mod inertia;
 mod loads;
 mod motion;
 mod space;
-#[cfg(test)]
-mod tests;
 
 use crate::algebra::fp::Fp;
 use crate::algebra::jets::{Jet, Seeds};
