@@ -69,7 +69,7 @@ const CI: Task = &[
 const ATTACK: Task = &[
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test suite -- expressions:: mounts:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite -- functions:: mutations::",
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-native --test random",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-native --test suite random::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test suite -- free_rotation:: stiff::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-files",
     "bash tests/robots/install.sh",

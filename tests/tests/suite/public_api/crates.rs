@@ -195,7 +195,8 @@ impl Module {
                 found.block(item);
             }
         }
-        self.modules.iter().for_each(|inner| inner.methods(found));
+        let shown = self.modules.iter().filter(|inner| !inner.hidden);
+        shown.for_each(|inner| inner.methods(found));
     }
 }
 

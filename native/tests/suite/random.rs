@@ -1,13 +1,10 @@
 //! Random tapes by machine code, alone and in two lanes, and step by step: the same bits, the same pivots.
 
+use crate::size::size;
 use hamel_codegen::algebra::graph::Function;
 use hamel_codegen::program::Cause;
 use hamel_codegen::program::tape::{ARGUMENTS, Operand, Source, Step, Tape, Tapes};
 use hamel_native::{Compiled, Constants, Paired, evaluate};
-use size::size;
-
-#[path = "../../codegen/tests/suite/common/size.rs"]
-mod size;
 
 const PARAMETERS: usize = 3;
 const LENGTHS: [usize; 5] = [7, 5, 2, 5, 4];

@@ -1,6 +1,7 @@
 //! All functions of the models of the tests: by machine code as step by step to the bit, and as the graph itself gives
 //! them, within 10⁻¹³ of scale and what rounding makes of arguments and of statements.
 
+use crate::some::some;
 use hamel_codegen::algebra::rounding::rounded;
 use hamel_codegen::generate::{Generated, from_file};
 use hamel_codegen::model::states::states;
@@ -9,11 +10,7 @@ use hamel_codegen::program::{Cause, Function, Program};
 use hamel_codegen::render::render;
 use hamel_native::Compiled;
 use rayon::prelude::*;
-use some::some;
 use std::path::{Path, PathBuf};
-
-#[path = "../../codegen/tests/suite/common/some.rs"]
-mod some;
 
 /// Of the largest entry of a result.
 const CLOSE: f64 = 1e-13;
