@@ -65,8 +65,10 @@ fn connection_of_the_free_body_is_that_of_the_paper() {
     let printed = printed(model("free_body").generated(), Table::Connection);
     assert_eq!(printed["entries"].as_array().map(Vec::len), Some(48));
     let groups = printed["groups"].as_array().expect("a list").iter();
-    let indices = |list: &Value| list.as_array().expect("a list").iter().map(index).collect();
-    let mut ours: Vec<(String, Vec<Vec<usize>>, Vec<Vec<usize>>)> = groups
+    let indices = |list: &Value| -> Vec<Vec<usize>> {
+        list.as_array().expect("a list").iter().map(index).collect()
+    };
+    let mut ours: Vec<_> = groups
         .map(|group| {
             let value = group["value"].as_str().expect("a text").to_string();
             (value, indices(&group["plus"]), indices(&group["minus"]))
