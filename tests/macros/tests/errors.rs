@@ -1,7 +1,7 @@
 //! The macro in the compiler: errors stand inside of the description.
 //!
 //! The programs are compiled in this workspace, with the generator that its tests were built with: Cargo takes it only where
-//! something asked for beside the program links the generator as tests do, such as `float`, a test of machine code.
+//! something asked for beside the program links the generator as tests do, such as `layers`, tests of the repository.
 
 use serde_json::Value;
 use std::path::Path;
@@ -18,7 +18,7 @@ fn messages(program: &str) -> String {
         "--locked",
         "--message-format=json",
         "--features=hamel-tests-macros/wrong",
-        "--test=float",
+        "--test=layers",
         "--bin",
         program,
     ]);
