@@ -126,6 +126,11 @@ pub struct Sparsity {
 }
 
 /// A system whose steps have slopes; generated code implements it where `linearize` is asked for.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no linearisation",
+    label = "slopes and `StiffEuler` need it",
+    note = "ask for it in the description: `generate all, linearize;`"
+)]
 pub trait Tangent: System + Clone {
     /// Whether the coordinate kinds alone keep φ(x) = 0: all that a method moves in the chart then lies on the
     /// manifold, where the linearisation holds.

@@ -23,6 +23,8 @@ mod oscillator;
 mod rotations;
 mod rotor_slopes;
 mod sampled;
+#[path = "../../../codegen/tests/suite/common/size.rs"]
+mod size;
 mod stiff;
 #[cfg(feature = "macros")]
 mod stiff_euler;

@@ -2,10 +2,14 @@
 //!
 //! Bars are those of measurements of independent prototypes, with some room.
 
+#[path = "../../../codegen/tests/suite/common/size.rs"]
+mod size;
+
 use hamel::flows::Flow;
 use hamel::methods::{Gauss4, Gauss6, Lgvi, Rkmk4, Scheme, Splitting};
 use hamel::{Method, State, System, so3};
 use hamel_tests_long::common::{Body, QuaternionTop, Reference, Spin, Top};
+use size::size;
 
 const STEPS: u32 = 1_000_000;
 
@@ -207,10 +211,7 @@ fn the_variational_integrator() {
 /// A quarter of Kovalevskaya's run, and all of it with `HAMEL_ATTACK`: an implicit method takes as long as all others.
 #[test]
 fn collocation() {
-    let long = match std::env::var_os("HAMEL_ATTACK") {
-        Some(_) => STEPS,
-        None => STEPS / 4,
-    };
+    let long = size(u64::from(STEPS / 4), u64::from(STEPS)) as u32;
     // p is not R P: what Gauss' methods keep exactly is quadratic, and vertical momentum is not.
     for (case, h, steps, momentum) in [(BC, 5e-4, 200_000, 1e-6), (KOV, 0.02, long, 4e-9)] {
         let drift = run(&top(case), Gauss4, h, steps);

@@ -33,13 +33,13 @@ use equations::{Equations, TURNS, factored, point, reach, still, varied};
 /// Inputs are a function whose slopes are not known. Those that depend on the time alone cost nothing. Of a controller,
 /// u(t, x, ξ), the iteration learns from its own steps how the inputs follow the state, as
 /// [`BackwardEuler`](crate::methods::BackwardEuler) learns everything: it takes more of them, and may not converge where many
-/// loops of a controller are stiff. A stiff spring or damper is better a
-/// load of the description.
+/// loops of a controller are stiff. It is better to describe a stiff spring or damper as a load of the system.
 ///
 /// # Errors
 /// [`StepError::NotConverged`] where no solution is found in 64 evaluations: there is none, or the step is so long
 /// that the rates of the coordinates themselves turn by more than about 1 rad in it, in coordinates whose rates depend on
-/// where they are (Euler's angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ).
+/// where they are (Euler's angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ), or very stiff springs
+/// begin so far from rest that a mechanism of rotary joints would turn by much of a radian in one step. Shorter steps help.
 /// [`StepError::Singular`] and [`StepError::NonFinite`] where ξ̇ has no value at the start, or wherever the iteration turns.
 ///
 /// ```
