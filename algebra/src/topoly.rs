@@ -1,7 +1,8 @@
 //! From graph nodes to polynomials, where they are polynomials of bearable size.
 //!
 //! A symbol is the variable of its index; any other node that is no sum or product (a function, a
-//! quotient) is a variable of its own, numbered from `OPAQUE` by its node.
+//! quotient) is a variable of its own, numbered from `OPAQUE` by its node. So is, where it is asked for, a linear form whose
+//! third or a higher power is taken, x − c in (x − c)³: near its zero expanded terms would cancel, and with them all digits.
 
 use super::fp::Fp;
 use super::graph::{Edge, Graph, Node, NodeId};
@@ -9,7 +10,7 @@ use super::poly::field::Field;
 use super::poly::monomial::Var;
 use super::poly::polynomial::Poly;
 use num_rational::BigRational;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Variables from here on are nodes that are no polynomials themselves.
 pub const OPAQUE: Var = 1 << 24;
@@ -20,6 +21,9 @@ pub const MOST_TERMS: usize = 4000;
 /// Highest degree of an intermediate polynomial: towers of powers reach degrees that no exponent
 /// could hold.
 pub const HIGHEST_DEGREE: u32 = 100;
+
+/// Products and sums of terms of a linear form whose powers are kept.
+const LONGEST_BASE: usize = 100;
 
 /// a b, unless it has too many terms or too high a degree.
 fn product<F: Field>(a: &Poly<F>, b: &Poly<F>) -> Option<Poly<F>> {
@@ -34,6 +38,8 @@ pub struct Expander {
     memo: FxHashMap<NodeId, Option<Poly<BigRational>>>,
     /// Products and sums of terms that may still be made.
     work: usize,
+    /// Linear forms that are variables, where powers are kept.
+    bases: Option<FxHashSet<NodeId>>,
 }
 
 impl Default for Expander {
@@ -49,18 +55,51 @@ impl Expander {
         Expander {
             memo: FxHashMap::default(),
             work,
+            bases: None,
         }
+    }
+
+    /// The same, with linear forms as variables whose third or a higher power is taken.
+    pub fn keeping_powers(mut self) -> Self {
+        self.bases = Some(FxHashSet::default());
+        self
     }
 
     /// The polynomial of an expression; `None` where it has too many terms.
     pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
-        for id in graph.reachable(&[edge]) {
+        let reachable = graph.reachable(&[edge]);
+        self.keep_powers(graph, &reachable);
+        for id in reachable {
             if !self.memo.contains_key(&id) {
                 let polynomial = self.local(graph, id);
                 self.memo.insert(id, polynomial);
             }
         }
         self.signed(edge)
+    }
+
+    /// Finds the linear forms whose powers are kept. What was expanded before them is expanded anew.
+    fn keep_powers(&mut self, graph: &Graph, ids: &[NodeId]) {
+        let Some(mut bases) = self.bases.take() else {
+            return;
+        };
+        let before = bases.len();
+        for &id in ids.iter().filter(|id| !self.memo.contains_key(id)) {
+            let Some(base) = graph.power_of_sum(id).filter(|base| !bases.contains(base)) else {
+                continue;
+            };
+            let expanded = Expander::within(LONGEST_BASE).expand(graph, Edge::of(base));
+            if expanded.is_some_and(|form| form.degree() == 1) {
+                bases.insert(base);
+            }
+        }
+        if bases.len() > before {
+            self.memo.clear();
+        }
+        for &base in &bases {
+            self.memo.insert(base, Some(Poly::var(OPAQUE + base)));
+        }
+        self.bases = Some(bases);
     }
 
     fn signed(&self, edge: Edge) -> Option<Poly<BigRational>> {
@@ -155,6 +194,41 @@ mod tests {
     use super::Expander;
     use crate::fp::Random;
     use crate::graph::Graph;
+
+    /// 2 (x − a)³ y is 2 t³ y; and an expansion that came before is made anew.
+    #[test]
+    fn powers_of_linear_forms_are_kept_where_that_is_asked_for() {
+        let mut random = Random::new(7);
+        let mut graph = Graph::new(1, 0);
+        let [x, y, a] = ["x", "y", "a"].map(|name| {
+            let value = random.element();
+            graph.symbol(name, 2, value)
+        });
+        let base = graph.sub(x, a);
+        let square = graph.mul(base, base);
+        let twice = graph.add(base, base);
+        let cube = graph.mul(square, twice);
+        let all = graph.mul(cube, y);
+        let terms = |expander: &mut Expander, edge| {
+            let polynomial = expander.expand(&graph, edge);
+            polynomial.map(|polynomial| polynomial.terms().len())
+        };
+        let plain = &mut Expander::default();
+        assert_eq!(
+            [terms(plain, square), terms(plain, all)],
+            [Some(3), Some(4)]
+        );
+        let keeping = &mut Expander::default().keeping_powers();
+        assert_eq!(terms(keeping, square), Some(3));
+        assert_eq!([terms(keeping, all), terms(keeping, square)], [Some(1); 2]);
+        // No linear form: (x y + a)³.
+        let product = graph.mul(x, y);
+        let other = graph.add(product, a);
+        let square = graph.mul(other, other);
+        let cube = graph.mul(square, other);
+        let polynomial = keeping.expand(&graph, cube).expect("four terms");
+        assert_eq!(polynomial.terms().len(), 4);
+    }
 
     #[test]
     fn an_expansion_ends_with_its_work() {

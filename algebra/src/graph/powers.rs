@@ -1,4 +1,4 @@
-//! Powers with a half-integer exponent, which are products with a root.
+//! Powers: those of sums, and those with a half-integer exponent, which are products with a root.
 
 use super::{Edge, Function, Graph, Node, NodeId};
 
@@ -56,6 +56,18 @@ impl Graph {
                 }
             })
         })
+    }
+
+    /// The sum whose third or a higher power a product has as a factor.
+    pub(crate) fn power_of_sum(&self, id: NodeId) -> Option<NodeId> {
+        let Node::Mul(..) = self.node(id) else {
+            return None;
+        };
+        let factors = self.whole_factors(Edge::of(id))?;
+        let times = |base: NodeId| factors.iter().filter(|f| f.node() == base).count();
+        let sum = |factor: &Edge| matches!(self.node(factor.node()), Node::Add(..));
+        let mut sums = factors.iter().filter(|factor| sum(factor));
+        sums.find(|sum| times(sum.node()) > 2).map(|sum| sum.node())
     }
 
     /// The factors of a product, the sign of an edge with one of them; `None` where there are too many.

@@ -359,7 +359,7 @@ fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
 
 /// Every entry as a sum of monomials with coefficients of parameters alone, where all are short.
 fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Option<Linear> {
-    let mut forms = NormalForms::within(&model.points, MOST_WORK);
+    let mut forms = NormalForms::within(&model.points, MOST_WORK).keeping_powers();
     let mut source = explicit.graph.clone();
     let mut polynomials = Vec::new();
     for &edge in explicit.rows.iter().flatten() {

@@ -92,6 +92,12 @@ impl NormalForms {
         }
     }
 
+    /// The same with powers of linear forms as they are: digits of (x − c)³ near c.
+    pub fn keeping_powers(mut self) -> Self {
+        self.expander = self.expander.keeping_powers();
+        self
+    }
+
     /// The polynomial of an expression, as it stands.
     pub fn expand(&mut self, graph: &Graph, edge: Edge) -> Option<Poly<BigRational>> {
         self.expander.expand(graph, edge)

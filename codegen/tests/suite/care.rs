@@ -6,13 +6,14 @@ use hamel_codegen::program::count::count;
 use hamel_codegen::program::interpret::Interpreter;
 use hamel_codegen::program::{FunctionId, Program};
 
-/// Springs of the fourth power about places near the start, far from the origin. The slope of their force
-/// is Σ (x − c)², and expanded it is cheaper: a x² + b x + c, the difference of large terms. The constraint
-/// is there because states are then measured near the start alone. Near the origin, where START is 0.1, nothing is lost.
+/// Potentials (x − a)² (x − b)² of places near the start, far from the origin. The slope of their force is a sum of
+/// squares and products of such differences, and expanded it is cheaper: a x² + b x + c, the difference of large terms.
+/// The constraint is there because states are then measured near the start alone. Near the origin, where START is 0.1,
+/// nothing is lost.
 const TEXT: &str = "system Far {
     coord x, y, z; velocity u, v; rate x = u; rate y = y * v; rate z = -z * v;
     constraint y * z = 1; kinetic (u^2 + v^2) / 2;
-    potential ((x - 999)^4 + (x - 1000)^4 + (x - 1001)^4 + (x - 1002)^4) / 12;
+    potential ((x - 9999)^2 * (x - 10000)^2 + (x - 10001)^2 * (x - 10002)^2) / 2;
     start x = START, y = 1, z = 1;
     generate accel, linearize;
 }";
@@ -24,9 +25,9 @@ fn digits_and_cost(program: &Program, x: f64) -> (f64, usize) {
     let found = compiled.call(&[x, 1.0, 1.0], &[0.0; 2], &[], &[]);
     // Two displacements, two changes of velocities: row 3, column 1.
     let found = found.expect("a value")[2 * 4];
-    let exact = [999.0, 1000.0, 1001.0, 1002.0].map(|place| {
-        let apart = Double::new(x) - Double::new(place);
-        apart * apart
+    let exact = [[9999.0, 10000.0], [10001.0, 10002.0]].map(|places| {
+        let [a, b] = places.map(|place| Double::new(x) - Double::new(place));
+        a * a + b * b + Double::new(4.0) * a * b
     });
     let exact = -exact
         .into_iter()
@@ -46,8 +47,8 @@ fn emitted(start: &str) -> Program {
 /// What is emitted keeps the digits that the cheapest program loses, for some operations more.
 #[test]
 fn the_cheapest_program_is_rejected_for_its_digits() {
-    let (cheapest, careful) = (emitted("0.1"), emitted("1000.1"));
-    for x in [1000.1, 1000.7, 1001.3] {
+    let (cheapest, careful) = (emitted("0.1"), emitted("10000.1"));
+    for x in [10000.1, 10000.7, 10001.3] {
         let (lost, cost) = digits_and_cost(&cheapest, x);
         let (kept, price) = digits_and_cost(&careful, x);
         assert!(
@@ -55,5 +56,37 @@ fn the_cheapest_program_is_rejected_for_its_digits() {
             "{x}: {lost} digits, {kept} digits"
         );
         assert!(cost < price, "{x}: {cost} operations, {price} operations");
+    }
+}
+
+/// A spring that hardens, −4 s (q − 1)³, in an arm whose second joint a stiff spring holds.
+const HARDENING: &str = "system Springs {
+    param m = 0.5, l = 0.3, g = 0, s = 1e6;
+    coord q, p; velocity w, v; rate q = w, p = v;
+    particle mass m at [l * sin(q), 0, -l * cos(q)];
+    particle mass m at [l * sin(q) + l * sin(q + p), 0, -l * cos(q) - l * cos(q + p)];
+    gravity [0, 0, -g];
+    damper coefficient 0.1 on w;
+    potential s * p^2 / 2 + s * (q - 1)^4;
+    generate accel, linearize;
+}";
+
+/// Half as far from its rest it pushes with an eighth, to the last digits: expanded, its terms would cancel there.
+#[test]
+fn powers_of_differences_keep_their_digits() {
+    let generated = from_text(HARDENING).unwrap_or_else(|errors| panic!("{errors:?}"));
+    let program = generated.program;
+    let function = program.function(FunctionId::Accel).expect("asked for");
+    let compiled = Interpreter::new(&program, function, &[0.5, 0.3, 0.0, 1e6]);
+    let pushed = |apart: f64| {
+        let found = compiled.call(&[1.0 + apart, 0.0], &[0.0; 2], &[], &[]);
+        found.expect("a value")[0]
+    };
+    for exponent in 5..40 {
+        let apart = 0.5_f64.powi(exponent);
+        for apart in [apart, -apart] {
+            let parts = pushed(apart) / pushed(apart / 2.0);
+            assert!((parts - 8.0).abs() < 1e-14, "{apart:e}: {parts}");
+        }
     }
 }

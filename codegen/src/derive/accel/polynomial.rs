@@ -37,7 +37,7 @@ pub fn candidates(model: &Model, most: usize) -> Vec<Acceleration> {
     };
     let mut calculus = Calculus::new(model);
     let parts = parts(&mut traced, &mut calculus, variant);
-    let mut forms = NormalForms::within(&model.points, MOST_WORK);
+    let mut forms = NormalForms::within(&model.points, MOST_WORK).keeping_powers();
     let mut all = Vec::new();
     let mut before: Option<System> = None;
     for reduced in [false, true] {
