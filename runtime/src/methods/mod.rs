@@ -17,7 +17,7 @@
 //! | [`Gauss4`], [`Gauss6`] | 4, 6 | long runs of systems with M(x) ([`Canonical`](crate::Canonical)); implicit |
 //! | [`Rk4`] | 4 | starts off the manifold, which the stabilising term leads back; on the coordinates x |
 //! | [`BackwardEuler`] | 1 | implicit: damps whatever is fast, and all else as well |
-//! | [`StiffEuler`] | 1 | the same step of systems with a linearisation ([`Tangent`]), however many directions are stiff |
+//! | [`StiffEuler`] | 1 | the same step of systems with a linearisation ([`Tangent`]), by Newton's method: of many stiff directions |
 //! | [`SemiImplicitEuler`] | 1 | short steps of controllers; one evaluation |
 //!
 //! [`Adaptive`](crate::adaptive::Adaptive) chooses the steps of [`Rkmk54`] and [`Rkmk8`] itself.

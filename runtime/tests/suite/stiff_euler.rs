@@ -110,6 +110,42 @@ hamel::rigid_eom! {
     }
 }
 
+hamel::rigid_eom! {
+    /// A free hull with a leg: a hip at 45°, a knee that is almost parallel to it, and stiff springs at both.
+    system Legged {
+        gravity [1.1, -2.3, -9.81];
+        param k = 100000000;
+        joint base: free moves hull;
+        body on hull { mass 2; com [0.1, 0.05, -0.02]; inertia [[1.2, 0.1, 0.2], [0.1, 1.5, 0.3], [0.2, 0.3, 1.1]] about com; }
+        joint hip: continuous [1, 0, 0] on hull at pose(roty(pi / 4), [0.3, 0.2, 0.1]) moves thigh {
+            force -k * (1 + hip.c) * hip.s;
+        }
+        body on thigh { mass 1; com [0.1, 0.2, 0.3]; inertia [[0.5, 0.1, 0.02], [0.1, 0.6, 0.03], [0.02, 0.03, 0.7]] about com; }
+        joint knee: revolute [1, 0.0000001, 0] on thigh at [0.1, 0.05, -0.6] moves shank {
+            force -k * (knee + 30 * knee^3);
+        }
+        body on shank { mass 0.5; com [0.1, 0.2, -0.2]; inertia [[0.08, 0.01, 0.02], [0.01, 0.09, 0.01], [0.02, 0.01, 0.07]] about com; }
+        generate all, linearize;
+    }
+}
+
+hamel::rigid_eom! {
+    /// Two rods, and a spring from the end of the second one to the ground: where it is stiff, a four-bar linkage.
+    system Tied {
+        param k = 100000000, length = 0;
+        gravity [0, 0, -9.81];
+        joint a: revolute [0, 1, 0] moves upper;
+        body on upper { mass 1; com [0.2, 0.02, 0.01]; inertia diag(0.02, 0.1, 0.1) about com; }
+        joint b: revolute [0, 1, 0] on upper at [0.5, 0, 0] moves lower;
+        body on lower { mass 1; com [0.2, 0.02, 0.01]; inertia diag(0.02, 0.1, 0.1) about com; }
+        let apart = norm(position(lower, [0.3, 0, 0]) - [0.5, 0.1, 0.6]) - length;
+        potential k * apart^2 / 2;
+        output stretched = apart;
+        start b = -1;
+        generate all, linearize;
+    }
+}
+
 type Linear = [[f64; 3]; 3];
 
 /// K of the chain for k = 1, and of its dampers.
@@ -375,6 +411,90 @@ fn steps_of_a_stiff_bushing_hold_their_equations() {
     assert!(secants > 50);
 }
 
+/// x₁ = x ⊕ h w(x₁, ξ₁) and ξ₁ = ξ + h f(x₁, ξ₁), the second within `rounding` of f.
+fn holds<Sys: System<Scalar = f64>>(
+    system: &Sys,
+    start: &State<Sys>,
+    end: &State<Sys>,
+    h: f64,
+    rounding: f64,
+) {
+    let mut u = system.chart_rate(&end.x, &end.xi);
+    u.as_mut().iter_mut().for_each(|u| *u *= h);
+    let mut place = start.x.clone();
+    hamel::manifold::retract(system.blocks(), place.as_mut(), u.as_ref());
+    for (a, b) in place.as_ref().iter().zip(end.x.as_ref()) {
+        assert!((a - b).abs() < 1e-13, "{start:?}: {a} {b}");
+    }
+    let f = system.accel(&end.x, &end.xi, &system.zero_inputs());
+    let f = f.expect("a force");
+    let pairs = end.xi.as_ref().iter().zip(start.xi.as_ref());
+    for ((new, old), f) in pairs.zip(f.as_ref()) {
+        let left = (new - old - h * f).abs();
+        assert!(left < rounding, "{start:?}: {left:e}");
+    }
+}
+
+/// At a start forces are larger by h² k/m than where the step ends, and M⁻¹ turns with the joints that they move: the
+/// equations need weights, or the iteration takes that for stiffness.
+#[test]
+fn stiff_legs_are_solved_far_from_rest() {
+    let mut number = numbers();
+    for size in [0.5, 0.05, 0.005] {
+        for k in [1e2, 1e5, 1e8, 1e11] {
+            let system = Legged::<f64>::new(LeggedParameters { k }).expect("a leg");
+            for h in [0.001, 0.01, 0.05] {
+                for _ in 0..20 {
+                    let mut state = State::start(&system);
+                    let away: [f64; 8] =
+                        std::array::from_fn(|i| number() * if i < 6 { 0.5 } else { size });
+                    let u = system.chart_rate(&state.x, &away);
+                    hamel::manifold::retract(system.blocks(), &mut state.x, &u);
+                    state.xi = std::array::from_fn(|_| number());
+                    let start = state.clone();
+                    step(&system, StiffEuler, &mut state, h, &|_, _, _| [])
+                        .unwrap_or_else(|error| panic!("{size} {k:e} {h} {start:?}: {error}"));
+                    holds(&system, &start, &state, h, 1e-13 + 1e-11 * h * k);
+                }
+            }
+        }
+    }
+}
+
+/// The end of the spring stays on a circle, and goes some way along it in a step: the solution is at the end of those of
+/// shorter steps.
+#[test]
+fn stiff_ties_are_followed() {
+    let mut number = numbers();
+    let of =
+        |k: f64, length: f64| Tied::<f64>::new(TiedParameters { k, length }).expect("two rods");
+    let plain = of(1.0, 0.0);
+    let length = plain.stretched(&plain.start().0);
+    for (k, h) in [
+        (1e4, 0.1),
+        (1e6, 0.01),
+        (1e6, 0.1),
+        (1e8, 0.01),
+        (1e8, 0.1),
+        (1e10, 0.01),
+    ] {
+        let system = of(k, length);
+        for _ in 0..20 {
+            let mut state = State::start(&system);
+            for x in &mut state.x {
+                *x += 1e-3 * number();
+            }
+            state.xi = [number(), number()];
+            let start = state.clone();
+            step(&system, StiffEuler, &mut state, h, &|_, _, _| [])
+                .unwrap_or_else(|error| panic!("{k:e} {h} {start:?}: {error}"));
+            holds(&system, &start, &state, h, 1e-13 + 1e-14 * h * k);
+            let stretched = system.stretched(&state.x);
+            assert!(stretched.abs() < 1e3 / k, "{k:e}: {stretched:e}");
+        }
+    }
+}
+
 /// The stiff oscillation shrinks by 1/√(1 + (h ω)²) in every step; the slow one stays.
 #[test]
 fn what_is_stiff_is_damped() {
@@ -415,7 +535,7 @@ fn what_has_no_solution_is_an_error() {
         else {
             panic!("{error}")
         };
-        assert!(iterations <= 66, "{iterations}");
+        assert!(iterations <= 200, "{iterations}");
     }
     let v = of(0.7).expect("a root").xi[0];
     let h = 0.7_f64;

@@ -64,6 +64,35 @@ pub(super) fn reach<Sys: System + ?Sized>(
     None
 }
 
+/// W = M(x) g of velocities g, in their place: Wᵢ = T(g + s eᵢ) − T(g) − T(s eᵢ) + T(0), over s.
+///
+/// The energy is a quadratic polynomial of velocities, so that this is exact; s makes both parts about equally large.
+fn weigh<Sys: System + ?Sized>(
+    system: &Sys,
+    x: &Sys::Coordinates,
+    n: usize,
+    g: &mut Sys::Velocities,
+) {
+    let (zero, one) = (Sys::Scalar::default(), Sys::Scalar::from_f64(1.0));
+    let none = system.zero_velocities();
+    let at_rest = system.kinetic_energy(x, &none);
+    let whole = system.kinetic_energy(x, g) - at_rest;
+    let before = g.clone();
+    for (i, entry) in g.as_mut().iter_mut().enumerate().take(n) {
+        let along = |of: &Sys::Velocities, s: Sys::Scalar| {
+            let mut of = of.clone();
+            if let Some(entry) = of.as_mut().get_mut(i) {
+                *entry += s;
+            }
+            system.kinetic_energy(x, &of) - at_rest
+        };
+        let inertia = along(&none, one) + along(&none, -one);
+        let square = whole.size() / inertia.size();
+        let s = zero.select_lt(square, square, one).sqrt();
+        *entry = (along(&before, s) - whole - along(&none, s)) / s;
+    }
+}
+
 /// What is found at values of the unknowns.
 pub(super) struct Point<Sys: System + ?Sized> {
     x: Sys::Coordinates,
@@ -129,6 +158,11 @@ where
 pub(super) type FactorsOf<Sys> =
     Factors<<Sys as System>::Scalar, <Sys as Tangent>::Slopes, <Sys as System>::Velocities>;
 
+/// How many of the unknowns are velocities; states follow them.
+fn displacements<Sys: Tangent>(xi: &Sys::Velocities) -> usize {
+    Sys::Slopes::zero().rows() - xi.as_ref().len()
+}
+
 /// The factors of ∂g/∂ξ₁ from numbers that vary with ξ₁ along the directions of ξ.
 pub(super) fn factored<Sys: Tangent>(system: &Sys, defect: &[Sys::Number]) -> FactorsOf<Sys> {
     let mut table = Sys::Slopes::zero();
@@ -169,6 +203,8 @@ pub(super) struct Equations<'a, Sys: Tangent, U> {
     pub(super) state: &'a State<Sys>,
     pub(super) h: f64,
     pub(super) inputs: &'a U,
+    /// Whether equations are M g = 0.
+    pub(super) weighed: bool,
 }
 
 impl<Sys, U> Equations<'_, Sys, U>
@@ -177,7 +213,16 @@ where
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     pub(super) fn point(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
-        point(self.system, self.state, self.h, self.inputs, z)
+        let mut here = point(self.system, self.state, self.h, self.inputs, z)?;
+        if self.weighed {
+            weigh(
+                self.system,
+                &here.x,
+                displacements::<Sys>(&z.xi),
+                &mut here.defect,
+            );
+        }
+        Ok(here)
     }
 
     /// g with the factors of its slopes, where inputs stay.
@@ -187,7 +232,8 @@ where
     ) -> Result<(Point<Sys>, FactorsOf<Sys>), StepError> {
         let (state, h, time) = (self.state, self.h, self.state.t);
         let mut here = place(self.system, state, h, self.inputs, z)?;
-        let Some(nearby) = self.nearby else {
+        let made = (self.weighed && self.nearby.is_none()).then(|| Nearby::new(self.system));
+        let Some(nearby) = self.nearby.or(made.as_ref()) else {
             let mut table = Sys::Slopes::zero();
             let found = self.system.slopes(&here.x, &z.xi, &here.inputs, &mut table);
             let f = found.map_err(|cause| {
@@ -225,13 +271,21 @@ where
             xi: varied(nearby, &z.xi),
         };
         still(near.u.as_mut(), z.u.as_ref());
-        let found = point(
+        let mut found = point(
             nearby,
             &begin,
             h,
             &|_, _: &_, _: &_| held.clone(),
             &mut near,
         )?;
+        if self.weighed {
+            weigh(
+                nearby,
+                &found.x,
+                displacements::<Sys>(&z.xi),
+                &mut found.defect,
+            );
+        }
         values(here.defect.as_mut(), found.defect.as_ref());
         Ok((here, factored(self.system, found.defect.as_ref())))
     }

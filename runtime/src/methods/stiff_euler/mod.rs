@@ -8,9 +8,16 @@
 //!
 //! Where coordinates are plain and ẋ = ξ, ∂g/∂ξ₁ is I − h (T_ξ + h T_x) with the linearisation T = [A B], else it comes from
 //! the same sums in dual numbers: both are exact. Factors are kept as long as corrections shrink, and corrected by the steps
-//! (Broyden); where a step does not bring a point nearer, measured by the corrections that follow, it is halved. Sources: P.
-//! Deuflhard, *Newton Methods for Nonlinear Problems* (2011), 3.3; C. T. Kelley, *Iterative Methods for Linear and Nonlinear
-//! Equations* (1995), 7.3.
+//! (Broyden).
+//!
+//! Where a point turns out to be no nearer, measured by the correction that follows, there are two remedies. First, M(x) g = 0
+//! is solved instead. Far from the solution f = M⁻¹ τ is larger by h² k/m than it will be, and ∂(M⁻¹)/∂x τ passes for
+//! stiffness; M g contains τ itself, which is nearly linear, and M only beside ξ₁ − ξ. Where that does not do, as where a
+//! spring between two points is so stiff that it guides a mechanism like a rod, the step is approached by way of shorter
+//! ones, each of which begins where the last two point (continuation in h).
+//!
+//! Sources: P. Deuflhard, *Newton Methods for Nonlinear Problems* (2011), 3.3 and 5.1; C. T. Kelley, *Iterative Methods for
+//! Linear and Nonlinear Equations* (1995), 7.3.
 
 mod equations;
 mod newton;
@@ -26,8 +33,8 @@ use equations::{Equations, TURNS, factored, point, reach, still, varied};
 /// Order 1: the step of [`BackwardEuler`](crate::methods::BackwardEuler) of systems with a linearisation
 /// ([`Tangent`], `generate all, linearize;`), solved by Newton's method, however many directions are stiff.
 ///
-/// A step takes one evaluation of [A B] and one of ξ̇ where the equations are linear, and some more of either where they are
-/// not. Each unknown is found to rounding by itself; the length of the step may have either sign. Steps have slopes
+/// A step takes one evaluation of [A B] and one of ξ̇ where the equations are linear, some more of either where they are not,
+/// and up to hundreds where the step is so long that it is approached by way of shorter ones. Each unknown is found to rounding by itself; the length of the step may have either sign. Steps have slopes
 /// ([`step_slopes`](crate::step_slopes)): those of the implicit function.
 ///
 /// Inputs are a function whose slopes are not known. Those that depend on the time alone cost nothing. Of a controller,
@@ -36,10 +43,13 @@ use equations::{Equations, TURNS, factored, point, reach, still, varied};
 /// loops of a controller are stiff. It is better to describe a stiff spring or damper as a load of the system.
 ///
 /// # Errors
-/// [`StepError::NotConverged`] where no solution is found in 64 evaluations: there is none, or the step is so long
+/// [`StepError::NotConverged`] where no solution is found on the way from h = 0: there is none, or the step is so long
 /// that the rates of the coordinates themselves turn by more than about 1 rad in it, in coordinates whose rates depend on
-/// where they are (Euler's angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ), or very stiff springs
-/// begin so far from rest that a mechanism of rotary joints would turn by much of a radian in one step. Shorter steps help.
+/// where they are (Euler's angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ), or that a mechanism
+/// goes far along what very stiff springs between its parts, or loops, leave free. Shorter steps help.
+///
+/// Equations of a long step may have several solutions. Springs of 10⁶ N/m that begin half a metre from rest can turn a
+/// mechanism by many radians in one step, to a solution that no shorter step leads to.
 /// [`StepError::Singular`] and [`StepError::NonFinite`] where ξ̇ has no value at the start, or wherever the iteration turns.
 ///
 /// ```
@@ -99,6 +109,7 @@ impl<Sys: Tangent> Method<Sys> for StiffEuler {
             state,
             h,
             inputs,
+            weighed: false,
         };
         let (x, xi) = equations.solve()?;
         arrive(system, state, h, x, xi)
@@ -149,6 +160,7 @@ impl<Sys: Tangent> Method<Nearby<Sys>> for StiffEuler {
             state: &begin,
             h,
             inputs: &plain_inputs,
+            weighed: false,
         };
         let (_, xi) = equations.solve()?;
 

@@ -1,4 +1,4 @@
-//! The iteration: Newton's method, factors that are kept and corrected, steps that are halved.
+//! The iteration: Newton's method, factors that are kept and corrected, and shorter steps on the way to one that is long.
 
 use core::array::from_fn;
 
@@ -10,28 +10,76 @@ use crate::slopes::Tangent;
 use crate::store::{is_finite, largest};
 use crate::system::System;
 
-/// Evaluations after which the iteration has failed.
+/// Evaluations after which the iteration of one length has failed.
 const MOST: u32 = 64;
+/// Evaluations after which all lengths have.
+const MOST_OF_ALL: u32 = 1024;
 /// Corrections that are longer than this part of the ones before ask for new factors.
 const SLOW: f64 = 0.1;
-/// The least part of a step that is tried.
-const LEAST: f64 = 1e-4;
+/// Corrections by exact factors that are longer than this part of the ones before lead nowhere.
+const ASTRAY: (f64, f64) = (0.5, 0.75);
+/// The part of the step that is tried first where the whole one is too long, and the least by which it grows.
+const PARTS: (f64, f64) = (0.25, 1e-4);
 
 impl<Sys, U> Equations<'_, Sys, U>
 where
     Sys: Tangent,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
-    /// (x₁, ξ₁)
-    pub(super) fn solve(&self) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
+    /// (x₁, ξ₁): from ξ, or else along the solutions of shorter steps, which begin there.
+    pub(super) fn solve(mut self) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
+        let (whole, time) = (self.h, self.state.t);
+        let mut iterations = 0;
+        let mut failure = match self.newton(self.state.xi.clone(), ASTRAY.0, &mut iterations) {
+            Ok(found) => return Ok(found),
+            Err(failure) => failure,
+        };
+        let (mut part, least) = PARTS;
+        let (mut last, mut here) = ((0.0, self.state.xi.clone()), (0.0, self.state.xi.clone()));
+        while part > least && iterations < MOST_OF_ALL {
+            let next = f64::min(here.0 + part, 1.0);
+            let mut xi = here.1.clone();
+            if here.0 > last.0 {
+                let along = Sys::Scalar::from_f64((next - here.0) / (here.0 - last.0));
+                for (xi, before) in xi.as_mut().iter_mut().zip(last.1.as_ref()) {
+                    *xi = along.mul_add(*xi - *before, *xi);
+                }
+            }
+            self.h = next * whole;
+            match self.newton(xi, ASTRAY.1, &mut iterations) {
+                Ok(found) if next == 1.0 => return Ok(found),
+                Ok((_, xi)) => {
+                    last = core::mem::replace(&mut here, (next, xi));
+                    part *= 2.0;
+                }
+                Err(error) => {
+                    failure = error;
+                    part *= 0.25;
+                }
+            }
+        }
+        Err(match failure {
+            StepError::NotConverged { .. } => StepError::NotConverged { time, iterations },
+            other => other,
+        })
+    }
+
+    /// The solution near values of ξ₁.
+    fn newton(
+        &mut self,
+        xi: Sys::Velocities,
+        astray: f64,
+        iterations: &mut u32,
+    ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
         let (system, state, h, time) = (self.system, self.state, self.h, self.state.t);
         let of = Sys::Scalar::from_f64;
         let (zero, one) = (Sys::Scalar::default(), of(1.0));
-        let mut iterations = 1;
+        let last = *iterations + MOST;
         let mut z = Unknowns::<Sys> {
             u: system.zero_chart(),
-            xi: state.xi.clone(),
+            xi,
         };
+        *iterations += 1;
         let (mut here, mut factors) = self.linear(&mut z)?;
         if !is_finite(here.defect.as_ref()) {
             return Err(StepError::NonFinite { time });
@@ -42,54 +90,56 @@ where
         // The factors are those of this point.
         let mut fresh = true;
         let mut step = correction::<Sys>(&factors, &here.defect);
-        'nearer: loop {
-            let mut part = one;
-            let (next, raw, fed, rounding) = loop {
-                iterations += 1;
-                if iterations > MOST || !is_finite(step.as_ref()) || least(part) < LEAST {
-                    return Err(StepError::NotConverged { time, iterations });
+        loop {
+            *iterations += 1;
+            let failed = StepError::NotConverged {
+                time,
+                iterations: *iterations,
+            };
+            if *iterations > last || !is_finite(step.as_ref()) {
+                return Err(failed);
+            }
+            let mut next = z.clone();
+            for (xi, step) in next.xi.as_mut().iter_mut().zip(step.as_ref()) {
+                *xi += *step;
+            }
+            let found = self
+                .point(&mut next)
+                .map(|there| (correction::<Sys>(&factors, &there.defect), there));
+            let nearer = found.and_then(|(raw, there)| {
+                let fed = differ(here.inputs.as_ref(), there.inputs.as_ref());
+                let small = Unknowns {
+                    u: system.zero_chart(),
+                    xi: step.clone(),
+                };
+                let whole = progress.whole(&next, &small, h);
+                let moves = of(ENOUGH * Sys::Scalar::EPSILON).select_lt(whole, one, zero);
+                let limit = of(astray) * largest(step.as_ref());
+                let farther = largest(raw.as_ref()).select_lt(limit, zero, moves);
+                match is_finite(raw.as_ref()) && (fed || farther.largest_lane() == 0.0) {
+                    true => Ok((raw, there, fed, moves.largest_lane() == 0.0)),
+                    false => Err(failed),
                 }
-                let mut next = z.clone();
-                for (xi, step) in next.xi.as_mut().iter_mut().zip(step.as_ref()) {
-                    *xi = part.mul_add(*step, *xi);
+            });
+            let (raw, fed, rounding) = match nearer {
+                Ok((raw, there, fed, rounding)) => {
+                    here = there;
+                    (raw, fed, rounding)
                 }
-                let found = self.point(&mut next);
-                let found = found.map(|there| (correction::<Sys>(&factors, &there.defect), there));
-                match found {
-                    Ok((raw, there)) if is_finite(raw.as_ref()) => {
-                        let fed = differ(here.inputs.as_ref(), there.inputs.as_ref());
-                        let small = Unknowns {
-                            u: system.zero_chart(),
-                            xi: step.clone(),
-                        };
-                        let whole = progress.whole(&next, &small, h);
-                        let moves = of(ENOUGH * Sys::Scalar::EPSILON).select_lt(whole, one, zero);
-                        let limit = of(-0.25).mul_add(part, one) * largest(step.as_ref());
-                        let farther = largest(raw.as_ref()).select_lt(limit, zero, moves);
-                        if fed || farther.largest_lane() == 0.0 {
-                            here = there;
-                            break (next, raw, fed, moves.largest_lane() == 0.0);
-                        }
-                        part = zero.select_lt(farther, of(0.5) * part, part);
-                    }
-                    Err(error) if fresh && least(part) < 2.0 * LEAST => {
-                        return Err(error);
-                    }
-                    _ => part *= of(0.5),
-                }
-                if !fresh {
+                Err(error) if fresh && self.weighed => return Err(error),
+                Err(_) => {
+                    self.weighed |= fresh;
                     (here, factors) = self.linear(&mut z)?;
                     (fresh, known) = (true, 0);
                     step = correction::<Sys>(&factors, &here.defect);
-                    continue 'nearer;
+                    continue;
                 }
             };
             let exact = core::mem::take(&mut fresh) && !fed;
-            let whole_step = least(part) == 1.0;
             let length = of(h.abs()) * largest(raw.as_ref());
             let mut after = raw;
             // Rounding teaches nothing.
-            if whole_step && !rounding {
+            if !rounding {
                 if let Some(slot) = steps.get_mut(known) {
                     *slot = step.clone();
                     known += 1;
@@ -117,19 +167,14 @@ where
             z = next;
             let shrinks = progress.idle == 0 && !slow::<Sys>(&after, &step, &state.xi, &z.xi);
             step = after;
-            if known == MEMORY || !whole_step || !(fed || shrinks || progress.idle > 1) {
-                iterations += 1;
+            if known == MEMORY || !(fed || shrinks || progress.idle > 1) {
+                *iterations += 1;
                 (here, factors) = self.linear(&mut z)?;
                 (fresh, known) = (true, 0);
                 step = correction::<Sys>(&factors, &here.defect);
             }
         }
     }
-}
-
-/// The least of parts between 0 and 1.
-fn least<S: Scalar>(part: S) -> f64 {
-    1.0 / (S::from_f64(1.0) / part).largest_lane()
 }
 
 /// −(∂g/∂ξ₁)⁻¹ g
