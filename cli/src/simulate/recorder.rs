@@ -235,7 +235,7 @@ mod tests {
                 }
                 let system = Instance::new(&generated, &start, &source.text).expect("a system");
                 let stepping = Stepping {
-                    until: 20.0,
+                    until: 8.0,
                     step: Some(1.3e-3),
                     method: method.into(),
                     tol: None,

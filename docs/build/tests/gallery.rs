@@ -17,9 +17,12 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// What is wrong with one exhibit, with its picture.
-fn seen(exhibit: &Exhibit, shell: &Shell) -> (Vec<String>, String) {
+/// What is wrong with one exhibit, with its picture where the commands are run that show it.
+fn seen(exhibit: &Exhibit, shell: Option<&Shell>) -> (Vec<String>, String) {
     let mut wrong = run(exhibit);
+    let Some(shell) = shell else {
+        return (wrong, String::new());
+    };
     if let Err(error) = shell.run(&format!("hamel check {}", exhibit.file())) {
         wrong.push(error.to_string());
     }
@@ -206,7 +209,16 @@ fn every_mechanism_of_the_gallery_holds() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gallery");
     let program = Path::new(env!("CARGO_BIN_EXE_hamel-book"));
     let shell = Shell::new(&root, &folder, program).expect("a folder");
-    let all = for_all(&exhibits, |exhibit| seen(exhibit, &shell));
+    // Every run, and the commands of every second mechanism, or of all with `HAMEL_ATTACK`.
+    let apart = if std::env::var_os("HAMEL_ATTACK").is_some() {
+        1
+    } else {
+        2
+    };
+    let shown: BTreeSet<&str> = titles.iter().copied().step_by(apart).collect();
+    let all = for_all(&exhibits, |exhibit| {
+        seen(exhibit, shown.contains(&*exhibit.title).then_some(&shell))
+    });
     let wrong: Vec<String> = all.iter().flat_map(|(wrong, _)| wrong.clone()).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let bytes: usize = all.iter().map(|(_, picture)| picture.len()).sum();

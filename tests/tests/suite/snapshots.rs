@@ -5,6 +5,7 @@
 //! (`doors.rs`), and repeats to the byte.
 
 use crate::derived::{model, models};
+use crate::some::some;
 use hamel_codegen::builder::{source, written};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::count::{Count, count};
@@ -223,9 +224,11 @@ fn constant_mass_costs_nothing() {
 
 #[test]
 fn generation_repeats_to_the_byte() {
-    models().par_iter().for_each(|model| {
-        let first = written(model.generated(), &model.name).expect("correct");
-        let again = source(&model.text, &model.name).expect("correct");
-        assert_eq!(first, again, "{}", model.name);
-    });
+    some(models().iter().collect())
+        .par_iter()
+        .for_each(|model| {
+            let first = written(model.generated(), &model.name).expect("correct");
+            let again = source(&model.text, &model.name).expect("correct");
+            assert_eq!(first, again, "{}", model.name);
+        });
 }
