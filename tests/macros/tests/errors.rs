@@ -1,7 +1,8 @@
 //! The macro in the compiler: errors stand inside of the description.
 //!
-//! The programs are compiled in this workspace, with the generator that its tests were built with: Cargo takes it only where
-//! something asked for beside the program links the generator as tests do, such as `layers`, tests of the repository.
+//! The programs are compiled in this workspace, with the crates that its tests were built with: Cargo takes these only where
+//! what is asked for beside the program needs them in the same way. That are `layers`, tests of the repository, for the
+//! generator, and the command `hamel` for what build scripts share with programs.
 
 use serde_json::Value;
 use std::path::Path;
@@ -19,6 +20,7 @@ fn messages(program: &str) -> String {
         "--message-format=json",
         "--features=hamel-tests-macros/wrong",
         "--test=layers",
+        "--bin=hamel",
         "--bin",
         program,
     ]);
