@@ -255,3 +255,51 @@ fn samples_are_written_whatever_the_method() {
     let written = std::fs::read_to_string(&path).expect("samples");
     assert!(serde_json::from_str::<Value>(&written).is_ok());
 }
+
+/// Three stiff joints of an arm, one of them mounted at 45 degrees, that begin a third of a radian from rest: after a second in
+/// steps of 1/20 s they have come to rest, where gravity bends them by some 1e-7 rad.
+#[test]
+fn stiff_arms_come_to_rest_by_implicit_steps() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let (file, out) = (folder.join("stiff_arm.eom"), folder.join("stiff_arm.csv"));
+    let text_of = "system StiffArm {
+        gravity [0, 0, -9.81];
+        param k = 1e8;
+        joint a: revolute [0, 1, 0] moves upper { force -k * (a - 0.3 + 30 * (a - 0.3)^3); }
+        body on upper { mass 2; com [0.2, 0.02, 0.01]; inertia diag(0.02, 0.1, 0.1) about com; }
+        joint b: revolute [0, 1, 0] on upper at pose(rotx(pi / 4), [0.5, 0, 0]) moves lower { force -k * (b + 0.2); }
+        body on lower { mass 1; com [0.2, 0.02, 0.01]; inertia diag(0.02, 0.1, 0.1) about com; }
+        joint c: continuous [1, 0, 0] on lower at [0.4, 0, 0] moves hand { force -k * c.s; }
+        body on hand { mass 0.5; com [0.05, 0.1, 0.1]; inertia diag(0.01, 0.02, 0.02) about com; }
+        start a = 0, b = 0.1;
+    }";
+    std::fs::write(&file, text_of).expect("a file");
+    let [file, out] = [&file, &out].map(|path| path.display().to_string());
+    let output = hamel(&[
+        "simulate",
+        &file,
+        "--until",
+        "1",
+        "--step",
+        "0.05",
+        "--method",
+        "backward-euler",
+        "--out",
+        &out,
+    ]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let written = std::fs::read_to_string(&out).expect("samples");
+    let mut lines = written.lines();
+    let names = lines.next().expect("names").split(',');
+    let last = lines.last().expect("a line").split(',');
+    let end: std::collections::BTreeMap<&str, f64> = names
+        .zip(last.map(|entry| entry.parse().expect("a number")))
+        .collect();
+    for (name, rest) in [("a", 0.3), ("b", -0.2), ("c.s", 0.0)] {
+        let apart = (end[name] - rest).abs();
+        assert!(apart < 1e-6 && apart > 0.0, "{name}: {apart:e}");
+    }
+    for name in ["a_dot", "b_dot", "c_dot"] {
+        assert!(end[name].abs() < 1e-8, "{name}: {}", end[name]);
+    }
+}

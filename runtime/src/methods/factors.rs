@@ -13,22 +13,47 @@ use crate::store::{Store, Table};
 /// Sweeps over rows and columns that find their units.
 const SWEEPS: u32 = 3;
 
-/// L without its diagonal of ones, and U, in the last rows and as many columns of a table, behind `first`.
+/// A square matrix by its rows.
+pub(super) trait Square<S> {
+    /// Row `i`; empty beyond the last.
+    fn row(&self, i: usize) -> &[S];
+
+    /// Row `i`, to be written; empty beyond the last.
+    fn row_mut(&mut self, i: usize) -> &mut [S];
+}
+
+/// The last rows and as many columns of a table, behind `first`.
+pub(super) struct Part<T> {
+    pub(super) table: T,
+    pub(super) first: usize,
+}
+
+impl<S: Scalar, T: Table<S>> Square<S> for Part<T> {
+    fn row(&self, i: usize) -> &[S] {
+        let row = self.table.row(self.first + i);
+        row.get(self.first..self.table.rows()).unwrap_or(&[])
+    }
+
+    fn row_mut(&mut self, i: usize) -> &mut [S] {
+        let columns = self.first..self.table.rows();
+        let row = self.table.row_mut(self.first + i);
+        row.get_mut(columns).unwrap_or(&mut [])
+    }
+}
+
+/// L without its diagonal of ones, and U, in the place of a matrix.
 pub(super) struct Factors<S, T, V> {
-    table: T,
-    first: usize,
+    matrix: T,
     /// For each column the row, from 0, that was brought to its place.
     pivots: V,
     scalar: PhantomData<S>,
 }
 
-impl<S: Scalar, T: Table<S>, V: Store<S>> Factors<S, T, V> {
-    /// Of the square matrix of `zeros.len()` rows that begins at row and column `first`. A singular one leads to infinite
-    /// or undefined solutions.
-    pub(super) fn new(table: T, first: usize, zeros: V) -> Self {
+impl<S: Scalar, T: Square<S>, V: Store<S>> Factors<S, T, V> {
+    /// Of a matrix of as many rows as there are zeros. A singular one leads to infinite or undefined solutions.
+    pub(super) fn new(matrix: T, zeros: V) -> Self {
         let mut factors = Factors {
-            table,
-            first,
+            matrix,
             pivots: zeros.clone(),
             scalar: PhantomData,
         };
@@ -36,7 +61,7 @@ impl<S: Scalar, T: Table<S>, V: Store<S>> Factors<S, T, V> {
         let mut above = zeros;
         for column in 0..factors.size() {
             factors.exchange(column, units.as_mut());
-            for (own, entry) in above.as_mut().iter_mut().zip(factors.row(column)) {
+            for (own, entry) in above.as_mut().iter_mut().zip(factors.matrix.row(column)) {
                 *own = *entry;
             }
             factors.eliminate(column, above.as_ref());
@@ -48,19 +73,8 @@ impl<S: Scalar, T: Table<S>, V: Store<S>> Factors<S, T, V> {
         self.pivots.as_ref().len()
     }
 
-    fn row(&self, i: usize) -> &[S] {
-        let row = self.table.row(self.first + i);
-        row.get(self.first..self.first + self.size()).unwrap_or(&[])
-    }
-
-    fn row_mut(&mut self, i: usize) -> &mut [S] {
-        let columns = self.first..self.first + self.size();
-        let row = self.table.row_mut(self.first + i);
-        row.get_mut(columns).unwrap_or(&mut [])
-    }
-
     fn entry(&self, i: usize, j: usize) -> S {
-        self.row(i).get(j).copied().unwrap_or_default()
+        self.matrix.row(i).get(j).copied().unwrap_or_default()
     }
 
     /// 1 over the largest entry of each row, in units of columns that make the largest of each about 1.
@@ -70,7 +84,7 @@ impl<S: Scalar, T: Table<S>, V: Store<S>> Factors<S, T, V> {
         columns.as_mut().fill(one);
         for _ in 0..SWEEPS {
             for (i, unit) in rows.as_mut().iter_mut().enumerate() {
-                let entries = self.row(i).iter().zip(columns.as_ref());
+                let entries = self.matrix.row(i).iter().zip(columns.as_ref());
                 let largest = entries.map(|(entry, column)| *column * entry.abs());
                 *unit = one / largest.fold(S::default(), Scalar::max);
             }
@@ -114,7 +128,7 @@ impl<S: Scalar, T: Table<S>, V: Store<S>> Factors<S, T, V> {
     }
 
     fn put(&mut self, i: usize, j: usize, value: S) {
-        if let Some(entry) = self.row_mut(i).get_mut(j) {
+        if let Some(entry) = self.matrix.row_mut(i).get_mut(j) {
             *entry = value;
         }
     }
@@ -124,6 +138,7 @@ impl<S: Scalar, T: Table<S>, V: Store<S>> Factors<S, T, V> {
         let pivot = above.get(column).copied().unwrap_or_default();
         for i in column + 1..self.size() {
             let Some((first, rest)) = self
+                .matrix
                 .row_mut(i)
                 .get_mut(column..)
                 .and_then(|row| row.split_first_mut())
@@ -152,7 +167,7 @@ impl<S: Scalar, T: Table<S>, V: Store<S>> Factors<S, T, V> {
         for i in 0..self.size() {
             let (above, rest) = b.split_at_mut(i.min(b.len()));
             if let Some(own) = rest.first_mut() {
-                let known = self.row(i).iter().zip(above.iter());
+                let known = self.matrix.row(i).iter().zip(above.iter());
                 *own = known.fold(*own, |sum, (factor, b)| (-*factor).mul_add(*b, sum));
             }
         }
@@ -160,7 +175,7 @@ impl<S: Scalar, T: Table<S>, V: Store<S>> Factors<S, T, V> {
             let Some((own, below)) = b.get_mut(i..).and_then(<[S]>::split_first_mut) else {
                 continue;
             };
-            let known = self.row(i).iter().skip(i + 1).zip(below.iter());
+            let known = self.matrix.row(i).iter().skip(i + 1).zip(below.iter());
             let sum = known.fold(*own, |sum, (factor, b)| (-*factor).mul_add(*b, sum));
             *own = sum / self.entry(i, i);
         }
@@ -184,12 +199,16 @@ fn swap<S: Scalar>(chosen: S, a: &mut S, b: &mut S) {
 
 #[cfg(test)]
 mod tests {
-    use super::Factors;
+    use super::{Factors, Part};
+
+    fn whole<T>(table: T) -> Part<T> {
+        Part { table, first: 0 }
+    }
 
     /// The solution of J a = b, and the largest |J a − b| beside that of |J| |a|, row by row.
     fn solved<const N: usize>(j: [[f64; N]; N], b: [f64; N]) -> ([f64; N], f64) {
         let mut a = b;
-        Factors::new(j, 0, [0.0; N]).solve(&mut a);
+        Factors::new(whole(j), [0.0; N]).solve(&mut a);
         let mut worst: f64 = 0.0;
         for (row, b) in j.iter().zip(b) {
             let left: f64 = row.iter().zip(a).map(|(j, a)| j * a).sum();
@@ -248,7 +267,7 @@ mod tests {
             [[1.0, 0.0], [1.0, 0.0]],
         ] {
             let mut a = [1.0_f64, 1.0];
-            Factors::new(j, 0, [0.0; 2]).solve(&mut a);
+            Factors::new(whole(j), [0.0; 2]).solve(&mut a);
             assert!(a.iter().any(|a| !a.is_finite()), "{a:?}");
         }
     }
@@ -258,7 +277,7 @@ mod tests {
     fn the_matrix_may_stand_within_a_table() {
         let table = [[7.0; 4], [7.0, 0.0, 2.0, 7.0], [7.0, 4.0, 0.0, 7.0]];
         let mut a = [6.0_f64, 8.0];
-        Factors::new(table, 1, [0.0; 2]).solve(&mut a);
+        Factors::new(Part { table, first: 1 }, [0.0; 2]).solve(&mut a);
         assert_eq!(a, [2.0, 3.0]);
     }
 }

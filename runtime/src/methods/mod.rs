@@ -28,6 +28,7 @@ mod factors;
 pub mod free;
 mod gauss;
 mod general;
+mod implicit;
 mod lgvi;
 mod phase;
 mod rk4;

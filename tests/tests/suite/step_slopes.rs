@@ -284,22 +284,18 @@ where
     solve_the_same_equations(name, system, &start, u);
 }
 
-/// Euler's implicit step by secants and by Newton's method, forwards and backwards: the same end, and the same slopes.
+/// Euler's implicit step without derivatives and with them, forwards and backwards: the same end, and the same slopes.
 fn solve_the_same_equations<Sys>(name: &str, system: &Sys, start: &State<Sys>, u: &[f64])
 where
     Sys: Tangent<Scalar = f64>,
 {
     let mut inputs = system.zero_inputs();
     inputs.as_mut().copy_from_slice(u);
-    for h in [0.02, -0.02, 0.2] {
+    for h in [0.02, -0.02, 0.1] {
         let one = step_slopes(&BackwardEuler, system, start, &inputs, h);
         let other = step_slopes(&StiffEuler, system, start, &inputs, h);
-        // Too long for secants, and for some motions without a solution.
-        if h > 0.1 && one.is_err() {
-            continue;
-        }
         let (other, slopes) = other.expect("a step");
-        let (one, learnt) = one.expect("a step by secants");
+        let (one, learnt) = one.expect("a step without derivatives");
         let numbers = |state: &State<Sys>, slopes: &Sys::Slopes| {
             [state.x.as_ref(), state.xi.as_ref(), &rows(slopes).concat()].concat()
         };

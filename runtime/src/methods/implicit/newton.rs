@@ -2,38 +2,45 @@
 
 use core::array::from_fn;
 
-use super::equations::{Equations, FactorsOf, reach};
 use crate::error::StepError;
-use crate::methods::backward_euler::{ENOUGH, MEMORY, Progress, Unknowns, ratio};
+use crate::methods::implicit::Derivative;
+use crate::methods::implicit::equations::{Equations, reach};
+use crate::methods::implicit::unknowns::{ENOUGH, MEMORY, Progress, Unknowns, ratio};
 use crate::scalar::Scalar;
-use crate::slopes::Tangent;
 use crate::store::{is_finite, largest};
 use crate::system::System;
 
-/// Evaluations after which the iteration of one length has failed.
+/// Corrections after which the iteration of one length has failed.
 const MOST: u32 = 64;
 /// Evaluations after which all lengths have.
 const MOST_OF_ALL: u32 = 1024;
 /// Corrections that are longer than this part of the ones before ask for new factors.
 const SLOW: f64 = 0.1;
 /// Corrections by exact factors that are longer than this part of the ones before lead nowhere.
-const ASTRAY: (f64, f64) = (0.5, 0.75);
+const ASTRAY: f64 = 0.75;
+/// The least part of a correction that is taken on the way to the whole step. On the way to shorter ones, which begin near
+/// their solutions, all of each is.
+const LEAST: f64 = 0.1;
 /// The part of the step that is tried first where the whole one is too long, and the least by which it grows.
 const PARTS: (f64, f64) = (0.25, 1e-4);
 
 impl<Sys, U> Equations<'_, Sys, U>
 where
-    Sys: Tangent,
+    Sys: System + ?Sized,
     U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
 {
     /// (x₁, ξ₁): from ξ, or else along the solutions of shorter steps, which begin there.
-    pub(super) fn solve(mut self) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
+    pub(in crate::methods) fn solve<D: Derivative<Sys>>(
+        mut self,
+        derivative: &D,
+    ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
         let (whole, time) = (self.h, self.state.t);
         let mut iterations = 0;
-        let mut failure = match self.newton(self.state.xi.clone(), ASTRAY.0, &mut iterations) {
-            Ok(found) => return Ok(found),
-            Err(failure) => failure,
-        };
+        let mut failure =
+            match self.newton(derivative, self.state.xi.clone(), LEAST, &mut iterations) {
+                Ok(found) => return Ok(found),
+                Err(failure) => failure,
+            };
         let (mut part, least) = PARTS;
         let (mut last, mut here) = ((0.0, self.state.xi.clone()), (0.0, self.state.xi.clone()));
         while part > least && iterations < MOST_OF_ALL {
@@ -46,7 +53,7 @@ where
                 }
             }
             self.h = next * whole;
-            match self.newton(xi, ASTRAY.1, &mut iterations) {
+            match self.newton(derivative, xi, 1.0, &mut iterations) {
                 Ok(found) if next == 1.0 => return Ok(found),
                 Ok((_, xi)) => {
                     last = core::mem::replace(&mut here, (next, xi));
@@ -65,22 +72,22 @@ where
     }
 
     /// The solution near values of ξ₁.
-    fn newton(
+    fn newton<D: Derivative<Sys>>(
         &mut self,
+        derivative: &D,
         xi: Sys::Velocities,
-        astray: f64,
+        least: f64,
         iterations: &mut u32,
     ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
         let (system, state, h, time) = (self.system, self.state, self.h, self.state.t);
         let of = Sys::Scalar::from_f64;
         let (zero, one) = (Sys::Scalar::default(), of(1.0));
-        let last = *iterations + MOST;
+        let mut rounds = 0;
         let mut z = Unknowns::<Sys> {
             u: system.zero_chart(),
             xi,
         };
-        *iterations += 1;
-        let (mut here, mut factors) = self.linear(&mut z)?;
+        let (mut here, mut factors) = derivative.linear(self, &mut z, iterations)?;
         if !is_finite(here.defect.as_ref()) {
             return Err(StepError::NonFinite { time });
         }
@@ -89,23 +96,24 @@ where
         let mut known = 0;
         // The factors are those of this point.
         let mut fresh = true;
-        let mut step = correction::<Sys>(&factors, &here.defect);
+        let mut part = 1.0;
+        let mut step = correction::<Sys, D>(&factors, &here.defect);
         loop {
-            *iterations += 1;
+            (*iterations, rounds) = (*iterations + 1, rounds + 1);
             let failed = StepError::NotConverged {
                 time,
                 iterations: *iterations,
             };
-            if *iterations > last || !is_finite(step.as_ref()) {
+            if rounds > MOST || !is_finite(step.as_ref()) {
                 return Err(failed);
             }
             let mut next = z.clone();
             for (xi, step) in next.xi.as_mut().iter_mut().zip(step.as_ref()) {
-                *xi += *step;
+                *xi = of(part).mul_add(*step, *xi);
             }
             let found = self
                 .point(&mut next)
-                .map(|there| (correction::<Sys>(&factors, &there.defect), there));
+                .map(|there| (correction::<Sys, D>(&factors, &there.defect), there));
             let nearer = found.and_then(|(raw, there)| {
                 let fed = differ(here.inputs.as_ref(), there.inputs.as_ref());
                 let small = Unknowns {
@@ -114,7 +122,7 @@ where
                 };
                 let whole = progress.whole(&next, &small, h);
                 let moves = of(ENOUGH * Sys::Scalar::EPSILON).select_lt(whole, one, zero);
-                let limit = of(astray) * largest(step.as_ref());
+                let limit = of(1.0 - part * (1.0 - ASTRAY)) * largest(step.as_ref());
                 let farther = largest(raw.as_ref()).select_lt(limit, zero, moves);
                 match is_finite(raw.as_ref()) && (fed || farther.largest_lane() == 0.0) {
                     true => Ok((raw, there, fed, moves.largest_lane() == 0.0)),
@@ -126,15 +134,28 @@ where
                     here = there;
                     (raw, fed, rounding)
                 }
-                Err(error) if fresh && self.weighed => return Err(error),
+                Err(error) if fresh && self.weighed => {
+                    part *= 0.5;
+                    if part < least {
+                        return Err(error);
+                    }
+                    continue;
+                }
                 Err(_) => {
                     self.weighed |= fresh;
-                    (here, factors) = self.linear(&mut z)?;
+                    (here, factors) = derivative.linear(self, &mut z, iterations)?;
                     (fresh, known) = (true, 0);
-                    step = correction::<Sys>(&factors, &here.defect);
+                    step = correction::<Sys, D>(&factors, &here.defect);
                     continue;
                 }
             };
+            if part < 1.0 {
+                (z, part) = (next, 1.0);
+                (here, factors) = derivative.linear(self, &mut z, iterations)?;
+                (fresh, known) = (true, 0);
+                step = correction::<Sys, D>(&factors, &here.defect);
+                continue;
+            }
             let exact = core::mem::take(&mut fresh) && !fed;
             let length = of(h.abs()) * largest(raw.as_ref());
             let mut after = raw;
@@ -168,19 +189,21 @@ where
             let shrinks = progress.idle == 0 && !slow::<Sys>(&after, &step, &state.xi, &z.xi);
             step = after;
             if known == MEMORY || !(fed || shrinks || progress.idle > 1) {
-                *iterations += 1;
-                (here, factors) = self.linear(&mut z)?;
+                (here, factors) = derivative.linear(self, &mut z, iterations)?;
                 (fresh, known) = (true, 0);
-                step = correction::<Sys>(&factors, &here.defect);
+                step = correction::<Sys, D>(&factors, &here.defect);
             }
         }
     }
 }
 
 /// −(∂g/∂ξ₁)⁻¹ g
-fn correction<Sys: Tangent>(factors: &FactorsOf<Sys>, defect: &Sys::Velocities) -> Sys::Velocities {
+fn correction<Sys: System + ?Sized, D: Derivative<Sys>>(
+    factors: &D::Factors,
+    defect: &Sys::Velocities,
+) -> Sys::Velocities {
     let mut step = defect.clone();
-    factors.solve(step.as_mut());
+    D::solve(factors, &mut step);
     for entry in step.as_mut() {
         *entry = -*entry;
     }
@@ -188,7 +211,7 @@ fn correction<Sys: Tangent>(factors: &FactorsOf<Sys>, defect: &Sys::Velocities) 
 }
 
 /// The correction by the factors, with what the steps since then tell of them: Broyden's update as a product.
-fn learnt<Sys: Tangent>(steps: &[Sys::Velocities], correction: &mut Sys::Velocities) {
+fn learnt<Sys: System + ?Sized>(steps: &[Sys::Velocities], correction: &mut Sys::Velocities) {
     let inner = |a: &Sys::Velocities, b: &Sys::Velocities| {
         let entries = a.as_ref().iter().zip(b.as_ref());
         entries.fold(Sys::Scalar::default(), |sum, (a, b)| a.inner_plus(*b, sum))
@@ -215,7 +238,7 @@ fn learnt<Sys: Tangent>(steps: &[Sys::Velocities], correction: &mut Sys::Velocit
 }
 
 /// Whether an entry that has yet to settle shrinks too little.
-fn slow<Sys: System>(
+fn slow<Sys: System + ?Sized>(
     new: &Sys::Velocities,
     old: &Sys::Velocities,
     start: &Sys::Velocities,

@@ -1,46 +1,27 @@
-//! Euler's implicit step in the chart, solved by Newton's method.
-//!
-//! The step of [`BackwardEuler`](crate::methods::BackwardEuler): u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u.
-//! The first of these equations is not stiff. It is solved by itself, in as many turns as coordinates move one another, and
-//! makes u a function of ξ₁; what is left are as many unknowns as there are velocities and states,
-//!
-//! g(ξ₁) = ξ₁ − ξ − h f(x ⊕ u(ξ₁), ξ₁) = 0,  ∂g/∂ξ₁ = I − h ∂f/∂ξ − h ∂f/∂x ∂u/∂ξ₁.
-//!
-//! Where coordinates are plain and ẋ = ξ, ∂g/∂ξ₁ is I − h (T_ξ + h T_x) with the linearisation T = [A B], else it comes from
-//! the same sums in dual numbers: both are exact. Factors are kept as long as corrections shrink, and corrected by the steps
-//! (Broyden).
-//!
-//! Where a point turns out to be no nearer, measured by the correction that follows, there are two remedies. First, M(x) g = 0
-//! is solved instead. Far from the solution f = M⁻¹ τ is larger by h² k/m than it will be, and ∂(M⁻¹)/∂x τ passes for
-//! stiffness; M g contains τ itself, which is nearly linear, and M only beside ξ₁ − ξ. Where that does not do, as where a
-//! spring between two points is so stiff that it guides a mechanism like a rod, the step is approached by way of shorter
-//! ones, each of which begins where the last two point (continuation in h).
-//!
-//! Sources: P. Deuflhard, *Newton Methods for Nonlinear Problems* (2011), 3.3 and 5.1; C. T. Kelley, *Iterative Methods for
-//! Linear and Nonlinear Equations* (1995), 7.3.
-
-mod equations;
-mod newton;
+//! Euler's implicit step in the chart, by Newton's method with exact derivatives; the method stands in
+//! [`implicit`](crate::methods::implicit).
 
 use crate::error::StepError;
-use crate::methods::backward_euler::Unknowns;
+use crate::methods::implicit::equations::{Equations, TURNS, reach};
+use crate::methods::implicit::exact::{Exact, factored, still, varied};
+use crate::methods::implicit::unknowns::Unknowns;
 use crate::methods::{Method, arrive};
 use crate::slopes::{Directions, Nearby, Tangent, values};
 use crate::state::State;
 use crate::system::System;
-use equations::{Equations, TURNS, factored, point, reach, still, varied};
 
 /// Order 1: the step of [`BackwardEuler`](crate::methods::BackwardEuler) of systems with a linearisation
-/// ([`Tangent`], `generate all, linearize;`), solved by Newton's method, however many directions are stiff.
+/// ([`Tangent`], `generate all, linearize;`), solved by Newton's method with exact derivatives.
 ///
 /// A step takes one evaluation of [A B] and one of ξ̇ where the equations are linear, some more of either where they are not,
-/// and up to hundreds where the step is so long that it is approached by way of shorter ones. Each unknown is found to rounding by itself; the length of the step may have either sign. Steps have slopes
-/// ([`step_slopes`](crate::step_slopes)): those of the implicit function.
+/// and up to hundreds where the step is so long that it is approached by way of shorter ones. Each unknown is found to
+/// rounding by itself; the length of the step may have either sign. Steps have slopes ([`step_slopes`](crate::step_slopes)):
+/// those of the implicit function.
 ///
 /// Inputs are a function whose slopes are not known. Those that depend on the time alone cost nothing. Of a controller,
-/// u(t, x, ξ), the iteration learns from its own steps how the inputs follow the state, as
-/// [`BackwardEuler`](crate::methods::BackwardEuler) learns everything: it takes more of them, and may not converge where many
-/// loops of a controller are stiff. It is better to describe a stiff spring or damper as a load of the system.
+/// u(t, x, ξ), the iteration learns from its own steps how the inputs follow the state: it takes more of them, and may not
+/// converge where many loops of a controller are stiff. [`BackwardEuler`](crate::methods::BackwardEuler), which takes
+/// differences of everything, knows those, too; or a stiff spring or damper becomes a load of the system.
 ///
 /// # Errors
 /// [`StepError::NotConverged`] where no solution is found on the way from h = 0: there is none, or the step is so long
@@ -105,13 +86,14 @@ impl<Sys: Tangent> Method<Sys> for StiffEuler {
         let nearby = (!Sys::PLAIN).then(|| Nearby::new(system));
         let equations = Equations {
             system,
-            nearby: nearby.as_ref(),
             state,
             h,
             inputs,
             weighed: false,
         };
-        let (x, xi) = equations.solve()?;
+        let (x, xi) = equations.solve(&Exact {
+            nearby: nearby.as_ref(),
+        })?;
         arrive(system, state, h, x, xi)
     }
 }
@@ -156,13 +138,14 @@ impl<Sys: Tangent> Method<Nearby<Sys>> for StiffEuler {
         };
         let equations = Equations {
             system,
-            nearby: (!Sys::PLAIN).then_some(nearby),
             state: &begin,
             h,
             inputs: &plain_inputs,
             weighed: false,
         };
-        let (_, xi) = equations.solve()?;
+        let (_, xi) = equations.solve(&Exact {
+            nearby: (!Sys::PLAIN).then_some(nearby),
+        })?;
 
         let mut fixed = state.clone();
         still(fixed.x.as_mut(), begin.x.as_ref());
@@ -171,11 +154,18 @@ impl<Sys: Tangent> Method<Nearby<Sys>> for StiffEuler {
             u: nearby.zero_chart(),
             xi: varied(nearby, &xi),
         };
-        let along = point(nearby, &fixed, h, inputs, &mut z)?;
+        let at = |state| Equations {
+            system: nearby,
+            state,
+            h,
+            inputs,
+            weighed: false,
+        };
+        let along = at(&fixed).point(&mut z)?;
         let factors = factored(system, along.defect.as_ref());
 
         still(z.xi.as_mut(), xi.as_ref());
-        let by_start = point(nearby, state, h, inputs, &mut z)?;
+        let by_start = at(state).point(&mut z)?;
         let directions = by_start.defect.as_ref().first();
         for direction in 0..directions.map_or(0, |number| number.slopes().len()) {
             let mut by = system.zero_velocities();

@@ -1,0 +1,75 @@
+//! ∂g/∂ξ₁ from differences of g: for any system, and whatever its inputs follow.
+
+use std::vec;
+use std::vec::Vec;
+
+use crate::error::StepError;
+use crate::methods::factors::{Factors, Square};
+use crate::methods::implicit::Derivative;
+use crate::methods::implicit::equations::{Equations, Point};
+use crate::methods::implicit::unknowns::Unknowns;
+use crate::scalar::Scalar;
+use crate::store::{Store, largest};
+use crate::system::System;
+
+/// A square matrix of as many rows as there are velocities.
+pub(in crate::methods) struct Grid<V>(Vec<V>);
+
+impl<S: Scalar, V: Store<S>> Square<S> for Grid<V> {
+    fn row(&self, i: usize) -> &[S] {
+        self.0.get(i).map_or(&[], |row| row.as_ref())
+    }
+
+    fn row_mut(&mut self, i: usize) -> &mut [S] {
+        self.0.get_mut(i).map_or(&mut [], |row| row.as_mut())
+    }
+}
+
+/// Slopes by one evaluation more for each velocity.
+pub(in crate::methods) struct Differences;
+
+impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
+    type Factors = Factors<Sys::Scalar, Grid<Sys::Velocities>, Sys::Velocities>;
+
+    fn linear<U>(
+        &self,
+        equations: &Equations<'_, Sys, U>,
+        z: &mut Unknowns<Sys>,
+        iterations: &mut u32,
+    ) -> Result<(Point<Sys>, Self::Factors), StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        *iterations += 1;
+        let here = equations.point(z)?;
+        let zeros = equations.system.zero_velocities();
+        let mut grid = Grid(vec![zeros.clone(); zeros.as_ref().len()]);
+        let of = Sys::Scalar::from_f64;
+        // Half of the digits of x, or of ξ where these say more.
+        let half = of(Sys::Scalar::EPSILON.sqrt());
+        let reach = largest(equations.state.x.as_ref()).size() / of(equations.h.abs());
+        for j in 0..zeros.as_ref().len() {
+            *iterations += 1;
+            let mut near = z.clone();
+            let Some(entry) = near.xi.as_mut().get_mut(j) else {
+                continue;
+            };
+            let before = *entry;
+            let by = half * Scalar::max(reach, entry.size());
+            *entry += of(0.0).select_lt(by, by, half);
+            let by = *entry - before;
+            let there = equations.point(&mut near)?;
+            let pairs = there.defect.as_ref().iter().zip(here.defect.as_ref());
+            for (i, (there, here)) in pairs.enumerate() {
+                if let Some(entry) = grid.row_mut(i).get_mut(j) {
+                    *entry = (*there - *here) / by;
+                }
+            }
+        }
+        Ok((here, Factors::new(grid, zeros)))
+    }
+
+    fn solve(factors: &Self::Factors, defect: &mut Sys::Velocities) {
+        factors.solve(defect.as_mut());
+    }
+}

@@ -1,0 +1,148 @@
+//! The equations g(ξ₁) = 0 of a step.
+
+use crate::error::StepError;
+use crate::integrate::acceleration;
+use crate::manifold;
+use crate::methods::implicit::unknowns::Unknowns;
+use crate::scalar::Scalar;
+use crate::state::State;
+use crate::store::{add_scaled, largest, scale};
+use crate::system::System;
+
+/// Turns after which the coordinates of a step have not been found.
+pub(in crate::methods) const TURNS: u32 = 64;
+/// Units of rounding to which the coordinates of a step are found.
+const ULPS: f64 = 4.0;
+
+/// x ⊕ u
+fn moved<Sys: System + ?Sized>(
+    system: &Sys,
+    x: &Sys::Coordinates,
+    u: &Sys::Chart,
+) -> Sys::Coordinates {
+    let mut x = x.clone();
+    manifold::retract(system.blocks(), x.as_mut(), u.as_ref());
+    x
+}
+
+/// x ⊕ u with u = h w(x ⊕ u, ξ₁), by turns that begin at `u`, which is left at the solution; nothing where turns find none.
+pub(in crate::methods) fn reach<Sys: System + ?Sized>(
+    system: &Sys,
+    x: &Sys::Coordinates,
+    h: f64,
+    xi: &Sys::Velocities,
+    u: &mut Sys::Chart,
+) -> Option<Sys::Coordinates> {
+    let (zero, one) = (Sys::Scalar::default(), Sys::Scalar::from_f64(1.0));
+    let rounding = Sys::Scalar::from_f64(ULPS * Sys::Scalar::EPSILON);
+    let mut nearest = one;
+    for _ in 0..TURNS {
+        let place = moved(system, x, u);
+        let mut next = system.chart_rate(&place, xi);
+        scale(next.as_mut(), h);
+        let (mut own, mut change) = (zero, zero);
+        for (old, new) in u.as_ref().iter().zip(next.as_ref()) {
+            own = Scalar::max(own, (*new - *old).beside(*new, *old));
+            change = Scalar::max(change, (*new - *old).size());
+        }
+        *u = next;
+        if own.largest_lane() == 0.0 {
+            return Some(place);
+        }
+        // Small beside all of u, and no longer shrinking: rounding.
+        let whole = change.beside(largest(u.as_ref()), zero);
+        let unsettled = rounding.select_lt(whole, one, zero);
+        let shrinks = own.select_lt(Sys::Scalar::from_f64(0.5) * nearest, one, unsettled);
+        let moves = rounding.select_lt(own, shrinks, zero);
+        if moves.largest_lane() == 0.0 {
+            return Some(moved(system, x, u));
+        }
+        nearest = own.select_lt(nearest, own, nearest);
+    }
+    None
+}
+
+/// M(x) g in the place of g: entry i is T(g + s eᵢ) − T(g) − T(s eᵢ) + T(0), over s. States stay as they are.
+///
+/// The energy is a quadratic polynomial of velocities, so that this is exact; s makes both parts about equally large.
+pub(super) fn weigh<Sys: System + ?Sized>(
+    system: &Sys,
+    x: &Sys::Coordinates,
+    g: &mut Sys::Velocities,
+) {
+    let (zero, one) = (Sys::Scalar::default(), Sys::Scalar::from_f64(1.0));
+    let none = system.zero_velocities();
+    let at_rest = system.kinetic_energy(x, &none);
+    let whole = system.kinetic_energy(x, g) - at_rest;
+    let before = g.clone();
+    for (i, entry) in g.as_mut().iter_mut().enumerate() {
+        let along = |of: &Sys::Velocities, s: Sys::Scalar| {
+            let mut of = of.clone();
+            if let Some(entry) = of.as_mut().get_mut(i) {
+                *entry += s;
+            }
+            system.kinetic_energy(x, &of) - at_rest
+        };
+        let inertia = (along(&none, one) + along(&none, -one)).size();
+        let square = zero.select_lt(inertia, whole.size() / inertia, zero);
+        let s = zero.select_lt(square, square, one).sqrt();
+        let momentum = (along(&before, s) - whole - along(&none, s)) / s;
+        *entry = zero.select_lt(inertia, momentum, *entry);
+    }
+}
+
+/// What is found at values of the unknowns.
+pub(in crate::methods) struct Point<Sys: System + ?Sized> {
+    pub(super) x: Sys::Coordinates,
+    pub(super) inputs: Sys::Inputs,
+    /// g
+    pub(in crate::methods) defect: Sys::Velocities,
+}
+
+/// The equations of a step.
+pub(in crate::methods) struct Equations<'a, Sys: System + ?Sized, U> {
+    pub(in crate::methods) system: &'a Sys,
+    pub(in crate::methods) state: &'a State<Sys>,
+    pub(in crate::methods) h: f64,
+    pub(in crate::methods) inputs: &'a U,
+    /// Whether they are M g = 0.
+    pub(in crate::methods) weighed: bool,
+}
+
+impl<Sys, U> Equations<'_, Sys, U>
+where
+    Sys: System + ?Sized,
+    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+{
+    /// Where ξ₁ leads to, with u from a guess of it.
+    pub(super) fn place(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
+        let (system, state, h) = (self.system, self.state, self.h);
+        let x = reach(system, &state.x, h, &z.xi, &mut z.u).ok_or(StepError::NotConverged {
+            time: state.t,
+            iterations: TURNS,
+        })?;
+        let inputs = (self.inputs)(state.t + h, &x, &z.xi);
+        let defect = z.xi.clone();
+        Ok(Point { x, inputs, defect })
+    }
+
+    /// ξ₁ − ξ − h f, in the place of ξ₁.
+    pub(super) fn lag(&self, f: &Sys::Velocities, xi: &mut Sys::Velocities) {
+        for (own, start) in xi.as_mut().iter_mut().zip(self.state.xi.as_ref()) {
+            *own -= *start;
+        }
+        add_scaled(xi.as_mut(), -self.h, f.as_ref());
+    }
+
+    /// g at values of ξ₁.
+    pub(in crate::methods) fn point(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
+        let mut here = self.place(z)?;
+        let held = |_: f64, _: &_, _: &_| here.inputs.clone();
+        let f = acceleration(self.system, self.state.t, self.h, &here.x, &z.xi, &held)?;
+        self.lag(&f, &mut here.defect);
+        if self.weighed {
+            weigh(self.system, &here.x, &mut here.defect);
+        }
+        Ok(here)
+    }
+}

@@ -1,0 +1,129 @@
+//! ∂g/∂ξ₁ from the linearisation of a system: exact.
+
+use crate::error::StepError;
+use crate::methods::factors::{Factors, Part};
+use crate::methods::implicit::Derivative;
+use crate::methods::implicit::equations::{Equations, Point};
+use crate::methods::implicit::unknowns::Unknowns;
+use crate::scalar::Scalar;
+use crate::slopes::{Directions, Nearby, Tangent, values};
+use crate::state::State;
+use crate::store::{Table, add_scaled, is_finite, scale};
+use crate::system::System;
+
+/// ∂g/∂ξ₁ of a system.
+pub(in crate::methods) type FactorsOf<Sys> =
+    Factors<<Sys as System>::Scalar, Part<<Sys as Tangent>::Slopes>, <Sys as System>::Velocities>;
+
+/// The factors of ∂g/∂ξ₁ from numbers that vary with ξ₁ along the directions of ξ.
+pub(in crate::methods) fn factored<Sys: Tangent>(
+    system: &Sys,
+    defect: &[Sys::Number],
+) -> FactorsOf<Sys> {
+    let mut table = Sys::Slopes::zero();
+    let first = table.rows() - defect.len();
+    for (i, number) in defect.iter().enumerate() {
+        for (entry, slope) in table.row_mut(first + i).iter_mut().zip(number.slopes()) {
+            *entry = *slope;
+        }
+    }
+    Factors::new(Part { table, first }, system.zero_velocities())
+}
+
+/// ξ₁ that varies along its own directions.
+pub(in crate::methods) fn varied<Sys: Tangent>(
+    nearby: &Nearby<Sys>,
+    xi: &Sys::Velocities,
+) -> <Nearby<Sys> as System>::Velocities {
+    let first = Sys::Slopes::zero().rows() - xi.as_ref().len();
+    let mut varied = nearby.zero_velocities();
+    for (i, (number, value)) in varied.as_mut().iter_mut().zip(xi.as_ref()).enumerate() {
+        *number = Sys::Number::along(*value, first + i);
+    }
+    varied
+}
+
+/// Numbers that do not vary.
+pub(in crate::methods) fn still<N: Directions>(numbers: &mut [N], values: &[N::Value]) {
+    for (number, value) in numbers.iter_mut().zip(values) {
+        number.vary(*value, &[]);
+    }
+}
+
+/// Slopes of a system with a linearisation, where inputs stay.
+pub(in crate::methods) struct Exact<'a, Sys: Tangent> {
+    /// The system in dual numbers, where they are needed.
+    pub(in crate::methods) nearby: Option<&'a Nearby<Sys>>,
+}
+
+impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
+    type Factors = FactorsOf<Sys>;
+
+    fn linear<U>(
+        &self,
+        equations: &Equations<'_, Sys, U>,
+        z: &mut Unknowns<Sys>,
+        iterations: &mut u32,
+    ) -> Result<(Point<Sys>, Self::Factors), StepError>
+    where
+        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
+    {
+        *iterations += 1;
+        let (system, state, h) = (equations.system, equations.state, equations.h);
+        let time = state.t;
+        let mut here = equations.place(z)?;
+        let made = (equations.weighed && self.nearby.is_none()).then(|| Nearby::new(system));
+        let Some(nearby) = self.nearby.or(made.as_ref()) else {
+            let mut table = Sys::Slopes::zero();
+            let found = system.slopes(&here.x, &z.xi, &here.inputs, &mut table);
+            let f = found.map_err(|cause| {
+                match is_finite(here.x.as_ref()) && is_finite(z.xi.as_ref()) {
+                    true => StepError::Singular { cause, time },
+                    false => StepError::NonFinite { time },
+                }
+            })?;
+            equations.lag(&f, &mut here.defect);
+            let first = table.rows() - f.as_ref().len();
+            for i in first..table.rows() {
+                let row = table.row_mut(i);
+                // Displacements are h times the velocities in front of the states.
+                let (by_x, by_xi) = row.split_at_mut(first.min(row.len()));
+                add_scaled(by_xi.get_mut(..first).unwrap_or(&mut []), h, by_x);
+                scale(row, -h);
+                if let Some(entry) = row.get_mut(i) {
+                    *entry += Sys::Scalar::from_f64(1.0);
+                }
+            }
+            let factors = Factors::new(Part { table, first }, system.zero_velocities());
+            return Ok((here, factors));
+        };
+        let mut begin = State::<Nearby<Sys>> {
+            t: time,
+            x: nearby.zero_coordinates(),
+            xi: nearby.zero_velocities(),
+        };
+        still(begin.x.as_mut(), state.x.as_ref());
+        still(begin.xi.as_mut(), state.xi.as_ref());
+        let mut held = nearby.zero_inputs();
+        still(held.as_mut(), here.inputs.as_ref());
+        let mut near = Unknowns::<Nearby<Sys>> {
+            u: nearby.zero_chart(),
+            xi: varied(nearby, &z.xi),
+        };
+        still(near.u.as_mut(), z.u.as_ref());
+        let varying = Equations {
+            system: nearby,
+            state: &begin,
+            h,
+            inputs: &|_, _: &_, _: &_| held.clone(),
+            weighed: equations.weighed,
+        };
+        let found = varying.point(&mut near)?;
+        values(here.defect.as_mut(), found.defect.as_ref());
+        Ok((here, factored(system, found.defect.as_ref())))
+    }
+
+    fn solve(factors: &Self::Factors, defect: &mut Sys::Velocities) {
+        factors.solve(defect.as_mut());
+    }
+}
