@@ -31,6 +31,8 @@ pub(in crate::methods) struct Differences;
 impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
     type Factors = Factors<Sys::Scalar, Grid<Sys::Velocities>, Sys::Velocities>;
 
+    const KNOWS_INPUTS: bool = true;
+
     fn linear<U>(
         &self,
         equations: &Equations<'_, Sys, U>,

@@ -59,6 +59,8 @@ pub(in crate::methods) struct Exact<'a, Sys: Tangent> {
 impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
     type Factors = FactorsOf<Sys>;
 
+    const KNOWS_INPUTS: bool = false;
+
     fn linear<U>(
         &self,
         equations: &Equations<'_, Sys, U>,

@@ -35,6 +35,9 @@ pub(super) trait Derivative<Sys: System + ?Sized> {
     /// What is solved with it.
     type Factors;
 
+    /// Whether it knows how inputs follow the state.
+    const KNOWS_INPUTS: bool;
+
     /// g with the factors of its slopes; evaluations are counted.
     fn linear<U>(
         &self,
