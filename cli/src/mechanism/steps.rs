@@ -46,10 +46,7 @@ impl Mechanism {
         if let Some(code) = known.iter().find(same) {
             return Arc::clone(code);
         }
-        // What follows is for machine code alone, which some builds never have.
-        let tape = cfg!(feature = "machine")
-            .then(|| self.tape(&method, h, false))
-            .flatten();
+        let tape = self.tape(&method, h, false);
         let code = Arc::new(Code {
             method,
             h,
@@ -89,6 +86,10 @@ impl Mechanism {
     /// in the place of accelerations, so that a run does not add up the lengths of steps. With T, V and φ at its end where it is
     /// `watched`.
     fn tape(&self, method: &General, h: f64, watched: bool) -> Option<(Tape, u64)> {
+        // What follows is for machine code alone, which some builds never have.
+        if cfg!(not(feature = "machine")) {
+            return None;
+        }
         let explicit = matches!(
             method,
             General::Rkmk4

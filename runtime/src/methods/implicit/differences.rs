@@ -33,15 +33,12 @@ impl<Sys: System + ?Sized> Derivative<Sys> for Differences {
 
     const KNOWS_INPUTS: bool = true;
 
-    fn linear<U>(
+    fn linear(
         &self,
-        equations: &Equations<'_, Sys, U>,
+        equations: &Equations<'_, Sys>,
         z: &mut Unknowns<Sys>,
         iterations: &mut u32,
-    ) -> Result<(Point<Sys>, Self::Factors), StepError>
-    where
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
+    ) -> Result<(Point<Sys>, Self::Factors), StepError> {
         *iterations += 1;
         let here = equations.point(z)?;
         let zeros = equations.system.zero_velocities();

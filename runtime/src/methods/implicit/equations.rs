@@ -99,21 +99,21 @@ pub(in crate::methods) struct Point<Sys: System + ?Sized> {
     pub(in crate::methods) defect: Sys::Velocities,
 }
 
+/// u(t, x, ξ), by a pointer: the iteration is compiled once for a system, whatever its inputs are.
+pub(in crate::methods) type Follow<'a, Sys> = dyn Fn(f64, &<Sys as System>::Coordinates, &<Sys as System>::Velocities) -> <Sys as System>::Inputs
+    + 'a;
+
 /// The equations of a step.
-pub(in crate::methods) struct Equations<'a, Sys: System + ?Sized, U> {
+pub(in crate::methods) struct Equations<'a, Sys: System + ?Sized> {
     pub(in crate::methods) system: &'a Sys,
     pub(in crate::methods) state: &'a State<Sys>,
     pub(in crate::methods) h: f64,
-    pub(in crate::methods) inputs: &'a U,
+    pub(in crate::methods) inputs: &'a Follow<'a, Sys>,
     /// Whether they are M g = 0.
     pub(in crate::methods) weighed: bool,
 }
 
-impl<Sys, U> Equations<'_, Sys, U>
-where
-    Sys: System + ?Sized,
-    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-{
+impl<Sys: System + ?Sized> Equations<'_, Sys> {
     /// Where ξ₁ leads to, with u from a guess of it.
     pub(super) fn place(&self, z: &mut Unknowns<Sys>) -> Result<Point<Sys>, StepError> {
         let (system, state, h) = (self.system, self.state, self.h);

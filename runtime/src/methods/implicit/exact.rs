@@ -61,15 +61,12 @@ impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
 
     const KNOWS_INPUTS: bool = false;
 
-    fn linear<U>(
+    fn linear(
         &self,
-        equations: &Equations<'_, Sys, U>,
+        equations: &Equations<'_, Sys>,
         z: &mut Unknowns<Sys>,
         iterations: &mut u32,
-    ) -> Result<(Point<Sys>, Self::Factors), StepError>
-    where
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-    {
+    ) -> Result<(Point<Sys>, Self::Factors), StepError> {
         *iterations += 1;
         let (system, state, h) = (equations.system, equations.state, equations.h);
         let time = state.t;

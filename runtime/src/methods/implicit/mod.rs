@@ -39,14 +39,12 @@ pub(super) trait Derivative<Sys: System + ?Sized> {
     const KNOWS_INPUTS: bool;
 
     /// g with the factors of its slopes; evaluations are counted.
-    fn linear<U>(
+    fn linear(
         &self,
-        equations: &Equations<'_, Sys, U>,
+        equations: &Equations<'_, Sys>,
         z: &mut Unknowns<Sys>,
         iterations: &mut u32,
-    ) -> Result<(Point<Sys>, Self::Factors), StepError>
-    where
-        U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs;
+    ) -> Result<(Point<Sys>, Self::Factors), StepError>;
 
     /// (∂g/∂ξ₁)⁻¹ g in the place of g.
     fn solve(factors: &Self::Factors, defect: &mut Sys::Velocities);

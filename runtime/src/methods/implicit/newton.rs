@@ -24,11 +24,7 @@ const LEAST: f64 = 0.1;
 /// The part of the step that is tried first where the whole one is too long, and the least by which it grows.
 const PARTS: (f64, f64) = (0.25, 1e-4);
 
-impl<Sys, U> Equations<'_, Sys, U>
-where
-    Sys: System + ?Sized,
-    U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
-{
+impl<Sys: System + ?Sized> Equations<'_, Sys> {
     /// (x₁, ξ₁): from ξ, or else along the solutions of shorter steps, which begin there.
     pub(in crate::methods) fn solve<D: Derivative<Sys>>(
         mut self,
@@ -82,40 +78,48 @@ where
         let (system, state, h, time) = (self.system, self.state, self.h, self.state.t);
         let of = Sys::Scalar::from_f64;
         let (zero, one) = (Sys::Scalar::default(), of(1.0));
-        let mut rounds = 0;
         let mut z = Unknowns::<Sys> {
             u: system.zero_chart(),
             xi,
         };
-        let (mut here, mut factors) = derivative.linear(self, &mut z, iterations)?;
-        if !is_finite(here.defect.as_ref()) {
-            return Err(StepError::NonFinite { time });
-        }
         let mut progress = Progress::new(system, state);
         let mut steps: [Sys::Velocities; MEMORY] = from_fn(|_| system.zero_velocities());
-        let mut known = 0;
-        // The factors are those of this point.
+        let (mut known, mut part) = (0, 1.0);
+        // The slopes of g, where its values are known; none where they are no good any more.
+        let mut factors = None;
+        // Whether they are those of this point.
         let mut fresh = true;
-        let mut part = 1.0;
-        let mut step = correction::<Sys, D>(&factors, &here.defect);
-        loop {
-            (*iterations, rounds) = (*iterations + 1, rounds + 1);
+        let mut inputs = system.zero_inputs();
+        let mut step = system.zero_velocities();
+        for _ in 0..=MOST {
+            let solved = match factors {
+                Some(known) => known,
+                None => {
+                    let (here, new) = derivative.linear(self, &mut z, iterations)?;
+                    if !is_finite(here.defect.as_ref()) {
+                        return Err(StepError::NonFinite { time });
+                    }
+                    step = correction::<Sys, D>(&new, &here.defect);
+                    inputs = here.inputs;
+                    (fresh, known, part) = (true, 0, 1.0);
+                    new
+                }
+            };
+            *iterations += 1;
             let failed = StepError::NotConverged {
                 time,
                 iterations: *iterations,
             };
-            if rounds > MOST || !is_finite(step.as_ref()) {
+            if !is_finite(step.as_ref()) {
                 return Err(failed);
             }
             let mut next = z.clone();
             for (xi, step) in next.xi.as_mut().iter_mut().zip(step.as_ref()) {
                 *xi = of(part).mul_add(*step, *xi);
             }
-            let found = self
-                .point(&mut next)
-                .map(|there| (correction::<Sys, D>(&factors, &there.defect), there));
-            let nearer = found.and_then(|(raw, there)| {
-                let fed = !D::KNOWS_INPUTS && differ(here.inputs.as_ref(), there.inputs.as_ref());
+            let nearer = self.point(&mut next).and_then(|there| {
+                let raw = correction::<Sys, D>(&solved, &there.defect);
+                let fed = !D::KNOWS_INPUTS && differ(inputs.as_ref(), there.inputs.as_ref());
                 let small = Unknowns {
                     u: system.zero_chart(),
                     xi: step.clone(),
@@ -125,13 +129,13 @@ where
                 let limit = of(1.0 - part * (1.0 - ASTRAY)) * largest(step.as_ref());
                 let farther = largest(raw.as_ref()).select_lt(limit, zero, moves);
                 match is_finite(raw.as_ref()) && (fed || farther.largest_lane() == 0.0) {
-                    true => Ok((raw, there, fed, moves.largest_lane() == 0.0)),
+                    true => Ok((raw, there.inputs, fed, moves.largest_lane() == 0.0)),
                     false => Err(failed),
                 }
             });
             let (raw, fed, rounding) = match nearer {
                 Ok((raw, there, fed, rounding)) => {
-                    here = there;
+                    inputs = there;
                     (raw, fed, rounding)
                 }
                 Err(error) if fresh && self.weighed => {
@@ -139,21 +143,18 @@ where
                     if part < least {
                         return Err(error);
                     }
+                    factors = Some(solved);
                     continue;
                 }
                 Err(_) => {
                     self.weighed |= fresh;
-                    (here, factors) = derivative.linear(self, &mut z, iterations)?;
-                    (fresh, known) = (true, 0);
-                    step = correction::<Sys, D>(&factors, &here.defect);
+                    factors = None;
                     continue;
                 }
             };
             if part < 1.0 {
-                (z, part) = (next, 1.0);
-                (here, factors) = derivative.linear(self, &mut z, iterations)?;
-                (fresh, known) = (true, 0);
-                step = correction::<Sys, D>(&factors, &here.defect);
+                z = next;
+                factors = None;
                 continue;
             }
             let exact = core::mem::take(&mut fresh) && !fed;
@@ -188,12 +189,13 @@ where
             z = next;
             let shrinks = progress.idle == 0 && !slow::<Sys>(&after, &step, &state.xi, &z.xi);
             step = after;
-            if known == MEMORY || !(fed || shrinks || progress.idle > 1) {
-                (here, factors) = derivative.linear(self, &mut z, iterations)?;
-                (fresh, known) = (true, 0);
-                step = correction::<Sys, D>(&factors, &here.defect);
-            }
+            let kept = known < MEMORY && (fed || shrinks || progress.idle > 1);
+            factors = kept.then_some(solved);
         }
+        Err(StepError::NotConverged {
+            time,
+            iterations: *iterations,
+        })
     }
 }
 
