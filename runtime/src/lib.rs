@@ -21,15 +21,15 @@
 //! | [`adapter`] | any generated system as y′ = f(t, y), for the solvers of other crates |
 //! | [`so3`], [`s3`], [`s1`] | rotations as matrices, unit quaternions and angles |
 //!
-//! Nothing here allocates (but for `ensemble` and what you store yourself), and nothing panics: whatever fails is a
-//! [`StepError`] or a [`Singular`] that says what to do. Numbers can be of any [`Scalar`] type: `f64`, `f32`, dual
-//! numbers, SIMD lanes.
+//! Nothing here allocates (but for `ensemble`, [`BackwardEuler`](methods::BackwardEuler) where a system is stiff, and what you
+//! store yourself), and nothing panics: whatever fails is a [`StepError`] or a [`Singular`] that says what to do. Numbers can
+//! be of any [`Scalar`] type: `f64`, `f32`, dual numbers, SIMD lanes.
 //!
 //! # Features
 //!
 //! | feature | default | what it adds |
 //! |---|---|---|
-//! | `std` | yes | mathematical functions of the standard library, and `Vec` as a [`Store`]. Without it the crate is `no_std` and takes them from `libm` |
+//! | `std` | yes | mathematical functions of the standard library, `Vec` as a [`Store`], and differences in [`BackwardEuler`](methods::BackwardEuler). Without it the crate is `no_std` and takes them from `libm` |
 //! | `macros` | yes | [`rigid_eom!`] |
 //! | `nalgebra` | yes | states as types of nalgebra, in `edge` |
 //! | `wide` | no | SIMD lanes as scalars, in `wide` |

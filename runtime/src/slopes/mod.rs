@@ -403,9 +403,10 @@ impl<Sys: Tangent<Dual: Split>> Split for Nearby<Sys> {
 
 /// A step of length `h` from a state at inputs that are held, and its slopes [A_d B_d].
 ///
-/// Every method that moves coordinates in the chart will do; nothing is allocated. Constraints that multipliers keep
-/// are projected on as in [`step`](crate::step()), slopes with them. Implicit methods end where slopes have converged,
-/// too. A run of many steps makes [`Nearby`] once and calls [`step_nearby`].
+/// Every method that moves coordinates in the chart will do; nothing is allocated, but by
+/// [`BackwardEuler`](crate::methods::BackwardEuler) where a system is stiff. Constraints that multipliers keep are projected
+/// on as in [`step`](crate::step()), slopes with them. Implicit methods end where slopes have converged, too. A run of many
+/// steps makes [`Nearby`] once and calls [`step_nearby`].
 ///
 /// # Errors
 /// Those of [`step`](crate::step()).
