@@ -234,8 +234,9 @@ mod tests {
                     *xi = (*xi + 0.1) * speed;
                 }
                 let system = Instance::new(&generated, &start, &source.text).expect("a system");
+                let long = std::env::var_os("HAMEL_ATTACK").is_some();
                 let stepping = Stepping {
-                    until: 8.0,
+                    until: if long { 20.0 } else { 8.0 },
                     step: Some(1.3e-3),
                     method: method.into(),
                     tol: None,

@@ -291,9 +291,17 @@ where
 {
     let mut inputs = system.zero_inputs();
     inputs.as_mut().copy_from_slice(u);
-    for h in [0.02, -0.02, 0.1] {
+    for h in [0.02, -0.02, 0.1, 0.2] {
+        // Two solutions, and each method ends at another.
+        if h > 0.1 && name == "five_bar" {
+            continue;
+        }
         let one = step_slopes(&BackwardEuler, system, start, &inputs, h);
         let other = step_slopes(&StiffEuler, system, start, &inputs, h);
+        // Some motions have no solution then.
+        if h > 0.1 && one.is_err() {
+            continue;
+        }
         let (other, slopes) = other.expect("a step");
         let (one, learnt) = one.expect("a step without derivatives");
         let numbers = |state: &State<Sys>, slopes: &Sys::Slopes| {
