@@ -2,8 +2,8 @@
 //!
 //! u = h w(x ⊕ u, ξ₁), ξ₁ = ξ + h f(x ⊕ u, ξ₁), x₁ = x ⊕ u, solved for z = (u, ξ₁) by Broyden's method:
 //! it starts as the fixed-point iteration, learns the stiff directions from its own steps, and needs no
-//! derivatives. In numbers with slopes it learns from the values, and from the slopes once the values rest. Where it does not
-//! converge, as of several very stiff directions, Newton's method follows, with derivatives by differences
+//! derivatives. In numbers with slopes it learns from the values, and from the slopes once the values rest. Where that
+//! shows a system to be stiff, or does not converge, Newton's method follows, with derivatives by differences
 //! ([`implicit`](crate::methods::implicit)). Source: C. T. Kelley, *Iterative Methods for Linear and Nonlinear Equations*
 //! (1995), 7.3.
 

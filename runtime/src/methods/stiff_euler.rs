@@ -23,14 +23,14 @@ use crate::system::System;
 /// converge where many loops of a controller are stiff. [`BackwardEuler`](crate::methods::BackwardEuler), which takes
 /// differences of everything, knows those, too; or a stiff spring or damper becomes a load of the system.
 ///
+/// Equations of a long step may have several solutions. Springs of 10⁶ N/m that begin half a metre from rest can turn a
+/// mechanism by many radians in one step, to a solution that no shorter step leads to.
+///
 /// # Errors
 /// [`StepError::NotConverged`] where no solution is found on the way from h = 0: there is none, or the step is so long
 /// that the rates of the coordinates themselves turn by more than about 1 rad in it, in coordinates whose rates depend on
 /// where they are (Euler's angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ), or that a mechanism
 /// goes far along what very stiff springs between its parts, or loops, leave free. Shorter steps help.
-///
-/// Equations of a long step may have several solutions. Springs of 10⁶ N/m that begin half a metre from rest can turn a
-/// mechanism by many radians in one step, to a solution that no shorter step leads to.
 /// [`StepError::Singular`] and [`StepError::NonFinite`] where ξ̇ has no value at the start, or wherever the iteration turns.
 ///
 /// ```

@@ -85,7 +85,7 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
         let mut progress = Progress::new(system, state);
         let mut steps: [Sys::Velocities; MEMORY] = from_fn(|_| system.zero_velocities());
         let (mut known, mut part) = (0, 1.0);
-        // The slopes of g, where its values are known; none where they are no good any more.
+        // Those of ∂g/∂ξ₁; none where they have to be made anew.
         let mut factors = None;
         // Whether they are those of this point.
         let mut fresh = true;
@@ -93,7 +93,7 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
         let mut step = system.zero_velocities();
         for _ in 0..=MOST {
             let solved = match factors {
-                Some(known) => known,
+                Some(kept) => kept,
                 None => {
                     let (here, new) = derivative.linear(self, &mut z, iterations)?;
                     if !is_finite(here.defect.as_ref()) {
