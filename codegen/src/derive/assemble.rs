@@ -151,7 +151,7 @@ impl Builder<'_> {
         let slope: Vec<Edge> = self.parts.conservative.iter().map(|&edge| -edge).collect();
         let applied = self.parts.applied.clone();
         let momentum = self.parts.momentum_of(graph, self.model);
-        let inverse = self.parts.whole(graph, self.model);
+        let inverse = self.parts.inverse_dynamics_of(graph, self.model);
         let [kinetic, energy] = self.energies(&momentum, reference, potential);
         let potential = rebuild(reference, &mut self.graph, &[potential])[0];
         self.push(FunctionId::InverseDynamics, inverse);

@@ -67,11 +67,11 @@ pub fn complement(model: &mut Model, y: &[Vec<Edge>]) -> Option<Complement> {
         own = multiply(graph, &k, &solution.x);
     }
     let forms = transpose(&closed);
-    let seen = multiply(graph, y, &forms);
-    let felt = multiply(graph, &user, &forms);
+    let of_velocities = multiply(graph, y, &forms);
+    let of_user = multiply(graph, &user, &forms);
     let (along, across) = (
-        multiply(graph, &model.a, &seen),
-        multiply(graph, &own, &felt),
+        multiply(graph, &model.a, &of_velocities),
+        multiply(graph, &own, &of_user),
     );
     let (mut psi, mut beyond) = (Vec::new(), Vec::new());
     for alpha in 0..nu {

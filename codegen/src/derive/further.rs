@@ -46,7 +46,7 @@ impl Builder<'_> {
             candidates.offer_own(graph, rate);
             recursive = true;
         }
-        // Of longer trees nothing else comes near.
+        // For longer trees the recursion is certainly cheapest.
         if !recursive || n <= momentum::MOST_WRITTEN_OUT {
             let contexts = [
                 (&self.shared.graph, &self.shared.parts),

@@ -167,7 +167,7 @@ fn nearby(model: &Model) -> Option<Vec<f64>> {
 
 /// M + w BᵀB and w Bᵀ b, which may be added to M ξ̇ = f + Bᵀ λ where B ξ̇ = b: neither ξ̇ nor λ changes, and what has
 /// inertia through constraints alone gets pivots. w = tr M / tr BᵀB makes the sizes of both alike.
-pub fn carried(
+pub fn augmented(
     graph: &mut Graph,
     mass: &[Vec<Edge>],
     rows: &[Vec<Edge>],
@@ -202,10 +202,10 @@ pub fn positive_definite(
 ) -> Result<(), Diagnostic> {
     let n = model.n();
     let (mut graph, mut mass) = (graph.clone(), mass.to_vec());
-    if model.carried {
+    if model.augmented {
         let rows = hybrid::rows(model);
         let right = vec![graph.zero(); rows.len()];
-        if let Some((sum, _)) = carried(&mut graph, &mass, &rows, &right) {
+        if let Some((sum, _)) = augmented(&mut graph, &mass, &rows, &right) {
             mass = sum;
         }
     }

@@ -207,7 +207,7 @@ pub fn slopes(
 pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear {
     let upper = upper(model, motion);
     let recursions = recursions(&Setting::given(model), care);
-    // Beyond a few links nothing comes near the recursion.
+    // Beyond a few links the recursion is certainly cheapest.
     let long = recursions.first().is_some_and(Recursion::is_long);
     let plain = motion.nearby.n() == model.n() && motion.implicit.is_some();
     let traced = recursions.iter().filter(|_| plain);
@@ -301,7 +301,7 @@ fn columns(model: &Model, graph: &mut Graph, nearby: &Displacements) -> Vec<Deri
 fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
     let mut graph = motion.graph.clone();
     let mut columns = columns(model, &mut graph, &motion.nearby);
-    let mut rows = carried(upper, &mut graph);
+    let mut rows = rebuilt(upper, &mut graph);
     rows.extend(motion.xi_dot.iter().map(|&rate| {
         let entries = columns.iter_mut().map(|column| column.of(&mut graph, rate));
         entries.collect::<Vec<Edge>>()
@@ -330,7 +330,7 @@ fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<L
         })
         .collect();
     let solved = solve_symmetric(&mut graph, mass, &changes)?;
-    let mut rows = carried(upper, &mut graph);
+    let mut rows = rebuilt(upper, &mut graph);
     rows.extend(solved);
     Some(Linear::of(motion, graph, rows))
 }
@@ -343,7 +343,7 @@ fn recursive(recursion: &Recursion, upper: &Linear) -> Option<Linear> {
         pivots,
         rows: below,
     } = recursion.rates_and_slopes()?;
-    let mut rows = carried(upper, &mut graph);
+    let mut rows = rebuilt(upper, &mut graph);
     rows.extend(below);
     let guards = pivots.into_iter().enumerate();
     let guards = guards.filter(|(_, pivot)| !graph.is_free(pivot.node()));
@@ -387,7 +387,7 @@ fn expanded(model: &Model, explicit: &Linear, motion: &ForwardDynamics) -> Optio
 }
 
 /// The rows of ḣ in another graph.
-fn carried(upper: &Linear, graph: &mut Graph) -> Vec<Vec<Edge>> {
+fn rebuilt(upper: &Linear, graph: &mut Graph) -> Vec<Vec<Edge>> {
     let rows = upper.rows.iter();
     rows.map(|row| rebuild(&upper.graph, graph, row)).collect()
 }

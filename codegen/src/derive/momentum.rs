@@ -27,7 +27,7 @@ pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
     let n = own.n();
     let xi = own.xi.clone();
     // Ṁ ξ.
-    let swing: Vec<Edge> = mass
+    let mass_rate: Vec<Edge> = mass
         .iter()
         .map(|row| {
             let rates: Vec<Edge> = row
@@ -37,10 +37,10 @@ pub fn rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
             own.graph.dot(&rates, &xi)
         })
         .collect();
-    let swing = rebuild(&own.graph, graph, &swing);
+    let mass_rate = rebuild(&own.graph, graph, &mass_rate);
     let mut candidates = vec![
         (0..n)
-            .map(|i| graph.add(swing[i], parts.inertia[i]))
+            .map(|i| graph.add(mass_rate[i], parts.inertia[i]))
             .collect::<Vec<_>>(),
     ];
     if let Some(rows) = kinematics::left_inverse(&mut own) {
@@ -85,9 +85,9 @@ fn traced_rate(model: &Model, graph: &mut Graph, parts: &Parts) -> Vec<Edge> {
     let rows = parts.mass.iter().enumerate();
     rows.map(|(i, row)| {
         let momentum = graph.dot(row, &model.xi);
-        let swing = motion.of(graph, momentum);
+        let mass_rate = motion.of(graph, momentum);
         let terms = [
-            swing,
+            mass_rate,
             parts.inertia[i],
             parts.conservative[i],
             parts.applied[i],

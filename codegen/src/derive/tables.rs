@@ -65,7 +65,7 @@ impl Geometry {
     /// The same symbols in a graph whose points do not satisfy φ, so that nothing is simplified
     /// modulo φ: what a proof by normal forms starts from.
     pub fn unreduced(model: &Model) -> Option<Self> {
-        let mut free = model.carried(model.points.free.clone(), rebuild);
+        let mut free = model.transplanted(model.points.free.clone(), rebuild);
         let mut calculus = Calculus::new(&free);
         let mut merged = model.clone();
         let y = kinematics::left_inverse(&mut merged)?;

@@ -268,7 +268,7 @@ fn read_at(
         whole: None,
         spans: true,
         overconstrained: false,
-        carried: false,
+        augmented: false,
         starts_anywhere: system.starts_anywhere,
         kinetic_terms: None,
         completion: kinematics.completion,

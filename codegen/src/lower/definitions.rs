@@ -118,7 +118,7 @@ fn define(
     for mut affine in Affine::of_each(graph, &entries, x_dot) {
         // ξ = Y ẋ + y(x, t): the term without a rate goes with ṫ.
         if let (Some(clock), Some((_, given))) =
-            (declared.clock, time::carried(graph, declared, &affine))
+            (declared.clock, time::with_time(graph, declared, &affine))
         {
             affine.slopes[clock.x] = graph.add(affine.slopes[clock.x], given);
             affine.rest = graph.zero();

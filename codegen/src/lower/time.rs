@@ -107,7 +107,7 @@ pub fn clock(system: &System, declared: &Declared) -> Option<Clock> {
 
 /// What a function that is linear in ξ has without a velocity, which then goes with ξ⁰, by the place of ξ⁰. `None`
 /// where there is no time, or the rest depends on more than coordinates and parameters.
-pub fn carried(graph: &Graph, declared: &Declared, affine: &Affine) -> Option<(usize, Edge)> {
+pub fn with_time(graph: &Graph, declared: &Declared, affine: &Affine) -> Option<(usize, Edge)> {
     let clock = declared.clock?;
     let (_, found) = affine.classes(graph);
     (found & !(class::PARAM | class::CONFIGURATION) == 0).then_some((clock.xi, affine.rest))
@@ -120,7 +120,7 @@ pub fn linear(graph: &mut Graph, declared: &Declared, rate: Edge) -> Edge {
         return rate;
     }
     let affine = Affine::of(graph, rate, &declared.xi);
-    match carried(graph, declared, &affine) {
+    match with_time(graph, declared, &affine) {
         Some((xi, rest)) => {
             let moved = graph.mul(rest, declared.xi[xi]);
             graph.add(affine.linear, moved)

@@ -77,7 +77,7 @@ pub fn all_tangents(
     columns
 }
 
-/// ∂φ/∂x, a row for every row of φ: taken with free coordinates, then carried to a graph on X.
+/// ∂φ/∂x, a row for every row of φ: taken with free coordinates, then rebuilt in a graph on X.
 pub fn jacobian(
     points: &Points,
     phi: &[(Edge, String)],

@@ -18,12 +18,12 @@ pub trait Edges {
 }
 
 impl Model {
-    /// The model with its expressions in another graph; `carry` builds them there. φ and the points of X stay
+    /// The model with its expressions in another graph; `build` makes them there. φ and the points of X stay
     /// where they are, in a graph of their own.
-    pub fn carried(
+    pub fn transplanted(
         &self,
         mut graph: Graph,
-        carry: impl FnOnce(&Graph, &mut Graph, &[Edge]) -> Vec<Edge>,
+        build: impl FnOnce(&Graph, &mut Graph, &[Edge]) -> Vec<Edge>,
     ) -> Model {
         let mut model = Model {
             graph: Graph::new(0, 0),
@@ -31,7 +31,7 @@ impl Model {
         };
         let mut edges = Vec::new();
         model.for_each_edge(&mut |edge| edges.push(*edge));
-        let mut images = carry(&self.graph, &mut graph, &edges).into_iter();
+        let mut images = build(&self.graph, &mut graph, &edges).into_iter();
         model.for_each_edge(&mut |edge| *edge = images.next().unwrap_or(*edge));
         model.graph = graph;
         model
@@ -139,7 +139,7 @@ fields!(Model {
     x, xi, xi_dot, u, momenta, rate, a, frames, closures, bodies, particles, wrenches, elements, dissipation, observed,
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
     completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, whole;
-    name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, carried, starts_anywhere, clock,
+    name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, augmented, starts_anywhere, clock,
     joints, start_x, start_xi, start_z, opening, asked, span, origins, warnings, independent, externals
 });
 

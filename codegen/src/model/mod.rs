@@ -234,8 +234,9 @@ pub struct Model {
     pub spans: bool,
     /// Whether constraints that are kept depend on one another along the whole motion.
     pub overconstrained: bool,
-    /// Whether M is singular at the start and constraints are kept: some velocities have inertia through these alone.
-    pub carried: bool,
+    /// Whether M is singular at the start and constraints are kept, so that M + w BᵀB takes its place: some velocities have
+    /// inertia through constraints alone.
+    pub augmented: bool,
     /// Whether nobody has chosen the start, so that M may be singular there if it is not so nearby.
     pub starts_anywhere: bool,
     /// The user's kinetic energy where A does not span the tangent space.

@@ -215,7 +215,7 @@ fn compare(
     }
     // d/dt (M ξ) = Ṁ ξ + f − h − ∂V.
     if let Some(rate) = emitted.get("momentum_rate")
-        && sum(&[rate, &resistance]) != sum(&[&values.swing, &values.force])
+        && sum(&[rate, &resistance]) != sum(&[&values.mass_rate, &values.force])
     {
         return Some(Err("ṗ".into()));
     }

@@ -104,7 +104,7 @@ fn agree_placed(mut model: Model, placement: Placement, steady: bool) {
     let zero = model.graph.zero();
     let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
     let id = inverse(&mut model.graph, &tree, &xi, &xi_dot, gravity);
-    let expected = parts.whole(&mut plain.graph, &model);
+    let expected = parts.inverse_dynamics_of(&mut plain.graph, &model);
     for i in 0..n {
         assert_eq!(
             plain.graph.value(expected[i]),

@@ -2,7 +2,7 @@
 //!
 //! A branch is a chain of velocities without a fork. Its velocities answer a movement w of those before it by −G w, where
 //! G = M_bb⁻¹ M_ba once what hangs on the branch is eliminated; so a force elsewhere costs one product with G, and one on the
-//! branch is felt before it as −Gᵀ b. After Featherstone (2008), section 6.5.
+//! branch acts on what is before it as −Gᵀ b. After Featherstone (2008), section 6.5.
 //!
 //! Where a joint has a twin s among the velocities before it, M s = M e on the branch, so G s = e: one column of G is known by
 //! the others.
@@ -177,9 +177,9 @@ impl Branch {
         let terms: Vec<Edge> = column
             .map(|(&k, row)| graph.mul(row[place], b[k]))
             .collect();
-        let felt = graph.sum(&terms);
+        let transmitted = graph.sum(&terms);
         let i = self.before[place];
-        b[i] = graph.sub(b[i], felt);
+        b[i] = graph.sub(b[i], transmitted);
     }
 
     /// The same where a column is known: there b becomes `rest` − Σ sᵢ bᵢ, and `rest` is returned.

@@ -57,7 +57,7 @@ pub fn cheapest(
         }
     }
     let rows = |entries: Vec<Edge>| matrix(&entries, model.n());
-    let [mass, inertia, conservative, mut momentum, mut whole] = all;
+    let [mass, inertia, conservative, mut momentum, mut inverse] = all;
     let mut graph = model.graph.clone();
     let composed = Parts {
         mass: rows(mass.cheapest(&mut graph)),
@@ -66,11 +66,11 @@ pub fn cheapest(
         ..Parts::default()
     };
     let products = composed.momentum_of(&mut graph, model);
-    let sums = composed.whole(&mut graph, model);
+    let sums = composed.inverse_dynamics_of(&mut graph, model);
     if !model.is_affine() {
         momentum.offer(&graph, products);
     }
-    whole.offer(&graph, sums);
+    inverse.offer(&graph, sums);
     let mut around = chosen.clone();
     let into = &mut around;
     let first = computations.first()?;
@@ -79,7 +79,7 @@ pub fn cheapest(
         inertia: inertia.cheapest(into),
         conservative: conservative.cheapest(into),
         momentum: Some(momentum.cheapest(into)),
-        inverse_dynamics: Some(whole.cheapest(into)),
+        inverse_dynamics: Some(inverse.cheapest(into)),
         ..first.parts.grafted(&first.graph, into)
     };
     Some(Computation {
@@ -94,6 +94,6 @@ fn functions(parts: &Parts, graph: &mut Graph, model: &Model) -> Functions {
         parts.inertia.clone(),
         parts.conservative.clone(),
         parts.momentum_of(graph, model),
-        parts.whole(graph, model),
+        parts.inverse_dynamics_of(graph, model),
     ]
 }

@@ -40,7 +40,7 @@ pub fn free(mut traced: Model, parts: &Parts) -> (Model, Parts) {
 }
 
 /// ξ̇ of all velocities from that of those that are free.
-pub fn whole(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
+pub fn all_rates(model: &Model, free: Vec<Edge>) -> Vec<Edge> {
     if model.accelerated.is_empty() {
         return free;
     }

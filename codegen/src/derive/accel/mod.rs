@@ -102,7 +102,7 @@ pub fn recursions(given: &Setting, care: &Care) -> Vec<Recursion> {
         .collect()
 }
 
-/// Whether nothing comes near the recursions.
+/// Whether the tree is so long that the recursions are certainly cheapest.
 fn is_long(given: &Setting, recursions: &[Recursion]) -> bool {
     let Some(recursion) = recursions.first() else {
         return false;
@@ -131,10 +131,10 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
         let mut right = saddle::right_side(&mut traced, &mut setting.calculus.clone());
         right.extend(traced.accelerated.iter().map(|(_, rate)| *rate));
         let mut solved = parts.clone();
-        if traced.carried {
-            let carried = inertia::carried(&mut traced.graph, &parts.mass, &rows, &right)?;
-            solved.mass = carried.0;
-            solved.groups.push(carried.1);
+        if traced.augmented {
+            let augmented = inertia::augmented(&mut traced.graph, &parts.mass, &rows, &right)?;
+            solved.mass = augmented.0;
+            solved.groups.push(augmented.1);
         }
         let orders = [
             (0..n).collect(),
@@ -272,7 +272,7 @@ fn attempt(
 ) -> Option<Acceleration> {
     let mut graph = traced.graph.clone();
     let solution = solve(&mut graph, parts, plan)?;
-    let xi_dot = hybrid::whole(&setting.model, solution.xi_dot);
+    let xi_dot = hybrid::all_rates(&setting.model, solution.xi_dot);
     let xi_dot = setting.leave(&mut graph, xi_dot);
     let pivots = hybrid::pivots(&setting.model, solution.pivots);
     let mut roots = xi_dot.clone();

@@ -34,15 +34,15 @@ impl Parts {
 
     /// The same in another graph, as they are computed here.
     pub fn grafted(&self, from: &Graph, into: &mut Graph) -> Parts {
-        self.carried(|edges| graft(from, into, edges))
+        self.mapped(|edges| graft(from, into, edges))
     }
 
     /// The same in another graph, sharing what is computed there.
     pub fn shared(&self, from: &Graph, into: &mut Graph) -> Parts {
-        self.carried(|edges| rebuild(from, into, edges))
+        self.mapped(|edges| rebuild(from, into, edges))
     }
 
-    fn carried(&self, mut vector: impl FnMut(&[Edge]) -> Vec<Edge>) -> Parts {
+    fn mapped(&self, mut vector: impl FnMut(&[Edge]) -> Vec<Edge>) -> Parts {
         Parts {
             mass: self.mass.iter().map(|row| vector(row)).collect(),
             groups: self.groups.iter().map(|group| vector(group)).collect(),
@@ -111,9 +111,9 @@ impl Parts {
     }
 
     /// M ξ̇ + Γ ξ ξ + ∂V.
-    pub fn whole(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
-        if let Some(whole) = &self.inverse_dynamics {
-            return whole.clone();
+    pub fn inverse_dynamics_of(&self, graph: &mut Graph, model: &Model) -> Vec<Edge> {
+        if let Some(traced) = &self.inverse_dynamics {
+            return traced.clone();
         }
         (0..self.inertia.len())
             .map(|i| {

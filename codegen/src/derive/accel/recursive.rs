@@ -13,7 +13,7 @@ use crate::algebra::transplant::map_symbols;
 use crate::derive::calculus::Calculus;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
-use crate::derive::tree::momentum::{columns, swing, total};
+use crate::derive::tree::momentum::{columns, quadratic_rate, total};
 use crate::derive::tree::nearby::{Slopes, slopes};
 use crate::derive::tree::uniform::Uniform;
 use crate::derive::tree::{Placement, Tree, articulated, composite};
@@ -85,7 +85,7 @@ impl Recursion {
         })
     }
 
-    /// Whether nothing else comes near the recursion.
+    /// Whether the tree is so long that the recursion is certainly cheapest.
     pub fn is_long(&self) -> bool {
         self.tree.links.len() > SHORT
     }
@@ -106,12 +106,12 @@ impl Recursion {
     }
 
     /// ξ̇ where the velocities of the state do not accelerate.
-    fn rest(&self) -> Vec<Edge> {
-        let mut rest = vec![self.model.graph.zero(); self.model.n()];
+    fn given_rates(&self) -> Vec<Edge> {
+        let mut rates = vec![self.model.graph.zero(); self.model.n()];
         for i in self.places().1 {
-            rest[i] = self.model.xi_dot[i];
+            rates[i] = self.model.xi_dot[i];
         }
-        rest
+        rates
     }
 
     /// ξ̇ of the state from that of the velocities whose rates are not given, by places in the full frame.
@@ -139,9 +139,9 @@ impl Recursion {
     pub(super) fn search(&self, best: &mut Best) {
         let n = self.model.n();
         let (active, mut given) = self.places();
-        let mut rest = self.rest();
+        let mut rates = self.given_rates();
         for &(place, rate) in &self.model.accelerated {
-            rest[place] = rate;
+            rates[place] = rate;
             given.push(place);
         }
         let solved: Vec<usize> = active
@@ -154,7 +154,7 @@ impl Recursion {
             let mut graph = self.model.graph.clone();
             self.tree.know_polars(&mut graph);
             let load = self.load(&mut graph);
-            let forces = wrenches(&mut graph, &self.tree, xi, &rest, gravity);
+            let forces = wrenches(&mut graph, &self.tree, xi, &rates, gravity);
             let solution = articulated::forward(&mut graph, &self.tree, &given, &forces, &load);
             if let Some(Solution { xi_dot, pivots }) = solution {
                 let route = "links traced, articulated bodies".to_string();
@@ -168,7 +168,7 @@ impl Recursion {
         let mut graph = self.model.graph.clone();
         self.tree.know_polars(&mut graph);
         let load = self.load(&mut graph);
-        let bias = inverse(&mut graph, &self.tree, xi, &rest, gravity);
+        let bias = inverse(&mut graph, &self.tree, xi, &rates, gravity);
         let mass = composite::mass_matrix(&mut graph, &self.tree, n);
         let right = solved.iter().map(|&i| graph.sub(load[i], bias[i]));
         let right = right.collect();
@@ -215,11 +215,11 @@ impl Recursion {
         let (active, _) = self.places();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
         let (still, weightless) = (vec![graph.zero(); n], zero3(&graph));
-        let whole = inverse(&mut graph, &self.tree, xi, &self.model.xi_dot, gravity);
+        let force = inverse(&mut graph, &self.tree, xi, &self.model.xi_dot, gravity);
         let inverse_dynamics = (active.iter())
-            .map(|&i| graph.sub(whole[i], self.elastic[i]))
+            .map(|&i| graph.sub(force[i], self.elastic[i]))
             .collect();
-        let bias = inverse(&mut graph, &self.tree, xi, &self.rest(), weightless);
+        let bias = inverse(&mut graph, &self.tree, xi, &self.given_rates(), weightless);
         let weight = inverse(&mut graph, &self.tree, &still, &still, gravity);
         let momentum = inverse(&mut graph, &self.tree, &still, xi, weightless);
         let mass = composite::mass_matrix_alone(&mut graph, &self.tree, n);
@@ -272,9 +272,9 @@ impl Recursion {
     pub fn residuals(&self, velocities: &[usize]) -> (Graph, Vec<Edge>) {
         let mut graph = self.model.graph.clone();
         let (xi, xi_dot) = (&self.model.xi, &self.model.xi_dot);
-        let whole = inverse(&mut graph, &self.tree, xi, xi_dot, self.model.gravity);
+        let force = inverse(&mut graph, &self.tree, xi, xi_dot, self.model.gravity);
         let load = self.load(&mut graph);
-        let rows = velocities.iter().map(|&i| graph.sub(whole[i], load[i]));
+        let rows = velocities.iter().map(|&i| graph.sub(force[i], load[i]));
         let rows = rows.collect();
         let (graph, [rows]) = self.leave(graph, [rows]);
         (graph, rows)
@@ -287,11 +287,11 @@ impl Recursion {
         }
         let mut graph = self.model.graph.clone();
         let still = vec![graph.zero(); self.model.n()];
-        let swing = swing(&mut graph, &self.tree, &self.model.xi)?;
+        let quadratic = quadratic_rate(&mut graph, &self.tree, &self.model.xi)?;
         let weight = inverse(&mut graph, &self.tree, &still, &still, self.model.gravity);
         let load = self.load(&mut graph);
         let rate = (0..self.model.n()).map(|i| {
-            let terms = [swing[i], load[i], -weight[i]];
+            let terms = [quadratic[i], load[i], -weight[i]];
             graph.sum(&terms)
         });
         let rate = rate.collect();
@@ -373,7 +373,7 @@ impl Recursion {
             Some(uniform) => (&uniform.xi, zero3(&graph)),
             None => (&model.xi, model.gravity),
         };
-        let bias = inverse(&mut graph, tree, proper, &self.rest(), gravity);
+        let bias = inverse(&mut graph, tree, proper, &self.given_rates(), gravity);
         let mass = composite::by_second_moments(&mut graph, tree, n);
         let twins = tree.twins(&mut graph);
         let branches = Branches::of(&mut graph, &mass, &twins)?;

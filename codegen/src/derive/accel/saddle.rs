@@ -315,7 +315,7 @@ pub fn solve_at(
     }
     let m = right.len();
     let raising = raising(&model.constraints, given.len());
-    if model.carried {
+    if model.augmented {
         let trace = (0..n).fold(Fp::ZERO, |sum, i| sum + mass[i * n + i]);
         let squares = rows.iter().fold(Fp::ZERO, |sum, &b| sum + b * b);
         let weight = trace * squares.inv()?;

@@ -163,7 +163,7 @@ fn known(model: &Model, index: usize, runs: &Runs, order: Order) -> Model {
             }
         }
     }
-    model.carried(known, rebuild)
+    model.transplanted(known, rebuild)
 }
 
 /// Axes by columns, origin.

@@ -53,9 +53,9 @@ pub fn side(geometry: &mut Geometry, block: &[usize]) -> Option<Side> {
             if !fixed {
                 let local = apply_transposed(graph, &rotation, moved);
                 let lever = cross(graph, position, turned);
-                let carried = add3(graph, moved, lever);
+                let velocity = add3(graph, moved, lever);
                 left &= are_constant(graph, calculus, &local);
-                right &= are_constant(graph, calculus, &carried);
+                right &= are_constant(graph, calculus, &velocity);
             }
         }
         match (left, right) {

@@ -109,7 +109,7 @@ impl Carrier {
         };
         model.graph = full.graph.clone();
         let images = &self.images;
-        let mut model = model.carried(self.graph.clone(), |from, into, edges| {
+        let mut model = model.transplanted(self.graph.clone(), |from, into, edges| {
             map_symbols(from, into, edges, images)
         });
         // Prescribed coordinates stay in x, though nothing depends on them.

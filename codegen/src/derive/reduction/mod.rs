@@ -130,7 +130,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     let images = carrier.images.clone();
     let mut model = carrier.model(&rows, &kept, &pivots);
     model.overconstrained = kept.len() > rank;
-    model.carried = !kept.is_empty() && inertia::is_singular(&model);
+    model.augmented = !kept.is_empty() && inertia::is_singular(&model);
     model.whole = given.then(|| Whole {
         full: Arc::new(before),
         images: images.clone(),

@@ -1,7 +1,7 @@
 //! Relations between the parameters of a link and those of the link before, with exact coefficients.
 //!
-//! Which inertia δ of a link its joint cannot feel is found at random states; its coefficients depend on the axis of the
-//! joint in the link's frame. To the link before it is the same inertia at rest there: δ carried over in any
+//! Which inertia δ of a link has no effect on the force of its joint is found at random states; its coefficients depend on the axis of the
+//! joint in the link's frame. To the link before it is the same inertia at rest there: δ transferred in any
 //! configuration of the joint, here that in which all coordinates are zero or the identity. So lengths and mount
 //! angles come in as the description has them.
 
@@ -163,10 +163,10 @@ fn among(
             for (&index, exact) in group.iter().zip(exact.chunks(10)) {
                 let pose = pose_at_zero(model, links[index].frame, links[anchor].frame);
                 let graph = &mut model.graph;
-                let carried = moments(graph, exact)
+                let moved = moments(graph, exact)
                     .turned(graph, &Turn::By(pose.0))
                     .shifted(graph, pose.1);
-                for (sum, entry) in all.iter_mut().zip(ten(graph, &carried)) {
+                for (sum, entry) in all.iter_mut().zip(ten(graph, &moved)) {
                     *sum = graph.sub(*sum, entry);
                 }
             }

@@ -4,22 +4,31 @@
 
 use super::parameters::{ENTRIES, Link};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{Vec3, add3, apply_transposed, apply3, cross, identity3, zero3};
-use crate::derive::tree::Tree;
-use crate::derive::tree::inverse::{LinkMotion, Wrench, carried, motions};
+use crate::algebra::linear::{
+    Vec3, add3, apply_transposed, apply3, cross, identity3, scale3, sub3, zero3,
+};
+use crate::algebra::transplant::rebuild;
+use crate::derive::tree::inverse::{LinkMotion, Wrench, motions, to_parent};
+use crate::derive::tree::{Link as TreeLink, Tree};
 use crate::model::Model;
 use crate::program::count::count;
 
-/// How the force of a wrench at the joints before is computed.
-#[derive(Clone, Copy, Debug)]
+/// How the generalised force Sᵀ f of a wrench f at the joints before is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Route {
-    /// The wrench is carried from link to link.
-    Carried,
-    /// The freedoms of all joints before are carried to the link, and see what has no force.
-    Seen,
-    /// They see everything.
-    AllSeen,
+    /// f is transformed from link to link.
+    Wrenches,
+    /// The same for wrenches with a force; for pure torques, which are those of Θ, columns S of all joints before are
+    /// transformed to the link.
+    Mixed,
+    /// Columns S are transformed for all wrenches.
+    Twists,
+    /// The same, as angular velocities alone where axes meet: there f acts by its torque about the point.
+    Meeting,
 }
+
+/// All of them.
+const ROUTES: [Route; 4] = [Route::Wrenches, Route::Mixed, Route::Twists, Route::Meeting];
 
 /// The columns of all links, ten of each.
 pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
@@ -28,46 +37,64 @@ pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>
     let all = links.iter().zip(&motions).enumerate();
     all.flat_map(|(index, (link, motion))| {
         let all: Vec<usize> = (0..10).collect();
-        of_link(graph, tree, index, (link, motion), &all, Route::Carried)
+        of_link(graph, tree, index, (link, motion), &all, Route::Wrenches)
     })
     .collect()
 }
 
-/// The same with those that are kept at the least cost: of each link by the cheapest route.
+/// The same, those that are kept at the least cost: by the cheapest routes of each link.
 pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) -> Vec<Vec<Edge>> {
     let motions = motions_of(model, tree);
+    let kept: Vec<Vec<usize>> = (0..links.len())
+        .map(|index| {
+            let own = (0..10).filter(|k| kept.contains(&(10 * index + k)));
+            own.collect()
+        })
+        .collect();
+    let costly: Vec<usize> = (0..links.len()).filter(|&i| !kept[i].is_empty()).collect();
+    let with = |graph: &Graph, index: usize, route: Route| {
+        let mut graph = graph.clone();
+        let link = (&links[index], &motions[index]);
+        let found = of_link(&mut graph, tree, index, link, &kept[index], route);
+        (graph, found.concat())
+    };
+    // Link by link, after those before it. Velocities of origins serve several links, which one after the other does not
+    // see; so both are tried, with points of meeting and without.
+    let found = [&ROUTES[..3], &ROUTES[..]].map(|allowed| {
+        let mut taken = vec![Route::Wrenches; links.len()];
+        let (mut least, mut graph, mut roots) = (0, model.graph.clone(), Vec::new());
+        for &index in &costly {
+            let tried = allowed.iter().map(|&route| {
+                let (graph, found) = with(&graph, index, route);
+                let roots = [&roots[..], &found].concat();
+                (count(&graph, &roots).weight(), route, graph, roots)
+            });
+            if let Some(best) = tried.min_by_key(|(cost, ..)| *cost) {
+                (least, taken[index], graph, roots) = best;
+            }
+        }
+        (least, taken)
+    });
+    let [(without, apart), (with_points, meeting)] = found;
+    let routes = if with_points < without {
+        meeting
+    } else {
+        apart
+    };
+    // Those that are kept come first: what is equal is computed as they need it.
     let graph = &mut model.graph;
     let mut columns: Vec<Option<Vec<Edge>>> = vec![None; 10 * links.len()];
-    let mut roots: Vec<Edge> = Vec::new();
-    for (index, link) in links.iter().zip(&motions).enumerate() {
-        let own: Vec<usize> = (0..10)
-            .filter(|k| kept.contains(&(10 * index + k)))
-            .collect();
-        let routes = [Route::Carried, Route::Seen, Route::AllSeen];
-        let tried = routes.map(|route| {
-            let mut graph = graph.clone();
-            let found = of_link(&mut graph, tree, index, link, &own, route);
-            let all = [&roots[..], &found.concat()].concat();
-            (count(&graph, &all).weight(), graph, found)
-        });
-        let best = tried.into_iter().min_by_key(|(cost, ..)| *cost);
-        if let Some((_, with, found)) = best {
-            *graph = with;
-            roots.extend(found.iter().flatten());
-            for (k, column) in own.iter().zip(found) {
+    for first in [true, false] {
+        for (index, link) in links.iter().zip(&motions).enumerate() {
+            let own = (0..10).filter(|k| kept[index].contains(k) == first);
+            let own: Vec<usize> = own.collect();
+            let found = of_link(graph, tree, index, link, &own, routes[index]);
+            for (k, column) in own.into_iter().zip(found) {
                 columns[10 * index + k] = Some(column);
             }
         }
     }
-    let all = columns.into_iter().enumerate();
-    all.map(|(k, column)| {
-        column.unwrap_or_else(|| {
-            let (index, own) = (k / 10, [k % 10]);
-            let link = (&links[index], &motions[index]);
-            of_link(graph, tree, index, link, &own, Route::Carried).concat()
-        })
-    })
-    .collect()
+    columns.into_iter().flatten().collect()
 }
 
 fn motions_of(model: &mut Model, tree: &Tree) -> Vec<LinkMotion> {
@@ -84,7 +111,6 @@ fn of_link(
     own: &[usize],
     route: Route,
 ) -> Vec<Vec<Edge>> {
-    let n = tree.armature.len();
     let [omega, alpha, a] =
         [motion.omega, motion.alpha, motion.a].map(|v| apply_transposed(graph, &link.axes, v));
     let wrenches = unit_wrenches(graph, omega, alpha, a);
@@ -96,43 +122,148 @@ fn of_link(
         })
         .collect();
     let zero = zero3(graph);
+    let path = Path::new(graph, tree, index);
     wrenches
         .into_iter()
         .map(|wrench| match route {
-            Route::AllSeen => seen(graph, tree, index, wrench, n),
-            Route::Seen if wrench.force == zero => seen(graph, tree, index, wrench, n),
-            Route::Seen | Route::Carried => felt(graph, tree, index, wrench, n),
+            Route::Wrenches => by_wrenches(graph, tree, index, wrench),
+            Route::Mixed if wrench.force != zero => by_wrenches(graph, tree, index, wrench),
+            Route::Mixed | Route::Twists => path.by_twists(graph, tree, wrench, false),
+            Route::Meeting => path.by_twists(graph, tree, wrench, true),
         })
         .collect()
 }
 
-/// The generalised force of a wrench on a link: the power at the freedoms of all joints before, carried to the link.
-fn seen(graph: &mut Graph, tree: &Tree, link: usize, wrench: Wrench, n: usize) -> Vec<Edge> {
-    let mut forces = vec![graph.zero(); n];
-    let mut path = vec![link];
-    while let Some(parent) = path.last().and_then(|&index| tree.links[index].parent) {
-        path.push(parent);
-    }
-    for (place, &before) in path.iter().enumerate() {
-        for freedom in &tree.links[before].freedoms {
-            let mut twist = freedom.clone();
-            for &after in path[..place].iter().rev() {
-                let link = &tree.links[after];
-                if wrench.force != zero3(graph) {
-                    let lever = cross(graph, twist.angular, link.position);
-                    let linear = add3(graph, twist.linear, lever);
-                    twist.linear = link.back(graph, linear);
-                }
-                twist.angular = link.back(graph, twist.angular);
+/// The links from the root to one of them.
+struct Path {
+    links: Vec<usize>,
+    /// For each of them the point in which the axes of its joint meet those of joints around it, if there is one: the
+    /// place of a link that it is fixed to, and the point in the axes of that link.
+    meeting: Vec<Option<(usize, Vec3)>>,
+}
+
+/// Where the axes of one joint or of several in turn meet, in the axes of the last one's link.
+#[derive(Clone, Copy)]
+enum Meeting {
+    /// Anywhere on this axis through the origin.
+    On(Vec3),
+    /// Here.
+    At(Vec3),
+}
+
+impl Path {
+    /// Nothing of how the points are found stays in the graph: equal expressions are computed as the first one says.
+    fn new(graph: &mut Graph, tree: &Tree, link: usize) -> Self {
+        let mut found = graph.clone();
+        let before = |&index: &usize| tree.links[index].parent;
+        let mut links: Vec<usize> = std::iter::successors(Some(link), before).collect();
+        links.reverse();
+        let mut meeting = vec![None; links.len()];
+        let mut first = 0;
+        let mut met: Option<Meeting> = None;
+        for place in 0..links.len() {
+            let link = &tree.links[links[place]];
+            let joined = met.and_then(|met| met.joined(&mut found, link));
+            if joined.is_none() {
+                first = place;
             }
-            let force = twist.felt(graph, &wrench);
-            for &(i, k) in &freedom.rate {
-                let share = graph.mul(k, force);
-                forces[i] = graph.add(forces[i], share);
+            met = joined.or_else(|| Meeting::alone(&found, link));
+            if let Some(Meeting::At(point)) = met {
+                let point = rebuild(&found, graph, &point);
+                meeting[first..=place].fill(Some((place, [point[0], point[1], point[2]])));
             }
         }
+        Path { links, meeting }
     }
-    forces
+
+    /// The generalised force of a wrench on the last link by the power of the twists of all joints before.
+    fn by_twists(&self, graph: &mut Graph, tree: &Tree, wrench: Wrench, meet: bool) -> Vec<Edge> {
+        let zero = zero3(graph);
+        let mut forces = vec![graph.zero(); tree.armature.len()];
+        for (place, &index) in self.links.iter().enumerate() {
+            let meeting = self.meeting[place].filter(|_| meet && wrench.force != zero);
+            let wrench = match meeting {
+                // About the point: torque − s × force.
+                Some((at, point)) => {
+                    let mut s = point;
+                    for &after in &self.links[at + 1..] {
+                        let link = &tree.links[after];
+                        let seen = sub3(graph, s, link.position);
+                        s = link.from_parent_axes(graph, seen);
+                    }
+                    let lever = cross(graph, s, wrench.force);
+                    Wrench {
+                        force: zero,
+                        torque: sub3(graph, wrench.torque, lever),
+                    }
+                }
+                None => wrench,
+            };
+            for freedom in &tree.links[index].freedoms {
+                let mut twist = freedom.clone();
+                for &after in &self.links[place + 1..] {
+                    let link = &tree.links[after];
+                    if wrench.force != zero {
+                        let lever = cross(graph, twist.angular, link.position);
+                        let linear = add3(graph, twist.linear, lever);
+                        twist.linear = link.from_parent_axes(graph, linear);
+                    }
+                    twist.angular = link.from_parent_axes(graph, twist.angular);
+                }
+                let force = twist.force_of(graph, &wrench);
+                for &(i, k) in &freedom.rate {
+                    let share = graph.mul(k, force);
+                    forces[i] = graph.add(forces[i], share);
+                }
+            }
+        }
+        forces
+    }
+}
+
+impl Meeting {
+    /// Of one joint: its axes have to go through the origin of its link.
+    fn alone(graph: &Graph, link: &TreeLink) -> Option<Self> {
+        let zero = zero3(graph);
+        if link.freedoms.iter().any(|freedom| freedom.linear != zero) {
+            return None;
+        }
+        match link.freedoms.as_slice() {
+            [] => None,
+            [freedom] => Some(Meeting::On(freedom.angular)),
+            _ => Some(Meeting::At(zero)),
+        }
+    }
+
+    /// With the axes of the joint that follows; `None` where they miss this point at some configuration.
+    fn joined(self, graph: &mut Graph, link: &TreeLink) -> Option<Self> {
+        let zero = zero3(graph);
+        let position = link.position;
+        let point = match (self, Meeting::alone(graph, link)?) {
+            (Meeting::At(point), Meeting::At(_)) => (point == position).then_some(position),
+            (Meeting::On(axis), Meeting::At(_)) => {
+                (cross(graph, axis, position) == zero).then_some(position)
+            }
+            (Meeting::At(point), Meeting::On(other)) => {
+                let axis = link.to_parent_axes(graph, other);
+                let from = sub3(graph, point, position);
+                (cross(graph, axis, from) == zero).then_some(point)
+            }
+            (Meeting::On(axis), Meeting::On(other)) => {
+                // λ axis = position + μ other, crossed with the other axis.
+                let other = link.to_parent_axes(graph, other);
+                let normal = cross(graph, axis, other);
+                let distance = cross(graph, position, other);
+                let (over, under) = (graph.dot(&distance, &normal), graph.dot(&normal, &normal));
+                let along = graph.div(over, under)?;
+                let point = scale3(graph, along, axis);
+                let from = sub3(graph, point, position);
+                (cross(graph, other, from) == zero).then_some(point)
+            }
+        }?;
+        let from = sub3(graph, point, position);
+        Some(Meeting::At(link.from_parent_axes(graph, from)))
+    }
 }
 
 /// What a unit of each of the ten parameters needs.
@@ -170,20 +301,20 @@ fn unit_wrenches(graph: &mut Graph, omega: Vec3, alpha: Vec3, a: Vec3) -> Vec<Wr
     wrenches
 }
 
-/// The generalised force of a wrench on a link, at all joints before it.
-fn felt(graph: &mut Graph, tree: &Tree, link: usize, wrench: Wrench, n: usize) -> Vec<Edge> {
-    let mut forces = vec![graph.zero(); n];
+/// The generalised force of a wrench on a link, transformed from link to link.
+fn by_wrenches(graph: &mut Graph, tree: &Tree, link: usize, wrench: Wrench) -> Vec<Edge> {
+    let mut forces = vec![graph.zero(); tree.armature.len()];
     let (mut at, mut wrench) = (Some(link), wrench);
     while let Some(index) = at {
         let link = &tree.links[index];
         for freedom in &link.freedoms {
-            let force = freedom.felt(graph, &wrench);
+            let force = freedom.force_of(graph, &wrench);
             for &(i, k) in &freedom.rate {
                 let share = graph.mul(k, force);
                 forces[i] = graph.add(forces[i], share);
             }
         }
-        wrench = carried(graph, link, &wrench);
+        wrench = to_parent(graph, link, &wrench);
         at = link.parent;
     }
     forces

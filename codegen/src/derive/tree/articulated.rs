@@ -1,10 +1,10 @@
 //! Forward dynamics by articulated bodies (Featherstone 1983): linear in the number of links.
 //!
-//! The inertia that a joint feels of all that hangs on it freely, [[J, H], [Hᵀ, M]], is reduced by
-//! the joint's own freedom and carried to the link before. Forces at ξ̇ = 0 come from the recursion of
+//! The articulated inertia of a link and all that moves freely beyond it, [[J, H], [Hᵀ, M]], is reduced by
+//! the joint's own freedom and transformed to the link before. Forces at ξ̇ = 0 come from the recursion of
 //! inverse dynamics, so that only accelerations due to ξ̇ are propagated here.
 
-use super::inverse::{Wrench, carried};
+use super::inverse::{Wrench, to_parent};
 use super::mass::Mass;
 use super::{Freedom, Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
@@ -26,8 +26,8 @@ struct Pivot {
     share: Wrench,
     /// 1 / pivot.
     inverse: Edge,
-    /// What is left of its force.
-    rest: Edge,
+    /// The joint's force less that of the bias wrench.
+    residual: Edge,
 }
 
 /// ξ̇ for forces that the joints have to bring up (load − bias at ξ̇ = 0 less the links' wrenches);
@@ -50,30 +50,30 @@ pub fn forward(
     let mut guards = vec![graph.one(); load.len()];
     for (index, link) in tree.links.iter().enumerate().rev() {
         for freedom in link.freedoms.iter().filter(|f| !f.is_given(given)) {
-            let whole = inertia[index].wrench(graph, freedom.angular, freedom.linear);
+            let response = inertia[index].wrench(graph, freedom.angular, freedom.linear);
             let &[(i, _)] = freedom.rate.as_slice() else {
                 return None;
             };
-            let own = freedom.felt(graph, &whole);
-            let pivot = graph.add(own, tree.armature[i]);
+            let apparent = freedom.force_of(graph, &response);
+            let pivot = graph.add(apparent, tree.armature[i]);
             let inverse = graph.div(graph.one(), pivot)?;
             guards[i] = pivot;
-            let felt = freedom.felt(graph, &bias[index]);
-            let rest = graph.sub(load[i], felt);
-            let share = whole.scaled(graph, inverse);
-            inertia[index].reduce(graph, &whole, &share);
-            let yielded = share.scaled(graph, rest);
+            let bias_force = freedom.force_of(graph, &bias[index]);
+            let residual = graph.sub(load[i], bias_force);
+            let share = response.scaled(graph, inverse);
+            inertia[index].reduce(graph, &response, &share);
+            let yielded = share.scaled(graph, residual);
             bias[index] = bias[index].plus(graph, &yielded);
             pivots[index].push(Pivot {
                 share,
                 inverse,
-                rest,
+                residual,
             });
         }
         if let Some(parent) = link.parent {
-            let moved = inertia[index].carried(graph, link);
+            let moved = inertia[index].to_parent(graph, link);
             inertia[parent].add(graph, &moved);
-            let moved = carried(graph, link, &bias[index]);
+            let moved = to_parent(graph, link, &bias[index]);
             bias[parent] = bias[parent].plus(graph, &moved);
         }
     }
@@ -82,19 +82,22 @@ pub fn forward(
     for (index, link) in tree.links.iter().enumerate() {
         let none = zero3(graph);
         let (alpha, a) = link.parent.map_or((none, none), |parent| motions[parent]);
-        let swing = cross(graph, alpha, link.position);
-        let a = add3(graph, a, swing);
-        let mut motion = (link.back(graph, alpha), link.back(graph, a));
+        let tangential = cross(graph, alpha, link.position);
+        let a = add3(graph, a, tangential);
+        let mut motion = (
+            link.from_parent_axes(graph, alpha),
+            link.from_parent_axes(graph, a),
+        );
         let freedoms = link.freedoms.iter().filter(|f| !f.is_given(given));
         let freedoms: Vec<&Freedom> = freedoms.collect();
         for (freedom, pivot) in freedoms.into_iter().zip(&pivots[index]).rev() {
-            let own = graph.mul(pivot.rest, pivot.inverse);
+            let alone = graph.mul(pivot.residual, pivot.inverse);
             let (t, f) = (
                 graph.dot(&pivot.share.torque, &motion.0),
                 graph.dot(&pivot.share.force, &motion.1),
             );
-            let carried = graph.add(t, f);
-            let rate = graph.sub(own, carried);
+            let from_parent = graph.add(t, f);
+            let rate = graph.sub(alone, from_parent);
             let (w, v) = (
                 scale3(graph, rate, freedom.angular),
                 scale3(graph, rate, freedom.linear),
@@ -137,18 +140,18 @@ impl Inertia {
     }
 
     /// Less the part that the freedom yields.
-    fn reduce(&mut self, graph: &mut Graph, whole: &Wrench, share: &Wrench) {
+    fn reduce(&mut self, graph: &mut Graph, response: &Wrench, share: &Wrench) {
         for i in 0..3 {
             for k in 0..3 {
                 if k <= i {
-                    let product = graph.mul(whole.torque[i], share.torque[k]);
+                    let product = graph.mul(response.torque[i], share.torque[k]);
                     self.j[i][k] = graph.sub(self.j[i][k], product);
                     self.j[k][i] = self.j[i][k];
-                    let product = graph.mul(whole.force[i], share.force[k]);
+                    let product = graph.mul(response.force[i], share.force[k]);
                     self.m[i][k] = graph.sub(self.m[i][k], product);
                     self.m[k][i] = self.m[i][k];
                 }
-                let product = graph.mul(whole.torque[i], share.force[k]);
+                let product = graph.mul(response.torque[i], share.force[k]);
                 self.h[i][k] = graph.sub(self.h[i][k], product);
             }
         }
@@ -156,7 +159,7 @@ impl Inertia {
 
     /// About the origin and in the axes of the link before: H' = H + p̂ M,
     /// J' = J + p̂ Hᵀ − H' p̂.
-    fn carried(&self, graph: &mut Graph, link: &Link) -> Self {
+    fn to_parent(&self, graph: &mut Graph, link: &Link) -> Self {
         let mut turned = *self;
         for turn in link.turns.iter().rev() {
             turned = Inertia {
@@ -190,9 +193,9 @@ impl Inertia {
         for i in 0..3 {
             self.h[i] = add3(graph, self.h[i], other.h[i]);
             for k in 0..=i {
-                for (own, other) in [(&mut self.j, &other.j), (&mut self.m, &other.m)] {
-                    own[i][k] = graph.add(own[i][k], other[i][k]);
-                    own[k][i] = own[i][k];
+                for (mine, other) in [(&mut self.j, &other.j), (&mut self.m, &other.m)] {
+                    mine[i][k] = graph.add(mine[i][k], other[i][k]);
+                    mine[k][i] = mine[i][k];
                 }
             }
         }

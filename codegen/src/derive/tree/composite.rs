@@ -1,8 +1,8 @@
 //! M by composite bodies: each freedom moves all that hangs on its joint as one body, whose wrench
-//! is felt by the joints before (Walker and Orin 1982).
+//! acts on the joints before (Walker and Orin 1982).
 
 use super::Tree;
-use super::inverse::{Wrench, carried};
+use super::inverse::{Wrench, to_parent};
 use super::mass::Mass;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::resubstitute::resubstitute;
@@ -116,7 +116,7 @@ fn by_composites(graph: &mut Graph, tree: &Tree, n: usize, way: Polar) -> Vec<Ve
                     &link.freedoms[..]
                 };
                 for (other_place, other) in others.iter().enumerate() {
-                    let entry = other.felt(graph, &wrench);
+                    let entry = other.force_of(graph, &wrench);
                     let itself = here == index && other_place == place;
                     for &(i, k) in &freedom.rate {
                         for &(j, l) in &other.rate {
@@ -130,7 +130,7 @@ fn by_composites(graph: &mut Graph, tree: &Tree, n: usize, way: Polar) -> Vec<Ve
                     }
                 }
                 if link.parent.is_some() {
-                    wrench = carried(graph, link, &wrench);
+                    wrench = to_parent(graph, link, &wrench);
                 }
                 at = link.parent;
             }

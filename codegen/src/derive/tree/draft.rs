@@ -91,9 +91,9 @@ impl Draft {
             turns,
             position: self.position,
             freedoms,
-            drift,
+            velocity_product: drift,
             mass: self.mass,
-            own: self.mass,
+            unshared: self.mass,
         }
     }
 }

@@ -45,8 +45,8 @@ pub(crate) struct LinkMotion {
     pub(crate) a: Vec3,
     /// α̂ + ω̂ ω̂.
     pub(crate) u: Mat3,
-    /// What the link would do if its joint were locked: ω, α, a.
-    pub(crate) carried: [Vec3; 3],
+    /// Its motion if its joint were locked, ω, α and a: that of the link before.
+    pub(crate) from_parent: [Vec3; 3],
     /// Its joint's own angular velocity and velocity.
     pub(crate) relative: (Vec3, Vec3),
 }
@@ -81,7 +81,7 @@ pub(crate) fn motions(
         alpha: zero,
         a: gravity.map(|entry| -entry),
         u: [zero; 3],
-        carried: [zero; 3],
+        from_parent: [zero; 3],
         relative: (zero, zero),
     };
     let mut motions: Vec<LinkMotion> = Vec::with_capacity(tree.links.len());
@@ -101,9 +101,13 @@ fn outward(
 ) -> LinkMotion {
     let zero = zero3(graph);
     let mut relative = (zero, zero);
-    // The drift is that of the model's ξ: at rest there is none.
+    // The velocity product is that of the model's ξ: at rest there is none.
     let rest = xi.iter().all(|&rate| rate == graph.zero());
-    let mut change = if rest { (zero, zero) } else { link.drift };
+    let mut change = if rest {
+        (zero, zero)
+    } else {
+        link.velocity_product
+    };
     for freedom in &link.freedoms {
         let rate = freedom.rate_of(graph, xi);
         let growth = freedom.rate_of(graph, xi_dot);
@@ -118,18 +122,18 @@ fn outward(
         );
         change = (add3(graph, change.0, w), add3(graph, change.1, v));
     }
-    let carried = link.back(graph, before.omega);
-    let omega = add3(graph, carried, relative.0);
-    let gyro = cross(graph, carried, relative.0);
-    let locked = link.back(graph, before.alpha);
-    let alpha = add3(graph, locked, gyro);
+    let omega_before = link.from_parent_axes(graph, before.omega);
+    let omega = add3(graph, omega_before, relative.0);
+    let gyro = cross(graph, omega_before, relative.0);
+    let alpha_before = link.from_parent_axes(graph, before.alpha);
+    let alpha = add3(graph, alpha_before, gyro);
     let alpha = add3(graph, alpha, change.0);
-    let swing = apply3(graph, &before.u, link.position);
-    let a = add3(graph, before.a, swing);
-    let mut a = link.back(graph, a);
-    let carried = [carried, locked, a];
+    let across = apply3(graph, &before.u, link.position);
+    let a = add3(graph, before.a, across);
+    let mut a = link.from_parent_axes(graph, a);
+    let from_parent = [omega_before, alpha_before, a];
     if relative.1 != zero {
-        let twice = add3(graph, carried[0], omega);
+        let twice = add3(graph, omega_before, omega);
         let coriolis = cross(graph, twice, relative.1);
         a = add3(graph, a, coriolis);
     }
@@ -139,7 +143,7 @@ fn outward(
         alpha,
         a,
         u: tensor(graph, omega, alpha),
-        carried,
+        from_parent,
         relative,
     }
 }
@@ -162,7 +166,7 @@ pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &LinkMotion) -> Wre
     let LinkMotion { a, u, .. } = motion;
     let s = &mass.second;
     let push = scale3(graph, mass.mass, *a);
-    let swing = apply3(graph, u, mass.first);
+    let across = apply3(graph, u, mass.first);
     let lever = cross(graph, mass.first, *a);
     let spin: Vec3 = std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -177,7 +181,7 @@ pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &LinkMotion) -> Wre
         graph.sum(&terms)
     });
     Wrench {
-        force: add3(graph, push, swing),
+        force: add3(graph, push, across),
         torque: add3(graph, spin, lever),
     }
 }
@@ -187,7 +191,7 @@ pub fn collect(graph: &mut Graph, tree: &Tree, wrenches: &[Wrench], n: usize) ->
     collect_with(graph, tree, wrenches, n, |_, _, total| *total)
 }
 
-/// The same of what becomes of the wrench on all that hangs on a joint, before the joint feels it.
+/// The same of what becomes of the wrench on all that hangs on a joint, before it acts on the joint.
 pub(super) fn collect_with(
     graph: &mut Graph,
     tree: &Tree,
@@ -199,26 +203,26 @@ pub(super) fn collect_with(
     let mut forces = vec![graph.zero(); n];
     for (index, link) in tree.links.iter().enumerate().rev() {
         let total = totals[index];
-        let felt = becomes(graph, index, &total);
+        let acting = becomes(graph, index, &total);
         for freedom in &link.freedoms {
-            let force = freedom.felt(graph, &felt);
+            let force = freedom.force_of(graph, &acting);
             for &(i, k) in &freedom.rate {
                 let share = graph.mul(k, force);
                 forces[i] = graph.add(forces[i], share);
             }
         }
         if let Some(parent) = link.parent {
-            let carried = carried(graph, link, &total);
-            totals[parent] = totals[parent].plus(graph, &carried);
+            let total = to_parent(graph, link, &total);
+            totals[parent] = totals[parent].plus(graph, &total);
         }
     }
     forces
 }
 
-/// A wrench on a link as one on the link before.
-pub fn carried(graph: &mut Graph, link: &Link, wrench: &Wrench) -> Wrench {
-    let force = link.out(graph, wrench.force);
-    let torque = link.out(graph, wrench.torque);
+/// A wrench on a link as one on the link before, about the origin and in the axes of that one.
+pub fn to_parent(graph: &mut Graph, link: &Link, wrench: &Wrench) -> Wrench {
+    let force = link.to_parent_axes(graph, wrench.force);
+    let torque = link.to_parent_axes(graph, wrench.torque);
     let lever = cross(graph, link.position, force);
     Wrench {
         force,
@@ -241,8 +245,8 @@ pub fn inverse(
         .iter()
         .zip(rotors)
         .map(|(&force, (&armature, &rate))| {
-            let own = graph.mul(armature, rate);
-            graph.add(force, own)
+            let rotor = graph.mul(armature, rate);
+            graph.add(force, rotor)
         })
         .collect()
 }

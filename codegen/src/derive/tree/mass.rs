@@ -83,13 +83,13 @@ impl Mass {
     pub fn turned(&self, graph: &mut Graph, turn: &Turn) -> Self {
         Mass {
             mass: self.mass,
-            first: turn.out(graph, self.first),
+            first: turn.rotate(graph, self.first),
             second: turn.symmetric(graph, &self.second),
         }
     }
 
     /// That of a link as one of the link before.
-    pub fn carried(&self, graph: &mut Graph, link: &Link) -> Self {
+    pub fn to_parent(&self, graph: &mut Graph, link: &Link) -> Self {
         let turns = link.turns.iter().rev();
         let turned = turns.fold(*self, |mass, turn| mass.turned(graph, turn));
         turned.shifted(graph, link.position)
@@ -111,10 +111,10 @@ impl Mass {
     /// m a + α × h and Θ α + h × a.
     pub fn wrench(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> (Vec3, Vec3) {
         let push = scale3(graph, self.mass, a);
-        let swing = cross(graph, alpha, self.first);
+        let tangential = cross(graph, alpha, self.first);
         let lever = cross(graph, self.first, a);
         let spin = self.spun(graph, alpha);
-        (add3(graph, push, swing), add3(graph, spin, lever))
+        (add3(graph, push, tangential), add3(graph, spin, lever))
     }
 
     /// Θ_zz = S_xx + S_yy.
@@ -142,10 +142,10 @@ impl Mass {
         std::array::from_fn(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let polar = graph.add(s[j][j], s[k][k]);
-            let own = graph.mul(polar, alpha[i]);
+            let axial = graph.mul(polar, alpha[i]);
             let (a, b) = (graph.mul(s[i][j], alpha[j]), graph.mul(s[i][k], alpha[k]));
             let other = graph.add(a, b);
-            graph.sub(own, other)
+            graph.sub(axial, other)
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Trees of links: inverse dynamics, M and forward dynamics by recursion.
 //!
 //! Links are what moves rigidly together; their frames are the generator's choice, whatever frames
-//! the description has. A link's inertia is kept as m, h, S, and what a joint cannot feel of it is
-//! moved to the link before. Sources: Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapters
+//! the description has. A link's inertia is kept as m, h, S, and the part of it on which the
+//! joint's motion has no effect is moved to the link before. Sources: Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapters
 //! 5-7; Khalil and Kleinfinger (1987) for customised recursions and base inertial parameters.
 
 pub mod articulated;
@@ -29,7 +29,7 @@ use inverse::Wrench;
 use mass::Mass;
 use turn::Turn;
 
-/// One freedom of a joint: the twist of a link against the one before, for one unit of its rate.
+/// One column of a joint's motion subspace S: the twist of a link relative to the one before, per unit of its rate.
 #[derive(Clone, Debug)]
 pub struct Freedom {
     /// Angular velocity, axes of the link.
@@ -52,11 +52,13 @@ impl Freedom {
         graph.sum(&terms)
     }
 
-    /// The force that the freedom feels of a wrench on its link: the power at a unit of its rate.
-    pub fn felt(&self, graph: &mut Graph, wrench: &Wrench) -> Edge {
-        let turn = graph.dot(&self.angular, &wrench.torque);
-        let push = graph.dot(&self.linear, &wrench.force);
-        graph.add(turn, push)
+    /// Sᵀ f, the generalised force of a wrench on the link: its power at a unit of the rate.
+    pub fn force_of(&self, graph: &mut Graph, wrench: &Wrench) -> Edge {
+        let (angular, linear) = (
+            graph.dot(&self.angular, &wrench.torque),
+            graph.dot(&self.linear, &wrench.force),
+        );
+        graph.add(angular, linear)
     }
 }
 
@@ -71,26 +73,28 @@ pub struct Link {
     pub position: Vec3,
     /// The freedoms of its joint.
     pub freedoms: Vec<Freedom>,
-    /// Rates of the freedoms' twists at constant rates: angular, linear.
-    pub drift: (Vec3, Vec3),
+    /// The velocity-product acceleration of the joint, Ṡ times its rates: angular, linear.
+    pub velocity_product: (Vec3, Vec3),
     /// Its inertia about its origin.
     pub mass: Mass,
-    /// The same in axes of its own, where it shares those of other links.
-    pub own: Mass,
+    /// The same in the axes that it would have alone, where it shares those of other links.
+    pub unshared: Mass,
 }
 
 impl Link {
-    /// A vector of this link in axes of the one before.
-    pub fn out(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    /// A vector in the axes of the link before.
+    pub fn to_parent_axes(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         self.turns
             .iter()
             .rev()
-            .fold(v, |v, turn| turn.out(graph, v))
+            .fold(v, |v, turn| turn.rotate(graph, v))
     }
 
-    /// A vector of the link before in axes of this one.
-    pub fn back(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
-        self.turns.iter().fold(v, |v, turn| turn.back(graph, v))
+    /// A vector of the link before in the axes of this one.
+    pub fn from_parent_axes(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        self.turns
+            .iter()
+            .fold(v, |v, turn| turn.rotate_back(graph, v))
     }
 }
 
@@ -159,7 +163,7 @@ impl Tree {
     /// without them is not computed from turned entries.
     pub fn know_polars(&self, graph: &mut Graph) {
         for link in &self.links {
-            link.own.polar(graph);
+            link.unshared.polar(graph);
         }
     }
 

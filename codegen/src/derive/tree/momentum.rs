@@ -7,7 +7,7 @@
 //! (torque k × ω + l × v, force l × ω).
 
 use super::Tree;
-use super::inverse::{LinkMotion, Wrench, carried, collect_with, motions, wrench};
+use super::inverse::{LinkMotion, Wrench, collect_with, motions, to_parent, wrench};
 use super::mass::Mass;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, cross, zero3};
@@ -31,7 +31,7 @@ pub fn total(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> (Vec3, Vec3) {
         torque: none,
     };
     for (index, link) in tree.links.iter().enumerate().rev() {
-        let moved = carried(graph, link, &momenta[index]);
+        let moved = to_parent(graph, link, &momenta[index]);
         let onto = match link.parent {
             Some(parent) => &mut momenta[parent],
             None => &mut total,
@@ -47,7 +47,7 @@ pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
     let mut composite: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
     for (index, link) in tree.links.iter().enumerate().rev() {
         if let Some(parent) = link.parent {
-            let moved = composite[index].carried(graph, link);
+            let moved = composite[index].to_parent(graph, link);
             composite[parent] = composite[parent].plus(graph, &moved);
         }
     }
@@ -58,7 +58,7 @@ pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
             let (force, torque) = composite[index].wrench(graph, freedom.angular, freedom.linear);
             let chain = std::iter::successors(Some(index), |&at| tree.links[at].parent);
             let momentum = chain.fold(Wrench { force, torque }, |momentum, at| {
-                carried(graph, &tree.links[at], &momentum)
+                to_parent(graph, &tree.links[at], &momentum)
             });
             for &(i, k) in &freedom.rate {
                 let part = momentum.scaled(graph, k);
@@ -71,7 +71,7 @@ pub fn columns(graph: &mut Graph, tree: &Tree, n: usize) -> Vec<(Vec3, Vec3)> {
 }
 
 /// The part of ṗ that is quadratic in ξ; `None` where a freedom's twist varies in the axes of its link.
-pub fn swing(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec<Edge>> {
+pub fn quadratic_rate(graph: &mut Graph, tree: &Tree, xi: &[Edge]) -> Option<Vec<Edge>> {
     // Twists may vary without any drift: those of angular velocities in axes of the world do.
     let mut freedoms = tree.links.iter().flat_map(|link| &link.freedoms);
     let varies = |entry: &Edge| !graph.is_free(entry.node());

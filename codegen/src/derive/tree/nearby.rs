@@ -3,10 +3,10 @@
 //! A link whose motion varies by (δω, δα, δa), inner joints going on as they do, passes on the
 //! torque Θ δα + h × δa + B δω and the force δα × h + m δa + C δω about its origin: Θ, h, m are those of
 //! all that hangs on it, and B and C follow from them, as of one body, and from how it moves inside, P and D below.
-//! Forces of a joint are covectors on such variations, carried towards the root as wrenches are.
+//! Forces of a joint are covectors on such variations, transformed towards the root as wrenches are.
 //! After Carpentier and Mansard (2018) and Singh, Russell and Wensing (2022), in axes of links.
 
-use super::inverse::{LinkMotion, Wrench, carried, motions, wrench};
+use super::inverse::{LinkMotion, Wrench, motions, to_parent, wrench};
 use super::mass::Mass;
 use super::{Freedom, Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
@@ -64,11 +64,11 @@ pub fn slopes(
     }
     for (index, link) in tree.links.iter().enumerate().rev() {
         if let Some(parent) = link.parent {
-            let moved = streams[index].carried(graph, link, &masses[index], &motions[index]);
+            let moved = streams[index].to_parent(graph, link, &masses[index], &motions[index]);
             streams[parent] = streams[parent].plus(graph, &moved);
-            let mass = masses[index].carried(graph, link);
+            let mass = masses[index].to_parent(graph, link);
             masses[parent] = masses[parent].plus(graph, &mass);
-            let total = carried(graph, link, &totals[index]);
+            let total = to_parent(graph, link, &totals[index]);
             totals[parent] = totals[parent].plus(graph, &total);
         }
     }
@@ -111,7 +111,7 @@ pub fn slopes(
                 };
                 let before = motions[parent].omega;
                 covector =
-                    covector.carried(graph, &tree.links[here], motions[here].relative, before);
+                    covector.to_parent(graph, &tree.links[here], motions[here].relative, before);
                 here = parent;
             }
             // The wrench that a variation of this joint passes on to those before.
@@ -121,11 +121,11 @@ pub fn slopes(
             wrenches[0] = follow(graph, &wrenches[0], freedom, &total);
             let mut here = index;
             while let Some(parent) = tree.links[here].parent {
-                wrenches = wrenches.map(|wrench| carried(graph, &tree.links[here], &wrench));
+                wrenches = wrenches.map(|wrench| to_parent(graph, &tree.links[here], &wrench));
                 for other in &tree.links[parent].freedoms {
                     let (j, _) = *other.rate.first()?;
-                    slopes.displacement[j][i] = other.felt(graph, &wrenches[0]);
-                    slopes.velocity[j][i] = other.felt(graph, &wrenches[1]);
+                    slopes.displacement[j][i] = other.force_of(graph, &wrenches[0]);
+                    slopes.velocity[j][i] = other.force_of(graph, &wrenches[1]);
                 }
                 here = parent;
             }
@@ -148,17 +148,17 @@ fn follow(graph: &mut Graph, change: &Wrench, freedom: &Freedom, total: &Wrench)
 
 /// What the link before does, as seen from a link that is displaced.
 fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
-    let [omega, alpha, a] = motion.carried.map(|v| cross(graph, v, freedom.angular));
+    let [omega, alpha, a] = motion.from_parent.map(|v| cross(graph, v, freedom.angular));
     let gyro = cross(graph, omega, motion.relative.0);
     let alpha = add3(graph, alpha, gyro);
     // Its origin moves by l in the field of accelerations of the link before.
-    let [before, growth, _] = motion.carried;
-    let swing = cross(graph, growth, freedom.linear);
+    let [before, growth, _] = motion.from_parent;
+    let tangential = cross(graph, growth, freedom.linear);
     let inner = cross(graph, before, freedom.linear);
     let outer = cross(graph, before, inner);
     let coriolis = cross(graph, omega, motion.relative.1);
     let twice = add3(graph, coriolis, coriolis);
-    let a = [swing, outer, twice]
+    let a = [tangential, outer, twice]
         .into_iter()
         .fold(a, |sum, term| add3(graph, sum, term));
     Variation { omega, alpha, a }
@@ -166,7 +166,7 @@ fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Varia
 
 /// A faster joint.
 fn faster(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Variation {
-    let before = motion.carried[0];
+    let before = motion.from_parent[0];
     let twice = add3(graph, before, motion.omega);
     let (a, b) = (
         cross(graph, freedom.angular, motion.relative.1),
@@ -191,7 +191,7 @@ impl Variation {
     }
 
     /// A covector on variations of the link before.
-    fn carried(
+    fn to_parent(
         &self,
         graph: &mut Graph,
         link: &Link,
@@ -203,9 +203,9 @@ impl Variation {
         let twice = add3(graph, coriolis, coriolis);
         let omega = add3(graph, self.omega, gyro);
         let omega = add3(graph, omega, twice);
-        let omega = link.out(graph, omega);
-        let a = link.out(graph, self.a);
-        let alpha = link.out(graph, self.alpha);
+        let omega = link.to_parent_axes(graph, omega);
+        let a = link.to_parent_axes(graph, self.a);
+        let alpha = link.to_parent_axes(graph, self.alpha);
         let lever = cross(graph, link.position, a);
         let centripetal = centripetal(graph, before, link.position);
         let centripetal = apply3(graph, &centripetal, a);
@@ -336,22 +336,22 @@ impl Stream {
         apply(graph, &rest, v).map(|entry| -entry)
     }
 
-    /// As the link before sees it: the link itself moves against that one, too.
-    fn carried(&self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
+    /// Relative to the link before, against which the link itself moves, too.
+    fn to_parent(&self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
         let (spin, speed) = motion.relative;
         let (spin, speed) = (add3(graph, spin, spin), add3(graph, speed, speed));
         let whirl = cross(graph, spin, mass.first);
         let drift = scale3(graph, mass.mass, speed);
-        let own = add3(graph, whirl, drift);
-        let mut first = add3(graph, self.first, own);
+        let relative = add3(graph, whirl, drift);
+        let mut first = add3(graph, self.first, relative);
         let mut second: Mat3 = std::array::from_fn(|i| {
             let whirl = cross(graph, spin, mass.second[i]);
             let drift = scale3(graph, mass.first[i], speed);
-            let own = add3(graph, whirl, drift);
-            add3(graph, self.second[i], own)
+            let relative = add3(graph, whirl, drift);
+            add3(graph, self.second[i], relative)
         });
         for turn in link.turns.iter().rev() {
-            first = turn.out(graph, first);
+            first = turn.rotate(graph, first);
             second = turn.general(graph, &second);
         }
         for (row, &p) in second.iter_mut().zip(&link.position) {

@@ -19,7 +19,7 @@ impl Tree {
             let before = link.parent.and_then(|parent| lags[parent]);
             let mut moved = link.clone();
             if let Some(lag) = before {
-                moved.position = lag.turn().out(graph, link.position);
+                moved.position = lag.turn().rotate(graph, link.position);
             }
             let (fixed, angle) = match hinge(graph, link).filter(|_| shares) {
                 Some((fixed, angle)) => (fixed, Some(angle)),

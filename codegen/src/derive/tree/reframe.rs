@@ -171,7 +171,7 @@ fn spin(graph: &mut Graph, links: &mut [Draft], i: usize, (c, s): (Edge, Edge)) 
     links[i].mass = links[i].mass.turned(graph, &back);
     advance(graph, &mut links[i], (c, s));
     for link in links.iter_mut().filter(|link| link.parent == Some(i)) {
-        link.position = back.out(graph, link.position);
+        link.position = back.rotate(graph, link.position);
         turn_base(graph, link, &back);
     }
 }
@@ -179,7 +179,7 @@ fn spin(graph: &mut Graph, links: &mut [Draft], i: usize, (c, s): (Edge, Edge)) 
 /// base := R base.
 fn turn_base(graph: &mut Graph, link: &mut Draft, turn: &Turn) {
     for column in 0..3 {
-        let v = turn.out(graph, std::array::from_fn(|row| link.base[row][column]));
+        let v = turn.rotate(graph, std::array::from_fn(|row| link.base[row][column]));
         for (row, entry) in link.base.iter_mut().zip(v) {
             row[column] = entry;
         }
@@ -204,7 +204,7 @@ fn factor(graph: &mut Graph, link: &mut Draft, safe: &Safe) {
     let mut rest = link.base;
     for turn in &first {
         for column in 0..3 {
-            let v = turn.back(graph, std::array::from_fn(|row| rest[row][column]));
+            let v = turn.rotate_back(graph, std::array::from_fn(|row| rest[row][column]));
             for (row, entry) in rest.iter_mut().zip(v) {
                 row[column] = entry;
             }

@@ -21,7 +21,7 @@ pub enum Turn {
 
 impl Turn {
     /// R v.
-    pub fn out(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    pub fn rotate(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {
             Turn::By(ref matrix) => apply3(graph, matrix, v),
             Turn::About { axis, cos, sin } => plane(graph, axis, cos, sin, v),
@@ -29,7 +29,7 @@ impl Turn {
     }
 
     /// Rᵀ v.
-    pub fn back(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    pub fn rotate_back(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match *self {
             Turn::By(ref matrix) => apply_transposed(graph, matrix, v),
             Turn::About { axis, cos, sin } => plane(graph, axis, cos, -sin, v),

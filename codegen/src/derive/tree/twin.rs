@@ -39,9 +39,9 @@ impl Tree {
         if factor != graph.one() || self.armature[of] != graph.zero() {
             return None;
         }
-        let omega = link.out(graph, freedom.angular);
+        let omega = link.to_parent_axes(graph, freedom.angular);
         let lever = cross(graph, link.position, omega);
-        let slide = link.out(graph, freedom.linear);
+        let slide = link.to_parent_axes(graph, freedom.linear);
         let v: Vec3 = std::array::from_fn(|k| graph.add(lever[k], slide[k]));
         let (mut turns, mut slides) = (omega, v);
         let mut by = Vec::new();

@@ -32,7 +32,7 @@ impl Tree {
         };
         let roots = self.links.iter().zip(&motions);
         for (link, motion) in roots.filter(|(link, _)| link.parent.is_none()) {
-            if link.drift != (zero3(graph), zero3(graph)) {
+            if link.velocity_product != (zero3(graph), zero3(graph)) {
                 return None;
             }
             let mut axes = Vec::new();

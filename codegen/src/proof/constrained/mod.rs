@@ -313,7 +313,7 @@ fn at_point(
             project(&moved)
         })
         .collect();
-    let carried: Vec<Fp> = (0..n)
+    let projected: Vec<Fp> = (0..n)
         .map(|k| bias[k] + dot(&mass[k * n..][..n], &values.drift))
         .collect();
     // Whatever the multipliers are, they do no work where B v = 0, nor do drives where what they give stands still: there
@@ -339,7 +339,7 @@ fn at_point(
     let held = match xi_dot {
         None => true,
         Some(xi_dot) if full.reduced.overconstrained => {
-            let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - carried[k]).collect();
+            let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - projected[k]).collect();
             let parts = [&reduced_mass[..], &project(&rest), &kept, &right];
             saddle::solve_at(&full.reduced, parts, &given, inner)? == xi_dot
         }
@@ -353,7 +353,7 @@ fn at_point(
         Some(emitted(name)?.is_none_or(|found| found == expected))
     };
     let same_mass = equal("mass_matrix", reduced_mass.clone())?;
-    let same_bias = equal("bias", project(&carried))?;
+    let same_bias = equal("bias", project(&projected))?;
     let same_loads = equal("generalized_force", project(force))?
         && equal("potential_force", project(slope))?
         && equal("kinetic_energy", vec![values.kinetic])?

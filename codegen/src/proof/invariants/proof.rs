@@ -117,7 +117,7 @@ impl Prover {
         }
     }
 
-    /// M⁻¹ ∂I/∂ξ in the motion's graph, where it merges with what is there, carried to free points.
+    /// M⁻¹ ∂I/∂ξ in the motion's graph, where it merges with what is there, rebuilt at free points.
     fn covector(
         &mut self,
         motion: &mut Equations,

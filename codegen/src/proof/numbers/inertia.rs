@@ -34,7 +34,7 @@ pub struct Sums {
     /// M, KR18 (20).
     pub mass: Vec<Vec<Fp>>,
     /// Ṁ_ij ξʲ.
-    pub swing: Vec<Fp>,
+    pub mass_rate: Vec<Fp>,
     /// ½ ∂ᵢM_jk ξʲ ξᵏ.
     pub centrifugal: Vec<Fp>,
 }
@@ -59,7 +59,7 @@ impl Sums {
             slope: zero(),
             kinetic: Fp::ZERO,
             mass: vec![zero(); n],
-            swing: zero(),
+            mass_rate: zero(),
             centrifugal: zero(),
         }
     }
@@ -94,8 +94,8 @@ impl Sums {
         }
         let drift = inertia(&drift);
         for i in 0..n {
-            let swing = dot(&twists.rate_by[i], &momentum) + dot(&twists.by[i], &drift);
-            increase(&mut self.swing[i], swing);
+            let rate = dot(&twists.rate_by[i], &momentum) + dot(&twists.by[i], &drift);
+            increase(&mut self.mass_rate[i], rate);
             increase(
                 &mut self.centrifugal[i],
                 dot(&twists.by_whole[i], &momentum),
@@ -103,9 +103,9 @@ impl Sums {
             if twists.by[i].iter().all(|entry| entry.is_zero()) {
                 continue;
             }
-            let carried = inertia(&twists.by[i]);
+            let momentum = inertia(&twists.by[i]);
             for j in 0..=i {
-                let entry = dot(&carried, &twists.by[j]);
+                let entry = dot(&momentum, &twists.by[j]);
                 increase(&mut self.mass[i][j], entry);
                 if j < i {
                     increase(&mut self.mass[j][i], entry);

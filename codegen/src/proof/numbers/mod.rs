@@ -58,7 +58,7 @@ pub struct Values {
     /// p = ∂T/∂ξ.
     pub momentum: Vec<Fp>,
     /// Ṁ ξ.
-    pub swing: Vec<Fp>,
+    pub mass_rate: Vec<Fp>,
     /// ẋ.
     pub rate: Vec<Fp>,
     /// T.
@@ -207,7 +207,7 @@ impl Numbers {
         }
         // Columns: Aᵢ with Ȧᵢ, Aᵢ with ∂ᵢẋ, ẋ with ẍ.
         let second: Vec<Fp> = kinematics.rate.iter().map(|jet| jet.along).collect();
-        let carried = (0..n).map(|i| all.of_x(&kinematics.column(i, |jet| jet.along)));
+        let following = (0..n).map(|i| all.of_x(&kinematics.column(i, |jet| jet.along)));
         let drifting = (0..n).map(|i| all.of_x(&kinematics.drift(i)));
         let seeds = Seeds {
             along: moving.clone(),
@@ -217,7 +217,10 @@ impl Numbers {
                 .chain([&moving])
                 .cloned()
                 .collect(),
-            mixed: carried.chain(drifting).chain([all.of_x(&second)]).collect(),
+            mixed: following
+                .chain(drifting)
+                .chain([all.of_x(&second)])
+                .collect(),
         };
         let poses = all.poses.jets(lane, &seeds)?;
         let (potentials, rest) = poses.split_at_checked(3)?;
@@ -262,7 +265,7 @@ impl Numbers {
         let momentum: Vec<Fp> = sums.mass.iter().map(|row| dot(row, &xi)).collect();
         let turn = kinematics.turn_of_rows(&momentum);
         let bias: Vec<Fp> = (0..n)
-            .map(|i| sums.swing[i] - sums.centrifugal[i] + turn[i])
+            .map(|i| sums.mass_rate[i] - sums.centrifugal[i] + turn[i])
             .collect();
         let levi_civita = (0..n).map(|i| dot(&sums.mass[i], &xi_dot) + bias[i] + slope[i]);
         let left = [hamel.collect(), gibbs.collect(), levi_civita.collect()];
@@ -275,7 +278,7 @@ impl Numbers {
             rate: rate.to_vec(),
             mass: sums.mass,
             momentum: sums.momentum,
-            swing: sums.swing,
+            mass_rate: sums.mass_rate,
             kinetic: sums.kinetic,
             potential: potential.value,
             dissipation,
@@ -317,7 +320,7 @@ impl Numbers {
                 (&mut sums.momentum[i], momentum[i]),
                 (&mut sums.momentum_rate[i], driven.mixed(i)),
                 (&mut sums.slope[i], slope),
-                (&mut sums.swing[i], coasting.mixed(i)),
+                (&mut sums.mass_rate[i], coasting.mixed(i)),
                 (&mut sums.centrifugal[i], slope),
             ] {
                 *sum = *sum + entry;
