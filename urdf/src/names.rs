@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 /// the language, and keywords of Rust.
 const WORDS: &str = "\
 abs abstract acceleration acos angular_acceleration angular_momentum angular_velocity armature as \
-asin async at atan2 await axis_angle become body box break clamp com const constraint continue \
+asin async at atan atan2 await axis_angle become body box break clamp com const constraint continue \
 continuous coord cos cosh crate cross cylindrical damper damping diag dissipation do dot dyn else \
 energy enum exp extern false final fixed fn follows for force frame free from gen generalized \
 generate gravity hat hypot identity if impl in inactive inertia input invariant inverse joint \

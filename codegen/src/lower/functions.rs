@@ -100,6 +100,10 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
                 "one of the arguments has to differ from 0",
             )));
         }
+        ("atan", [Scalar(a)]) => {
+            let one = graph.one();
+            Scalar(graph.atan2(*a, one))
+        }
         ("atan2", [Scalar(y), Scalar(x)]) => Scalar(graph.atan2(*y, *x)),
         ("min", [Scalar(a), Scalar(b)]) => Scalar(lesser(graph, *a, *b)),
         ("max", [Scalar(a), Scalar(b)]) => Scalar(greater(graph, *a, *b)),

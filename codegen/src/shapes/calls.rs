@@ -101,7 +101,7 @@ fn value(name: &str, arguments: &[Shaped]) -> Option<Shaped> {
     let numbers = numbers.collect::<Option<Vec<&BigRational>>>();
     let known = numbers.and_then(|numbers| number(name, &numbers));
     let shape = match (name, shapes.as_slice()) {
-        ("tan" | "asin" | "acos" | "log" | "sqrt", [Scalar]) => Scalar,
+        ("tan" | "asin" | "acos" | "atan" | "log" | "sqrt", [Scalar]) => Scalar,
         ("atan2" | "min" | "max" | "hypot", [Scalar, Scalar]) => Scalar,
         ("clamp", [Scalar, Scalar, Scalar]) => Scalar,
         ("dot", [Vector(a), Vector(b)]) if a == b => Scalar,

@@ -38,7 +38,8 @@ fn number(random: &mut Random) -> Number {
 fn inverse(random: &mut Random) -> Number {
     let (n, d) = (1 + random.below(11), 12 + random.below(4));
     let part = &Precise::of(n as f64) / &Precise::of(d as f64);
-    match random.below(6) {
+    match random.below(7) {
+        6 => (format!("atan(-{n} / {d})"), -&part.atan()),
         0 => (format!("acos({n} / {d})"), part.acos()),
         1 => (format!("acos(-{n} / {d})"), (-&part).acos()),
         2 => (format!("asin({n} / {d})"), part.asin()),

@@ -70,7 +70,7 @@ const EXPRESSIONS: [Case; 16] = [
 ];
 
 /// Hyperbolic functions, and inverse ones, which are angles of points with a root.
-const FUNCTIONS: [Case; 9] = [
+const FUNCTIONS: [Case; 11] = [
     ("sinh(x - y)", |[_, _, x, y]| (x - y).sinh()),
     ("tanh(x) * cosh(x) / sinh(x)", |_| 1.0),
     ("cosh(x)^2 - sinh(x)^2", |_| 1.0),
@@ -78,6 +78,8 @@ const FUNCTIONS: [Case; 9] = [
     ("tanh(x / 10^9) * 10^9", |[_, _, x, _]| x),
     ("asin(x / 5)", |[_, _, x, _]| (x / 5.0).asin()),
     ("acos(-x / 5)", |[_, _, x, _]| (-x / 5.0).acos()),
+    ("atan(3 * x)", |[_, _, x, _]| (3.0 * x).atan()),
+    ("tan(atan(x - y))", |[_, _, x, y]| x - y),
     ("asin(x / 5) + acos(x / 5)", |_| std::f64::consts::FRAC_PI_2),
     ("sin(asin(x / 5)) + acos(-1)", |[_, _, x, _]| {
         x / 5.0 + std::f64::consts::PI

@@ -44,7 +44,7 @@ class Spoken(Forest):
             lambda: call("log", call("cos", q) + "2.5"),
             lambda: call("atan2", call("sin", q) + "0.3", q**2 + "1.2"),
             lambda: call("sinh", call("cos", q)) - call("cosh", q * "0.3"),
-            lambda: call("asin", call("sin", q) * "0.5") * call("acos", call("cos", q) * "0.4"),
+            lambda: call("asin", call("sin", q) * "0.5") * call("acos", call("cos", q) * "0.4") + call("atan", q * "1.3"),
             lambda: call("tan", call("sin", q) * "0.6"),
             lambda: call("hypot", q, "0.7") / (q**2 + "1.5"),
             lambda: q ** self.pick([3, 4]) * "0.1",
