@@ -390,15 +390,17 @@ def difference(a, b, over):
 
 def independent(rows, least=mpf(10) ** -10):
     """Which rows do not depend on those before, by elimination: what is left of them is not so small a part: steps of
-    differences are far smaller, so that both sides of one have the same rows."""
+    differences are far smaller, so that both sides of one have the same rows. Rows that are nothing but the rounding of
+    a state to doubles, or a step from it, count as zero."""
     found, reduced = [], []
+    rounding = max((abs(e) for row in rows for e in row), default=NIL) * mpf(10) ** -12
     for index, row in enumerate(rows):
         size = max([abs(e) for e in row], default=NIL)
         rest = list(row)
         for pivot, kept in reduced:
             rest = sub(rest, scale(rest[pivot], kept))
         pivot = max(range(len(rest)), key=lambda k: abs(rest[k]))
-        if size > 0 and abs(rest[pivot]) > size * least:
+        if size > rounding and abs(rest[pivot]) > size * least:
             reduced.append((pivot, scale(1 / rest[pivot], rest)))
             found.append(index)
     return found
