@@ -179,6 +179,11 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
         ));
     }
     let mut text = format!("\n{}", aligned(&rows, "  "));
+    for (index, name) in run.output_names.iter().enumerate() {
+        if let Some(gaps) = gaps(run, |sample| sample.outputs[index]) {
+            text.push_str(&format!("  {name} {gaps}\n"));
+        }
+    }
     if run.program.phi > 0 {
         text.push_str(&format!(
             "  max |phi|  {}\n",
@@ -186,6 +191,19 @@ fn invariants(run: &Run, first: &Sample, last: &Sample) -> String {
         ));
     }
     text
+}
+
+/// Where a quantity has no value, as beyond the end of a table or where a root is that of a negative number.
+fn gaps(run: &Run, of: impl Fn(&Sample) -> f64) -> Option<String> {
+    let missing = run.samples.iter().filter(|sample| !of(sample).is_finite());
+    let first = missing.clone().next()?;
+    Some(format!(
+        "has no finite value at {} of {} samples, first at {} = {}",
+        grouped(missing.count() as u64),
+        grouped(run.samples.len() as u64),
+        run.time.name,
+        short(run.time.at(first.t, &first.x))
+    ))
 }
 
 /// Largest size of a quantity, and its largest distance from the first value.
