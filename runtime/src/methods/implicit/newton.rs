@@ -75,127 +75,200 @@ impl<Sys: System + ?Sized> Equations<'_, Sys> {
         least: f64,
         iterations: &mut u32,
     ) -> Result<(Sys::Coordinates, Sys::Velocities), StepError> {
-        let (system, state, h, time) = (self.system, self.state, self.h, self.state.t);
-        let of = Sys::Scalar::from_f64;
-        let (zero, one) = (Sys::Scalar::default(), of(1.0));
-        let mut z = Unknowns::<Sys> {
-            u: system.zero_chart(),
-            xi,
-        };
-        let mut progress = Progress::new(system, state);
-        let mut steps: [Sys::Velocities; MEMORY] = from_fn(|_| system.zero_velocities());
-        let (mut known, mut part) = (0, 1.0);
-        // Those of ∂g/∂ξ₁; none where they have to be made anew.
+        let mut iteration = Iteration::new(self, xi);
         let mut factors = None;
-        // Whether they are those of this point.
-        let mut fresh = true;
-        let mut inputs = system.zero_inputs();
-        let mut step = system.zero_velocities();
         for _ in 0..=MOST {
-            let solved = match factors {
+            let kept = match factors.take() {
                 Some(kept) => kept,
-                None => {
-                    let (here, new) = derivative.linear(self, &mut z, iterations)?;
-                    if !is_finite(here.defect.as_ref()) {
-                        return Err(StepError::NonFinite { time });
-                    }
-                    step = correction::<Sys, D>(&new, &here.defect);
-                    inputs = here.inputs;
-                    (fresh, known, part) = (true, 0, 1.0);
-                    new
-                }
+                None => iteration.begin(self, derivative, iterations)?,
             };
             *iterations += 1;
-            let failed = StepError::NotConverged {
-                time,
-                iterations: *iterations,
-            };
-            if !is_finite(step.as_ref()) {
+            let failed = self.failed(*iterations);
+            if !is_finite(iteration.step.as_ref()) {
                 return Err(failed);
             }
-            let mut next = z.clone();
-            for (xi, step) in next.xi.as_mut().iter_mut().zip(step.as_ref()) {
-                *xi = of(part).mul_add(*step, *xi);
-            }
-            let nearer = self.point(&mut next).and_then(|there| {
-                let raw = correction::<Sys, D>(&solved, &there.defect);
-                let fed = !D::KNOWS_INPUTS && differ(inputs.as_ref(), there.inputs.as_ref());
-                let small = Unknowns {
-                    u: system.zero_chart(),
-                    xi: step.clone(),
-                };
-                let whole = progress.whole(&next, &small, h);
-                let moves = of(ENOUGH * Sys::Scalar::EPSILON).select_lt(whole, one, zero);
-                let limit = of(1.0 - part * (1.0 - ASTRAY)) * largest(step.as_ref());
-                let farther = largest(raw.as_ref()).select_lt(limit, zero, moves);
-                match is_finite(raw.as_ref()) && (fed || farther.largest_lane() == 0.0) {
-                    true => Ok((raw, there.inputs, fed, moves.largest_lane() == 0.0)),
-                    false => Err(failed),
-                }
-            });
-            let (raw, fed, rounding) = match nearer {
-                Ok((raw, there, fed, rounding)) => {
-                    inputs = there;
-                    (raw, fed, rounding)
-                }
-                Err(error) if fresh && self.weighed => {
-                    part *= 0.5;
-                    if part < least {
+            match iteration.ahead::<D>(self, &kept, failed) {
+                // With M g = 0 shorter parts of the same correction, too, may lead nearer.
+                Err(error) if iteration.fresh && self.weighed => {
+                    iteration.part *= 0.5;
+                    if iteration.part < least {
                         return Err(error);
                     }
-                    factors = Some(solved);
-                    continue;
+                    factors = Some(kept);
                 }
-                Err(_) => {
-                    self.weighed |= fresh;
-                    factors = None;
-                    continue;
+                Err(_) => self.weighed |= iteration.fresh,
+                Ok(ahead) if iteration.part < 1.0 => {
+                    (iteration.z, iteration.inputs) = (ahead.z, ahead.inputs);
                 }
-            };
-            if part < 1.0 {
-                z = next;
-                factors = None;
-                continue;
+                Ok(ahead) => match iteration.follow(self, ahead) {
+                    Followed::Solved(x, xi) => return Ok((x, xi)),
+                    Followed::Nearer => factors = Some(kept),
+                    Followed::Slower => {}
+                },
             }
-            let exact = core::mem::take(&mut fresh) && !fed;
-            let length = of(h.abs()) * largest(raw.as_ref());
-            let mut after = raw;
-            // Rounding teaches nothing.
-            if !rounding {
-                if let Some(slot) = steps.get_mut(known) {
-                    *slot = step.clone();
-                    known += 1;
-                }
-                learnt::<Sys>(steps.get(..known).unwrap_or(&[]), &mut after);
-            }
-            let mut end = next.clone();
-            for (xi, step) in end.xi.as_mut().iter_mut().zip(after.as_ref()) {
-                *xi += *step;
-            }
-            if let Some(x) = reach(system, &state.x, h, &end.xi, &mut end.u) {
-                let mut by = Unknowns::<Sys> {
-                    u: end.u.clone(),
-                    xi: after.clone(),
-                };
-                for (by, before) in by.u.as_mut().iter_mut().zip(next.u.as_ref()) {
-                    *by -= *before;
-                }
-                let over = progress.is_over(&end, &by, length, h);
-                // What exact factors do not make shorter is rounding.
-                if over || rounding && exact && progress.idle > 1 {
-                    return Ok((x, end.xi));
-                }
-            }
-            z = next;
-            let shrinks = progress.idle == 0 && !slow::<Sys>(&after, &step, &state.xi, &z.xi);
-            step = after;
-            let kept = known < MEMORY && (fed || shrinks || progress.idle > 1);
-            factors = kept.then_some(solved);
         }
-        Err(StepError::NotConverged {
-            time,
-            iterations: *iterations,
+        Err(self.failed(*iterations))
+    }
+
+    fn failed(&self, iterations: u32) -> StepError {
+        StepError::NotConverged {
+            time: self.state.t,
+            iterations,
+        }
+    }
+}
+
+/// Where an iteration stands.
+struct Iteration<Sys: System + ?Sized> {
+    z: Unknowns<Sys>,
+    /// The inputs there.
+    inputs: Sys::Inputs,
+    /// The correction of ξ₁ there, and the part of it that is tried.
+    step: Sys::Velocities,
+    part: f64,
+    /// Whether the factors are those of this point.
+    fresh: bool,
+    /// The steps since they were.
+    steps: [Sys::Velocities; MEMORY],
+    known: usize,
+    progress: Progress<Sys>,
+}
+
+/// The point that a correction leads to.
+struct Ahead<Sys: System + ?Sized> {
+    z: Unknowns<Sys>,
+    inputs: Sys::Inputs,
+    /// The correction there, by the factors alone.
+    step: Sys::Velocities,
+    /// Whether inputs follow the state in a way that the factors do not know.
+    fed: bool,
+    /// Whether the correction that led here was rounding.
+    rounding: bool,
+}
+
+/// What comes of a whole correction.
+enum Followed<Sys: System + ?Sized> {
+    /// It was the last one: (x₁, ξ₁).
+    Solved(Sys::Coordinates, Sys::Velocities),
+    /// The same factors do.
+    Nearer,
+    /// New ones are wanted.
+    Slower,
+}
+
+impl<Sys: System + ?Sized> Iteration<Sys> {
+    fn new(equations: &Equations<'_, Sys>, xi: Sys::Velocities) -> Self {
+        let system = equations.system;
+        Iteration {
+            z: Unknowns {
+                u: system.zero_chart(),
+                xi,
+            },
+            inputs: system.zero_inputs(),
+            step: system.zero_velocities(),
+            part: 1.0,
+            fresh: true,
+            steps: from_fn(|_| system.zero_velocities()),
+            known: 0,
+            progress: Progress::new(system, equations.state),
+        }
+    }
+
+    /// Factors of this point, and the correction by them.
+    fn begin<D: Derivative<Sys>>(
+        &mut self,
+        equations: &Equations<'_, Sys>,
+        derivative: &D,
+        iterations: &mut u32,
+    ) -> Result<D::Factors, StepError> {
+        let (here, factors) = derivative.linear(equations, &mut self.z, iterations)?;
+        if !is_finite(here.defect.as_ref()) {
+            let time = equations.state.t;
+            return Err(StepError::NonFinite { time });
+        }
+        self.step = correction::<Sys, D>(&factors, &here.defect);
+        self.inputs = here.inputs;
+        (self.fresh, self.known, self.part) = (true, 0, 1.0);
+        Ok(factors)
+    }
+
+    /// The point that the correction leads to; an error where it is no nearer.
+    fn ahead<D: Derivative<Sys>>(
+        &self,
+        equations: &Equations<'_, Sys>,
+        factors: &D::Factors,
+        farther: StepError,
+    ) -> Result<Ahead<Sys>, StepError> {
+        let of = Sys::Scalar::from_f64;
+        let (zero, one) = (of(0.0), of(1.0));
+        let mut z = self.z.clone();
+        for (xi, step) in z.xi.as_mut().iter_mut().zip(self.step.as_ref()) {
+            *xi = of(self.part).mul_add(*step, *xi);
+        }
+        let there = equations.point(&mut z)?;
+        let step = correction::<Sys, D>(factors, &there.defect);
+        let fed = !D::KNOWS_INPUTS && differ(self.inputs.as_ref(), there.inputs.as_ref());
+        let small = Unknowns {
+            u: equations.system.zero_chart(),
+            xi: self.step.clone(),
+        };
+        let whole = self.progress.whole(&z, &small, equations.h);
+        let moves = of(ENOUGH * Sys::Scalar::EPSILON).select_lt(whole, one, zero);
+        let limit = of(1.0 - self.part * (1.0 - ASTRAY)) * largest(self.step.as_ref());
+        let astray = largest(step.as_ref()).select_lt(limit, zero, moves);
+        if !is_finite(step.as_ref()) || !fed && astray.largest_lane() != 0.0 {
+            return Err(farther);
+        }
+        Ok(Ahead {
+            z,
+            inputs: there.inputs,
+            step,
+            fed,
+            rounding: moves.largest_lane() == 0.0,
         })
+    }
+
+    /// Goes on from the point that a whole correction has led to.
+    fn follow(&mut self, equations: &Equations<'_, Sys>, ahead: Ahead<Sys>) -> Followed<Sys> {
+        let Ahead { fed, rounding, .. } = ahead;
+        let (system, state, h) = (equations.system, equations.state, equations.h);
+        let exact = core::mem::take(&mut self.fresh) && !fed;
+        let length = Sys::Scalar::from_f64(h.abs()) * largest(ahead.step.as_ref());
+        let mut after = ahead.step;
+        // Rounding teaches nothing.
+        if !rounding {
+            if let Some(slot) = self.steps.get_mut(self.known) {
+                *slot = self.step.clone();
+                self.known += 1;
+            }
+            learnt::<Sys>(self.steps.get(..self.known).unwrap_or(&[]), &mut after);
+        }
+        let mut end = ahead.z.clone();
+        for (xi, step) in end.xi.as_mut().iter_mut().zip(after.as_ref()) {
+            *xi += *step;
+        }
+        if let Some(x) = reach(system, &state.x, h, &end.xi, &mut end.u) {
+            let mut by = Unknowns::<Sys> {
+                u: end.u.clone(),
+                xi: after.clone(),
+            };
+            for (by, before) in by.u.as_mut().iter_mut().zip(ahead.z.u.as_ref()) {
+                *by -= *before;
+            }
+            let over = self.progress.is_over(&end, &by, length, h);
+            // What exact factors do not make shorter is rounding.
+            if over || rounding && exact && self.progress.idle > 1 {
+                return Followed::Solved(x, end.xi);
+            }
+        }
+        (self.z, self.inputs) = (ahead.z, ahead.inputs);
+        let shrinks =
+            self.progress.idle == 0 && !slow::<Sys>(&after, &self.step, &state.xi, &self.z.xi);
+        self.step = after;
+        match self.known < MEMORY && (fed || shrinks || self.progress.idle > 1) {
+            true => Followed::Nearer,
+            false => Followed::Slower,
+        }
     }
 }
 
