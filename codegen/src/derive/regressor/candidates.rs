@@ -1,9 +1,9 @@
 //! Relations between the parameters of a link and those of the link before, with exact coefficients.
 //!
-//! Which inertia δ of a link has no effect on the force of its joint is found at random states; its coefficients depend on the axis of the
-//! joint in the link's frame. To the link before it is the same inertia at rest there: δ transferred in any
-//! configuration of the joint, here that in which all coordinates are zero or the identity. So lengths and mount
-//! angles come in as the description has them.
+//! An inertia δ of a link that has no effect on the force of its joint is to the link before the same inertia at rest
+//! there: δ transferred in any configuration of the joint, here that in which all coordinates are zero or the identity.
+//! So lengths and mount angles come in as the description has them. On a hinge such δ are masses on its axis; those of
+//! other joints, and of links that move together, are found at random states.
 
 use super::parameters::{Link, moments, ten};
 use super::samples::Samples;
@@ -11,10 +11,11 @@ use crate::algebra::echelon::Echelon;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::{
-    Mat3, Vec3, add3, apply_transposed, apply3, multiply3, sub3, transpose3,
+    Mat3, Vec3, add3, apply_transposed, apply3, multiply3, scale3, sub3, transpose3, zero3,
 };
 use crate::algebra::transplant::substitute;
 use crate::derive::tree::Tree;
+use crate::derive::tree::mass::Mass;
 use crate::derive::tree::turn::Turn;
 use crate::model::Model;
 use crate::model::layout::Block;
@@ -104,10 +105,38 @@ pub fn candidates(
     }
     groups.extend(together(tree));
     let mut relations = Vec::new();
+    for index in 0..links.len() {
+        for masses in along_axis(&mut model.graph, tree, links, index) {
+            let exact = ten(&mut model.graph, &masses);
+            let group = (&[index][..], links[index].parent);
+            relations.push(moved(model, links, group, &exact));
+        }
+    }
     for (group, anchor) in groups {
         relations.extend(among(model, samples, known, links, (&group, anchor)));
     }
+    relations.retain(|relation| holds(&model.graph, samples, relation));
     relations
+}
+
+/// Masses on the axis a of a hinge through the frame's origin, which do not move against the link before: m, h = a and
+/// ∫ r rᵀ dm = a aᵀ, whatever numbers a has.
+fn along_axis(graph: &mut Graph, tree: &Tree, links: &[Link], index: usize) -> Vec<Mass> {
+    let zero = zero3(graph);
+    match tree.links[index].freedoms.as_slice() {
+        [freedom] if freedom.linear == zero => {
+            let a = apply_transposed(graph, &links[index].axes, freedom.angular);
+            let none = Mass::none(graph);
+            let one = graph.one();
+            let second = a.map(|entry| scale3(graph, entry, a));
+            vec![
+                Mass { mass: one, ..none },
+                Mass { first: a, ..none },
+                Mass { second, ..none },
+            ]
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// Links whose joints have a velocity in common, alone and with the link that all of them hang on.
@@ -157,26 +186,37 @@ fn among(
         let Some(exact) = known.all(&mut model.graph, &values) else {
             continue;
         };
-        let mut relation = joined(&model.graph, &own, &exact);
-        if let Some(anchor) = anchor {
-            let mut all = vec![model.graph.zero(); 10];
-            for (&index, exact) in group.iter().zip(exact.chunks(10)) {
-                let pose = pose_at_zero(model, links[index].frame, links[anchor].frame);
-                let graph = &mut model.graph;
-                let moved = moments(graph, exact)
-                    .turned(graph, &Turn::By(pose.0))
-                    .shifted(graph, pose.1);
-                for (sum, entry) in all.iter_mut().zip(ten(graph, &moved)) {
-                    *sum = graph.sub(*sum, entry);
-                }
-            }
-            relation.extend(joined(&model.graph, &before, &all));
-        }
-        if holds(&model.graph, samples, &relation) {
-            relations.push(relation);
-        }
+        relations.push(moved(model, links, (group, anchor), &exact));
     }
     relations
+}
+
+/// That inertias of links, ten numbers each, are the same at rest in the link before, where one is given.
+fn moved(
+    model: &mut Model,
+    links: &[Link],
+    (group, anchor): (&[usize], Option<usize>),
+    exact: &[Edge],
+) -> Relation {
+    let ten_of = |index: &usize| 10 * index..10 * index + 10;
+    let own: Vec<usize> = group.iter().flat_map(ten_of).collect();
+    let mut relation = joined(&model.graph, &own, exact);
+    if let Some(anchor) = anchor {
+        let mut all = vec![model.graph.zero(); 10];
+        for (&index, exact) in group.iter().zip(exact.chunks(10)) {
+            let pose = pose_at_zero(model, links[index].frame, links[anchor].frame);
+            let graph = &mut model.graph;
+            let moved = moments(graph, exact)
+                .turned(graph, &Turn::By(pose.0))
+                .shifted(graph, pose.1);
+            for (sum, entry) in all.iter_mut().zip(ten(graph, &moved)) {
+                *sum = graph.sub(*sum, entry);
+            }
+        }
+        let before: Vec<usize> = ten_of(&anchor).collect();
+        relation.extend(joined(&model.graph, &before, &all));
+    }
+    relation
 }
 
 /// The factors that are not 0, with the parameters that they belong to.
