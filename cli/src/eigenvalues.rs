@@ -6,22 +6,23 @@
 //! of a rounding error. Blocks are balanced and go through the QR algorithm.
 
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{DMatrix, Schur};
+use nalgebra::{DMatrix, DVector, Schur};
 
 /// Rounds of the QR algorithm for each row before it is tried otherwise.
 const ROUNDS: usize = 60;
-/// Shifts by multiples of the norm, under which an algorithm that stalls at a singular block goes on: what
-/// is below the diagonal counts as zero beside its neighbours on it, which vanish for a system at rest.
-const SHIFTS: [f64; 6] = [0.0, 1.0, -1.0, 0.37, 2.3, -5.1];
-/// What counts as zero, in units of rounding; looser where no shift leads to an end.
+/// Other axes in which an algorithm that stalls is tried: the block reflected at planes, each time at one that has nothing
+/// to do with it. In the axes of a system at rest the diagonal is zero, where nothing below it counts as small, and some
+/// blocks go in circles.
+const TURNS: u64 = 6;
+/// What counts as zero, in units of rounding; looser where no axes lead to an end.
 const LOOSER: [f64; 4] = [1.0, 8.0, 64.0, 512.0];
 
 /// How the QR algorithm is tried until it ends.
 struct Tries<'a> {
     /// What counts as zero, in units of rounding.
     looser: &'a [f64],
-    /// Shifts in units of the largest entry.
-    shifts: &'a [f64],
+    /// How many axes, the block's own first.
+    turns: u64,
     /// The most iterations of the first tries, where they are not as many as usual.
     most: &'a [usize],
 }
@@ -31,7 +32,7 @@ struct Tries<'a> {
 pub fn eigenvalues(rows: &[Vec<f64>]) -> Option<Vec<(f64, f64)>> {
     let tries = Tries {
         looser: &LOOSER,
-        shifts: &SHIFTS,
+        turns: TURNS,
         most: &[],
     };
     eigenvalues_by(rows, &tries)
@@ -79,17 +80,13 @@ fn classes(rows: &[Vec<f64>]) -> Vec<Vec<usize>> {
 fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
     balance_parlett_reinsch(&mut block);
     let n = block.nrows();
-    let size = block.amax();
     let looser = tries.looser.iter();
-    let attempts = looser.flat_map(|&looser| tries.shifts.iter().map(move |&part| (looser, part)));
-    attempts.enumerate().find_map(|(count, (looser, part))| {
-        let shift = part * size;
-        let shifted = &block + DMatrix::identity(n, n) * shift;
+    let attempts = looser.flat_map(|&looser| (0..tries.turns).map(move |turn| (looser, turn)));
+    attempts.enumerate().find_map(|(count, (looser, turn))| {
         let most = tries.most.get(count).copied().unwrap_or(ROUNDS * n);
-        let schur = Schur::try_new(shifted, looser * f64::EPSILON, most)?;
+        let schur = Schur::try_new(reflected(&block, turn), looser * f64::EPSILON, most)?;
         let values = schur.complex_eigenvalues();
-        let values = values.iter().map(|value| (value.re - shift, value.im));
-        let values: Vec<(f64, f64)> = values.collect();
+        let values: Vec<(f64, f64)> = values.iter().map(|value| (value.re, value.im)).collect();
         values
             .iter()
             .all(|(re, im)| re.is_finite() && im.is_finite())
@@ -97,9 +94,28 @@ fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
     })
 }
 
+/// H A H with H = I − 2 v vᵀ / |v|², which has the eigenvalues of A; A itself for the first turn.
+fn reflected(block: &DMatrix<f64>, turn: u64) -> DMatrix<f64> {
+    let mut turned = block.clone();
+    if turn > 0 {
+        let mut state = turn;
+        let v = DVector::from_fn(block.nrows(), |_, _| {
+            // Steele and Vigna (2021).
+            state = state.wrapping_mul(0xf135_7aea_2e62_a9c5).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        });
+        let w = &v * (2.0 / v.norm_squared());
+        let rows = v.transpose() * &turned;
+        turned -= &w * rows;
+        let columns = &turned * &v;
+        turned -= columns * w.transpose();
+    }
+    turned
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{SHIFTS, Tries, eigenvalues, eigenvalues_by};
+    use super::{TURNS, Tries, eigenvalues, eigenvalues_by};
 
     /// Sum and sum of squares of the eigenvalues are the traces of A and A².
     fn assert_traces(rows: &[Vec<f64>]) {
@@ -204,6 +220,41 @@ mod tests {
         }
     }
 
+    /// The knees and the elbows of a robot at rest, on which nalgebra's algorithm goes in circles: pairs of ±λ, whose
+    /// squares have the traces of −M⁻¹ K and of its square.
+    #[test]
+    fn what_goes_in_circles_converges_in_other_axes() {
+        let springs = [
+            [
+                1.0121339304301869e2,
+                1.5090024121138836,
+                2.5174074509918865e-2,
+            ],
+            [
+                -1.0111540804496773e2,
+                3.6159074392462455,
+                -6.1847885423766346e-1,
+            ],
+            [
+                3.114236210166117e-1,
+                3.299049682783092e-1,
+                5.419884410378721,
+            ],
+        ];
+        let mut rows = vec![vec![0.0; 6]; 6];
+        for i in 0..3 {
+            rows[i][3 + i] = 1.0;
+            rows[3 + i][..3].copy_from_slice(&springs[i]);
+        }
+        let values = eigenvalues(&rows).expect("converges");
+        let squares = values.iter().map(|v| v.0 * v.0 - v.1 * v.1).sum::<f64>();
+        let trace: f64 = (0..3).map(|i| springs[i][i]).sum();
+        assert!((squares - 2.0 * trace).abs() < 1e-12 * trace, "{squares}");
+        for (found, opposite) in values.iter().zip(values.iter().rev()) {
+            assert!((found.0 + opposite.0).abs() < 1e-12 * trace, "{values:?}");
+        }
+    }
+
     /// A try that does not end is followed by the next one, and one that follows gives the right numbers; where none
     /// ends there are no eigenvalues. One iteration is never enough here.
     #[test]
@@ -224,20 +275,20 @@ mod tests {
                 (0..n).map(|j| row(i, j) + first(j)).collect()
             })
             .collect();
-        let by = |looser: &[f64], shifts: &[f64], most: &[usize]| {
+        let by = |looser: &[f64], turns: u64, most: &[usize]| {
             let tries = Tries {
                 looser,
-                shifts,
+                turns,
                 most,
             };
             eigenvalues_by(&rows, &tries)
         };
-        assert_eq!(by(&[1.0, 8.0], &SHIFTS, &[1; 12]), None);
-        for (looser, shifts, most) in [
-            (&[1.0, 8.0][..], &[0.0][..], &[1][..]),
-            (&[1.0, 512.0], &[0.0, 0.37], &[1, 1, 1]),
+        assert_eq!(by(&[1.0, 8.0], TURNS, &[1; 12]), None);
+        for (looser, turns, most) in [
+            (&[1.0, 8.0][..], 1, &[1][..]),
+            (&[1.0, 512.0], 2, &[1, 1, 1]),
         ] {
-            let values = by(looser, shifts, most).expect("the last try ends");
+            let values = by(looser, turns, most).expect("the last try ends");
             for (value, expected) in values.iter().zip([5.0, 4.0, 3.0, 2.0, 1.0]) {
                 assert!(
                     (value.0 - expected).abs() < 1e-9 && value.1 == 0.0,
