@@ -285,21 +285,27 @@ fn jacobi(geometry: &mut Geometry) -> Vec<Sides> {
     let graph = &mut geometry.model.graph;
     let gamma = &geometry.gamma;
     let (mut left, mut right) = (Vec::new(), Vec::new());
+    let zero = graph.zero();
+    let nonzero = nonzero(graph, gamma);
     for i in 0..n {
         for j in i + 1..n {
             for k in j + 1..n {
+                let cycle = [(i, j, k), (j, k, i), (k, i, j)];
+                if cycle.iter().all(|&(_, b, c)| nonzero[b][c].is_empty()) {
+                    continue;
+                }
                 for l in 0..n {
-                    let mut sum = graph.zero();
-                    for (a, b, c) in [(i, j, k), (j, k, i), (k, i, j)] {
+                    let mut sum = zero;
+                    for (a, b, c) in cycle {
                         let change = geometry.calculus.along(graph, a, gamma[b][c][l]);
                         sum = graph.add(sum, change);
-                        for s in 0..n {
+                        for &s in &nonzero[b][c] {
                             let product = graph.mul(gamma[b][c][s], gamma[a][s][l]);
                             sum = graph.add(sum, product);
                         }
                     }
                     left.push(sum);
-                    right.push(graph.zero());
+                    right.push(zero);
                 }
             }
         }
@@ -312,11 +318,23 @@ fn jacobi(geometry: &mut Geometry) -> Vec<Sides> {
     }]
 }
 
+/// The s with γⱼₖˢ ≠ 0 for each j and k. In large systems most pairs have none, and sums over s would take most of the time.
+fn nonzero(graph: &Graph, gamma: &[Vec<Vec<Edge>>]) -> Vec<Vec<Vec<usize>>> {
+    let places = |row: &Vec<Edge>| {
+        let places = row.iter().enumerate();
+        let places = places.filter(|(_, entry)| **entry != graph.zero());
+        places.map(|(s, _)| s).collect()
+    };
+    let rows = gamma.iter();
+    rows.map(|rows| rows.iter().map(places).collect()).collect()
+}
+
 /// (21a) and (21b).
 fn metric(geometry: &mut Geometry) -> Vec<Sides> {
     let n = geometry.model.n();
     let graph = &mut geometry.model.graph;
     let (mass, gamma, connection) = (&geometry.mass, &geometry.gamma, &geometry.connection);
+    let nonzero = nonzero(graph, gamma);
     let mut sides = [
         Sides {
             label: "(21a)",
@@ -340,7 +358,11 @@ fn metric(geometry: &mut Geometry) -> Vec<Sides> {
                 sides[0]
                     .right
                     .push(graph.add(connection[i][j][k], connection[j][i][k]));
-                sides[1].left.push(graph.dot(&gamma[k][j], &mass[i]));
+                let terms = nonzero[k][j].iter();
+                let terms: Vec<Edge> = terms
+                    .map(|&s| graph.mul(gamma[k][j][s], mass[s][i]))
+                    .collect();
+                sides[1].left.push(graph.sum(&terms));
                 sides[1]
                     .right
                     .push(graph.sub(connection[i][j][k], connection[i][k][j]));
