@@ -221,7 +221,7 @@ mod tests {
         }
     }
 
-    /// Systems at rest with any −M⁻¹ K, a thousand of them: their squares add up to twice its trace.
+    /// Systems at rest with any −M⁻¹ K: their squares add up to twice its trace. A thousand of them with `HAMEL_ATTACK`.
     #[test]
     fn systems_at_rest_converge() {
         let mut state = 9u64;
@@ -231,7 +231,11 @@ mod tests {
                 .wrapping_add(1442695040888963407);
             (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
         };
-        for round in 0..1000 {
+        let rounds = match std::env::var("HAMEL_ATTACK") {
+            Ok(_) => 1000,
+            Err(_) => 200,
+        };
+        for round in 0..rounds {
             let n = 2 + round % 7;
             let mut rows = vec![vec![0.0; 2 * n]; 2 * n];
             for i in 0..n {
