@@ -236,6 +236,29 @@ fn link(name: &str) -> String {
     format!(r#"<link name="{name}">{BODY}</link>"#)
 }
 
+/// A fingertip without mass at the end of a chain of twelve: the joint that turns it is underlined.
+#[test]
+fn a_joint_without_inertia_is_shown_in_the_urdf() {
+    let mut robot = String::from("<robot name=\"chain\">\n<link name=\"l0\"/>\n");
+    for k in 1..=12 {
+        let (before, after) = (format!("l{}", k - 1), format!("l{k}"));
+        let kind = if k % 2 == 0 { "revolute" } else { "prismatic" };
+        robot += &joint(&format!("j{k}"), kind, &before, &after);
+        robot += &match k {
+            12 => "\n<link name=\"l12\"/>\n".to_string(),
+            _ => link(&after) + "\n",
+        };
+    }
+    let robot = scratch("fingertip.urdf", &(robot + "</robot>"));
+    let output = hamel(&["simulate", &robot, "--until", "1"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("`j12_dot`) is not positive") && said.contains("fingertip.urdf:14:14"),
+        "{said}"
+    );
+}
+
 /// Joints and links may be called as words of the language are: the description calls them otherwise.
 #[test]
 fn words_of_the_language_are_names_of_robots() {

@@ -67,11 +67,15 @@ fn put_together(
         let mass = inertia::mass_matrix(&mut reference, &mut calculus);
         inertia::positive_definite(model, &reference.graph, &mass)?;
     }
-    let forces = (!model.asked.wants_inverse())
+    let alone = (!model.asked.wants_inverse())
         .then(|| forces(model, care))
         .flatten()
         .map(|computed| (Acceleration::none(model.graph.clone()), computed));
-    let Some((chosen, computed)) = forces.or_else(|| accel(model, care)) else {
+    let Some((chosen, computed)) = alone.or_else(|| accel(model, care)) else {
+        // Elimination at the start tells which velocity is the first without inertia.
+        if let Some(Computation { graph, parts }) = forces(model, care) {
+            inertia::positive_definite(model, &graph, &parts.mass)?;
+        }
         return Err(Diagnostic::new(
             model.span,
             "the mass matrix is singular for every configuration",
