@@ -159,8 +159,8 @@ impl Inertia {
 
     /// About the origin and in the axes of the link before: H' = H + p̂ M,
     /// J' = J + p̂ Hᵀ − H' p̂.
-    fn to_parent(&self, graph: &mut Graph, link: &Link) -> Self {
-        let mut turned = *self;
+    fn to_parent(self, graph: &mut Graph, link: &Link) -> Self {
+        let mut turned = self;
         for turn in link.turns.iter().rev() {
             turned = Inertia {
                 j: turn.symmetric(graph, &turned.j),

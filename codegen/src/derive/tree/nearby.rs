@@ -192,7 +192,7 @@ impl Variation {
 
     /// A covector on variations of the link before.
     fn to_parent(
-        &self,
+        self,
         graph: &mut Graph,
         link: &Link,
         relative: (Vec3, Vec3),
@@ -337,7 +337,7 @@ impl Stream {
     }
 
     /// Relative to the link before, against which the link itself moves, too.
-    fn to_parent(&self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
+    fn to_parent(self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
         let (spin, speed) = motion.relative;
         let (spin, speed) = (add3(graph, spin, spin), add3(graph, speed, speed));
         let whirl = cross(graph, spin, mass.first);
