@@ -34,7 +34,7 @@ impl Builder<'_> {
         let driven = full.accelerated.iter().map(|&(velocity, _)| velocity);
         let velocities: Vec<usize> = solved.chain(driven).collect();
         // Where the other velocities are given ahead, by the recursion over links.
-        let whole = self.model.whole.is_some() || full.constraints.is_empty();
+        let whole = self.model.full_frame.is_some() || full.constraints.is_empty();
         let mut traced: Vec<(Graph, Vec<Edge>)> = Vec::new();
         if whole {
             let given = Setting::given(self.model);

@@ -265,7 +265,7 @@ fn read_at(
         prescribed,
         accelerated,
         independent,
-        whole: None,
+        full_frame: None,
         spans: true,
         overconstrained: false,
         augmented: false,

@@ -8,7 +8,7 @@ use super::invariants::{Invariant, Quantity};
 use super::motion::Observed;
 use super::pfaffian::Pfaffian;
 use super::value::Value;
-use super::{Body, Frame, Group, KineticTerms, Model, Particle, Whole, Wrench};
+use super::{Body, Frame, FullFrame, Group, KineticTerms, Model, Particle, Wrench};
 use crate::algebra::graph::{Edge, Graph};
 
 /// What holds expressions of a graph.
@@ -123,7 +123,7 @@ fields!(Frame { rotation, position, relative; name, parent });
 fields!(Body { mass, com, inertia_com, inertia_origin; frame });
 fields!(Particle { mass, position; });
 fields!(Wrench { at, force, torque; frame, axes });
-fields!(Whole { images; full, active });
+fields!(FullFrame { images; full, active });
 fields!(KineticTerms { mass, bias; });
 fields!(Pfaffian { row, shift, residual, stabilized; kind, written, span });
 fields!(Completion { y, pivots, constants; independent });
@@ -138,7 +138,7 @@ fields!(Elements {
 fields!(Model {
     x, xi, xi_dot, u, momenta, rate, a, frames, closures, bodies, particles, wrenches, elements, dissipation, observed,
     kinetic, armature, kinetic_terms, potential, gravity, generalized, outputs, invariants, lets, constraints,
-    completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, whole;
+    completion, params, velocities, inputs, states, state_rates, prescribed, accelerated, full_frame;
     name, public, docs, graph, points, defaults, coordinates, blocks, phi, velocity_spans, spans, overconstrained, augmented, starts_anywhere, clock,
     joints, start_x, start_xi, start_z, opening, asked, span, origins, warnings, independent, externals
 });

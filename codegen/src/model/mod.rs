@@ -162,7 +162,7 @@ pub struct Clock {
 
 /// The full frame of a system whose other velocities are all given: by the time, or prescribed.
 #[derive(Clone, Debug)]
-pub struct Whole {
+pub struct FullFrame {
     /// The system in the full frame, in a graph of its own.
     pub full: Arc<Model>,
     /// What every symbol of that graph becomes, in the graph of the system.
@@ -229,7 +229,7 @@ pub struct Model {
     /// Velocities that constraints are not solved for, by their places in ξ, and where that was said.
     pub independent: Vec<(usize, Span)>,
     /// The full frame, where all that was solved for is given ahead.
-    pub whole: Option<Whole>,
+    pub full_frame: Option<FullFrame>,
     /// Whether A spans the tangent space of X: not so where constraints have been solved.
     pub spans: bool,
     /// Whether constraints that are kept depend on one another along the whole motion.

@@ -26,7 +26,7 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
     let mut edges: Vec<Edge> = factors.map(|&(_, factor)| factor).collect();
     edges.extend(regressor.standard.iter().map(|one| one.value));
     edges.extend(regressor.columns.iter().flatten());
-    edges.extend(&regressor.rest);
+    edges.extend(&regressor.other_potentials);
     let tape = Tape::new(&regressor.model.graph, &edges)
         .ok_or_else(|| failed("its columns have no numbers"))?;
     let compared = at_fresh_points(

@@ -53,14 +53,14 @@ impl Recursion {
         if !reduced.constraints.is_empty() || setting.back.is_some() {
             return None;
         }
-        let (mut model, mut calculus, free) = match &reduced.whole {
-            Some(whole) => {
-                let full = Model::clone(&whole.full);
+        let (mut model, mut calculus, free) = match &reduced.full_frame {
+            Some(frame) => {
+                let full = Model::clone(&frame.full);
                 let calculus = Calculus::new(&full);
                 let free = Free {
                     graph: reduced.graph.clone(),
-                    images: whole.images.clone(),
-                    active: whole.active.clone(),
+                    images: frame.images.clone(),
+                    active: frame.active.clone(),
                 };
                 (full, calculus, Some(free))
             }

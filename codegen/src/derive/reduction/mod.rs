@@ -18,7 +18,7 @@ use crate::algebra::numeric::evaluate;
 use crate::derive::inertia;
 use crate::diagnostics::Diagnostic;
 use crate::model::pfaffian::{Kind, Pfaffian};
-use crate::model::{Model, Whole};
+use crate::model::{FullFrame, Model};
 use crate::syntax::ast::Span;
 use carrier::Carrier;
 use rows::{independent, keep, redundant, start_numbers};
@@ -131,7 +131,7 @@ pub fn reduce(model: &Model) -> Result<Option<Reduction>, Diagnostic> {
     let mut model = carrier.model(&rows, &kept, &pivots);
     model.overconstrained = kept.len() > rank;
     model.augmented = !kept.is_empty() && inertia::is_singular(&model);
-    model.whole = given.then(|| Whole {
+    model.full_frame = given.then(|| FullFrame {
         full: Arc::new(before),
         images: images.clone(),
         active: active.clone(),

@@ -13,10 +13,11 @@ use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, multiply3, scale3, sub3, transpose3, zero3,
 };
+use crate::algebra::numeric::evaluate;
 use crate::algebra::transplant::substitute;
-use crate::derive::tree::Tree;
 use crate::derive::tree::mass::Mass;
 use crate::derive::tree::turn::Turn;
+use crate::derive::tree::{Link as TreeLink, Tree};
 use crate::model::Model;
 use crate::model::layout::Block;
 use rustc_hash::FxHashMap;
@@ -105,8 +106,14 @@ pub fn candidates(
     }
     groups.extend(together(tree));
     let mut relations = Vec::new();
+    let numbers = model.numbers(&model.defaults, &model.start_x, &[], &[], &[]);
     for index in 0..links.len() {
-        for masses in along_axis(&mut model.graph, tree, links, index) {
+        for masses in along_axis(
+            &mut model.graph,
+            &numbers,
+            &tree.links[index],
+            &links[index],
+        ) {
             let exact = ten(&mut model.graph, &masses);
             let group = (&[index][..], links[index].parent);
             relations.push(moved(model, links, group, &exact));
@@ -120,23 +127,30 @@ pub fn candidates(
 }
 
 /// Masses on the axis a of a hinge through the frame's origin, which do not move against the link before: m, h = a and
-/// ∫ r rᵀ dm = a aᵀ, whatever numbers a has.
-fn along_axis(graph: &mut Graph, tree: &Tree, links: &[Link], index: usize) -> Vec<Mass> {
-    let zero = zero3(graph);
-    match tree.links[index].freedoms.as_slice() {
-        [freedom] if freedom.linear == zero => {
-            let a = apply_transposed(graph, &links[index].axes, freedom.angular);
-            let none = Mass::none(graph);
-            let one = graph.one();
-            let second = a.map(|entry| scale3(graph, entry, a));
-            vec![
-                Mass { mass: one, ..none },
-                Mass { first: a, ..none },
-                Mass { second, ..none },
-            ]
-        }
-        _ => Vec::new(),
+/// ∫ r rᵀ dm = a aᵀ, whatever numbers a has. Its largest entry is 1.
+fn along_axis(graph: &mut Graph, numbers: &[f64], link: &TreeLink, frame: &Link) -> Vec<Mass> {
+    let [freedom] = link.freedoms.as_slice() else {
+        return Vec::new();
+    };
+    if freedom.linear != zero3(graph) {
+        return Vec::new();
     }
+    let axis = apply_transposed(graph, &frame.axes, freedom.angular);
+    let mut symbols = numbers.to_vec();
+    symbols.resize(graph.symbols().len(), f64::NAN);
+    let sizes = evaluate(graph, &axis, &symbols);
+    let largest = (0..3).max_by(|&i, &j| sizes[i].abs().total_cmp(&sizes[j].abs()));
+    let scaled = largest.map(|k| axis.map(|entry| graph.div(entry, axis[k])));
+    let Some([Some(x), Some(y), Some(z)]) = scaled else {
+        return Vec::new();
+    };
+    let (a, one, none) = ([x, y, z], graph.one(), Mass::none(graph));
+    let second = a.map(|entry| scale3(graph, entry, a));
+    vec![
+        Mass { mass: one, ..none },
+        Mass { first: a, ..none },
+        Mass { second, ..none },
+    ]
 }
 
 /// Links whose joints have a velocity in common, alone and with the link that all of them hang on.

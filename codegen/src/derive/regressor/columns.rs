@@ -1,6 +1,8 @@
 //! The columns of Y for the inertia of links: what a unit of each parameter needs, about the origin and in the axes of
 //! the frame that the link's joint carries, with ω, α and the acceleration a of its origin, less gravity:
-//! m: a; m s: force U s with U = α̂ + ω̂ω̂, torque s × a; Θ: torque Θ α + ω × Θ ω.
+//! m: a; m s: force U s with U = α̂ + ω̂ω̂, torque s × a; Θ: torque Θ α + ω × Θ ω. A wrench (force f, torque t) has the
+//! generalised force S_ω·t + S_v·f at a joint with the column S = (S_ω, S_v), in axes of the link; where the joint turns about
+//! a point c that others turn about, too, this is S_ω·(t − c × f).
 
 use super::parameters::{ENTRIES, Link};
 use crate::algebra::graph::{Edge, Graph};
@@ -122,14 +124,16 @@ fn of_link(
         })
         .collect();
     let zero = zero3(graph);
-    let path = Path::new(graph, tree, index);
+    let mut path = Path::new(tree, index);
+    if route == Route::Meeting {
+        path.find_meetings(graph, tree);
+    }
     wrenches
         .into_iter()
         .map(|wrench| match route {
             Route::Wrenches => by_wrenches(graph, tree, index, wrench),
             Route::Mixed if wrench.force != zero => by_wrenches(graph, tree, index, wrench),
-            Route::Mixed | Route::Twists => path.by_twists(graph, tree, wrench, false),
-            Route::Meeting => path.by_twists(graph, tree, wrench, true),
+            Route::Mixed | Route::Twists | Route::Meeting => path.by_twists(graph, tree, wrench),
         })
         .collect()
 }
@@ -137,7 +141,7 @@ fn of_link(
 /// The links from the root to one of them.
 struct Path {
     links: Vec<usize>,
-    /// For each of them the point in which the axes of its joint meet those of joints around it, if there is one: the
+    /// For each of them, once they have been looked for, the point in which the axes of its joint meet those of joints around it, if there is one: the
     /// place of a link that it is fixed to, and the point in the axes of that link.
     meeting: Vec<Option<(usize, Vec3)>>,
 }
@@ -152,17 +156,22 @@ enum Meeting {
 }
 
 impl Path {
-    /// Nothing of how the points are found stays in the graph: equal expressions are computed as the first one says.
-    fn new(graph: &mut Graph, tree: &Tree, link: usize) -> Self {
-        let mut found = graph.clone();
+    fn new(tree: &Tree, link: usize) -> Self {
         let before = |&index: &usize| tree.links[index].parent;
         let mut links: Vec<usize> = std::iter::successors(Some(link), before).collect();
         links.reverse();
-        let mut meeting = vec![None; links.len()];
+        let meeting = vec![None; links.len()];
+        Path { links, meeting }
+    }
+
+    /// Finds where axes meet. Nothing of how the points are found stays in the graph: equal expressions are computed as the
+    /// first one says.
+    fn find_meetings(&mut self, graph: &mut Graph, tree: &Tree) {
+        let mut found = graph.clone();
         let mut first = 0;
         let mut met: Option<Meeting> = None;
-        for place in 0..links.len() {
-            let link = &tree.links[links[place]];
+        for (place, &index) in self.links.iter().enumerate() {
+            let link = &tree.links[index];
             let joined = met.and_then(|met| met.joined(&mut found, link));
             if joined.is_none() {
                 first = place;
@@ -170,18 +179,17 @@ impl Path {
             met = joined.or_else(|| Meeting::alone(&found, link));
             if let Some(Meeting::At(point)) = met {
                 let point = rebuild(&found, graph, &point);
-                meeting[first..=place].fill(Some((place, [point[0], point[1], point[2]])));
+                self.meeting[first..=place].fill(Some((place, [point[0], point[1], point[2]])));
             }
         }
-        Path { links, meeting }
     }
 
     /// The generalised force of a wrench on the last link by the power of the twists of all joints before.
-    fn by_twists(&self, graph: &mut Graph, tree: &Tree, wrench: Wrench, meet: bool) -> Vec<Edge> {
+    fn by_twists(&self, graph: &mut Graph, tree: &Tree, wrench: Wrench) -> Vec<Edge> {
         let zero = zero3(graph);
         let mut forces = vec![graph.zero(); tree.armature.len()];
         for (place, &index) in self.links.iter().enumerate() {
-            let meeting = self.meeting[place].filter(|_| meet && wrench.force != zero);
+            let meeting = self.meeting[place].filter(|_| wrench.force != zero);
             let wrench = match meeting {
                 // About the point: torque − s × force.
                 Some((at, point)) => {

@@ -60,7 +60,7 @@ pub struct Regressor {
     /// What acts besides and is no linear function of these parameters.
     pub besides: Vec<&'static str>,
     /// The force of potentials that are no part of it, ∂ᵢV.
-    pub rest: Vec<Edge>,
+    pub other_potentials: Vec<Edge>,
 }
 
 /// Derives the base parameters of a model.
@@ -79,11 +79,11 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
         .iter()
         .flat_map(|link| link.standard.clone())
         .collect();
-    let beside = parameters::beside(&mut model, &mut calculus);
+    let joints = parameters::of_joints(&mut model, &mut calculus);
     // What is emitted is derived apart: equal expressions of one graph are computed in one way.
     let mut derived = model.clone();
     let mut columns = columns::inertial(&mut model, &tree, &links);
-    for (parameter, column) in &beside.parameters {
+    for (parameter, column) in &joints.parameters {
         standard.push(parameter.clone());
         columns.push(column.clone());
     }
@@ -92,7 +92,7 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
     let found = relations::find(&mut model, &samples, &tree, &links, standard.len())?;
     let kept: Vec<usize> = found.base.iter().map(|base| base.kept).collect();
     let mut columns = columns::cheapest(&mut derived, &tree, &links, &kept);
-    columns.extend(beside.parameters.into_iter().map(|(_, column)| column));
+    columns.extend(joints.parameters.into_iter().map(|(_, column)| column));
     // Links without mass take part in the relations, and have no parameters.
     let present: Vec<usize> = (0..standard.len())
         .filter(|&k| standard[k].present)
@@ -120,8 +120,8 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
             .collect(),
         standard: present.iter().map(|&k| standard[k].clone()).collect(),
         columns: present.iter().map(|&k| columns[k].clone()).collect(),
-        besides: beside.besides,
-        rest: beside.rest,
+        besides: joints.besides,
+        other_potentials: joints.other_potentials,
         model: derived,
     })
 }

@@ -146,17 +146,17 @@ pub fn ten(graph: &mut crate::algebra::graph::Graph, mass: &Mass) -> Vec<Edge> {
 }
 
 /// Parameters of joints with their columns, and what is no parameter.
-pub struct Beside {
+pub struct OfJoints {
     /// The parameters, each with its column.
     pub parameters: Vec<(Standard, Vec<Edge>)>,
     /// What else acts.
     pub besides: Vec<&'static str>,
     /// ∂ᵢ of all potentials but those of gravity and of these springs.
-    pub rest: Vec<Edge>,
+    pub other_potentials: Vec<Edge>,
 }
 
 /// Armatures, dampers and springs.
-pub fn beside(model: &mut Model, calculus: &mut Calculus) -> Beside {
+pub fn of_joints(model: &mut Model, calculus: &mut Calculus) -> OfJoints {
     let n = model.n();
     let zero = model.graph.zero();
     let mut parameters = Vec::new();
@@ -211,8 +211,8 @@ pub fn beside(model: &mut Model, calculus: &mut Calculus) -> Beside {
         let name = named(model, length).unwrap_or_else(|| format!("spring_{}", place + 1));
         parameters.push((standard(Kind::Stiffness, name, spring.stiffness), column));
     }
-    let rest = (0..n).map(|i| calculus.along(&mut model.graph, i, potential));
-    let rest = rest.collect();
+    let slopes = (0..n).map(|i| calculus.along(&mut model.graph, i, potential));
+    let other_potentials = slopes.collect();
     let elements = &model.elements;
     let mut besides = Vec::new();
     let all = [
@@ -225,10 +225,10 @@ pub fn beside(model: &mut Model, calculus: &mut Calculus) -> Beside {
             .filter(|(there, _)| *there)
             .map(|(_, what)| *what),
     );
-    Beside {
+    OfJoints {
         parameters,
         besides,
-        rest,
+        other_potentials,
     }
 }
 

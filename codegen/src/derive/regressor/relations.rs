@@ -6,8 +6,16 @@ use super::parameters::Link;
 use super::samples::Samples;
 use crate::algebra::echelon::Echelon;
 use crate::algebra::graph::{Edge, Graph};
+use crate::algebra::numeric::evaluate;
 use crate::derive::tree::Tree;
 use crate::model::Model;
+
+/// The least factor that a parameter is solved for, as a part of the largest one of its kind: β has no factors that are much
+/// larger, however little an axis is tilted. First moments, second moments and masses are of different kinds.
+const LEAST: f64 = 0.1;
+
+/// What each of the ten parameters of a link is: of second order, of first order, a mass.
+const KINDS: [u8; 10] = [2, 2, 2, 2, 2, 2, 1, 1, 1, 0];
 
 /// Base parameters by the places of parameters among all.
 pub struct Found {
@@ -34,7 +42,8 @@ pub fn find(
     order.extend(present.iter().rev());
     let known = Known::new(model, samples);
     let mut relations = candidates(model, samples, &known, tree, links);
-    let mut solved = solve(&mut model.graph, &relations, &order, nothing);
+    let numbers = model.numbers(&model.defaults, &model.start_x, &[], &[], &[]);
+    let mut solved = solve(&mut model.graph, &numbers, &relations, (&order, nothing));
     if solved.len() + rank < present.len() {
         let dependent: Vec<usize> = solved.iter().map(|(pivot, _)| *pivot).collect();
         let left: Vec<usize> = present
@@ -48,7 +57,7 @@ pub fn find(
             )?;
             relations.push(joined(&model.graph, &left, &exact));
         }
-        solved = solve(&mut model.graph, &relations, &order, nothing);
+        solved = solve(&mut model.graph, &numbers, &relations, (&order, nothing));
     }
     let graph = &model.graph;
     if solved.len() + rank != present.len()
@@ -86,55 +95,75 @@ pub fn find(
     })
 }
 
+/// A factor, and its value with the parameters of the description.
+type Factor = (Edge, f64);
+
 /// Reduces relations: each of the result has the factor 1 at its pivot, where all others have 0. Columns are taken in
-/// the order given; what is solved for the first `nothing` of them is left out.
+/// the order given, where factors are not small; what is solved for the first `nothing` of them is left out.
 fn solve(
     graph: &mut Graph,
+    numbers: &[f64],
     relations: &[Relation],
-    order: &[usize],
-    nothing: usize,
+    (order, nothing): (&[usize], usize),
 ) -> Vec<(usize, Relation)> {
-    let zero = graph.zero();
-    let mut rows: Vec<Vec<Edge>> = relations
+    let (zero, one) = (graph.zero(), graph.one());
+    let mut symbols = numbers.to_vec();
+    symbols.resize(graph.symbols().len(), f64::NAN);
+    let mut rows: Vec<Vec<Factor>> = relations
         .iter()
         .map(|relation| {
-            let mut row = vec![zero; order.len()];
-            relation.iter().for_each(|&(k, factor)| row[k] = factor);
+            let factors: Vec<Edge> = relation.iter().map(|&(_, factor)| factor).collect();
+            let values = evaluate(graph, &factors, &symbols);
+            let mut row = vec![(zero, 0.0); order.len()];
+            for (&(k, factor), value) in relation.iter().zip(values) {
+                row[k] = (factor, value);
+            }
             row
         })
         .collect();
-    let mut pivots = Vec::new();
-    for &column in order {
-        let done = pivots.len();
-        // The pivot 1 first, then the shortest row.
-        let cost = |row: &Vec<Edge>| {
-            let plain = row[column].abs() == graph.one();
-            (!plain, row.iter().filter(|entry| **entry != zero).count())
-        };
-        let open = (done..rows.len()).filter(|&row| rows[row][column] != zero);
-        let Some(found) = open.min_by_key(|&row| cost(&rows[row])) else {
-            continue;
-        };
-        rows.swap(done, found);
-        let pivot = rows[done][column];
-        let divided = rows[done].iter().map(|&entry| graph.div(entry, pivot));
-        let Some(row) = divided.collect::<Option<Vec<Edge>>>() else {
-            continue;
-        };
-        for (index, other) in rows.iter_mut().enumerate() {
-            let factor = other[column];
-            if index == done || factor == zero {
+    let mut pivots: Vec<usize> = Vec::new();
+    // What has only small factors comes last.
+    for least in [LEAST, 0.0] {
+        for &column in order {
+            if pivots.contains(&column) {
                 continue;
             }
-            for (entry, &by) in other.iter_mut().zip(&row) {
-                if by != zero {
-                    let product = graph.mul(factor, by);
-                    *entry = graph.sub(*entry, product);
+            let done = pivots.len();
+            // The pivot 1 first, then the shortest row.
+            let cost = |row: &Vec<Factor>| {
+                let plain = row[column].0.abs() == one;
+                let length = row.iter().filter(|(entry, _)| *entry != zero).count();
+                (!plain, length)
+            };
+            let open = (done..rows.len())
+                .filter(|&row| rows[row][column].0 != zero && !is_small(&rows[row], column, least));
+            let Some(found) = open.min_by_key(|&row| cost(&rows[row])) else {
+                continue;
+            };
+            rows.swap(done, found);
+            let pivot = rows[done][column];
+            let divided = rows[done]
+                .iter()
+                .map(|entry| Some((graph.div(entry.0, pivot.0)?, entry.1 / pivot.1)));
+            let Some(row) = divided.collect::<Option<Vec<Factor>>>() else {
+                continue;
+            };
+            for (index, other) in rows.iter_mut().enumerate() {
+                let factor = other[column];
+                if index == done || factor.0 == zero {
+                    continue;
+                }
+                for (entry, &by) in other.iter_mut().zip(&row) {
+                    if by.0 != zero {
+                        let product = graph.mul(factor.0, by.0);
+                        entry.0 = graph.sub(entry.0, product);
+                        entry.1 -= factor.1 * by.1;
+                    }
                 }
             }
+            rows[done] = row;
+            pivots.push(column);
         }
-        rows[done] = row;
-        pivots.push(column);
     }
     let all: Vec<usize> = (0..order.len()).collect();
     let solved = pivots
@@ -142,6 +171,20 @@ fn solve(
         .zip(&rows)
         .filter(|(pivot, _)| !order[..nothing].contains(pivot));
     solved
-        .map(|(&pivot, row)| (pivot, joined(graph, &all, row)))
+        .map(|(&pivot, row)| {
+            let factors: Vec<Edge> = row.iter().map(|&(factor, _)| factor).collect();
+            (pivot, joined(graph, &all, &factors))
+        })
         .collect()
+}
+
+/// Whether the factor of a column is small beside another one of the same kind and link.
+fn is_small(row: &[Factor], column: usize, least: f64) -> bool {
+    let (link, kind) = (column / 10, KINDS[column % 10]);
+    let alike = row.iter().enumerate().skip(10 * link).take(10);
+    let alike = alike.filter(|(k, _)| KINDS[k % 10] == kind);
+    let largest = alike.fold(0.0, |largest, (_, (_, value))| {
+        f64::max(largest, value.abs())
+    });
+    row[column].1.abs() < least * largest
 }

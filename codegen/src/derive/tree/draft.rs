@@ -40,7 +40,7 @@ pub enum JointMotion {
         /// The rate.
         rate: Vec<(usize, Edge)>,
     },
-    /// Any other joint: its rotation after `base`, freedoms, their drift.
+    /// Any other joint: its rotation after `base`, freedoms, their velocity product.
     Other(Option<Mat3>, Vec<Freedom>, (Vec3, Vec3)),
 }
 
@@ -48,7 +48,7 @@ impl Draft {
     /// The link itself.
     pub fn finish(self, graph: &mut Graph) -> Link {
         let zero = zero3(graph);
-        let (turns, freedoms, drift) = match self.motion {
+        let (turns, freedoms, velocity_product) = match self.motion {
             JointMotion::Hinge {
                 angle: (cos, sin),
                 phase: (c, s),
@@ -69,7 +69,7 @@ impl Draft {
                 };
                 (turns, vec![freedom], (zero, zero))
             }
-            JointMotion::Other(rotation, freedoms, drift) => {
+            JointMotion::Other(rotation, freedoms, velocity_product) => {
                 let mut turns = Vec::new();
                 let identity = identity3(graph);
                 match rotation {
@@ -83,7 +83,7 @@ impl Draft {
                         turns.extend(rotation.map(Turn::By));
                     }
                 }
-                (turns, freedoms, drift)
+                (turns, freedoms, velocity_product)
             }
         };
         Link {
@@ -91,7 +91,7 @@ impl Draft {
             turns,
             position: self.position,
             freedoms,
-            velocity_product: drift,
+            velocity_product,
             mass: self.mass,
             unshared: self.mass,
         }
@@ -266,12 +266,15 @@ fn joint(
     } else {
         (*on, Some(*turn), identity)
     };
-    let mut drift = (zero, zero);
+    let mut velocity_product = (zero, zero);
     let mut freedoms = Vec::new();
     for (i, angular, linear) in moving {
         // Into the axes of the link: those of the frame, or of the link before where it slides.
         let into = |graph: &mut Graph, v: Vec3| apply3(graph, &frame, v);
-        for (sum, column) in [(&mut drift.0, angular), (&mut drift.1, linear)] {
+        for (sum, column) in [
+            (&mut velocity_product.0, angular),
+            (&mut velocity_product.1, linear),
+        ] {
             if !free3(&model.graph, &column) {
                 let rate = calculus.rate3(&mut model.graph, column);
                 let rate = rate.map(|rate| model.graph.mul(rate, model.xi[i]));
@@ -286,7 +289,11 @@ fn joint(
             rate: vec![(i, one)],
         });
     }
-    Some((JointMotion::Other(rotation, freedoms, drift), base, frame))
+    Some((
+        JointMotion::Other(rotation, freedoms, velocity_product),
+        base,
+        frame,
+    ))
 }
 
 /// For every velocity that moves a frame in its parent the columns vee(Eᵀ ∂ᵢE) and Eᵀ ∂ᵢp.

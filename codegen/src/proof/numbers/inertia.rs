@@ -85,8 +85,8 @@ impl Sums {
     /// M and its derivatives: t_i with its rates, t = tᵢ ξⁱ, ∂ᵢt, and the inertia that acts on them.
     fn metric(&mut self, twists: &Twists, xi: &[Fp], inertia: impl Fn(&[Fp]) -> Vec<Fp>) {
         let n = xi.len();
-        let momentum = inertia(&twists.whole);
-        let mut drift = vec![Fp::ZERO; twists.whole.len()];
+        let momentum = inertia(&twists.total);
+        let mut drift = vec![Fp::ZERO; twists.total.len()];
         for (rate, &speed) in twists.rate_by.iter().zip(xi) {
             for (sum, &entry) in drift.iter_mut().zip(rate) {
                 increase(sum, entry * speed);
@@ -98,7 +98,7 @@ impl Sums {
             increase(&mut self.mass_rate[i], rate);
             increase(
                 &mut self.centrifugal[i],
-                dot(&twists.by_whole[i], &momentum),
+                dot(&twists.by_total[i], &momentum),
             );
             if twists.by[i].iter().all(|entry| entry.is_zero()) {
                 continue;
@@ -119,10 +119,10 @@ impl Sums {
         self.point(mass, gravity, point);
         let all = |list: &[Vec3]| list.iter().map(|entry| entry.to_vec()).collect();
         let twists = Twists {
-            whole: point.rate.to_vec(),
+            total: point.rate.to_vec(),
             by: all(&point.by),
             rate_by: all(&point.rate_by),
-            by_whole: all(&point.by_rate),
+            by_total: all(&point.by_rate),
         };
         self.metric(&twists, xi, |v| {
             v.iter().map(|&entry| mass * entry).collect()
@@ -151,13 +151,13 @@ impl Sums {
         let into = apply_transposed;
         let each = |f: &dyn Fn(usize) -> Vec<Fp>| (0..n).map(f).collect::<Vec<_>>();
         let twists = Twists {
-            whole: twist(into(&r.value, p.rate), spin.omega),
+            total: twist(into(&r.value, p.rate), spin.omega),
             by: each(&|i| twist(into(&r.value, p.by[i]), spin.by[i])),
             rate_by: each(&|i| {
                 let v = add(into(&r.rate, p.by[i]), into(&r.value, p.rate_by[i]));
                 twist(v, spin.rate_by[i])
             }),
-            by_whole: each(&|i| {
+            by_total: each(&|i| {
                 let v = add(into(&r.by[i], p.rate), into(&r.value, p.by_rate[i]));
                 twist(v, spin.by_omega[i])
             }),
@@ -178,11 +178,11 @@ impl Sums {
 /// The velocity that M is the metric of, as a linear function of ξ.
 struct Twists {
     /// t.
-    whole: Vec<Fp>,
+    total: Vec<Fp>,
     /// tᵢ = ∂t/∂ξⁱ.
     by: Vec<Vec<Fp>>,
     /// d/dt tᵢ.
     rate_by: Vec<Vec<Fp>>,
     /// ∂ᵢt.
-    by_whole: Vec<Vec<Fp>>,
+    by_total: Vec<Vec<Fp>>,
 }
