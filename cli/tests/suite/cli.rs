@@ -391,24 +391,6 @@ fn samples_as_json_hold_outputs() {
     assert!(drift.abs() < 1e-9, "{drift:e}");
 }
 
-/// An output may end where the motion goes on: a root, or a table with `extrapolate error`.
-#[test]
-fn outputs_without_a_value_are_counted() {
-    let file = scratch("ending.eom");
-    let text =
-        "system Ending { coord q; velocity w; rate q = w; kinetic w^2 / 2; start q = 0.5, w = 1;
-        output side = sqrt(1 - q^2); output twice = 2 * q; }";
-    std::fs::write(&file, text).expect("a file");
-    let file = file.display().to_string();
-    let run = ["simulate", &file, "--until", "1", "--step", "0.125"];
-    let said = stdout(&run);
-    assert!(
-        said.contains("side has no finite value at 4 of 9 samples, first at t = 0.625\n"),
-        "{said}"
-    );
-    assert!(!said.contains("twice has"), "{said}");
-}
-
 #[test]
 fn a_run_that_fails_says_when() {
     let description = "system Fall { coord q; velocity w; rate q = w; kinetic w^2 / 2; potential -q^4; start q = 1; }";

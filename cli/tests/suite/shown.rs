@@ -228,3 +228,39 @@ fn the_only_attitude_is_on_the_sphere_alone() {
         "{labels:?}"
     );
 }
+
+/// An output may end where the motion goes on: a root, or a table with `extrapolate error`.
+#[test]
+fn outputs_without_a_value_are_counted() {
+    let described =
+        "system Ending { coord q; velocity w; rate q = w; kinetic w^2 / 2; start q = 0.5, w = 1;
+        output side = sqrt(1 - q^2); output twice = 2 * q; }";
+    let output = hamel(
+        &["simulate", "-", "--until", "1", "--step", "0.125"],
+        described,
+    );
+    let said = text(&output.stdout);
+    assert!(
+        said.contains("side has no finite value at 4 of 9 samples, first at t = 0.625\n"),
+        "{said}"
+    );
+    assert!(!said.contains("twice has"), "{said}");
+}
+
+/// A tip without mass, in a system that is too large to be written out, with a loop.
+#[test]
+fn a_joint_without_inertia_is_named_beside_loops() {
+    let described = "system Cranks {
+        for i in 1..7 { joint c[i]: revolute [0, 1, 0] at [i, 0, 0] moves f[i]; body on f[i] { mass 1; inertia diag(1, 1, 1) about com; } }
+        joint p: revolute [0, 1, 0] on f[1] at [0, 0, 1] moves g;
+        body on g { mass 1; inertia diag(1, 1, 1) about com; }
+        joint tip: revolute [0, 0, 1] on f[3] moves nothing;
+        loop position(g, [1, 0, 0]) = position(f[2], [0, 0, 1]);
+    }";
+    let output = hamel(&["check", "-"], described);
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("(`tip_dot`) is not positive") && said.contains("5:15"),
+        "{said}"
+    );
+}

@@ -73,9 +73,15 @@ fn put_together(
         .map(|computed| (Acceleration::none(model.graph.clone()), computed));
     let Some((chosen, computed)) = alone.or_else(|| accel(model, care)) else {
         // Elimination at the start tells which velocity is the first without inertia.
-        if let Some(Computation { graph, parts }) = forces(model, care) {
-            inertia::positive_definite(model, &graph, &parts.mass)?;
-        }
+        let (graph, mass) = match forces(model, care) {
+            Some(Computation { graph, parts }) => (graph, parts.mass),
+            None => {
+                let mut calculus = Calculus::new(&reference);
+                let mass = inertia::mass_matrix(&mut reference, &mut calculus);
+                (reference.graph, mass)
+            }
+        };
+        inertia::positive_definite(model, &graph, &mass)?;
         return Err(Diagnostic::new(
             model.span,
             "the mass matrix is singular for every configuration",
