@@ -15,7 +15,7 @@
 //! | [`methods`] | the integrators: explicit and implicit Runge-Kutta methods on Lie groups, variational and splitting methods |
 //! | [`adaptive`] | error control, events and dense output |
 //! | [`Monitor`] | how well a run keeps energy, momentum and constraints |
-//! | [`step_slopes`], [`step_nearby`], [`Dual`] | the derivatives of a step with respect to state and inputs |
+//! | [`step_slopes`], [`step_slopes_into`], [`Dual`] | the derivatives of a step with respect to state and inputs |
 //! | [`flows`], [`Split`] | exact flows of free bodies, for systems that split into free motion and kicks |
 //! | `ensemble`, `wide` | many states at once, in SIMD lanes and on all cores |
 //! | [`adapter`] | any generated system as y′ = f(t, y), for the solvers of other crates |
@@ -136,7 +136,8 @@ pub use rotor::Rotor;
 pub use sampled::Sampled;
 pub use scalar::Scalar;
 pub use slopes::{
-    Directions, Nearby, Sparsity, Stepped, Tangent, TangentStep, step_nearby, step_slopes,
+    Directions, Sparsity, Stepped, Tangent, TangentStep, TangentSystem, step_slopes,
+    step_slopes_into,
 };
 pub use split::Split;
 pub use state::State;

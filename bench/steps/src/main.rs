@@ -10,7 +10,7 @@ mod measure;
 mod operations;
 
 use hamel::methods::{InChart, Rkmk4, SemiImplicitEuler};
-use hamel::{Method, Nearby, State, System, Table, Tangent, step_nearby};
+use hamel::{Method, TangentSystem, State, System, Table, Tangent, step_slopes_into};
 use input::{Input, input};
 use measure::INPUTS;
 use operations::{Counted, counted};
@@ -36,9 +36,9 @@ fn at<S: System>(system: &S, k: usize) -> (State<S>, S::Inputs) {
 fn operations<S, M>(system: &S, method: &M) -> [u64; 2]
 where
     S: Tangent<Scalar = Counted>,
-    M: Method<Nearby<S>> + InChart,
+    M: Method<TangentSystem<S>> + InChart,
 {
-    let nearby = Nearby::new(system);
+    let tangent = TangentSystem::new(system);
     let (state, u) = at(system, 3);
     [
         counted(|| {
@@ -47,7 +47,7 @@ where
         }),
         counted(|| {
             let mut slopes = S::Slopes::zero();
-            let step = step_nearby(method, &nearby, &state, &u, STEP, &mut slopes);
+            let step = step_slopes_into(method, &tangent, &state, &u, STEP, &mut slopes);
             drop(black_box(step));
         }),
     ]
@@ -57,10 +57,10 @@ where
 fn times<S, M>(system: &S, method: &M) -> (f64, f64)
 where
     S: Tangent<Scalar = f64>,
-    M: Method<Nearby<S>> + InChart,
+    M: Method<TangentSystem<S>> + InChart,
 {
     let inputs: Vec<_> = (0..INPUTS).map(|k| at(system, k)).collect();
-    let nearby = Nearby::new(system);
+    let tangent = TangentSystem::new(system);
     let linear = |count: u32| {
         let mut slopes = S::Slopes::zero();
         for _ in 0..count {
@@ -74,8 +74,8 @@ where
         let mut slopes = S::Slopes::zero();
         for _ in 0..count {
             for (state, u) in &inputs {
-                let nearby = black_box(&nearby);
-                let _ = black_box(step_nearby(method, nearby, state, u, STEP, &mut slopes));
+                let tangent = black_box(&tangent);
+                let _ = black_box(step_slopes_into(method, tangent, state, u, STEP, &mut slopes));
                 black_box(&slopes);
             }
         }

@@ -41,11 +41,11 @@ impl Builder<'_> {
         }
         if !recursive || model.n() <= MOST_LITERAL {
             let mut graph = self.graph.clone();
-            let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
+            let Some(displacements) = Displacements::new(full, reduction, &mut graph) else {
                 return;
             };
-            let along = (0..nearby.n()).map(|j| {
-                let x = model.x.iter().zip(&nearby.a);
+            let along = (0..displacements.n()).map(|j| {
+                let x = model.x.iter().zip(&displacements.a);
                 Derivation::new(x.map(|(x, row)| (x.node(), row[j])))
             });
             let by = derivations(&graph, &model.xi);

@@ -114,7 +114,7 @@ impl Builder<'_> {
         motions.extend(chosen.other.as_deref().map(|other| (other, apart(other))));
         let mut best: Option<((usize, usize), Linear)> = None;
         for (motion, Computation { mut graph, parts }) in motions {
-            let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
+            let Some(displacements) = Displacements::new(full, reduction, &mut graph) else {
                 return;
             };
             let right = parts.right(&mut graph);
@@ -122,16 +122,16 @@ impl Builder<'_> {
             let causes = self.causes_of(motion).into_iter();
             let known = motion.pivots.iter().copied().zip(causes);
             let guards: Vec<(Edge, Cause)> = known.filter(|(pivot, _)| varying(pivot)).collect();
-            let nearby = ForwardDynamics {
+            let displacements = ForwardDynamics {
                 graph: &graph,
                 xi_dot: &motion.xi_dot,
                 guards: &guards,
-                nearby,
+                displacements,
                 // With multipliers or drives M F is not the right-hand side.
                 implicit: (self.model.constraints.is_empty() && self.model.accelerated.is_empty())
                     .then_some((&parts.mass, &right)),
             };
-            let linear = linearize(self.model, &nearby, &self.care);
+            let linear = linearize(self.model, &displacements, &self.care);
             let cost = linear.cost();
             if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
                 best = Some((cost, linear));
@@ -146,11 +146,11 @@ impl Builder<'_> {
         self.causes.extend(guards.iter().copied());
         let guards = guards.into_iter().map(|(guard, _)| guard).collect();
         if !self.model.states.is_empty() {
-            let Some(nearby) = Displacements::new(full, reduction, &mut self.graph) else {
+            let Some(displacements) = Displacements::new(full, reduction, &mut self.graph) else {
                 return;
             };
             let xi_dot = &self.chosen.xi_dot;
-            rows = with_states(self.model, &nearby, (&mut self.graph, rows), xi_dot);
+            rows = with_states(self.model, &displacements, (&mut self.graph, rows), xi_dot);
             if !rates.is_empty() {
                 rates.extend(self.state_rates(&rates));
             }
@@ -183,15 +183,21 @@ impl Builder<'_> {
                 true => self.graph.clone(),
                 false => model.graph.clone(),
             };
-            let Some(nearby) = Displacements::new(full, reduction, &mut graph) else {
+            let Some(displacements) = Displacements::new(full, reduction, &mut graph) else {
                 return;
             };
             let changes: &[Vec<Edge>] = match follows {
-                true => &linear[nearby.n()..nearby.n() + model.n()],
+                true => &linear[displacements.n()..displacements.n() + model.n()],
                 false => &[],
             };
             let xi_dot: &[Edge] = if follows { &self.chosen.xi_dot } else { &[] };
-            let rows = slopes(model, &nearby, &mut graph, &entries, (changes, xi_dot));
+            let rows = slopes(
+                model,
+                &displacements,
+                &mut graph,
+                &entries,
+                (changes, xi_dot),
+            );
             let columns = rows.first().map_or(0, Vec::len);
             let shape = Shape::Matrix(rows.len(), columns);
             let mut candidates = Candidates::with(&self.care);

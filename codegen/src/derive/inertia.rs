@@ -151,7 +151,7 @@ fn numbers(model: &Model, x: &[f64]) -> Vec<f64> {
 
 /// A configuration near the start at which no angle is special; none where constraints between coordinates are not kept
 /// by charts alone.
-fn nearby(model: &Model) -> Option<Vec<f64>> {
+fn beside_the_start(model: &Model) -> Option<Vec<f64>> {
     let displaced = model.start_x.iter().zip(1..);
     let displaced =
         displaced.map(|(entry, place)| entry + 0.1 + 0.2 * (1.7 * f64::from(place)).sin());
@@ -227,7 +227,7 @@ pub fn positive_definite(
     let Some(pivot) = pivot_at(&model.start_x, ROUNDING) else {
         return Ok(());
     };
-    let elsewhere = nearby(model).filter(|_| model.starts_anywhere);
+    let elsewhere = beside_the_start(model).filter(|_| model.starts_anywhere);
     if elsewhere.is_some_and(|x| pivot_at(&x, CERTAIN).is_none()) {
         return Ok(());
     }

@@ -40,7 +40,7 @@ pub struct ForwardDynamics<'a> {
     /// Pivots that have to be positive where there is F, those that vary, and what they are of.
     pub guards: &'a [(Edge, Cause)],
     /// The displacements.
-    pub nearby: Displacements,
+    pub displacements: Displacements,
     /// M and f − Γ ξ ξ − ∂V of the active velocities, where M F = right-hand side holds.
     pub implicit: Option<(&'a [Vec<Edge>], &'a [Edge])>,
 }
@@ -151,16 +151,22 @@ impl Displacements {
 /// those of u. F is given in the graph of the rows.
 pub fn with_states(
     model: &Model,
-    nearby: &Displacements,
+    displacements: &Displacements,
     (graph, mut rows): (&mut Graph, Vec<Vec<Edge>>),
     xi_dot: &[Edge],
 ) -> Vec<Vec<Edge>> {
-    let inputs = nearby.n() + model.n();
+    let inputs = displacements.n() + model.n();
     for row in &mut rows {
         row[inputs..].rotate_left(model.m());
     }
-    let changes = rows[nearby.n()..].to_vec();
-    let below = slopes(model, nearby, graph, &model.state_rates, (&changes, xi_dot));
+    let changes = rows[displacements.n()..].to_vec();
+    let below = slopes(
+        model,
+        displacements,
+        graph,
+        &model.state_rates,
+        (&changes, xi_dot),
+    );
     rows.extend(below);
     rows
 }
@@ -169,13 +175,13 @@ pub fn with_states(
 /// there, and moves as the rows of δξ̇ say.
 pub fn slopes(
     model: &Model,
-    nearby: &Displacements,
+    displacements: &Displacements,
     graph: &mut Graph,
     expressions: &[Edge],
     (changes, xi_dot): (&[Vec<Edge>], &[Edge]),
 ) -> Vec<Vec<Edge>> {
     let expressions = rebuild(&model.graph, graph, expressions);
-    let n = nearby.n();
+    let n = displacements.n();
     let one = graph.one();
     // z stands before u.
     let (u, z) = model.u.split_at(model.m());
@@ -184,7 +190,7 @@ pub fn slopes(
         .map(|j| {
             let mut seeds: Vec<(NodeId, Edge)> = match j.checked_sub(n) {
                 None => {
-                    let x = model.x.iter().zip(&nearby.a);
+                    let x = model.x.iter().zip(&displacements.a);
                     x.map(|(x, row)| (x.node(), row[j])).collect()
                 }
                 Some(i) => vec![(moved[i].node(), one)],
@@ -209,7 +215,7 @@ pub fn linearize(model: &Model, motion: &ForwardDynamics, care: &Care) -> Linear
     let recursions = recursions(&Setting::given(model), care);
     // Beyond a few links the recursion is certainly cheapest.
     let long = recursions.first().is_some_and(Recursion::is_long);
-    let plain = motion.nearby.n() == model.n() && motion.implicit.is_some();
+    let plain = motion.displacements.n() == model.n() && motion.implicit.is_some();
     let traced = recursions.iter().filter(|_| plain);
     let mut candidates: Vec<Linear> = traced
         .filter_map(|recursion| recursive(recursion, &upper))
@@ -262,17 +268,17 @@ fn polished(linear: &Linear, model: &Model, motion: &ForwardDynamics) -> Option<
 /// The rows of ḣ.
 fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
     let mut graph = motion.graph.clone();
-    let nearby = &motion.nearby;
-    let mut columns = columns(model, &mut graph, nearby);
-    let rows = (nearby.places.iter())
+    let displacements = &motion.displacements;
+    let mut columns = columns(model, &mut graph, displacements);
+    let rows = (displacements.places.iter())
         .map(|&k| {
             let mut row: Vec<Edge> = columns
                 .iter_mut()
-                .map(|column| column.of(&mut graph, nearby.xi[k]))
+                .map(|column| column.of(&mut graph, displacements.xi[k]))
                 .collect();
-            for (entry, &j) in row.iter_mut().zip(&nearby.places) {
-                for i in 0..nearby.xi.len() {
-                    let product = graph.mul(nearby.gamma[i][j][k], nearby.xi[i]);
+            for (entry, &j) in row.iter_mut().zip(&displacements.places) {
+                for i in 0..displacements.xi.len() {
+                    let product = graph.mul(displacements.gamma[i][j][k], displacements.xi[i]);
                     *entry = graph.sub(*entry, product);
                 }
             }
@@ -283,14 +289,14 @@ fn upper(model: &Model, motion: &ForwardDynamics) -> Linear {
 }
 
 /// The derivations of all columns: ∂ⱼ, ∂/∂ξₐ, ∂/∂u.
-fn columns(model: &Model, graph: &mut Graph, nearby: &Displacements) -> Vec<Derivation> {
+fn columns(model: &Model, graph: &mut Graph, displacements: &Displacements) -> Vec<Derivation> {
     let one = graph.one();
     let along = |j: usize| {
-        let seeds = model.x.iter().zip(&nearby.a);
+        let seeds = model.x.iter().zip(&displacements.a);
         Derivation::new(seeds.map(|(x, row)| (x.node(), row[j])))
     };
     let by = |symbol: &Edge| Derivation::new([(symbol.node(), one)]);
-    (0..nearby.n())
+    (0..displacements.n())
         .map(along)
         .chain(model.xi.iter().map(by))
         .chain(model.u.iter().map(by))
@@ -300,7 +306,7 @@ fn columns(model: &Model, graph: &mut Graph, nearby: &Displacements) -> Vec<Deri
 /// F differentiated as it stands.
 fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
     let mut graph = motion.graph.clone();
-    let mut columns = columns(model, &mut graph, &motion.nearby);
+    let mut columns = columns(model, &mut graph, &motion.displacements);
     let mut rows = rebuilt(upper, &mut graph);
     rows.extend(motion.xi_dot.iter().map(|&rate| {
         let entries = columns.iter_mut().map(|column| column.of(&mut graph, rate));
@@ -313,7 +319,7 @@ fn explicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Linear {
 fn implicit(model: &Model, motion: &ForwardDynamics, upper: &Linear) -> Option<Linear> {
     let (mass, right) = motion.implicit?;
     let mut graph = motion.graph.clone();
-    let mut columns = columns(model, &mut graph, &motion.nearby);
+    let mut columns = columns(model, &mut graph, &motion.displacements);
     let changes: Vec<Vec<Edge>> = mass
         .iter()
         .zip(right)

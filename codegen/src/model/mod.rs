@@ -237,7 +237,7 @@ pub struct Model {
     /// Whether M is singular at the start and constraints are kept, so that M + w BᵀB takes its place: some velocities have
     /// inertia through constraints alone.
     pub augmented: bool,
-    /// Whether nobody has chosen the start, so that M may be singular there if it is not so nearby.
+    /// Whether nobody has chosen the start, so that M may be singular there if it is regular close by.
     pub starts_anywhere: bool,
     /// The user's kinetic energy where A does not span the tangent space.
     pub kinetic_terms: Option<KineticTerms>,

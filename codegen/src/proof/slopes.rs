@@ -174,20 +174,20 @@ impl Slopes {
             .chain(model.rate.clone())
             .collect();
         let here = evaluate_at(&model.graph, &roots, &mut lane.clone())?;
-        let nearby = Nearby::new(model, &here[nu * n..]);
-        let moved = nearby.moved(model, &here[..nu * n]);
+        let displaced = Displaced::new(model, &here[nu * n..]);
+        let moved = displaced.moved(model, &here[..nu * n]);
         let kinematics = |moved: &[Fp]| -> Option<Vec<Fp>> {
             let duals = tangent_at(&model.graph, &roots, &mut lane.clone(), moved)?;
             Some(duals.into_iter().map(|dual| dual.1).collect())
         };
         let changed = kinematics(&moved)?;
-        let moving = kinematics(&nearby.moving)?;
+        let moving = kinematics(&displaced.moving)?;
         let linear = value("linearize")?;
-        let found = nearby.found(&linear);
+        let found = displaced.found(&linear);
         let matrix = |flat: &[Fp]| -> Vec<Vec<Fp>> { matrix(flat, n) };
         let left = difference(
             &changed[nu * n..],
-            &product(&matrix(&moving[..nu * n]), &nearby.columns[..n]),
+            &product(&matrix(&moving[..nu * n]), &displaced.columns[..n]),
         );
         if product(&matrix(&here[..nu * n]), &found[..n]) != left {
             return Some(Err(KINEMATIC.into()));
@@ -209,7 +209,7 @@ impl Slopes {
         if states::slopes(model, (&xi_dot, changed), lane, &moved)? != state_rates {
             return Some(Err(states::WHAT.into()));
         }
-        let along = (&moved[..], &nearby.columns[..]);
+        let along = (&moved[..], &displaced.columns[..]);
         if !outputs::slopes_hold(model, program, (&xi_dot, changed), lane, along)? {
             return Some(Err(outputs::WHAT.into()));
         }
@@ -257,7 +257,7 @@ const DYNAMIC: &str = "δξ̇ of the linearisation";
 
 /// All columns at once, (h, δξ, δu) of random numbers: one wrong entry goes unnoticed with probability
 /// 1/p.
-struct Nearby {
+struct Displaced {
     columns: Vec<Fp>,
     /// ẋ as a direction in the symbols.
     moving: Vec<Fp>,
@@ -265,7 +265,7 @@ struct Nearby {
     others: Vec<usize>,
 }
 
-impl Nearby {
+impl Displaced {
     fn new(model: &Model, rate: &[Fp]) -> Self {
         let x = symbols(model, &model.x);
         let (u, z) = model.u.split_at(model.m());
@@ -280,7 +280,7 @@ impl Nearby {
         for (&place, &rate) in x.iter().zip(rate) {
             moving[place] = rate;
         }
-        Nearby {
+        Displaced {
             columns: (0..columns).map(|_| random.element()).collect(),
             moving,
             x,
@@ -331,13 +331,13 @@ fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<R
         Some(Numbers::new(reference, &slopes))
     };
     let xi_dot = solve(here.mass.clone(), here.force.clone())?;
-    let nearby = Nearby::new(model, &here.rate);
-    let moving = slope(&nearby.moving)?;
-    let changed = slope(&nearby.moved(model, &here.a.concat()))?;
+    let displaced = Displaced::new(model, &here.rate);
+    let moving = slope(&displaced.moving)?;
+    let changed = slope(&displaced.moved(model, &here.a.concat()))?;
     let linear = &program.function(FunctionId::Linearize)?.outputs;
-    let found = nearby.found(&evaluate_at(&program.graph, linear, &mut lane.clone())?);
+    let found = displaced.found(&evaluate_at(&program.graph, linear, &mut lane.clone())?);
     // A ḣ = D(A ξ)[A h, δξ] − Ȧ h.
-    let left = difference(&changed.rate, &product(&moving.a, &nearby.columns[..n]));
+    let left = difference(&changed.rate, &product(&moving.a, &displaced.columns[..n]));
     if product(&here.a, &found[..n]) != left {
         return Some(Err(KINEMATIC.into()));
     }
@@ -347,11 +347,11 @@ fn derived_at(reference: &Reference, program: &Program, lane: &Lane) -> Option<R
     if product(&here.mass, changed_rates) != right {
         return Some(Err(DYNAMIC.into()));
     }
-    let moved = nearby.moved(model, &here.a.concat());
+    let moved = displaced.moved(model, &here.a.concat());
     if states::slopes(model, (&xi_dot, changed_rates), lane, &moved)? != state_rates {
         return Some(Err(states::WHAT.into()));
     }
-    let along = (&moved[..], &nearby.columns[..]);
+    let along = (&moved[..], &displaced.columns[..]);
     if !outputs::slopes_hold(model, program, (&xi_dot, changed_rates), lane, along)? {
         return Some(Err(outputs::WHAT.into()));
     }

@@ -6,7 +6,7 @@ use hamel_codegen::derive::accel::branches::Branches;
 use hamel_codegen::derive::accel::parts::{Reference, Variant, parts};
 use hamel_codegen::derive::calculus::Calculus;
 use hamel_codegen::derive::tree::inverse::{inverse, wrenches};
-use hamel_codegen::derive::tree::{Placement, Tree, articulated, composite, nearby};
+use hamel_codegen::derive::tree::{Placement, Tree, articulated, composite, slopes};
 use hamel_codegen::model::Model;
 use hamel_codegen::syntax::ast::Axes;
 
@@ -133,7 +133,7 @@ fn agree_placed(mut model: Model, placement: Placement, steady: bool) {
         }
     }
     let mut graph = model.graph.clone();
-    let found = nearby::slopes(&mut graph, &tree, &xi, &xi_dot, gravity);
+    let found = slopes::slopes(&mut graph, &tree, &xi, &xi_dot, gravity);
     assert_eq!(found.is_some(), steady);
     let Some(found) = found else { return };
     let one = model.graph.one();

@@ -6,7 +6,7 @@ use crate::methods::implicit::equations::{Equations, TURNS, reach};
 use crate::methods::implicit::exact::{Exact, factored, still, varied};
 use crate::methods::implicit::unknowns::Unknowns;
 use crate::methods::{Method, arrive};
-use crate::slopes::{Directions, Nearby, Tangent, values};
+use crate::slopes::{Directions, Tangent, TangentSystem, values};
 use crate::state::State;
 use crate::system::System;
 
@@ -83,7 +83,7 @@ impl<Sys: Tangent> Method<Sys> for StiffEuler {
         U: Fn(f64, &Sys::Coordinates, &Sys::Velocities) -> Sys::Inputs,
     {
         state.check_shape(system)?;
-        let nearby = (!Sys::PLAIN).then(|| Nearby::new(system));
+        let tangent = (!Sys::PLAIN).then(|| TangentSystem::new(system));
         let equations = Equations {
             system,
             state,
@@ -92,7 +92,7 @@ impl<Sys: Tangent> Method<Sys> for StiffEuler {
             weighed: false,
         };
         let (x, xi) = equations.solve(&Exact {
-            nearby: nearby.as_ref(),
+            tangent: tangent.as_ref(),
         })?;
         arrive(system, state, h, x, xi)
     }
@@ -100,27 +100,27 @@ impl<Sys: Tangent> Method<Sys> for StiffEuler {
 
 /// The step of the values, with the slopes of the implicit function: δξ₁ = −(∂g/∂ξ₁)⁻¹ δg for what g varies by at ξ₁. Inputs
 /// are in dual numbers here, so that a controller's slopes count.
-impl<Sys: Tangent> Method<Nearby<Sys>> for StiffEuler {
+impl<Sys: Tangent> Method<TangentSystem<Sys>> for StiffEuler {
     fn order(&self) -> u32 {
         1
     }
 
     fn step<U>(
         &self,
-        nearby: &Nearby<Sys>,
-        state: &State<Nearby<Sys>>,
+        tangent: &TangentSystem<Sys>,
+        state: &State<TangentSystem<Sys>>,
         h: f64,
         inputs: &U,
-    ) -> Result<State<Nearby<Sys>>, StepError>
+    ) -> Result<State<TangentSystem<Sys>>, StepError>
     where
         U: Fn(
             f64,
-            &<Nearby<Sys> as System>::Coordinates,
-            &<Nearby<Sys> as System>::Velocities,
-        ) -> <Nearby<Sys> as System>::Inputs,
+            &<TangentSystem<Sys> as System>::Coordinates,
+            &<TangentSystem<Sys> as System>::Velocities,
+        ) -> <TangentSystem<Sys> as System>::Inputs,
     {
-        state.check_shape(nearby)?;
-        let system = nearby.plain();
+        state.check_shape(tangent)?;
+        let system = tangent.plain();
         let mut begin = State::<Sys> {
             t: state.t,
             x: system.zero_coordinates(),
@@ -129,7 +129,7 @@ impl<Sys: Tangent> Method<Nearby<Sys>> for StiffEuler {
         values(begin.x.as_mut(), state.x.as_ref());
         values(begin.xi.as_mut(), state.xi.as_ref());
         let plain_inputs = |t: f64, x: &Sys::Coordinates, xi: &Sys::Velocities| {
-            let (mut x_near, mut xi_near) = (nearby.zero_coordinates(), nearby.zero_velocities());
+            let (mut x_near, mut xi_near) = (tangent.zero_coordinates(), tangent.zero_velocities());
             still(x_near.as_mut(), x.as_ref());
             still(xi_near.as_mut(), xi.as_ref());
             let mut u = system.zero_inputs();
@@ -144,18 +144,18 @@ impl<Sys: Tangent> Method<Nearby<Sys>> for StiffEuler {
             weighed: false,
         };
         let (_, xi) = equations.solve(&Exact {
-            nearby: (!Sys::PLAIN).then_some(nearby),
+            tangent: (!Sys::PLAIN).then_some(tangent),
         })?;
 
         let mut fixed = state.clone();
         still(fixed.x.as_mut(), begin.x.as_ref());
         still(fixed.xi.as_mut(), begin.xi.as_ref());
-        let mut z = Unknowns::<Nearby<Sys>> {
-            u: nearby.zero_chart(),
-            xi: varied(nearby, &xi),
+        let mut z = Unknowns::<TangentSystem<Sys>> {
+            u: tangent.zero_chart(),
+            xi: varied(tangent, &xi),
         };
         let at = |state| Equations {
-            system: nearby,
+            system: tangent,
             state,
             h,
             inputs,
@@ -177,10 +177,10 @@ impl<Sys: Tangent> Method<Nearby<Sys>> for StiffEuler {
                 number.lean(-*by, direction);
             }
         }
-        let x = reach(nearby, &state.x, h, &z.xi, &mut z.u).ok_or(StepError::NotConverged {
+        let x = reach(tangent, &state.x, h, &z.xi, &mut z.u).ok_or(StepError::NotConverged {
             time: state.t,
             iterations: TURNS,
         })?;
-        arrive(nearby, state, h, x, z.xi)
+        arrive(tangent, state, h, x, z.xi)
     }
 }

@@ -18,7 +18,7 @@ use crate::manifold;
 use crate::methods::tableau::{Row, Stages, Weights};
 use crate::methods::{InChart, Method, arrive};
 use crate::scalar::Scalar;
-use crate::slopes::{Directions, Nearby, Tangent, displacement, values, varying};
+use crate::slopes::{Directions, Tangent, TangentSystem, displacement, values, varying};
 use crate::state::State;
 use crate::store::{Table, add_scaled, is_finite, scale};
 use crate::system::System;
@@ -28,7 +28,7 @@ use crate::system::System;
 pub struct TangentStep<'a, Sys: Tangent> {
     pub(crate) system: &'a Sys,
     /// The system in dual numbers; made where it is needed and not given.
-    pub(crate) nearby: Option<&'a Nearby<Sys>>,
+    pub(crate) tangent: Option<&'a TangentSystem<Sys>>,
     pub(crate) state: &'a State<Sys>,
     pub(crate) u: &'a Sys::Inputs,
     pub(crate) h: f64,
@@ -47,7 +47,7 @@ impl<Sys: Tangent> fmt::Debug for TangentStep<'_, Sys> {
 impl<Sys: Tangent> TangentStep<'_, Sys> {
     /// The step of a method, with its slopes.
     #[inline]
-    pub(crate) fn of<M: Method<Nearby<Sys>> + InChart>(
+    pub(crate) fn of<M: Method<TangentSystem<Sys>> + InChart>(
         &self,
         method: &M,
         slopes: &mut Sys::Slopes,
@@ -57,46 +57,46 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
     }
 
     #[inline]
-    fn in_dual_numbers<M: Method<Nearby<Sys>>>(
+    fn in_dual_numbers<M: Method<TangentSystem<Sys>>>(
         &self,
         method: &M,
         slopes: &mut Sys::Slopes,
     ) -> Result<State<Sys>, StepError> {
-        match self.nearby {
-            Some(nearby) => self.varied(method, nearby, slopes),
-            None => self.varied(method, &Nearby::new(self.system), slopes),
+        match self.tangent {
+            Some(tangent) => self.varied(method, tangent, slopes),
+            None => self.varied(method, &TangentSystem::new(self.system), slopes),
         }
     }
 
     #[inline]
-    fn varied<M: Method<Nearby<Sys>>>(
+    fn varied<M: Method<TangentSystem<Sys>>>(
         &self,
         method: &M,
-        nearby: &Nearby<Sys>,
+        tangent: &TangentSystem<Sys>,
         slopes: &mut Sys::Slopes,
     ) -> Result<State<Sys>, StepError> {
         let (system, state) = (self.system, self.state);
         state.check_shape(system)?;
         let displacements = slopes.rows() - state.xi.as_ref().len();
-        let mut begin = State::<Nearby<Sys>> {
+        let mut begin = State::<TangentSystem<Sys>> {
             t: state.t,
-            x: varying(nearby, &system.frame(&state.x), &state.x),
-            xi: nearby.zero_velocities(),
+            x: varying(tangent, &system.frame(&state.x), &state.x),
+            xi: tangent.zero_velocities(),
         };
         let xi = begin.xi.as_mut().iter_mut().zip(state.xi.as_ref());
         for (i, (varied, value)) in xi.enumerate() {
             *varied = Sys::Number::along(*value, displacements + i);
         }
-        let mut held = nearby.zero_inputs();
+        let mut held = tangent.zero_inputs();
         let first = slopes.rows();
         for (i, (varied, value)) in held.as_mut().iter_mut().zip(self.u.as_ref()).enumerate() {
             *varied = Sys::Number::along(*value, first + i);
         }
-        let mut varied = method.step(nearby, &begin, self.h, &|_, _, _| held.clone())?;
+        let mut varied = method.step(tangent, &begin, self.h, &|_, _, _| held.clone())?;
         if !method.stays_near() {
-            lead_back(nearby, &mut varied);
+            lead_back(tangent, &mut varied);
         }
-        project(nearby, &mut varied)?;
+        project(tangent, &mut varied)?;
         let mut end = State::<Sys> {
             t: varied.t,
             x: system.zero_coordinates(),
@@ -174,8 +174,8 @@ impl<Sys: Tangent> TangentStep<'_, Sys> {
             add_scaled(x.as_mut(), h, rate.as_ref());
             arrive(system, state, h, x, xi)?
         } else {
-            match self.nearby {
-                Some(nearby) => self.along(&nearby.compressed, xi, w)?,
+            match self.tangent {
+                Some(tangent) => self.along(&tangent.compressed, xi, w)?,
                 None => self.along(&system.compressed(), xi, w)?,
             }
         };

@@ -189,16 +189,16 @@ pub type Stepped<Sys> = Result<(State<Sys>, <Sys as Tangent>::Slopes), StepError
 
 /// A system in dual numbers, with the slopes of ξ̇ from its linearisation.
 #[derive(Clone, Debug)]
-pub struct Nearby<Sys: Tangent> {
+pub struct TangentSystem<Sys: Tangent> {
     system: Sys,
     dual: Sys::Dual,
     compressed: Sys::Compressed,
 }
 
-impl<Sys: Tangent> Nearby<Sys> {
+impl<Sys: Tangent> TangentSystem<Sys> {
     /// Of a system at its parameters.
     pub fn new(system: &Sys) -> Self {
-        Nearby {
+        TangentSystem {
             system: system.clone(),
             dual: system.dual(),
             compressed: system.compressed(),
@@ -236,7 +236,7 @@ where
     sum
 }
 
-impl<Sys: Tangent> System for Nearby<Sys> {
+impl<Sys: Tangent> System for TangentSystem<Sys> {
     type Scalar = Sys::Number;
     type Coordinates = <Sys::Dual as System>::Coordinates;
     type Velocities = <Sys::Dual as System>::Velocities;
@@ -371,7 +371,7 @@ impl<Sys: Tangent> System for Nearby<Sys> {
     }
 }
 
-impl<Sys: Tangent<Dual: Split>> Split for Nearby<Sys> {
+impl<Sys: Tangent<Dual: Split>> Split for TangentSystem<Sys> {
     type Rotors = <Sys::Dual as Split>::Rotors;
 
     const FREE: bool = <Sys::Dual as Split>::FREE;
@@ -406,7 +406,7 @@ impl<Sys: Tangent<Dual: Split>> Split for Nearby<Sys> {
 /// Every method that moves coordinates in the chart will do; nothing is allocated, but by
 /// [`BackwardEuler`](crate::methods::BackwardEuler) where a system is stiff. Constraints that multipliers keep are projected
 /// on as in [`step`](crate::step()), slopes with them. Implicit methods end where slopes have converged, too. A run of many
-/// steps makes [`Nearby`] once and calls [`step_nearby`].
+/// steps makes [`TangentSystem`] once and calls [`step_slopes_into`].
 ///
 /// # Errors
 /// Those of [`step`](crate::step()).
@@ -419,12 +419,12 @@ pub fn step_slopes<Sys, M>(
 ) -> Stepped<Sys>
 where
     Sys: Tangent,
-    M: Method<Nearby<Sys>> + InChart,
+    M: Method<TangentSystem<Sys>> + InChart,
 {
-    let step = |nearby| {
+    let step = |tangent| {
         let step = TangentStep {
             system,
-            nearby,
+            tangent,
             state,
             u,
             h,
@@ -436,18 +436,18 @@ where
     // What methods make by matrices needs no dual numbers there.
     match Sys::PLAIN {
         true => step(None),
-        false => step(Some(&Nearby::new(system))),
+        false => step(Some(&TangentSystem::new(system))),
     }
 }
 
 /// Coordinates that vary along the frame of displacements.
 #[inline]
 fn varying<Sys: Tangent>(
-    nearby: &Nearby<Sys>,
+    tangent: &TangentSystem<Sys>,
     frame: &Sys::Frame,
     x: &Sys::Coordinates,
-) -> <Nearby<Sys> as System>::Coordinates {
-    let mut varied = nearby.zero_coordinates();
+) -> <TangentSystem<Sys> as System>::Coordinates {
+    let mut varied = tangent.zero_coordinates();
     let entries = varied.as_mut().iter_mut().zip(x.as_ref());
     for (i, (number, value)) in entries.enumerate() {
         number.vary(*value, frame.row(i));
@@ -459,9 +459,9 @@ fn varying<Sys: Tangent>(
 ///
 /// # Errors
 /// Those of [`step`](crate::step()); `slopes` then has no meaning.
-pub fn step_nearby<Sys, M>(
+pub fn step_slopes_into<Sys, M>(
     method: &M,
-    nearby: &Nearby<Sys>,
+    tangent: &TangentSystem<Sys>,
     state: &State<Sys>,
     u: &Sys::Inputs,
     h: f64,
@@ -469,11 +469,11 @@ pub fn step_nearby<Sys, M>(
 ) -> Result<State<Sys>, StepError>
 where
     Sys: Tangent,
-    M: Method<Nearby<Sys>> + InChart,
+    M: Method<TangentSystem<Sys>> + InChart,
 {
     let step = TangentStep {
-        system: &nearby.system,
-        nearby: Some(nearby),
+        system: &tangent.system,
+        tangent: Some(tangent),
         state,
         u,
         h,

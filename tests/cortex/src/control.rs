@@ -9,7 +9,7 @@
 use core::array::from_fn;
 
 use hamel::methods::SemiImplicitEuler;
-use hamel::{Nearby, Scalar, State, StepError, System, manifold, step, step_nearby};
+use hamel::{TangentSystem, Scalar, State, StepError, System, manifold, step, step_slopes_into};
 
 use crate::matrix::{
     Matrix, add_diagonal, add_scaled, add_symmetric_product, add_transposed_product, dot, solve,
@@ -137,7 +137,7 @@ fn effort<S: Scalar>(u: &[S; M]) -> [S; M] {
 #[derive(Clone, Debug)]
 pub struct Regulator<S: Scalar> {
     drone: Drone<S>,
-    nearby: Nearby<Drone<S>>,
+    tangent: TangentSystem<Drone<S>>,
     plan: Plan<S>,
     tried: Plan<S>,
     answers: [Answer<S>; NODES],
@@ -159,7 +159,7 @@ impl<S: Scalar> Regulator<S> {
             cost: zero,
         };
         Regulator {
-            nearby: Nearby::new(&drone),
+            tangent: TangentSystem::new(&drone),
             drone,
             tried: plan.clone(),
             plan,
@@ -244,7 +244,7 @@ impl<S: Scalar> Regulator<S> {
         let nodes = self.plan.states.iter().zip(&self.plan.inputs);
         let mut slopes = [[S::default(); N + M]; N];
         for ((place, u), answer) in nodes.zip(&mut self.answers).rev() {
-            step_nearby(&SemiImplicitEuler, &self.nearby, place, u, STEP, &mut slopes)?;
+            step_slopes_into(&SemiImplicitEuler, &self.tangent, place, u, STEP, &mut slopes)?;
             if !before(place, u, &slopes, &mut value, &mut slope, answer) {
                 return Ok(false);
             }

@@ -1,5 +1,5 @@
 //! A predictive controller for a drone on a microcontroller: iterated linear-quadratic regulators over twenty steps, by
-//! generated code, `hamel::step_nearby` and arrays of fixed sizes.
+//! generated code, `hamel::step_slopes_into` and arrays of fixed sizes.
 //!
 //! `run.sh` has the whole of it: it writes the model with `hamel emit`, builds the controller for a Cortex-M4F and a
 //! Cortex-M7, looks for what must not be in the programs, runs them in QEMU and compares their numbers with those of

@@ -11,13 +11,13 @@ mod externals;
 mod functions;
 mod invariants;
 mod lanes;
+mod linear_differences;
 mod linearization;
 mod loads;
 mod methods;
 #[path = "../../../codegen/tests/suite/common/models.rs"]
 mod models;
 mod mutations;
-mod nearby;
 mod observed;
 mod physics_closed_forms;
 mod physics_constraints;

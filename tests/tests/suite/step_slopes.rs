@@ -6,8 +6,8 @@ use hamel::methods::{
     StiffEuler,
 };
 use hamel::{
-    Block, Method, Nearby, State, StepError, System, Table, Tangent, manifold, step, step_nearby,
-    step_slopes,
+    Block, Method, State, StepError, System, Table, Tangent, TangentSystem, manifold, step,
+    step_slopes, step_slopes_into,
 };
 use hamel_tests::dc_pendulum::{DcPendulum, DcPendulumParameters};
 use hamel_tests::linear;
@@ -178,7 +178,7 @@ fn slope(of: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 fn agree<Sys, M>(name: &str, method: &M, system: &Sys, start: &State<Sys>, u: &[f64], h: f64)
 where
     Sys: Tangent<Scalar = f64>,
-    M: Method<Sys> + Method<Nearby<Sys>> + InChart,
+    M: Method<Sys> + Method<TangentSystem<Sys>> + InChart,
 {
     let exact = !name.ends_with("backward-euler");
     let close = if exact { DIFFERENCE } else { ITERATED };
@@ -188,8 +188,8 @@ where
     // A table of the caller's is written all over, whatever was in it.
     let mut table = slopes.clone();
     (0..table.rows()).for_each(|i| table.row_mut(i).fill(f64::NAN));
-    let nearby = Nearby::new(system);
-    let again = step_nearby(method, &nearby, start, &inputs, h, &mut table).expect("a step");
+    let tangent = TangentSystem::new(system);
+    let again = step_slopes_into(method, &tangent, start, &inputs, h, &mut table).expect("a step");
     assert_eq!(rows(&table), rows(&slopes), "{name}");
     assert_eq!(again.xi.as_ref(), end.xi.as_ref(), "{name}");
     let mut alone = start.clone();

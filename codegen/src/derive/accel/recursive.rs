@@ -14,7 +14,7 @@ use crate::derive::calculus::Calculus;
 use crate::derive::loads;
 use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
 use crate::derive::tree::momentum::{columns, quadratic_rate, total};
-use crate::derive::tree::nearby::{Slopes, slopes};
+use crate::derive::tree::slopes::{Slopes, slopes};
 use crate::derive::tree::uniform::Uniform;
 use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;

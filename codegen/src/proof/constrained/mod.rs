@@ -42,7 +42,7 @@ const IDENTITIES: [(&str, &str); 14] = [
         "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ + b = 0",
     ),
     (
-        "nearby",
+        "[A B]",
         "the emitted [A B] are the slopes of ẋ and ξ̇ along δx = A h",
     ),
     (
@@ -179,7 +179,7 @@ fn is_there(label: &str, full: &Full, reduction: &Reduction, program: &Program) 
             let mut all = FunctionId::CENTROIDAL.iter();
             all.any(|id| program.function(id).is_some())
         }
-        "nearby" => program.function(FunctionId::Linearize).is_some(),
+        "[A B]" => program.function(FunctionId::Linearize).is_some(),
         _ => true,
     }
 }
@@ -368,7 +368,7 @@ fn at_point(
         .map(|i| dot(&mass[i * n..][..n], &values.xi))
         .collect();
     let same_mass = same_mass && equal("momentum", project(&momentum))?;
-    let nearby = at.nearby()?;
+    let same_linear = at.linear()?;
     let same_slopes = derivatives::hold(&full.reference.model, program, [&at.point, inner])?;
     let same_outputs = outputs::values_hold(&full.reduced, program, inner)?;
     let same_momentum = centroidal::holds(&full.reduced, program, inner)?;
@@ -382,7 +382,7 @@ fn at_point(
         result(same_bias, "the bias differs"),
         result(same_loads, "a force or energy differs"),
         Ok(()),
-        result(nearby, "a slope differs"),
+        result(same_linear, "a slope differs"),
         result(same_slopes, derivatives::WHAT),
         result(same_states, "ż differs"),
         result(same_outputs, "an output differs"),

@@ -202,7 +202,7 @@ impl<'a> At<'a> {
     }
 
     /// [A B] against dual numbers: δξ̇ = DF, and A ḣ = D(ẋ)[A h] − Ȧ h.
-    pub(super) fn nearby(&self) -> Option<bool> {
+    pub(super) fn linear(&self) -> Option<bool> {
         let (Some(linear), Some(accel)) = (
             self.program.function(FunctionId::Linearize),
             self.program.function(FunctionId::Accel),

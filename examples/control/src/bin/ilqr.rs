@@ -5,7 +5,7 @@
 //! (2004). `cargo run --release -p control --bin ilqr`
 
 use hamel::methods::Rkmk4;
-use hamel::{Nearby, State, StepError, step, step_nearby};
+use hamel::{State, StepError, TangentSystem, step, step_slopes_into};
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Matrix4x2, Vector2, Vector4};
 use std::f64::consts::PI;
 
@@ -67,7 +67,7 @@ type Answer = (Vector2<f64>, Matrix2x4<f64>);
 /// The answers to deviations, u = k + K (h, δξ) for every step, by the value ½ (h, δξ)ᵀ V (h, δξ) + vᵀ (h, δξ) of what
 /// follows; `None` where a torque would not pay.
 fn answers(
-    nearby: &Nearby<Pendulums<f64>>,
+    tangent: &TangentSystem<Pendulums<f64>>,
     states: &[Position],
     torques: &Torques,
     reluctance: f64,
@@ -78,7 +78,7 @@ fn answers(
     let mut all = Vec::new();
     let mut slopes = [[0.0; 6]; 4];
     for (state, u) in states.iter().zip(torques).take(STEPS).rev() {
-        step_nearby(&Rkmk4, nearby, state, &[u.x, u.y], STEP, &mut slopes)?;
+        step_slopes_into(&Rkmk4, tangent, state, &[u.x, u.y], STEP, &mut slopes)?;
         let a = Matrix4::from_fn(|i, j| slopes[i][j]);
         let b = Matrix4x2::from_fn(|i, j| slopes[i][4 + j]);
         let held = value + reluctance * Matrix4::identity();
@@ -103,7 +103,7 @@ fn answers(
 /// The torques of a swing, and what it costs after each iteration.
 fn swing(iterations: usize) -> Result<(Torques, Vec<f64>), StepError> {
     let system = Pendulums::default();
-    let nearby = Nearby::new(&system);
+    let tangent = TangentSystem::new(&system);
     let mut torques: Torques = std::array::from_fn(|k| {
         let time = STEP * k as f64;
         Vector2::new((3.0 * time).sin(), -0.5 * (3.0 * time).sin())
@@ -111,7 +111,7 @@ fn swing(iterations: usize) -> Result<(Torques, Vec<f64>), StepError> {
     let (mut states, mut cost) = run(&system, &torques)?;
     let (mut costs, mut reluctance) = (vec![cost], 1.0);
     for _ in 0..iterations {
-        let found = answers(&nearby, &states, &torques, reluctance)?;
+        let found = answers(&tangent, &states, &torques, reluctance)?;
         let mut better = None;
         for length in [1.0, 0.5, 0.25, 0.1, 0.03] {
             let Some(answers) = &found else { break };

@@ -12,7 +12,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT,
 };
 use hamel::methods::Rkmk4;
-use hamel::{Nearby, State, so3, step, step_nearby};
+use hamel::{State, TangentSystem, so3, step, step_slopes_into};
 
 hamel::rigid_eom! {
     /// A quadrotor: a thrust along the third axis at the end of each arm, and what its rotor twists the hull with.
@@ -112,7 +112,7 @@ impl Entries {
 /// Makes the plan better: errors e₁ … and changes of thrusts d₀ … that cost least, with eₖ₊₁ = Aₖ eₖ + Bₖ dₖ, e₀ = 0, and
 /// all thrusts within their bounds.
 fn decide(
-    nearby: &Nearby<Quadrotor<f64>>,
+    tangent: &TangentSystem<Quadrotor<f64>>,
     now: &Place,
     plan: &mut Plan,
 ) -> Result<(), Box<dyn Error>> {
@@ -126,7 +126,7 @@ fn decide(
     let mut place = now.clone();
     let mut slopes = [[0.0; N + M]; N];
     for (k, u) in plan.iter().enumerate() {
-        place = step_nearby(&Rkmk4, nearby, &place, u, TICK, &mut slopes)?;
+        place = step_slopes_into(&Rkmk4, tangent, &place, u, TICK, &mut slopes)?;
         let weight = if k + 1 == AHEAD { END } else { 1.0 };
         for (i, off) in off(&place).into_iter().enumerate() {
             let column = error(k + 1, i);
@@ -191,7 +191,7 @@ struct Flight {
 /// Flies for a time, from a metre and a half beside the path.
 fn fly(until: f64) -> Result<Flight, Box<dyn Error>> {
     let quadrotor = Quadrotor::default();
-    let nearby = Nearby::new(&quadrotor);
+    let tangent = TangentSystem::new(&quadrotor);
     let mut place = Place::from(QuadrotorState {
         r: [-1.0, 1.0, 0.0],
         ..Default::default()
@@ -199,7 +199,7 @@ fn fly(until: f64) -> Result<Flight, Box<dyn Error>> {
     let mut plan: Plan = [[HOVER; M]; AHEAD];
     let (mut distances, mut thrusts) = (Vec::new(), Vec::new());
     while place.t < until {
-        decide(&nearby, &place, &mut plan)?;
+        decide(&tangent, &place, &mut plan)?;
         let [u, ..] = plan;
         step(&quadrotor, Rkmk4, &mut place, TICK, &|_, _, _| u)?;
         let [x, y, z, ..] = off(&place);

@@ -6,7 +6,7 @@ use crate::methods::implicit::Derivative;
 use crate::methods::implicit::equations::{Equations, Point};
 use crate::methods::implicit::unknowns::Unknowns;
 use crate::scalar::Scalar;
-use crate::slopes::{Directions, Nearby, Tangent, values};
+use crate::slopes::{Directions, Tangent, TangentSystem, values};
 use crate::state::State;
 use crate::store::{Table, add_scaled, is_finite, scale};
 use crate::system::System;
@@ -32,11 +32,11 @@ pub(in crate::methods) fn factored<Sys: Tangent>(
 
 /// ξ₁ that varies along its own directions.
 pub(in crate::methods) fn varied<Sys: Tangent>(
-    nearby: &Nearby<Sys>,
+    tangent: &TangentSystem<Sys>,
     xi: &Sys::Velocities,
-) -> <Nearby<Sys> as System>::Velocities {
+) -> <TangentSystem<Sys> as System>::Velocities {
     let first = Sys::Slopes::zero().rows() - xi.as_ref().len();
-    let mut varied = nearby.zero_velocities();
+    let mut varied = tangent.zero_velocities();
     for (i, (number, value)) in varied.as_mut().iter_mut().zip(xi.as_ref()).enumerate() {
         *number = Sys::Number::along(*value, first + i);
     }
@@ -53,7 +53,7 @@ pub(in crate::methods) fn still<N: Directions>(numbers: &mut [N], values: &[N::V
 /// Slopes of a system with a linearisation, where inputs stay.
 pub(in crate::methods) struct Exact<'a, Sys: Tangent> {
     /// The system in dual numbers, where they are needed.
-    pub(in crate::methods) nearby: Option<&'a Nearby<Sys>>,
+    pub(in crate::methods) tangent: Option<&'a TangentSystem<Sys>>,
 }
 
 impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
@@ -71,8 +71,9 @@ impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
         let (system, state, h) = (equations.system, equations.state, equations.h);
         let time = state.t;
         let mut here = equations.place(z)?;
-        let made = (equations.weighed && self.nearby.is_none()).then(|| Nearby::new(system));
-        let Some(nearby) = self.nearby.or(made.as_ref()) else {
+        let made =
+            (equations.weighed && self.tangent.is_none()).then(|| TangentSystem::new(system));
+        let Some(tangent) = self.tangent.or(made.as_ref()) else {
             let mut table = Sys::Slopes::zero();
             let found = system.slopes(&here.x, &z.xi, &here.inputs, &mut table);
             let f = found.map_err(|cause| {
@@ -96,22 +97,22 @@ impl<Sys: Tangent> Derivative<Sys> for Exact<'_, Sys> {
             let factors = Factors::new(Part { table, first }, system.zero_velocities());
             return Ok((here, factors));
         };
-        let mut begin = State::<Nearby<Sys>> {
+        let mut begin = State::<TangentSystem<Sys>> {
             t: time,
-            x: nearby.zero_coordinates(),
-            xi: nearby.zero_velocities(),
+            x: tangent.zero_coordinates(),
+            xi: tangent.zero_velocities(),
         };
         still(begin.x.as_mut(), state.x.as_ref());
         still(begin.xi.as_mut(), state.xi.as_ref());
-        let mut held = nearby.zero_inputs();
+        let mut held = tangent.zero_inputs();
         still(held.as_mut(), here.inputs.as_ref());
-        let mut near = Unknowns::<Nearby<Sys>> {
-            u: nearby.zero_chart(),
-            xi: varied(nearby, &z.xi),
+        let mut near = Unknowns::<TangentSystem<Sys>> {
+            u: tangent.zero_chart(),
+            xi: varied(tangent, &z.xi),
         };
         still(near.u.as_mut(), z.u.as_ref());
         let varying = Equations {
-            system: nearby,
+            system: tangent,
             state: &begin,
             h,
             inputs: &|_, _: &_, _: &_| held.clone(),
