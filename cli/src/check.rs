@@ -21,12 +21,12 @@ use std::path::PathBuf;
 /// and modulo the constraint; "checked" is equality at random points of the configuration manifold in
 /// exact arithmetic modulo two primes, with a bound of the chance that a false equation passes.
 ///
-/// Below them stands what the symbols say about the geometry: which velocities are integrable and what
-/// they are the rates of, which Lie algebra the frame is, the pattern of M, and symmetries.
-/// "rounding" is what each function loses of its sixteen digits, as computed in f64 and in twice the
-/// length at the start and at states beside it, relative to the largest entry of the result.
+/// Then come geometric properties: which velocities are integrable and what they are the rates of,
+/// which Lie algebra the frame is, the pattern of M, and symmetries. "rounding" is how many decimal
+/// digits each function loses in f64, compared with numbers of twice the length at the start and at
+/// states close to it, relative to the largest entry of the result.
 ///
-/// The last lines say what methods of integration ask: whether the equations split into free motion
+/// The last lines say which integrators apply: whether the equations split into free motion
 /// and kicks, what stands in the way where they do not, and the method that `simulate --method auto`
 /// takes.
 #[derive(Args)]

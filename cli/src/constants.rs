@@ -24,7 +24,9 @@ pub fn given(text: &str, name: &str, value: &str) -> Result<String, String> {
             match (closest(name, names.iter().copied()), names.as_slice()) {
                 (Some(meant), _) => format!("no such constant; did you mean `{meant}`?"),
                 (None, []) => "the description has no constants".into(),
-                (None, names) => format!("no such constant; there are {}", names.join(", ")),
+                (None, names) => {
+                    format!("no such constant; the constants are {}", names.join(", "))
+                }
             },
         );
     };
@@ -64,7 +66,10 @@ mod tests {
     #[test]
     fn what_is_no_constant_is_refused() {
         let refused = |name: &str, value: &str| given(TEXT, name, value).expect_err("refused");
-        assert_eq!(refused("k", "1"), "no such constant; there are n, l");
+        assert_eq!(
+            refused("k", "1"),
+            "no such constant; the constants are n, l"
+        );
         assert_eq!(refused("n", "1; coord p"), "the value is no expression");
         assert_eq!(refused("n", "1, m = 2"), "the value is no expression");
         assert_eq!(refused("n", ""), "the value is no expression");

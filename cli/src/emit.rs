@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Where to write; default standard output. For C the files are OUT.h and OUT.c; where OUT ends in `.h` or `.c`,
-    /// that is left out first.
+    /// the extension is dropped.
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,
     /// Write nothing; status 1 where OUT is not what would be written.

@@ -59,11 +59,11 @@ const METHODS: &[Entry] = entries! {
     "kahan-li" Method Split |s| split(s, Scheme::KahanLi6), "the same; order 6, of steps of order 2";
     "free" Method Free Stepper::closed_form, "bodies without forces; exact at any time";
     "lgvi" Method Split |_| Stepper::Lgvi, "bodies in potentials; variational, order 2";
-    "gauss4" Method Momenta |_| Stepper::Gauss4, "long runs with M(x); implicit, order 4, no drift";
+    "gauss4" Method Momenta |_| Stepper::Gauss4, "long runs where M depends on x; implicit, order 4, no drift";
     "gauss6" Method Momenta |_| Stepper::Gauss6, "the same; order 6";
     "euler" Baseline Any |_| Stepper::Baseline(Baseline::ForwardEuler), "baseline; order 1";
-    "backward-euler" Baseline Any |_| Stepper::General(General::BackwardEuler), "baseline; implicit, order 1";
-    "semi-implicit-euler" Baseline Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as game engines step";
+    "backward-euler" Baseline Any |_| Stepper::General(General::BackwardEuler), "stiff systems; implicit, order 1";
+    "semi-implicit-euler" Baseline Any |_| Stepper::General(General::SemiImplicitEuler), "baseline; order 1, as in game engines";
     "rk4" Baseline Any |_| Stepper::General(General::Rk4 { lambda: 0.0 }), "baseline; order 4 on the coordinates, led back at the rate --lambda";
     "rk4-projected" Baseline Any |_| Stepper::Baseline(Baseline::Rk4Projected), "baseline; the same, projected after each step";
     "slide" Baseline Split |_| Stepper::Slide, "baseline; order 1, keeps angular momentum";

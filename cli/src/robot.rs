@@ -25,9 +25,9 @@ pub struct RobotOptions {
     /// Name of the system; by default the robot's.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
-    /// Angles this near to a multiple of π/2 (rad) are that multiple, and entries this small beside
-    /// the largest of their vector or matrix are 0, lengths below a millionth of it (m) in any case;
-    /// default 1e-9, 0 keeps every digit.
+    /// Angles within TOL (rad) of a multiple of π/2 become that multiple. Entries below TOL times the largest
+    /// of their vector or matrix become 0, and so do lengths below a millionth of TOL (m); default 1e-9, 0 keeps every
+    /// digit.
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     pub rounding: Option<f64>,
     /// Another value of a constant of the description, such as the length of a chain; once for each constant.

@@ -160,8 +160,9 @@ impl Source {
         }
     }
 
-    /// The frames that are asked for, each with its name in the description; those of a robot are its links, by their names
-    /// in its file or in the description, and the link that stands in the world becomes a frame where it is asked for.
+    /// The frames that are asked for, each with its name in the description; those of a robot are its links, by their
+    /// names in its file or in the description, and the link that stands in the world becomes a frame where it is asked
+    /// for.
     pub fn frames(&mut self, asked: &[String]) -> Result<Vec<(String, String)>, Failure> {
         let Some(robot) = &mut self.robot else {
             let both = asked.iter().map(|name| (name.clone(), name.clone()));
@@ -318,7 +319,7 @@ impl Source {
     fn left_out(&self, singular: Option<Diagnostic>) {
         if let Some(Diagnostic { message, .. }) = singular {
             failure::warn(&format!(
-                "warning: {}: {message}; what needs its inverse is left out\n",
+                "warning: {}: {message}; functions that need its inverse, such as `accel`, are not there\n",
                 self.path
             ));
         }

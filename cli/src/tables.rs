@@ -18,7 +18,7 @@ use std::path::PathBuf;
   hamel tables heavy_top.eom --format latex > tables.tex
   hamel tables heavy_top.eom --format json | jq .
 
-Tables: phi, A, Y, gamma, M, Gamma (these where --of is left out), accel, bias, potential_force,
+Tables: phi, A, Y, gamma, M, Gamma (the default), Phi, Psi, accel, bias, potential_force,
 generalized_force, states, outputs, geometry.")]
 pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.

@@ -96,9 +96,9 @@ impl Builder {
         self
     }
 
-    /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before anything is reported, and before
-    /// anything is written; files whose bytes would not change are not touched, and none that was read is written over.
-    /// What a description declares and does not use becomes a warning of the package.
+    /// Generates `stem.rs` for every `stem.eom` or `stem.urdf`. All files are read before anything is reported, and
+    /// before anything is written; files whose bytes would not change are not touched, and none that was read is
+    /// written over. What a description declares and does not use becomes a warning of the package.
     pub fn generate(self) -> Result<(), BuildError> {
         let out_dir = match self
             .out_dir
@@ -276,7 +276,7 @@ impl Builder {
                 let (generated, singular) = available_in(&imported.text).map_err(refused)?;
                 if let Some(Diagnostic { message, .. }) = singular {
                     warn(&format!(
-                        "{shown}: {message}; what needs its inverse is left out"
+                        "{shown}: {message}; functions that need its inverse, such as `accel`, are not there"
                     ));
                 }
                 let texts = self.texts(&generated, &description, stem, &shown, &mut made.named);

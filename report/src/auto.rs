@@ -70,7 +70,9 @@ pub fn verdict(report: &Report) -> Option<String> {
             chosen.len(),
             worst.name
         ),
-        None => format!("No case was brought to an error of {TARGET:.0e} by the method of `auto`."),
+        None => {
+            format!("In no case did the method that `auto` takes reach an error of {TARGET:.0e}.")
+        }
     };
     let beyond = judged.iter().filter(|(_, ratio)| *ratio > BAR);
     let beyond: Vec<&str> = beyond.map(|(case, _)| case.name.as_str()).collect();

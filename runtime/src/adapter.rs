@@ -8,7 +8,7 @@
 //!
 //! A solver does not know the manifold of x. The stabilising term of KR18 (8), ẋ = A ξ − λ Ψ φ, leads
 //! back to it, and [`Equations::state`] projects what comes out. With λ far above the rates of the
-//! motion the equations are stiff, which such solvers bear.
+//! motion the equations are stiff, which stiff solvers handle.
 
 use core::cell::Cell;
 

@@ -149,7 +149,10 @@ impl fmt::Display for StepError {
         match self {
             Self::Singular { cause, time } => write!(f, "{cause}, in the step from t = {time}"),
             Self::NonFinite { time } => {
-                write!(f, "state not finite, in the step from t = {time}")
+                write!(
+                    f,
+                    "state not finite, in the step from t = {time}: shorten the step, or check inputs and parameters"
+                )
             }
             Self::Shape {
                 part,
@@ -160,17 +163,18 @@ impl fmt::Display for StepError {
                 // As `Debug` writes numbers: never with a long row of zeros.
                 write!(
                     f,
-                    "a time of {span:?} cannot be covered by steps of {step:?}"
+                    "a time of {span:?} cannot be covered by steps of {step:?}: a step is a finite number with the sign of the time, and not so short that adding it changes nothing"
                 )
             }
             Self::NotConverged { time, iterations } => write!(
                 f,
                 "no convergence in {iterations} iterations, in the step from t = {time}: \
-                 the step is too long"
+                 shorten the step"
             ),
             Self::StepTooSmall { time, step } => write!(
                 f,
-                "the tolerance asks for a step of {step:e} at t = {time}, which time does not resolve"
+                "the tolerance asks for a step of {step:e} at t = {time}, which time does not resolve: \
+                 relax it; the motion may be singular here"
             ),
             Self::InvalidTolerance { least } => write!(
                 f,

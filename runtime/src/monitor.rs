@@ -64,9 +64,10 @@ impl<S: Scalar> Monitor<S> {
         self.deviation
     }
 
-    /// max |T + V − E₀| divided by the larger of |E₀| and the largest kinetic energy seen, less what T + V has gained by
-    /// then. E₀ alone would not do as a scale, since V has a free constant and E₀ may be zero. Zero for a system that never
-    /// moves, and infinite where all energy of a run has come from outside: there is nothing that it could be compared with.
+    /// max |T + V − E₀| divided by the larger of |E₀| and the largest kinetic energy seen, minus the increase of T + V
+    /// up to then. E₀ alone would not do as a scale, since V has a free constant and E₀ may be zero. Zero for a system
+    /// that never moves, and infinite where all energy of a run has come from outside: there is nothing that it could
+    /// be compared with.
     pub fn relative_energy_deviation(&self) -> S {
         let (zero, infinity) = (S::default(), S::from_f64(f64::INFINITY));
         let ratio = self.deviation / self.scale;

@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 
 /// Length of a run where neither --until nor --reference says it.
 const UNTIL: f64 = 10.0;
-/// Numbers of steps where --steps is left out.
+/// The default of --steps.
 const STEPS: [u64; 6] = [100, 200, 400, 800, 1600, 3200];
 /// The largest of them.
 const MOST: u64 = 100_000_000;

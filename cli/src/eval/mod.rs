@@ -30,18 +30,18 @@ const MOST_SHOWN: usize = 64;
 /// STATE.json gives: {"param": {…}, "coord": {"r": […], "R": [[…]]}, "velocity": {…},
 /// "state": {…}, "input": {…}}.
 /// A circle takes [cos, sin] or an angle, a pose {"p": […], "R": [[…]]}, a symmetric matrix all rows.
-/// Velocities of joints are known by the joint's name, too, that of the URDF file for a robot. A state is what the start of the description
-/// would be with its numbers in the text: they and the other exact starts are kept, what is prescribed
-/// follows, loops are closed and constraints kept by the rest. Where the numbers contradict exact starts of
-/// the text, those give way that the loops and constraints tie to them, to the nearest values; a state that
-/// contradicts loops or constraints by itself is refused.
-/// Of a list of samples, as `hamel simulate --out` writes it to a .json file, the last is taken.
-/// Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k] is Γ_ijk.
+/// Velocities of joints are known by the joint's name, too, that of the URDF file for a robot. A state is the start
+/// that the description would have if it contained these numbers: they and the other exact starts are kept, what is
+/// prescribed follows, loops are closed and constraints kept by the rest. Where the numbers contradict exact starts of
+/// the text, the ones that loops and constraints tie to them move to the nearest values; a state that contradicts
+/// loops or constraints by itself is refused. Of a list of samples, as `hamel simulate --out` writes it to a .json
+/// file, the last is taken. Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k]
+/// is Γ_ijk.
 ///
-/// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3, "root_joint": {"position": […],
-/// "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […], "angular": […]}},
-/// "param": {…}, "force": […]}, angles in rad, forces by joint or in the order of the rows; a planar joint has
-/// {"position": [x, y], "angle": a} and {"linear": [vx, vy], "angular": w}. Then `velocities` names
+/// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3,
+/// "root_joint": {"position": […], "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […],
+/// "angular": […]}}, "param": {…}, "force": […]}, angles in rad, forces by joint or in the order of the rows; a planar
+/// joint has {"position": [x, y], "angle": a} and {"linear": [vx, vy], "angular": w}. Then `velocities` names
 /// each row by its joint, `bias` is Γ ξ ξ + ∂V, gravity in it, and `accel` is M⁻¹ (force − bias): force is
 /// all of the generalised force, friction in it. `force`, and a list {"samples": […]} of such states, are
 /// for `eval` alone.

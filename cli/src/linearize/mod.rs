@@ -42,7 +42,7 @@ pub struct Arguments {
     /// State, by coordinates or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// All displacements and velocities, also those that constraints give by others.
+    /// All displacements and velocities, also those that constraints determine by others.
     #[arg(long)]
     full: bool,
     /// How to write the matrices.
@@ -103,8 +103,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     complete(&linear)
 }
 
-/// The linearisation at a state, of all displacements and velocities where it is `full`; `shown` is the text that messages
-/// give lines of.
+/// The linearisation at a state, of all displacements and velocities where it is `full`; `shown` is the text that
+/// messages give lines of.
 ///
 /// # Errors
 /// Where the motion has no value at the state.
@@ -219,7 +219,7 @@ fn text(linear: &Linear) -> String {
     );
     if linear.given > 0 {
         text.push_str(&format!(
-            "constraints give {} further ones by these; `--full` prints all\n",
+            "{} further ones follow from these by constraints; `--full` prints all\n",
             linear.given
         ));
     }

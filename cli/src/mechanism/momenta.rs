@@ -16,6 +16,8 @@ use hamel_native::Compiled;
 #[derive(Default)]
 pub struct Momenta {
     forms: Vec<Inertia>,
+    /// Whether a kick is ever more than zeros.
+    has_forces: bool,
     inertia: Option<Place>,
     centre: Option<Place>,
     uncentre: Option<Place>,
@@ -47,6 +49,7 @@ impl Momenta {
             forms: split.map_or_else(Vec::new, |splitting| {
                 splitting.rotors.iter().map(|form| form.inertia).collect()
             }),
+            has_forces: split.is_some_and(|splitting| !splitting.free),
             inertia: known("rotor_inertia"),
             centre: known("centre"),
             uncentre: known("uncentre"),
@@ -174,7 +177,9 @@ impl Split for Instance {
     }
 
     fn kick(&self, x: &Numbers, u: &Numbers) -> Numbers {
-        self.count();
+        if self.of.momenta.has_forces {
+            self.count();
+        }
         self.found(self.of.momenta.kick, [x, &[], u, &[], &[]], self.of.chart)
     }
 }

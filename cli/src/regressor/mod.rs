@@ -20,8 +20,9 @@ use std::path::PathBuf;
 /// damping and stiffness of joints: F = Y(x, xi, xi_dot) beta. A link is all that moves rigidly together, in the frame
 /// that its joint carries. The factors are exact: fractions, or expressions in run-time parameters.
 ///
-/// With --identified, the way back: of all masses, centres of mass and inertias with the base parameters of a file the
-/// ones nearest to those of the description that bodies can have (pseudo-inertias are positive definite).
+/// With --identified, the other way round: of all masses, centres of mass and inertias that have the base parameters of
+/// a file, and that rigid bodies can have (their pseudo-inertias are positive definite), those nearest to the
+/// description.
 #[derive(Args)]
 #[command(after_help = "Examples:
   hamel regressor arm.eom
@@ -33,8 +34,8 @@ pub struct Arguments {
     /// Description, or robot in URDF; `-` for standard input.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Identified base parameters, as JSON (`-` for standard input): a list, or an object by the names of the parameters kept; those that are
-    /// not in the object are as in the description.
+    /// Identified base parameters, as JSON (`-` for standard input): a list, or an object by the names of the
+    /// parameters kept; those that are not in the object are as in the description.
     #[arg(long, value_name = "FILE")]
     identified: Option<PathBuf>,
     /// How to write them.

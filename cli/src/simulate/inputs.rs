@@ -24,7 +24,7 @@ pub struct Asked {
     /// time, as in --input.
     #[arg(long, value_name = "F.csv")]
     pub inputs: Option<PathBuf>,
-    /// Values of --inputs hold until the next row, and behind the last.
+    /// Values of --inputs hold until the next row, and after the last.
     #[arg(long, requires = "inputs")]
     pub hold: bool,
     /// An input as an expression of `t`, parameters, coordinates, velocities and states.

@@ -40,8 +40,8 @@ use write::Format;
 
 /// Integrates the equations of motion from a start.
 ///
-/// The functions of the description become machine code at once, and so do whole steps of explicit methods where inputs are
-/// constant: a run takes about as long as generated Rust. Inputs keep the value that
+/// The functions of the description become machine code at once, and so do whole steps of explicit methods where inputs
+/// are constant: a run takes about as long as generated Rust. Inputs keep the value that
 /// STATE.json gives them, or zero, where no --inputs and no --input says what they are.
 #[derive(Args)]
 #[command(after_help = "Examples:
@@ -62,8 +62,9 @@ pub struct Arguments {
     /// Start, by coordinates with parameters and inputs, or by joints; see `hamel eval --help`.
     #[arg(long, value_name = "STATE.json")]
     at: Option<PathBuf>,
-    /// Samples as .csv or .json, or a plot as .svg. Every name stands there once: `t` is the time of a description that
-    /// declares `time t;`, and else counts from the start of the run; it is `t_run` where another thing is called `t`.
+    /// Samples as .csv or .json, or a plot as .svg. No two columns have one name: `t` is the time of a description that
+    /// declares `time t;`, and otherwise the time since the start of the run; it is `t_run` where something else is
+    /// called `t`.
     #[arg(long, value_name = "F")]
     out: Option<PathBuf>,
     /// Print γ, M and Γ before the run.

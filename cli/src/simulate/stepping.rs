@@ -10,13 +10,13 @@ use clap::builder::PossibleValuesParser;
 use hamel::methods::General;
 use hamel_codegen::generate::Generated;
 
-/// Steps where --step is left out: a thousandth, but no fewer than 1000 and no more than a million.
+/// The default of --step, made shorter or longer where a run would take fewer or more steps than these.
 const STEP: f64 = 1e-3;
 const FEWEST: f64 = 1e3;
 const MOST: f64 = 1e6;
 /// Samples that are kept at most: what is more is a slip, and fills the memory.
 const SAMPLES: f64 = 1e8;
-/// λ where --lambda is left out.
+/// The default of --lambda.
 const LAMBDA: f64 = 10.0;
 /// The tolerance where `auto` takes a method that chooses its steps.
 const TOLERANCE: f64 = 1e-9;
@@ -32,12 +32,12 @@ pub struct Stepping {
     /// Length of a step; default 0.001, adjusted so that a run takes 10³ to 10⁶ steps.
     #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// How to step; `auto` takes what fits the system and says why, a method that chooses its steps where
-    /// --tol is given. --help tells them apart.
+    /// The integrator; `auto` takes what fits the system and says why, one that chooses its steps where
+    /// --tol is given. `--help` describes them all.
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(method::names()), default_value = AUTO)]
     pub method: String,
-    /// Permitted error per step, for rkmk54 and rkmk8, which then choose their steps themselves; 1e-9 where `auto` takes one
-    /// of them and no --step is given.
+    /// Permitted error per step, for rkmk54 and rkmk8, which then choose their steps themselves; 1e-9 where `auto`
+    /// takes one of them and no --step is given.
     #[arg(long, value_name = "E", value_parser = positive, allow_negative_numbers = true, conflicts_with = "step")]
     pub tol: Option<f64>,
     /// Rate at which rk4 leads back to the constraint (1/s); default 10.

@@ -76,7 +76,10 @@ impl Folder {
             Some(there) => {
                 let differences = manifest.differences(&there);
                 if !differences.is_empty() {
-                    let about = format!("{} is the folder of another sweep", path.display());
+                    let about = format!(
+                        "{} is the folder of another sweep: choose another folder, or give the options of that sweep again",
+                        path.display()
+                    );
                     return Err(Failure::usages(&about, &differences));
                 }
             }

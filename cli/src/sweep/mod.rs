@@ -56,13 +56,13 @@ use vary::Vary;
 use watch::Keeping;
 use work::{Done, Stopping, Work};
 
-/// Members of a shard where --shard-size is left out: a part of all, but no fewer and no more than these.
+/// The default of --shard-size: a part of all, but no fewer and no more than these.
 const SHARDS: u64 = 64;
 const FEWEST: u64 = 64;
 const MOST: u64 = 10_000;
 /// Most shards of a folder.
 const MOST_SHARDS: u64 = 1_000_000;
-/// Tasks where --tasks is left out.
+/// The default of --tasks.
 const TASKS: u64 = 16;
 
 /// Runs a system many times, with parameters, starts and inputs that differ from run to run.
@@ -116,7 +116,7 @@ pub struct Arguments {
     /// Threads that members run on; by default, one for each core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     threads: Option<u16>,
-    /// Members of a file, which are in memory until it is written; by default, 64 to 10,000.
+    /// Members in each file; they are held in memory until it is written; by default, 64 to 10,000.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), allow_negative_numbers = true)]
     shard_size: Option<u64>,
     /// Compute the i-th of N parts of the files, and no other; several machines may do so at once. They all have to have
@@ -133,7 +133,7 @@ pub struct Arguments {
     /// How many tasks --submit makes; by default 16.
     #[arg(long, value_name = "N", requires = "submit", value_parser = clap::value_parser!(u64).range(1..=MOST_SHARDS), allow_negative_numbers = true)]
     tasks: Option<u64>,
-    /// With --submit, end when all tasks have.
+    /// With --submit, return when all tasks have finished.
     #[arg(long, requires = "submit")]
     wait: bool,
     /// Tell what a folder has, and what is missing.
@@ -153,7 +153,7 @@ const LONG: &str = "\
   start R = normal(0, 0.1)                       a rotation, by the vector of a turn from its start, about axes of the
                                                  body (rad); of a pose X so X.R, and its position as X.p
 A single number stands for all entries. Arguments may be expressions of parameters that are not varied. A member
-begins where the description would with its numbers in the text: coordinates and velocities that are not varied follow
+begins at the start that the description would have if it contained its numbers: what is not varied follows
 where prescribed motion, loops and other constraints ask for it, and else stay.
 
 --keep takes items, `;` between them:
@@ -162,8 +162,8 @@ where prescribed motion, loops and other constraints ask for it, and else stay.
   max(EXPR), min(EXPR)     the extreme values of an expression, over the ends of steps
   mean(EXPR)               its mean over the time, by trapezia between these
   at(TIME, EXPR)           its value at a time from the start of the run
-  event(A < B)             the first time at which a comparison begins to hold, empty where it never does; one that
-                           holds at the start begins to hold where it has not held in between
+  event(A < B)             the first time at which a comparison begins to hold, empty where it never does;
+                           one that holds at the start must first cease to hold
 Expressions are those of the description, over its parameters, coordinates, velocities, inputs and outputs.
 
 Columns are `index`, what is varied, what is kept, by their texts above, and `error`: where a member fails, what is kept of

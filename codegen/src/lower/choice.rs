@@ -47,7 +47,8 @@ impl Evaluator<'_> {
             short(graph, by, LONGEST).map_or("a branch ends".into(), |by| format!("{by} = 0"));
         let message = format!("{what} has to be continuous, and this may jump where {place}");
         self.error(Diagnostic::new(span, message).help(
-            "let both branches be equal there; what jumps is a load, such as a `generalized force`",
+            "let the branches of an `if` be equal there, and extend tables by `hold` or `linear`; \
+             what jumps is a load, such as a `generalized force`",
         ))
     }
 }

@@ -25,7 +25,7 @@ pub fn warnings(system: &System, model: &Model) -> Vec<Diagnostic> {
     let one = |(what, edges, span): (String, Vec<Edge>, Span)| {
         let place = corner(model, &edges, time)?;
         let message =
-            format!("the speed of {what} jumps{place}, and the impulse there is left out");
+            format!("the speed of {what} jumps{place}, and the impulse there is not modelled");
         Some(Diagnostic::new(span, message).help(
             "let the slopes be equal on both sides: a table without corners is `pchip`, not `linear`",
         ))

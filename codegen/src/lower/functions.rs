@@ -77,7 +77,13 @@ fn evaluate(graph: &mut Graph, name: &str, values: &[Value], free: bool) -> Resu
             let one = graph.one();
             let (less, more) = (graph.sub(one, *a), graph.add(one, *a));
             let square = graph.mul(less, more);
-            let other = real_root(graph, square)?;
+            if graph.as_rational(square).is_some_and(|n| n.is_negative()) {
+                return Err(Some((
+                    "`asin` and `acos` are of numbers from -1 to 1",
+                    "check the argument: it is this number for every configuration",
+                )));
+            }
+            let other = root(graph, square);
             Scalar(match name {
                 "asin" => graph.atan2(*a, other),
                 _ => graph.atan2(other, *a),

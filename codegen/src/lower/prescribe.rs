@@ -131,9 +131,9 @@ impl Reader<'_> {
         let value = value?;
         if time::name(self.system).is_none() {
             let error = Diagnostic::new(target.span(), "a prescribed motion is a function of time");
-            return self
-                .evaluator
-                .error(error.help("declare the time: `time t;`"));
+            return self.evaluator.error(error.help(
+                "declare the time, `time t;`: the motion may depend on it and on parameters",
+            ));
         }
         let clock = self.declared.clock?;
         if coordinate.is_some_and(|c| c.offset == clock.x)

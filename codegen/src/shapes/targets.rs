@@ -76,7 +76,9 @@ impl<'a> Inference<'a> {
             target.entry[0],
             whole.describe()
         );
-        self.error(Diagnostic::new(target.span(), message).help("indices start at 1"))
+        self.error(
+            Diagnostic::new(target.span(), message).help(format!("indices run from 1 to {length}")),
+        )
     }
 
     /// Rates are given of all entries at once.

@@ -83,9 +83,9 @@ pub struct Adaptive<const M: usize, const D: usize> {
     pub tolerance: Tolerance,
     /// Length of the first step, in time; `None` for Hairer's rule, at one evaluation of ξ̇ more.
     pub first: Option<f64>,
-    /// No step is longer, in time.
+    /// The longest step, in time.
     pub longest: f64,
-    /// To how much time events are located; never finer than rounding of t.
+    /// The accuracy of the times of events; never finer than rounding of t.
     pub precision: f64,
     /// A stiff motion that needs more steps than this is refused, [`StepError::Stiff`]; a million unless
     /// it is set.

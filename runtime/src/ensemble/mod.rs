@@ -3,7 +3,7 @@
 //! Members share the method, the step and the end, and differ in their states, and by
 //! [`integrate_each`] in their parameters. Neighbours in the list that start at the same time share
 //! lanes; lanes left over repeat a member. What a member becomes does not depend on the number of threads,
-//! and not on the others but for implicit methods, which iterate until all lanes of a group are content.
+//! and not on the others but for implicit methods, which iterate until all lanes of a group have converged.
 //!
 //! A member that fails does not take its group along: it is found by a step of each alone, keeps its last
 //! valid state, and the others go on without it.

@@ -26,11 +26,11 @@ use crate::system::System;
 /// Damps every oscillation; stable at any step that it can solve, and [`StepError::NotConverged`] where it cannot. Each
 /// unknown is found to rounding by itself, and in numbers with slopes so are the slopes.
 ///
-/// It learns what is stiff from its own iterations. Where h times the stiffest rate is above about 10, or 64 evaluations do
-/// not do, it goes on by Newton's method with derivatives by differences, which takes an evaluation for each velocity, and
-/// memory (with the feature `std`; without it, it learns on, and several stiff directions end in the error).
-/// [`StiffEuler`](crate::methods::StiffEuler) takes the derivatives of a description that has `generate all, linearize;`: with
-/// fewer evaluations, without memory, and exact.
+/// It learns what is stiff from its own iterations. Where h times the stiffest rate is above about 10, or 64
+/// evaluations do not suffice, it switches to Newton's method with derivatives by differences, which takes an
+/// evaluation for each velocity, and memory (with the feature `std`; without it, it goes on with Broyden's method
+/// alone, and several stiff directions may end in the error). [`StiffEuler`](crate::methods::StiffEuler) takes the
+/// derivatives of a description that has `generate all, linearize;`: with fewer evaluations, without memory, and exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BackwardEuler;
 

@@ -1,7 +1,7 @@
 //! The closed form of torque-free motion: no steps at all.
 //!
 //! Where no force acts, the state at any time follows from the start: rotors by the flows of
-//! [`flows`](crate::flows), everything else uniformly. Errors do not gather on the way.
+//! [`flows`](crate::flows), everything else uniformly. Errors do not accumulate.
 
 use crate::error::StepError;
 use crate::flows::Flow;
@@ -12,7 +12,7 @@ use crate::state::State;
 
 /// Exact, whatever the step; for systems of [`Split`] without forces.
 ///
-/// From one start to many times use [`at`], which gathers no rounding.
+/// From one start to many times use [`at`], which accumulates no rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Free;
 

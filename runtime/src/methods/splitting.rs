@@ -18,7 +18,7 @@ use crate::state::State;
 ///
 /// A step evaluates the forces [`Scheme::drifts`] + 1 times, the last of them at the point where the
 /// next step starts: a run by [`integrate`](crate::integrate()) uses that one again. Torques that depend on
-/// velocities are not of this form: u is taken at the momenta of the moment of a kick, so that inputs
+/// velocities are not of this form: u is evaluated with the momenta at the kick, so that inputs
 /// depending on ξ lower the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Splitting {

@@ -13,14 +13,14 @@ use crate::system::System;
 /// Order 1: the step of [`BackwardEuler`](crate::methods::BackwardEuler) of systems with a linearisation
 /// ([`Tangent`], `generate all, linearize;`), solved by Newton's method with exact derivatives.
 ///
-/// A step takes one evaluation of [A B] and one of ξ̇ where the equations are linear, some more of either where they are not,
-/// and up to hundreds where the step is so long that it is approached by way of shorter ones. Each unknown is found to
-/// rounding by itself; the length of the step may have either sign. Steps have slopes ([`step_slopes`](crate::step_slopes)):
-/// those of the implicit function.
+/// A step takes one evaluation of [A B] and one of ξ̇ where the equations are linear, some more of either where they
+/// are not, and up to hundreds where the step is so long that it is approached by way of shorter ones. Each unknown is
+/// found to rounding by itself; the length of the step may have either sign. Steps have slopes
+/// ([`step_slopes`](crate::step_slopes)): those of the implicit function.
 ///
 /// Inputs are a function whose slopes are not known. Those that depend on the time alone cost nothing. Of a controller,
-/// u(t, x, ξ), the iteration learns from its own steps how the inputs follow the state: it takes more of them, and may not
-/// converge where many loops of a controller are stiff. [`BackwardEuler`](crate::methods::BackwardEuler), which takes
+/// u(t, x, ξ), the iteration learns from its own steps how the inputs follow the state: it takes more of them, and may
+/// not converge where many loops of a controller are stiff. [`BackwardEuler`](crate::methods::BackwardEuler), which takes
 /// differences of everything, knows those, too; or a stiff spring or damper becomes a load of the system.
 ///
 /// Equations of a long step may have several solutions. Springs of 10⁶ N/m that begin half a metre from rest can turn a
@@ -29,9 +29,9 @@ use crate::system::System;
 /// # Errors
 /// [`StepError::NotConverged`] where no solution is found on the way from h = 0: there is none, or the step is so long
 /// that the rates of the coordinates themselves turn by more than about 1 rad in it, in coordinates whose rates depend on
-/// where they are (Euler's angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ), or that a mechanism
-/// goes far along what very stiff springs between its parts, or loops, leave free. Shorter steps help.
-/// [`StepError::Singular`] and [`StepError::NonFinite`] where ξ̇ has no value at the start, or wherever the iteration turns.
+/// where they are (Euler's angles; not rotation matrices, quaternions, or plain coordinates with ẋ = ξ), or the
+/// mechanism moves far in directions that very stiff springs or loops leave free. Shorter steps help.
+/// [`StepError::Singular`] and [`StepError::NonFinite`] where ξ̇ has no value at the start, or at an iterate.
 ///
 /// ```
 /// # #[cfg(feature = "macros")]
@@ -98,8 +98,8 @@ impl<Sys: Tangent> Method<Sys> for StiffEuler {
     }
 }
 
-/// The step of the values, with the slopes of the implicit function: δξ₁ = −(∂g/∂ξ₁)⁻¹ δg for what g varies by at ξ₁. Inputs
-/// are in dual numbers here, so that a controller's slopes count.
+/// The step of the values, with the slopes of the implicit function: δξ₁ = −(∂g/∂ξ₁)⁻¹ δg for what g varies by at ξ₁.
+/// Inputs are in dual numbers here, so that a controller's slopes count.
 impl<Sys: Tangent> Method<TangentSystem<Sys>> for StiffEuler {
     fn order(&self) -> u32 {
         1

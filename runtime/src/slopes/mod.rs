@@ -403,10 +403,10 @@ impl<Sys: Tangent<Dual: Split>> Split for TangentSystem<Sys> {
 
 /// A step of length `h` from a state at inputs that are held, and its slopes [A_d B_d].
 ///
-/// Every method that moves coordinates in the chart will do; nothing is allocated, but by
-/// [`BackwardEuler`](crate::methods::BackwardEuler) where a system is stiff. Constraints that multipliers keep are projected
-/// on as in [`step`](crate::step()), slopes with them. Implicit methods end where slopes have converged, too. A run of many
-/// steps makes [`TangentSystem`] once and calls [`step_slopes_into`].
+/// Works with every method that moves coordinates in the chart, and allocates nothing, except in
+/// [`BackwardEuler`](crate::methods::BackwardEuler) where a system is stiff. Constraints that multipliers keep are
+/// projected on as in [`step`](crate::step()), slopes with them. Implicit methods end where slopes have converged, too.
+/// A run of many steps makes [`TangentSystem`] once and calls [`step_slopes_into`].
 ///
 /// # Errors
 /// Those of [`step`](crate::step()).
