@@ -29,6 +29,7 @@ pub mod resubstitute;
 mod roots;
 pub mod rounding;
 mod shadow;
+pub mod sizes;
 pub mod slopes;
 pub mod tangent;
 pub mod tape;

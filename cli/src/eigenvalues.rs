@@ -79,6 +79,10 @@ fn classes(rows: &[Vec<f64>]) -> Vec<Vec<usize>> {
 }
 
 fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
+    // Balancing squares the entries. A power of two changes no digit; two factors, as one of them alone may overflow.
+    let exponent = block.amax().log2().floor() as i32;
+    let halves = [exponent / 2, exponent - exponent / 2].map(|half| 2.0_f64.powi(half));
+    block.apply(|entry| *entry = *entry / halves[0] / halves[1]);
     balance_parlett_reinsch(&mut block);
     let n = block.nrows();
     let looser = tries.looser.iter();
@@ -87,7 +91,10 @@ fn of_block(mut block: DMatrix<f64>, tries: &Tries) -> Option<Vec<(f64, f64)>> {
         let most = tries.most.get(count).copied().unwrap_or(ROUNDS * n);
         let schur = Schur::try_new(reflected(&block, turn), looser * f64::EPSILON, most)?;
         let values = schur.complex_eigenvalues();
-        let values: Vec<(f64, f64)> = values.iter().map(|value| (value.re, value.im)).collect();
+        let scaled = |part: f64| part * halves[0] * halves[1];
+        let values: Vec<(f64, f64)> = (values.iter())
+            .map(|value| (scaled(value.re), scaled(value.im)))
+            .collect();
         values
             .iter()
             .all(|(re, im)| re.is_finite() && im.is_finite())
@@ -125,6 +132,21 @@ mod tests {
                 .wrapping_mul(6364136223846793005)
                 .wrapping_add(1442695040888963407);
             (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
+        }
+    }
+
+    /// An oscillator of any frequency: ±i ω.
+    #[test]
+    fn frequencies_of_all_magnitudes() {
+        for exponent in [-300, -160, -20, 0, 20, 155, 160, 300] {
+            let stiffness = 10.0_f64.powi(exponent);
+            let rows = vec![vec![0.0, 1.0], vec![-stiffness, 0.0]];
+            let values = eigenvalues(&rows).expect("converges");
+            for (value, sign) in values.iter().zip([1.0, -1.0]) {
+                assert_eq!(value.0, 0.0);
+                let omega = sign * stiffness.sqrt();
+                assert!((value.1 / omega - 1.0).abs() < 1e-14, "{value:?} {omega:e}");
+            }
         }
     }
 

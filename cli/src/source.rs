@@ -10,6 +10,7 @@ use hamel_codegen::generate::{Generated, at_some_point, available_in, from_file,
 use hamel_codegen::lower;
 use hamel_codegen::model::Model;
 use hamel_codegen::render::{render, warnings};
+use hamel_codegen::syntax::path::plain;
 use hamel_codegen::syntax::{self, ast::System};
 use hamel_codegen::urdf;
 use std::io::Read;
@@ -165,7 +166,7 @@ impl Source {
     /// for.
     pub fn frames(&mut self, asked: &[String]) -> Result<Vec<(String, String)>, Failure> {
         let Some(robot) = &mut self.robot else {
-            let both = asked.iter().map(|name| (name.clone(), name.clone()));
+            let both = asked.iter().map(|name| (name.clone(), plain(name)));
             return Ok(both.collect());
         };
         let mut frames: Vec<(String, String)> = Vec::new();

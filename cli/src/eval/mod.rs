@@ -210,7 +210,17 @@ fn motion(
         ("constraint", Json::vector(&system.constraint(x))),
         ("outputs", Json::object(outputs)),
     ];
-    members.extend(constraint_force.map(|force| ("constraint_force", force)));
+    if let Some(force) = constraint_force {
+        // The rows, as they are written, and the velocities whose rates are given.
+        let model = &generated.model;
+        let rows = model.constraints.iter().map(|row| row.written.clone());
+        let names = names::velocities(model);
+        let driven = model.accelerated.iter();
+        let driven = driven.filter_map(|&(velocity, _)| names.get(velocity).cloned());
+        let rows: Vec<String> = rows.chain(driven).collect();
+        members.push(("constraints", Json::texts(&rows)));
+        members.push(("constraint_force", force));
+    }
     Ok(members)
 }
 

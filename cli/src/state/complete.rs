@@ -8,6 +8,7 @@ use super::given::{Given, places};
 use super::ties::{Ties, symbols};
 use hamel_codegen::algebra::graph::Edge;
 use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::algebra::sizes::relative;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::assembly::nearest;
 use hamel_codegen::model::closest::Constraints;
@@ -257,8 +258,18 @@ impl Completion<'_> {
         let loops: Vec<Edge> = holonomic.map(|row| row.residual).collect();
         let phi: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
         let free = &model.points.free;
-        let mut open = evaluate(&model.graph, &loops, &numbers);
-        open.extend(evaluate(free, &phi, &numbers));
+        let mut open = relative(
+            &model.graph,
+            &loops,
+            &numbers,
+            places.0..places.0 + places.1,
+        );
+        open.extend(relative(
+            free,
+            &phi,
+            &numbers,
+            places.0..places.0 + places.1,
+        ));
         let loops = loops
             .iter()
             .map(|&edge| symbols(&model.graph, edge, places, time));
@@ -267,15 +278,17 @@ impl Completion<'_> {
         ties.of(|row| open[row].is_nan() || open[row].abs() > EXACT)
     }
 
-    /// The rows of B, and what is left of them.
+    /// The rows of B, and what is left of them, beside 1 or their terms.
     fn rates(&self, x: &[f64], xi: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let model = &self.generated.model;
         let numbers = self.numbers(x);
         let row = |edges: &[Edge]| evaluate(&model.graph, edges, &numbers);
         let rows = model.constraints.iter().map(|constraint| {
             let b = row(&constraint.row);
-            let moved: f64 = b.iter().zip(xi).map(|(b, v)| b * v).sum();
-            let rate = moved + row(&[constraint.shift])[0];
+            let shift = row(&[constraint.shift])[0];
+            let terms = || b.iter().zip(xi).map(|(b, v)| b * v);
+            let size = terms().fold(shift.abs().max(1.0), |sum, term| sum + term.abs());
+            let rate = (terms().sum::<f64>() + shift) / size;
             (b, rate)
         });
         rows.unzip()
@@ -300,7 +313,9 @@ impl Completion<'_> {
             blocks: &full.blocks,
             guess: x,
             given: (0..given.len()).filter(kept).collect(),
-        };
+            sizes: Vec::new(),
+        }
+        .measured();
         let mut found = nearest(&problem, x)?;
         for &alpha in &problem.given {
             found[alpha] = x[alpha];

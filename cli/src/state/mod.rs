@@ -26,7 +26,9 @@ pub use values::State;
 use crate::failure::Failure;
 use crate::source::Source;
 use file::File;
+use hamel_codegen::algebra::graph::{Edge, Graph};
 use hamel_codegen::algebra::numeric::evaluate;
+use hamel_codegen::algebra::sizes::relative;
 use hamel_codegen::generate::Generated;
 use hamel_codegen::model::Model;
 use hamel_codegen::model::layout::Block;
@@ -83,11 +85,13 @@ impl State {
     /// Where x leaves the configuration manifold, which it does by these residuals.
     fn violations(&self, model: &Model, residuals: &[f64]) -> Vec<String> {
         let mut errors: Vec<String> = Vec::new();
-        for ((_, text), residual) in model.phi.iter().zip(residuals) {
+        let differences = self.phi(model, evaluate);
+        for (((_, text), residual), difference) in model.phi.iter().zip(residuals).zip(differences)
+        {
             // A NaN is off, too.
             if residual.is_nan() || residual.abs() > OFF {
                 errors.push(format!(
-                    "{}: violates {text}, the difference is {residual:.2e}",
+                    "{}: violates {text}, the difference is {difference:.2e}",
                     self.place(model, text)
                 ));
             }
@@ -108,12 +112,19 @@ impl State {
         errors
     }
 
-    /// φ(x).
+    /// φ(x) beside its terms.
     fn residuals(&self, model: &Model) -> Vec<f64> {
+        let places = model.points.places();
+        self.phi(model, |graph, phi, numbers| {
+            relative(graph, phi, numbers, places.clone())
+        })
+    }
+
+    fn phi(&self, model: &Model, of: impl Fn(&Graph, &[Edge], &[f64]) -> Vec<f64>) -> Vec<f64> {
         let (xi, u) = (vec![0.0; model.n()], vec![0.0; model.u.len()]);
         let numbers = model.numbers(&self.params, &self.x, &xi, &u, &xi);
         let rows: Vec<_> = model.phi.iter().map(|(edge, _)| *edge).collect();
-        evaluate(&model.points.free, &rows, &numbers)
+        of(&model.points.free, &rows, &numbers)
     }
 
     /// The coordinates that a constraint mentions, as paths.

@@ -121,6 +121,22 @@ fn inputs_by_expressions() {
     }
 }
 
+/// v̇₂ = v₂ from 1, where v₁ is inactive: an entry of a vector has its name when others have left.
+#[test]
+fn inputs_know_entries_of_vectors() {
+    let ball = "system Ball { coord r: R3; velocity v: vec3; rate r = v; particle mass 1 at r; inactive v[1]; input F;
+        generalized force v[2] = F; output y = v[2]; start v[2] = 1; }";
+    let description = file("ball.eom", ball).display().to_string();
+    for input in ["F = v[2]", "F = v_2 + 0 * r[2]"] {
+        let output = hamel(
+            &["simulate", &description, "--until", "1", "--input", input],
+            "",
+        );
+        let report = text(&output.stdout);
+        assert!(report.contains("2.71828"), "{report}");
+    }
+}
+
 #[test]
 fn what_cannot_be_used_is_said() {
     let path = |name: &str, content: &str| file(name, content).display().to_string();

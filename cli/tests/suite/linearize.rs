@@ -123,6 +123,11 @@ fn advice_is_ordered_and_says_what_to_write() {
     let output = hamel(&["ops", &model("rod_particles"), "--advise"], "");
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stderr).contains("nothing to compare"));
+    for (name, why) in [("kapitza", "has `time`"), ("sleigh", "are constrained")] {
+        let output = hamel(&["ops", &model(name), "--advise"], "");
+        assert_eq!(output.status.code(), Some(1));
+        assert!(text(&output.stderr).contains(why));
+    }
 }
 
 #[test]

@@ -8,8 +8,11 @@ use super::program::Builder;
 use super::reduction::Reduction;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::rebuild;
-use crate::model::Model;
+use crate::model::{Model, entry};
 use crate::program::FunctionId;
+
+/// The most that is shown of a constraint as it was written.
+const SHOWN: usize = 72;
 
 impl Builder<'_> {
     /// φ of the loops that multipliers keep.
@@ -63,6 +66,20 @@ impl Builder<'_> {
         outputs.truncate(rows);
         let guards = self.guards();
         self.push_guarded(FunctionId::ConstraintForce, outputs, guards);
+        // Which is which.
+        let rows = full.constraints.iter().map(|row| row.written.clone());
+        let drives = full.accelerated.iter();
+        let drives =
+            drives.map(|&(velocity, _)| format!("rate({})", entry(&full.velocities, velocity)));
+        let docs = rows.chain(drives).enumerate().map(|(row, text)| {
+            let shown: String = text.chars().take(SHOWN).collect();
+            let more = if shown.len() < text.len() { " …" } else { "" };
+            format!("- {}: `{shown}{more}`", row + 1)
+        });
+        if let Some(function) = self.functions.last_mut() {
+            function.docs.push(String::new());
+            function.docs.extend(docs);
+        }
     }
 
     /// What leads back to the constraints that are kept.

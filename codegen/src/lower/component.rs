@@ -37,7 +37,8 @@ const STEPS: usize = 40;
 /// A walk ends where the rows of φ are nearer to depending on one another than so many times less at the start: there
 /// components meet.
 const MEETING: f64 = 0.05;
-/// What an equation that holds is on such a walk at most; and what one is before that ceases to hold little by little.
+/// The largest residual, on such a walk, of an equation that holds; and the residual just before, from which on an equation
+/// ceases to hold gradually and not at once.
 const HOLDS: f64 = 1e-7;
 const CEASING: f64 = 1e-10;
 

@@ -195,8 +195,8 @@ impl<'a> Seen<'a> {
                 let (force, torque) = (world(part(0)), world(part(3)));
                 let arm = apply(&placed.rotation, part(6));
                 for (sum, twist) in all.iter_mut().zip(&placed.twists) {
-                    let sway = cross(twist.spin, arm);
-                    let speed: [f64; 3] = std::array::from_fn(|k| twist.speed[k] + sway[k]);
+                    let turning = cross(twist.spin, arm);
+                    let speed: [f64; 3] = std::array::from_fn(|k| twist.speed[k] + turning[k]);
                     *sum += dot(&force, &speed) + dot(&torque, &twist.spin);
                 }
                 size += [force, torque]

@@ -5,6 +5,7 @@ use super::ground::{Constraint, Ground};
 use super::{branch, component, start};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::sizes::relative;
 use crate::algebra::topoly::is_polynomial;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::class;
@@ -14,6 +15,9 @@ use crate::model::value::Value;
 use crate::symbols::Resolved;
 use crate::syntax::ast::{ItemKind, Span, System};
 use std::collections::BTreeMap;
+
+/// What a start that satisfies its constraints may be off by, beside their sizes.
+const ROUNDING: f64 = 1e-9;
 
 /// What a row of φ says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +162,15 @@ impl Variety {
         kinds.count()..self.origins.len()
     }
 
+    /// Whether the start satisfies the user's constraints, but for rounding.
+    fn holds_at_start(&self) -> bool {
+        let rows: Vec<Edge> = self.phi.iter().map(|(edge, _)| *edge).collect();
+        self.near.as_ref().is_some_and(|near| {
+            let left = relative(&self.points.free, &rows, near, self.points.places());
+            left.iter().all(|left| left.abs() < ROUNDING)
+        })
+    }
+
     /// A point of X. Where there is none, the statement that is to blame is reported and
     /// the user's constraints are left out, so that the rest can still be read.
     pub fn choose(&mut self, system: &System, seed: u64, report: &mut Report) -> Vec<Fp> {
@@ -185,7 +198,12 @@ impl Variety {
             point(&self.points).is_none()
         });
         if let Some(&item) = blamed.and_then(|last| statements.get(last)) {
-            report.push(contradiction(system, item, &statements));
+            report.push(contradiction(
+                system,
+                item,
+                &statements,
+                self.holds_at_start(),
+            ));
         }
         self.complete = false;
         let user = self.phi.len() - statements.len();
@@ -314,8 +332,13 @@ fn degree(graph: &Graph, edge: Edge) -> u32 {
     degrees[edge.node() as usize]
 }
 
-/// No point was found once this statement joined those before it.
-fn contradiction(system: &System, item: usize, statements: &[usize]) -> Diagnostic {
+/// No point was found once this statement joined those before it: they contradict one another, or are too large for the search.
+fn contradiction(
+    system: &System,
+    item: usize,
+    statements: &[usize],
+    holds_at_start: bool,
+) -> Diagnostic {
     let place = |item: usize| match &system.items[item].kind {
         ItemKind::Constraint { left, right } => left.span.to(right.span),
         _ => system.items[item].span,
@@ -326,13 +349,20 @@ fn contradiction(system: &System, item: usize, statements: &[usize]) -> Diagnost
         .filter(|&other| other < item)
         .collect();
     earlier.dedup();
-    let message = if earlier.is_empty() {
-        "no configuration satisfies this constraint"
-    } else {
-        "no configuration satisfies this constraint together with those before it"
+    let message = match (holds_at_start, earlier.is_empty()) {
+        (false, true) => "no configuration satisfies this constraint",
+        (false, false) => {
+            "no configuration satisfies this constraint together with those before it"
+        }
+        (true, true) => "this constraint is too large to be solved in exact arithmetic",
+        (true, false) => {
+            "this constraint, together with those before it, is too large to be solved in exact arithmetic"
+        }
     };
-    let error = Diagnostic::new(place(item), message)
-        .help("remove what contradicts, or let a value in it be a coordinate or a parameter");
+    let error = Diagnostic::new(place(item), message).help(match holds_at_start {
+        false => "remove what contradicts, or let a value in it be a coordinate or a parameter",
+        true => "lower its degree: let powers and products be coordinates, or write a `loop`, which multipliers keep",
+    });
     earlier.into_iter().fold(error, |error, other| {
         error.note(place(other), "one of those before")
     })

@@ -76,14 +76,24 @@ pub fn nearest(problem: &impl Assembly, guess: &[f64]) -> Option<Vec<f64>> {
     best.map(|(_, x)| x)
 }
 
-/// Newton's method with the shortest steps in the metric.
+/// Newton's method with the shortest steps in the metric, to the last digit.
 fn close(problem: &impl Assembly, mut x: Vec<f64>) -> Option<Vec<f64>> {
     let mut residuals = problem.residuals(&x);
     for _ in 0..STEPS {
+        let step = step(problem, &x, &residuals, false);
         if largest(&residuals) <= SOLVED {
-            return Some(x);
+            // While whole steps bring it nearer.
+            let next = step.map(|step| problem.moved(&x, &step));
+            let after = next.as_ref().map(|next| problem.residuals(next));
+            match (next, after) {
+                (Some(next), Some(after)) if square(&after) < 0.25 * square(&residuals) => {
+                    (x, residuals) = (next, after);
+                    continue;
+                }
+                _ => return Some(x),
+            }
         }
-        let mut step = step(problem, &x, &residuals, false)?;
+        let mut step = step?;
         // Long steps end on far branches.
         let most = REACH * (1.0 + largest(&x));
         let size = largest(&step);

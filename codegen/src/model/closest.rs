@@ -6,6 +6,7 @@ use super::closure::{Closure, normalise};
 use super::layout::Block;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::{evaluate, least_norm};
+use crate::algebra::sizes::{beside, sizes};
 use crate::algebra::slopes::slopes;
 
 /// What a pivot of M has of its entry at least; else it has so much of the largest entry.
@@ -17,6 +18,8 @@ pub struct Loops<'c, 'a> {
     guess: &'c [f64],
     given: Vec<usize>,
     free: Vec<usize>,
+    /// What residuals of the loops are measured by.
+    sizes: Vec<f64>,
     /// S with |S δ|² the square of the distance, δ that in the charts of the coordinates.
     weight: Option<Vec<Vec<f64>>>,
 }
@@ -35,6 +38,7 @@ impl<'c, 'a> Loops<'c, 'a> {
             guess,
             given: (0..given.len()).filter(|&alpha| given[alpha]).collect(),
             free: directions.filter(|&i| closure.time != Some(i)).collect(),
+            sizes: closure.sizes(guess),
             weight: None,
         };
         loops.weight = loops.weights(mass);
@@ -98,7 +102,9 @@ impl Assembly for Loops<'_, '_> {
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let mut residuals = self.closure.residuals(x);
-        residuals.extend(self.given.iter().map(|&alpha| x[alpha] - self.guess[alpha]));
+        let sizes = residuals.iter_mut().zip(&self.sizes);
+        sizes.for_each(|(residual, &size)| *residual = beside(*residual, size));
+        residuals.extend((self.given.iter()).map(|&alpha| kept(x[alpha], self.guess[alpha])));
         residuals
     }
 
@@ -109,12 +115,11 @@ impl Assembly for Loops<'_, '_> {
         let rows: Vec<Edge> = rows.collect();
         let b = evaluate(self.closure.graph, &rows, &self.closure.numbers(x));
         let a = self.a(x);
-        let given = self
-            .given
-            .iter()
-            .map(|&alpha| &a[alpha * n..(alpha + 1) * n]);
-        let rows = b.chunks(n.max(1)).chain(given);
-        rows.map(|row| self.free.iter().map(|&i| row[i]).collect())
+        let given =
+            (self.given.iter()).map(|&alpha| (&a[alpha * n..][..n], length_of(self.guess[alpha])));
+        let rows = b.chunks(n.max(1)).zip(self.sizes.iter().copied());
+        rows.chain(given)
+            .map(|(row, size)| self.free.iter().map(|&i| beside(row[i], size)).collect())
             .collect()
     }
 
@@ -182,9 +187,29 @@ pub struct Constraints<'a> {
     pub guess: &'a [f64],
     /// Entries that stay as they are in the guess.
     pub given: Vec<usize>,
+    /// What residuals of φ are measured by.
+    pub sizes: Vec<f64>,
+}
+
+/// How far an entry that stays is from its guess, beside its length.
+fn kept(entry: f64, guess: f64) -> f64 {
+    (entry - guess) / length_of(guess)
+}
+
+fn length_of(entry: f64) -> f64 {
+    entry.abs().max(1.0)
 }
 
 impl Constraints<'_> {
+    /// Measured by the sizes of their terms at the guess.
+    pub fn measured(self) -> Self {
+        let places = self.first..self.first + self.guess.len();
+        Constraints {
+            sizes: sizes(self.graph, &self.phi, &self.at(self.guess), places),
+            ..self
+        }
+    }
+
     fn at(&self, x: &[f64]) -> Vec<f64> {
         let mut numbers = self.numbers.to_vec();
         numbers[self.first..self.first + x.len()].copy_from_slice(x);
@@ -199,7 +224,9 @@ impl Assembly for Constraints<'_> {
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let mut residuals = evaluate(self.graph, &self.phi, &self.at(x));
-        residuals.extend(self.given.iter().map(|&alpha| x[alpha] - self.guess[alpha]));
+        let sizes = residuals.iter_mut().zip(&self.sizes);
+        sizes.for_each(|(residual, &size)| *residual = beside(*residual, size));
+        residuals.extend((self.given.iter()).map(|&alpha| kept(x[alpha], self.guess[alpha])));
         residuals
     }
 
@@ -212,12 +239,17 @@ impl Assembly for Constraints<'_> {
         let directions: Vec<Vec<f64>> = (0..x.len()).map(unit).collect();
         let rows = slopes(self.graph, &self.phi, &self.at(x), &directions).into_iter();
         let rows = rows.map(|row| (0..x.len()).map(|alpha| row.slope(alpha)).collect());
-        let given = self.given.iter().map(|&alpha| {
+        let mut rows: Vec<Vec<f64>> = rows.collect();
+        for (row, size) in rows.iter_mut().zip(&self.sizes) {
+            row.iter_mut()
+                .for_each(|slope| *slope = beside(*slope, *size));
+        }
+        rows.extend(self.given.iter().map(|&alpha| {
             let mut row = vec![0.0; x.len()];
-            row[alpha] = 1.0;
+            row[alpha] = 1.0 / length_of(self.guess[alpha]);
             row
-        });
-        rows.chain(given).collect()
+        }));
+        rows
     }
 
     fn apart(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {

@@ -12,12 +12,14 @@ use super::{Clock, Coordinate, Model};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
 use crate::algebra::numeric::{evaluate, least_norm};
+use crate::algebra::sizes::{beside, sizes};
+use crate::syntax::ast::Span;
 
 /// Steps of Newton's method.
 const STEPS: usize = 60;
-/// Largest residual of a solution.
+/// Largest residual of a solution, beside its [size](sizes).
 const SOLVED: f64 = 1e-12;
-/// Largest residual that counts as rounding of the numbers given, which are then polished.
+/// Largest residual that counts as rounding of the numbers given, which are then polished; beside the size of its terms, too.
 const ROUNDING: f64 = 1e-6;
 
 /// The equations φ(x) = 0 of loops and B(x) ξ = 0, with numbers for the parameters.
@@ -95,20 +97,21 @@ impl<'a> Closure<'a> {
     /// alone leaves loops open. An error leaves x as it was.
     pub fn close_loops(&self, x: &mut Vec<f64>, given: &[bool]) -> Result<(), Open> {
         let before = self.residuals(x);
-        let Some((which, residual)) = worst(&before) else {
+        let sizes = self.sizes(x);
+        let Some((which, beside)) = worst(&relative(&before, &sizes)) else {
             return Ok(());
         };
         let all = vec![false; given.len()];
-        let attempts = [Some(given), (residual <= ROUNDING).then_some(&all[..])];
+        let attempts = [Some(given), (beside <= ROUNDING).then_some(&all[..])];
         for fixed in attempts.into_iter().flatten() {
-            if let Some(closed) = self.newton(x, fixed) {
+            if let Some(closed) = self.newton(x, fixed, &sizes) {
                 *x = closed;
                 return Ok(());
             }
         }
         Err(Open {
             constraint: self.loops()[which],
-            residual,
+            residual: before[which].abs(),
         })
     }
 
@@ -116,7 +119,7 @@ impl<'a> Closure<'a> {
     /// leaves x as it was.
     pub fn assemble(&self, x: &mut [f64], given: &[bool], mass: &[Vec<f64>]) -> Result<(), Open> {
         let before = self.residuals(x);
-        let Some((which, residual)) = worst(&before) else {
+        let Some((which, _)) = worst(&relative(&before, &self.sizes(x))) else {
             return Ok(());
         };
         let loops = Loops::new(self, mass, x, given);
@@ -124,7 +127,7 @@ impl<'a> Closure<'a> {
             let constraint = self.loops()[which];
             return Err(Open {
                 constraint,
-                residual,
+                residual: before[which].abs(),
             });
         };
         let free = (0..x.len()).filter(|&alpha| !given[alpha]);
@@ -182,7 +185,7 @@ impl<'a> Closure<'a> {
     }
 
     /// x with all loops closed, moved along A where not fixed; `None` where Newton's method fails.
-    fn newton(&self, from: &[f64], fixed: &[bool]) -> Option<Vec<f64>> {
+    fn newton(&self, from: &[f64], fixed: &[bool], sizes: &[f64]) -> Option<Vec<f64>> {
         let mut x = from.to_vec();
         let n = self.n;
         let rows = self
@@ -193,7 +196,7 @@ impl<'a> Closure<'a> {
         let mut best = f64::INFINITY;
         for _ in 0..STEPS {
             let residuals = self.residuals(&x);
-            let (_, size) = worst(&residuals)?;
+            let (_, size) = worst(&relative(&residuals, sizes))?;
             if !size.is_finite() {
                 return None;
             }
@@ -224,7 +227,7 @@ impl<'a> Closure<'a> {
             }
             normalise(&self.blocks, &mut x);
         }
-        let (_, size) = worst(&self.residuals(&x))?;
+        let (_, size) = worst(&relative(&self.residuals(&x), sizes))?;
         (size <= SOLVED).then_some(x)
     }
 
@@ -248,11 +251,20 @@ impl<'a> Closure<'a> {
             let rows = b.chunks(n.max(1)).zip(&shifts);
             rows.map(|(row, shift)| moved(row) + shift).collect()
         };
-        let Some((constraint, residual)) = worst(&speeds(xi)) else {
+        // A speed of 1, or those that there are.
+        let sizes = |xi: &[f64]| -> Vec<f64> {
+            let most = xi.iter().fold(1.0f64, |most, v| most.max(v.abs()));
+            let length = |row: &[f64]| row.iter().map(|b| b.abs()).sum::<f64>();
+            let rows = b.chunks(n.max(1)).zip(&shifts);
+            let rows = rows.map(|(row, shift)| length(row) * most + shift.abs());
+            self.shared(0..self.constraints.len(), rows.collect())
+        };
+        let before = speeds(xi);
+        let Some((constraint, beside)) = worst(&relative(&before, &sizes(xi))) else {
             return Ok(());
         };
         let all = vec![false; n];
-        for fixed in [Some(given), (residual <= ROUNDING).then_some(&all[..])]
+        for fixed in [Some(given), (beside <= ROUNDING).then_some(&all[..])]
             .into_iter()
             .flatten()
         {
@@ -270,16 +282,41 @@ impl<'a> Closure<'a> {
                 };
                 free.iter().zip(step).for_each(|(&i, h)| settled[i] += h);
             }
-            let scale = settled.iter().fold(1.0f64, |m, v| m.max(v.abs()));
-            if worst(&speeds(&settled)).is_none_or(|(_, size)| size <= SOLVED * scale) {
+            let left = relative(&speeds(&settled), &sizes(&settled));
+            if worst(&left).is_none_or(|(_, size)| size <= SOLVED) {
                 *xi = settled;
                 return Ok(());
             }
         }
         Err(Open {
             constraint,
-            residual,
+            residual: before[constraint].abs(),
         })
+    }
+
+    /// The sizes beside which the residuals of the loops are large or small.
+    pub(super) fn sizes(&self, x: &[f64]) -> Vec<f64> {
+        let loops = self.loops();
+        let edges: Vec<Edge> = (loops.iter())
+            .map(|&place| self.constraints[place].residual)
+            .collect();
+        let first = 1 + self.params.len();
+        let sizes = sizes(self.graph, &edges, &self.numbers(x), first..first + x.len());
+        self.shared(loops.iter().copied(), sizes)
+    }
+
+    /// Rows of one statement share the largest of their sizes.
+    fn shared(&self, rows: impl Iterator<Item = usize>, sizes: Vec<f64>) -> Vec<f64> {
+        let spans: Vec<Span> = rows.map(|row| self.constraints[row].span).collect();
+        let of = |span: Span| {
+            let all = spans
+                .iter()
+                .zip(&sizes)
+                .filter(|(other, _)| **other == span);
+            let largest = all.fold(0.0, |most, (_, &size)| f64::max(most, size));
+            largest
+        };
+        spans.iter().map(|&span| of(span)).collect()
     }
 
     pub(super) fn residuals(&self, x: &[f64]) -> Vec<f64> {
@@ -300,6 +337,12 @@ impl<'a> Closure<'a> {
         numbers.resize(self.graph.symbols().len(), 0.0);
         numbers
     }
+}
+
+/// Residuals as parts of the sizes of their terms.
+fn relative(residuals: &[f64], sizes: &[f64]) -> Vec<f64> {
+    let parts = residuals.iter().zip(sizes);
+    parts.map(|(&left, &size)| beside(left, size)).collect()
 }
 
 /// The largest entry by size, and where it is; what is not a number is larger than all.

@@ -75,6 +75,15 @@ pub struct Group {
     pub len: usize,
 }
 
+/// The name of an entry of groups as the language writes it: `q_dot`, `w[2]`.
+pub fn entry(groups: &[Group], place: usize) -> String {
+    match groups.iter().rev().find(|group| group.offset <= place) {
+        Some(group) if group.len == 1 => group.name.clone(),
+        Some(group) => format!("{}[{}]", group.name, 1 + place - group.offset),
+        None => String::new(),
+    }
+}
+
 /// A configuration coordinate.
 #[derive(Clone, Debug)]
 pub struct Coordinate {

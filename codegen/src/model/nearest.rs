@@ -12,7 +12,7 @@ use crate::algebra::numeric::evaluate;
 const STEPS: usize = 200;
 /// Steps where another point will do as well.
 const FEW_STEPS: usize = 40;
-/// Largest |φ| of a configuration.
+/// Largest |φ| of a configuration, beside 1 or what its slopes make of the coordinates.
 const CLOSE: f64 = 1e-12;
 /// First guesses at random, beyond the start and its neighbours along each coordinate.
 const GUESSES: usize = 12;
@@ -35,16 +35,30 @@ pub struct Equations {
     dimension: usize,
 }
 
+/// Where Newton's method ends.
+struct End {
+    x: Vec<f64>,
+    /// max |φ| there, and what the slopes of φ make of the coordinates.
+    residual: f64,
+    size: f64,
+}
+
+impl End {
+    fn is_close(&self) -> bool {
+        self.residual <= CLOSE * self.size
+    }
+}
+
 /// Looks for x with φ(x) = 0 near a start; `numbers` are those of all symbols there.
 pub fn nearest(points: &Points, phi: &[(Edge, String)], numbers: &[f64], x: &[f64]) -> Nearest {
     let equations = Equations::new(points, phi);
     let mut least = f64::INFINITY;
     for guess in guesses(x) {
-        let (found, residual) = equations.descend(guess, numbers, STEPS);
-        if residual <= CLOSE {
-            return Nearest::Found(found);
+        let end = equations.descend(guess, numbers, STEPS);
+        if end.is_close() {
+            return Nearest::Found(end.x);
         }
-        least = least.min(residual);
+        least = least.min(end.residual);
     }
     Nearest::Nowhere(least)
 }
@@ -91,8 +105,8 @@ impl Equations {
     /// x with φ(x) = 0 near that of some values of all symbols, if Newton's method finds it soon.
     pub fn near(&self, numbers: &[f64]) -> Option<Vec<f64>> {
         let x = numbers.get(self.first..self.first + self.dimension)?;
-        let (x, residual) = self.descend(x.to_vec(), numbers, FEW_STEPS);
-        (residual <= CLOSE).then_some(x)
+        let end = self.descend(x.to_vec(), numbers, FEW_STEPS);
+        end.is_close().then_some(end.x)
     }
 
     /// √det(∂φ/∂x ∂φ/∂xᵀ) where all symbols have these values: 0 where rows depend on one another, as they do where
@@ -122,15 +136,20 @@ impl Equations {
         evaluate(&self.graph, edges, &numbers)
     }
 
-    /// Newton's method from a guess: where it ends, and max |φ| there.
-    fn descend(&self, mut x: Vec<f64>, numbers: &[f64], steps: usize) -> (Vec<f64>, f64) {
+    /// Newton's method from a guess.
+    fn descend(&self, mut x: Vec<f64>, numbers: &[f64], steps: usize) -> End {
         let mut phi = self.at(&self.phi, numbers, &x);
         let mut damping = 1e-6;
+        let mut size: f64 = 1.0;
         for _ in 0..steps {
-            if largest(&phi) <= CLOSE {
+            let slopes = self.at(&self.slopes, numbers, &x);
+            size = slopes
+                .chunks(x.len().max(1))
+                .map(|row| row.iter().zip(&x).map(|(slope, x)| (slope * x).abs()).sum())
+                .fold(1.0, f64::max);
+            if largest(&phi) <= CLOSE * size {
                 break;
             }
-            let slopes = self.at(&self.slopes, numbers, &x);
             let rows: Vec<&[f64]> = slopes.chunks(x.len().max(1)).collect();
             let mut gram: Vec<Vec<f64>> = rows
                 .iter()
@@ -160,8 +179,11 @@ impl Equations {
                 }
             }
         }
-        let residual = largest(&phi);
-        (x, residual)
+        End {
+            x,
+            residual: largest(&phi),
+            size,
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use crate::algebra::poly::polynomial::Poly;
 use crate::algebra::prime::Residue;
 use crate::algebra::transplant::copy;
 use rustc_hash::FxHashMap;
+use std::ops::Range;
 
 /// Points tried until all square roots have values; each root halves the chance.
 const TRIES: usize = 4000;
@@ -60,6 +61,11 @@ impl Points {
             radicals: Vec::new(),
             roots: Roots::default(),
         }
+    }
+
+    /// The places of the symbols of x.
+    pub fn places(&self) -> Range<usize> {
+        self.first..self.first + self.dimension()
     }
 
     /// Number of entries of x.

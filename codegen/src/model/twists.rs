@@ -84,8 +84,8 @@ impl Moving<'_> {
                 .twists
                 .iter()
                 .map(|twist| {
-                    let sway = cross(twist.spin, arm);
-                    let speed = std::array::from_fn(|k| twist.speed[k] + sway[k]);
+                    let turning = cross(twist.spin, arm);
+                    let speed = std::array::from_fn(|k| twist.speed[k] + turning[k]);
                     (back(&frame.rotation, twist.spin), speed)
                 })
                 .collect();

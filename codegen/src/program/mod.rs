@@ -15,7 +15,7 @@ pub(crate) mod together;
 use crate::algebra::graph::{Edge, Graph};
 use crate::model::joints::Joint;
 use crate::model::layout::Block;
-use crate::model::{Coordinate, Group, behind};
+use crate::model::{Coordinate, Group, behind, entry};
 use structure::Structure;
 
 use crate::functions::Returns;
@@ -192,13 +192,7 @@ impl Program {
 
     /// The name of a velocity as the language writes it: `q_dot`, `w[2]`.
     pub fn velocity(&self, place: usize) -> String {
-        let all = self.velocities.iter();
-        let group = all.rev().find(|group| group.offset <= place);
-        match group {
-            Some(group) if group.len == 1 => group.name.clone(),
-            Some(group) => format!("{}[{}]", group.name, 1 + place - group.offset),
-            None => String::new(),
-        }
+        entry(&self.velocities, place)
     }
 
     /// The length of an argument: states of first order stand behind the velocities, their rates behind ξ̇.

@@ -58,13 +58,14 @@ fn verdicts(
     if !model.is_constrained() {
         all.extend(motion::emitted(&mut symbols, program));
     }
+    // Nothing is said of what has no entries.
+    all.retain(|sides| !sides.left.is_empty());
     let graph = &symbols.geometry.model.graph;
     let mut compared = Compared::new(model, graph);
     let mut identities: Vec<Identity> = all
         .iter()
-        .enumerate()
-        .map(|(index, sides)| {
-            let mut proved = || proofs.as_mut().is_some_and(|proofs| proofs.hold(index));
+        .map(|sides| {
+            let mut proved = || proofs.as_mut().is_some_and(|proofs| proofs.hold(sides));
             let verdict = match at_points(model, graph, sides) {
                 Some(difference) => Verdict::Failed(difference),
                 None if proved() => Verdict::Proved,
@@ -139,11 +140,15 @@ impl Proofs {
         proofs
     }
 
-    /// Whether every difference of an identity lies in the ideal of φ.
-    fn hold(&mut self, index: usize) -> bool {
-        let Some(sides) = self.sides.get(index) else {
+    /// Whether every difference of an identity, with free coordinates, lies in the ideal of φ.
+    fn hold(&mut self, on_x: &Sides) -> bool {
+        let same = |sides: &&Sides| (sides.label, sides.equation) == (on_x.label, on_x.equation);
+        let Some(sides) = self.sides.iter().find(same) else {
             return false;
         };
+        if [sides.left.len(), sides.right.len()] != [on_x.left.len(); 2] {
+            return false;
+        }
         let roots: Vec<Edge> = sides.left.iter().chain(&sides.right).copied().collect();
         let moving = |root: &Edge| self.graph.class(root.node()) & class::ACCEL != 0;
         let most = match roots.iter().any(moving) {

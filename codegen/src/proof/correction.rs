@@ -1,8 +1,10 @@
-//! The proof of the stabilising term −Ψ φ, KR18 (8).
+//! The proof of φ, and of the stabilising term −Ψ φ, KR18 (8).
 
 use super::frames::applied;
-use super::points::at_fresh_points;
+use super::points::{Unequal, at_fresh_points};
+use super::verdict::{failure, nowhere};
 use crate::algebra::fp::{Fp, Random};
+use crate::algebra::graph::Edge;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tangent::{Dual, tangent_at};
 use crate::algebra::transplant::rebuild;
@@ -11,24 +13,15 @@ use crate::diagnostics::Diagnostic;
 use crate::model::Model;
 use crate::program::{FunctionId, Program};
 
-/// Proves the emitted correction at fresh points of X: it is 0 there, and its derivative is −Ψ Φ = A Y − I, KR18
-/// (6), along any direction, be it tangent or not; random ones are taken.
+/// Proves the emitted φ of coordinates off X, at random x, and the emitted correction at fresh points of X: it is 0 there,
+/// and its derivative is −Ψ Φ = A Y − I, KR18 (6), along any direction, be it tangent or not; random ones are taken.
 pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
+    constraint(model, program)?;
     let Some(function) = program.function(FunctionId::Correction) else {
         return Ok(());
     };
-    let failure = || {
-        Diagnostic::new(
-            model.span,
-            format!(
-                "internal check failed: −Ψ φ of `{}` does not lead back to φ = 0",
-                model.name
-            ),
-        )
-        .help(
-            "this is a fault of the generator, nothing was emitted; please report the description",
-        )
-    };
+    let what = "d(−Ψ φ) = A Y − I on X";
+    let failure = || failure(model, what);
     let mut on_x = model.clone();
     let y = left_inverse(&mut on_x).ok_or_else(failure)?;
     let (mut free, first) = (model.points.free.clone(), model.points.first);
@@ -55,5 +48,40 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
             Some(if found == expected { Ok(()) } else { Err(()) })
         },
     )
-    .map_err(|_| failure())
+    .map_err(|unequal| match unequal {
+        Unequal::Differs(()) => failure(),
+        Unequal::Nowhere => nowhere(model),
+    })
+}
+
+/// φ of coordinates, before that of loops.
+fn constraint(model: &Model, program: &Program) -> Result<(), Diagnostic> {
+    let Some(function) = program.function(FunctionId::Constraint) else {
+        return Ok(());
+    };
+    let (mut free, first) = (model.points.free.clone(), model.points.first);
+    let phi: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
+    let Some(outputs) = function.outputs.get(..phi.len()) else {
+        return Err(failure(model, "φ as described"));
+    };
+    let emitted = rebuild(&program.graph, &mut free, outputs);
+    at_fresh_points(
+        |number| {
+            let mut lane = model.points.lane(0xf1_0ff + number)?;
+            let mut random = Random::new(0x0ff_f1 + number);
+            for place in first..first + model.nu() {
+                lane.set_symbol(place, random.element());
+            }
+            Some(lane)
+        },
+        |lane, _| {
+            let at = |edges: &[Edge]| evaluate_at(&free, edges, &mut lane.clone());
+            let same = at(&emitted)? == at(&phi)?;
+            Some(if same { Ok(()) } else { Err(()) })
+        },
+    )
+    .map_err(|unequal| match unequal {
+        Unequal::Differs(()) => failure(model, "φ as described"),
+        Unequal::Nowhere => nowhere(model),
+    })
 }

@@ -84,11 +84,6 @@ pub fn prove(
         Some(reduction) => constrained::validate(model, reduction, program).map_err(one)?,
         None => validate::validate(model, program).map_err(one)?,
     }
-    let active = reduction.map_or(model, |reduction| &reduction.model);
-    // Points of X alone are not where prescribed coordinates are prescribed to be.
-    if model.prescribed.is_empty() {
-        charts::validate(active, program).map_err(one)?;
-    }
     correction::validate(model, program).map_err(one)?;
     if let Some(derived) = regressor {
         regressor::validate(model, derived, program).map_err(one)?;

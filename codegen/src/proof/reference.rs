@@ -1,5 +1,6 @@
-//! One derivation beside the emitted one, by Hamel's form (30a): what slopes, claims and constrained
-//! systems are compared with in numbers.
+//! M, Γ ξ ξ, ∂V and f by the rules of derivation, and not by the routes of emitted functions: what slopes, claims and
+//! constrained systems are compared with in numbers. They are themselves compared with the three forms, which share none of
+//! these rules, by `constrained/frame`.
 
 use super::virtual_power;
 use crate::algebra::graph::Edge;
@@ -28,7 +29,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Hamel's form (30a), from T and γ, not from traced bodies.
+    /// The explicit form (30c), with the forces by virtual work.
     pub fn new(model: &Model) -> Option<Self> {
         let mut model = model.clone();
         let mut calculus = Calculus::new(&model);

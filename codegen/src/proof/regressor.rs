@@ -4,7 +4,7 @@
 
 use super::numbers::Numbers;
 use super::points::{Unequal, at_fresh_points};
-use super::verdict::failure;
+use super::verdict::{failure, nowhere};
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
@@ -76,7 +76,10 @@ pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Resu
             Some(if same { Ok(()) } else { Err(()) })
         },
     );
-    compared.map_err(|_| failure(model, "the emitted regressor is Y, the base parameters β"))
+    compared.map_err(|unequal| match unequal {
+        Unequal::Differs(()) => failure(model, "the emitted regressor is Y, the base parameters β"),
+        Unequal::Nowhere => nowhere(model),
+    })
 }
 
 /// Compares at a point; `None` where something has no value.

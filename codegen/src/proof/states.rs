@@ -5,10 +5,44 @@ use crate::algebra::graph::{Edge, Node};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tangent::tangent_at;
-use crate::model::Model;
+use crate::algebra::transplant::{rebuild, substitute};
+use crate::model::{Model, class};
+use crate::program::{FunctionId, Program};
 
 /// What is broken where they differ.
 pub(super) const WHAT: &str = "ż of the states";
+
+/// The model, with the emitted ξ̇ in the place of its symbols in rates of states and in outputs whose slopes are taken, where
+/// functions are taken of it: f of a symbol with the value of a sum, or of a number, is not f of that sum or number modulo p.
+pub(super) fn with_rates(model: &Model, program: &Program) -> Model {
+    let mut model = model.clone();
+    let Some(accel) = program.function(FunctionId::Accel) else {
+        return model;
+    };
+    let mut expressions = model.state_rates.clone();
+    expressions.extend(model.outputs.iter().flat_map(|(_, value)| value.entries()));
+    let moves = |edge: Edge| model.graph.class(edge.node()) & class::ACCEL != 0;
+    let reached = model.graph.reachable(&expressions);
+    let is_applied = reached.iter().any(|&id| match model.graph.node(id) {
+        Node::Apply(_, a) => moves(a),
+        Node::Atan2(y, x) => moves(y) || moves(x),
+        Node::Select(c, ..) => moves(c),
+        Node::External(_, list) => moves(list),
+        _ => false,
+    });
+    if is_applied {
+        let places: Option<Vec<usize>> = model.xi_dot.iter().map(|xi| place(&model, xi)).collect();
+        let n = model.n();
+        let emitted = rebuild(&program.graph, &mut model.graph, &accel.outputs[..n]);
+        let set: Vec<(usize, Edge)> = places.into_iter().flatten().zip(emitted).collect();
+        let graph = &mut model.graph;
+        model.state_rates = substitute(graph, &model.state_rates, &set);
+        for (_, value) in &mut model.outputs {
+            *value = value.map(|entry| substitute(graph, &[entry], &set)[0]);
+        }
+    }
+    model
+}
 
 /// ż where the velocities have the rates ξ̇; the lane is one of the model's symbols.
 pub(super) fn rates(model: &Model, xi_dot: &[Fp], lane: &Lane) -> Option<Vec<Fp>> {

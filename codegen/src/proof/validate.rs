@@ -11,11 +11,12 @@
 //! | `generalized_force` | f by virtual work |
 //! | `momentum` | ∂T/∂ξ |
 //! | `dissipation` | D of the dampers' forces on points |
-//! | `kick` and its kind | the motion of the system, see `structure/proof` |
+//! | `kick` and its kind | the motion of the system, see `splitting` |
 //! | `mass_matrix` | M |
 //! | `momentum_rate` | Ṁ ξ + f − h − ∂V |
 //! | `velocity_from_momentum` | the ξ with M ξ = p |
 
+use super::charts;
 use super::check::failures;
 use super::forms::Symbols;
 use super::numbers::{Numbers, Values};
@@ -58,10 +59,11 @@ pub fn validate(model: &Model, program: &Program) -> Result<(), Diagnostic> {
 /// The first comparison that fails, at the first point at which one does.
 pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<String>> {
     let without = |what: &str| Unequal::Differs(what.to_string());
+    let with_rates = states::with_rates(model, program);
     let numbers = Numbers::new(model).ok_or_else(|| without("Y A = I"))?;
     let emitted =
         Emitted::new(model, program).ok_or_else(|| without("that numbers have values"))?;
-    let slopes = Slopes::new(model, program).ok_or_else(|| without("Y A = I"))?;
+    let slopes = Slopes::new(&with_rates, program).ok_or_else(|| without("Y A = I"))?;
     let splitting = Proof::new(model, program);
     let at_point = |lane: &Lane| -> Option<Result<(), String>> {
         let values = match numbers.at(lane)? {
@@ -69,7 +71,13 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<S
             Err(what) => return Some(Err(what)),
         };
         let all = [
-            compare(model, program, &values, &emitted.at(lane)?, lane)?,
+            compare(
+                [model, &with_rates],
+                program,
+                &values,
+                &emitted.at(lane)?,
+                lane,
+            )?,
             slopes.at_point(program, lane)?,
             splitting.as_ref().map_or(Some(Ok(())), |splitting| {
                 splitting.at_point(&numbers, program, lane)
@@ -136,9 +144,9 @@ impl Emitted {
     }
 }
 
-/// Compares at one point; `None` where it cannot be evaluated there.
+/// Compares at one point; `None` where it cannot be evaluated there. Of the model with the emitted ξ̇ are the rates of states.
 fn compare(
-    model: &Model,
+    [model, with_rates]: [&Model; 2],
     program: &Program,
     values: &Values,
     emitted: &FxHashMap<&str, Vec<Fp>>,
@@ -204,12 +212,15 @@ fn compare(
             return Some(Err(what.into()));
         }
     }
+    if !charts::hold(program, &values.rate, lane)? {
+        return Some(Err("K(x) times the rate of the chart = ẋ".into()));
+    }
     if let Some(rates) = emitted.get("accel") {
         let (xi_dot, state_rates) = rates.split_at(model.n());
         if sum(&[&product(xi_dot), &resistance]) != values.force {
             return Some(Err("(30c) for the emitted ξ̇".into()));
         }
-        if state_rates != states::rates(model, xi_dot, lane)? {
+        if state_rates != states::rates(with_rates, xi_dot, lane)? {
             return Some(Err(states::WHAT.into()));
         }
     }

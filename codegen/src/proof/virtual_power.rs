@@ -275,10 +275,10 @@ fn derived(model: &Model, graph: &mut Graph, calculus: &mut Calculus, observed: 
         Quantity::Acceleration => {
             let origin = second(graph, velocity, &columns);
             let alpha = second(graph, omega, &turns);
-            let sway = cross(graph, alpha, arm);
+            let tangential = cross(graph, alpha, arm);
             let inner = cross(graph, omega, arm);
             let centripetal = cross(graph, omega, inner);
-            let lever = add3(graph, sway, centripetal);
+            let lever = add3(graph, tangential, centripetal);
             add3(graph, origin, lever)
         }
     }

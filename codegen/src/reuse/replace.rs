@@ -198,7 +198,7 @@ fn no_more(path: &[Step], taken: usize, span: Span) -> Diagnostic {
         )
         .help("parts that components make have names of their own: `left.knee`"),
         _ => Diagnostic::new(span, format!("`{name}` is no array"))
-            .help("an array is declared with its index, as in `frame link[0] = world;`"),
+            .help("an array is declared with its index, as in `frame link[0] = world;`; an entry of a call in other axes is written `(velocity(f) in g)[1]`"),
     }
 }
 

@@ -19,8 +19,9 @@ use proc_macro2::Delimiter;
 
 use super::ast::{BinaryOp, Expr, ExprKind, Ident, Span};
 use super::cursor::{Cursor, Parsed, check_name, shown};
+use super::number;
+use super::path;
 use super::tokens::Kind;
-use super::{number, path};
 use crate::diagnostics::Diagnostic;
 
 /// The most operands that operators of one precedence join.
@@ -273,14 +274,8 @@ fn in_axes(cursor: &mut Cursor<'_>, call: Node) -> Parsed<Node> {
     if !cursor.eat_word("in") {
         return Ok(call);
     }
-    let Ident { name, span } = cursor.name("a frame")?;
+    let Ident { name, span } = path::path(cursor, "a frame")?;
     let whole = call.expr.span.to(span);
-    if cursor.is_open(Delimiter::Bracket) || cursor.is_punct('.') {
-        return Err(
-            Diagnostic::new(cursor.here(), "a part of a frame has no axes of its own")
-                .help("put what has components in parentheses: `(velocity(f) in g)[1]`"),
-        );
-    }
     let frame = Expr {
         kind: ExprKind::Name(name),
         span,

@@ -255,3 +255,65 @@ fn rotations_are_guessed_by_rotations() {
         );
     }
 }
+
+/// A bead on a ring of any size: what is off it by half of it is refused, what is off by rounding is not.
+#[test]
+fn rings_are_of_any_size() {
+    let start = |radius: f64, start: &str| {
+        let text = format!(
+            "system Bead {{
+                param r = {radius:e}; coord x, z; constraint x^2 + z^2 = r^2;
+                velocity w; rate x = -z * w, z = x * w; kinetic w^2 / 2; start {start};
+            }}"
+        );
+        build(&parse_text(&text).expect("a description")).map(|model| model.start_x)
+    };
+    for radius in [1e-6, 1e-5, 1e-3, 1.0, 1e4, 5e4, 1e6] {
+        assert!(start(radius, "x = r, z = r").is_err(), "{radius:e}");
+        assert!(
+            start(radius, "x = 0.6 * r, z = r / 2").is_err(),
+            "{radius:e}"
+        );
+        for (part, other) in [(0.6, 0.8), (0.37, 0.929_031_75)] {
+            let x = start(radius, &format!("x = {part} * r, z ~ 0.5 * r"));
+            let x = x.unwrap_or_else(|errors| panic!("{radius:e}: {errors:?}"));
+            assert_eq!(x[0], part * radius);
+            assert!((x[1] / radius - other).abs() < 1e-7, "{radius:e}: {x:?}");
+        }
+    }
+}
+
+/// A linkage is closed, and set in motion, whatever unit its lengths are in.
+#[test]
+fn lengths_are_in_any_unit() {
+    let start = |unit: f64, closing: &str| {
+        let text = format!(
+            "system Linkage {{
+                param a = {:e}, b = {:e}, c = {:e}, d = {:e};
+                coord q1, q2, q3;
+                velocity w1, w2, w3;
+                rate q1 = w1, q2 = w2, q3 = w3;
+                kinetic (w1^2 + w2^2 + w3^2) / 2;
+                {closing}
+            }}",
+            0.4 * unit,
+            unit,
+            0.8 * unit,
+            unit
+        );
+        let model = build(&parse_text(&text).expect("a description"));
+        let model = model.unwrap_or_else(|errors| panic!("{unit:e}: {errors:?}"));
+        [model.start_x, model.start_xi].concat()
+    };
+    for closing in [
+        "loop [a * cos(q1) + b * cos(q2), a * sin(q1) + b * sin(q2)] = [d + c * cos(q3), c * sin(q3)]; start q1 = 1, w1 = 2;",
+        "loop a * cos(q1) + b * cos(q2) = d + c * cos(q3); loop a * sin(q1) + b * sin(q2) = c * sin(q3); start q1 ~ 1, w1 = 2;",
+    ] {
+        let wanted = start(1.0, closing);
+        for unit in [1e-12, 1e-9, 1e-6, 1e-3, 1e3, 3e4, 1e5, 3e5, 1e6, 1e8] {
+            for (found, wanted) in start(unit, closing).iter().zip(&wanted) {
+                assert!((found - wanted).abs() < 1e-9, "{unit:e}: {found} {wanted}");
+            }
+        }
+    }
+}

@@ -30,6 +30,7 @@ mod powers;
 mod precise;
 mod prescribed;
 mod proofs;
+mod proved;
 mod recursions;
 mod regressions;
 mod reuse;

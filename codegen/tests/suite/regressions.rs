@@ -492,3 +492,54 @@ fn stars_of_block_comments_are_no_docs() {
     );
     assert_eq!(docs("/// * a\n/// * b\n///"), ["* a", "* b", ""]);
 }
+
+/// Functions of accelerations that come out as numbers, or as sums of velocities, are proved with these in their place.
+#[test]
+fn functions_of_known_accelerations_are_proved() {
+    let stone = |more: &str| {
+        format!(
+            "system Stone {{ coord z; velocity v; rate z = v; frame f at [0, 0, z]; body on f {{ mass 1; }}
+                gravity [0, 0, -9.81]; {more} }}"
+        )
+    };
+    let of = generated(&stone("state a = 0; rate a = norm(acceleration(f)) - a;"));
+    let found = value(&of, "accel", [&[0.0], &[0.0], &[0.0], &[]]);
+    assert!((found[0] + 9.81).abs() < 1e-14 && (found[1] - 9.81).abs() < 1e-14);
+    for of in ["exp", "tanh", "cos"] {
+        let output =
+            format!("output y = {of}(acceleration(f)[3] / 9) * v; generate y_slopes, linearize;");
+        generated(&stone(&output));
+    }
+    generated(
+        "system S { time t; coord q, p; velocity u, v; rate q = u + p, p = v + t * u; kinetic u^2 / 2 + v^2 / 2;
+            frame f = pose(roty(q), [0, 0, 0]); output y = cos(angular_acceleration(f)[2]); generate all, linearize; }",
+    );
+    generated(
+        "system Drive { coord q; velocity v; rate q = v; kinetic v^2; prescribe rate(v) = 0.5;
+            frame f at [q, 0, 0]; output y = sin(acceleration(f)[1]) * q; generate all, linearize, y_slopes; }",
+    );
+}
+
+/// Components in the axes of frames with an index, and of those of parts.
+#[test]
+fn frames_of_arrays_have_axes() {
+    let of = |axes: &str| {
+        let of = generated(&format!(
+            "system S {{
+                component Leg() {{
+                    joint q: revolute [0, 0, 1] moves f;
+                    body on f {{ mass 1; inertia diag(1, 1, 1) about com; }}
+                }}
+                joint j[1]: revolute [0, 0, 1] moves g[1];
+                body on g[1] {{ mass 1; inertia diag(1, 1, 1) about com; }}
+                part a[2] = Leg();
+                output y = (velocity(g[1], [1, 0, 0]) in {axes})[1];
+            }}"
+        ));
+        value(&of, "y", [&[0.3, 0.8], &[2.0, 0.5], &[], &[]])[0]
+    };
+    // The velocity has the direction [−sin 0.3, cos 0.3].
+    assert!((of("world") + 2.0 * 0.3_f64.sin()).abs() < 1e-15);
+    assert!(of("g[1]").abs() < 1e-15);
+    assert!((of("a[2].f") - 2.0 * 0.5_f64.sin()).abs() < 1e-15);
+}

@@ -124,12 +124,6 @@ pub const RARE: &[(&str, &str, &str, &str)] = &[
         "it is an equation of roots: write it as a polynomial equation",
     ),
     (
-        "proof/correction.rs",
-        "does not lead back to φ = 0",
-        "internal check failed: −Ψ φ of `…` does not lead back to φ = 0",
-        "a fault of the generator: please report it with the description",
-    ),
-    (
         "proof/invariants/mod.rs",
         "the invariants cannot be checked",
         "the invariants cannot be checked: the rates leave A without a left inverse",

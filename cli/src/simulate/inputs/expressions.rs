@@ -37,6 +37,7 @@ impl Expressions {
         }
         let entries: Vec<String> = model.inputs.iter().flat_map(names::group).collect();
         let (known, timed) = known(model);
+        let entries_of = entries_of(model);
         let groups = model.velocities.iter().chain(&model.states);
         let moving: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
         let mut first = None;
@@ -66,7 +67,7 @@ impl Expressions {
                 interpreter,
                 count,
                 mentions,
-            } = compiled(&known, &shape, expression)
+            } = compiled(&known, &shape, &renamed(expression, &entries_of))
                 .map_err(|why| wrong(why.replace("hamel_input", name)))?;
             if mentions.iter().any(|one| moving.contains(&one.as_str())) {
                 first = first.or_else(|| Some(name.to_string()));
@@ -168,6 +169,37 @@ fn known(model: &Model) -> (Vec<String>, bool) {
         all.insert(0, TIME.into());
     }
     (all, timed)
+}
+
+/// Entries of vectors of which constraints have taken others away, as the description writes them, and their names: `v[2]`
+/// is `v_2`.
+fn entries_of(model: &Model) -> Vec<(String, String)> {
+    let groups = model.velocities.iter().chain(&model.states);
+    let names: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
+    let entry = |name: &&str| {
+        let (vector, index) = name.rsplit_once('_')?;
+        let is_entry = !names.contains(&vector) && index.parse::<usize>().is_ok_and(|i| i > 0);
+        is_entry.then(|| (format!("{vector}[{index}]"), name.to_string()))
+    };
+    names.iter().filter_map(entry).collect()
+}
+
+/// An expression with these entries by their names.
+fn renamed(expression: &str, entries: &[(String, String)]) -> String {
+    let mut text = expression.to_string();
+    for (entry, name) in entries {
+        let mut rest = 0;
+        while let Some(found) = text[rest..].find(entry.as_str()) {
+            let place = rest + found;
+            let before = text[..place].chars().next_back();
+            let inside = before.is_some_and(|c| c.is_alphanumeric() || "_.".contains(c));
+            if !inside {
+                text.replace_range(place..place + entry.len(), name);
+            }
+            rest = place + if inside { entry.len() } else { name.len() };
+        }
+    }
+    text
 }
 
 /// An expression that can be evaluated.

@@ -283,10 +283,10 @@ impl Traced {
         let spun = apply3(graph, &inertia, alpha);
         torque = add3(graph, torque, spun);
         // Coupling through m s where the point is not the centre of mass.
-        let sway = cross(graph, alpha, moment);
+        let tangential = cross(graph, alpha, moment);
         let inner = cross(graph, omega, moment);
         let centripetal = cross(graph, omega, inner);
-        let mut coupling = add3(graph, sway, centripetal);
+        let mut coupling = add3(graph, tangential, centripetal);
         let mut local = acceleration;
         if let Some(rotation) = &rotation {
             coupling = apply3(graph, rotation, coupling);

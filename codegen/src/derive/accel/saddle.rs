@@ -223,14 +223,18 @@ pub fn projections(graph: &mut Graph, model: &Model, factored: &Factored) -> Pro
     let held = vec![graph.zero(); model.accelerated.len()];
     let residuals = model.constraints.iter().map(|c| -c.residual);
     let residuals: Vec<Edge> = residuals.chain(held.iter().copied()).collect();
-    let position = factored.solve(graph, &rest, &residuals).xi_dot;
+    let mut position = factored.solve(graph, &rest, &residuals).xi_dot;
     let speeds: Vec<Edge> = model
         .constraints
         .iter()
         .map(|c| -c.speed(graph, &model.xi))
         .chain(held)
         .collect();
-    let change = factored.solve(graph, &rest, &speeds).xi_dot;
+    let mut change = factored.solve(graph, &rest, &speeds).xi_dot;
+    // Exactly held, also where S is raised.
+    for &(place, _) in &model.accelerated {
+        (position[place], change[place]) = (graph.zero(), graph.zero());
+    }
     let velocity = model
         .xi
         .iter()
@@ -297,9 +301,9 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
     }
 }
 
-/// ξ̇ of an overconstrained system in numbers modulo p, by plain elimination: what the emitted code has to agree with. The
-/// parts are M and B by rows, with the forces and the right side of B ξ̇; then come velocities whose rates are given. Of
-/// the lane is what `Raised` multiplies by.
+/// ξ̇ in numbers modulo p, by plain elimination: what the emitted code has to agree with. The parts are M, the forces, B by
+/// rows, and the right side of B ξ̇; then come velocities whose rates are given. Of the lane is what `Raised` multiplies by
+/// where the system is overconstrained.
 pub fn solve_at(
     model: &Model,
     [mass, force, rows, right]: [&[Fp]; 4],
@@ -335,9 +339,12 @@ pub fn solve_at(
     let schur: Vec<Fp> = (0..m)
         .flat_map(|i| bonds.iter().map(move |bond| dot(row(i), bond)))
         .collect();
-    let factor = lane
-        .clone()
-        .function(Function::Raised, Fp::ONE, &Vec::new());
+    let factor = match model.overconstrained {
+        true => lane
+            .clone()
+            .function(Function::Raised, Fp::ONE, &Vec::new()),
+        false => Fp::ONE,
+    };
     let mut raised = schur.clone();
     for (i, rows) in raising.iter().enumerate() {
         let own = schur[i * m + i];

@@ -46,6 +46,15 @@ pub fn advise(model: &Model) -> Result<Vec<Choice>, String> {
                 .into(),
         );
     }
+    if model.clock.is_some() {
+        return Err("the description has `time`, which keeps its velocity 1".into());
+    }
+    if model.is_constrained() {
+        return Err(
+            "its velocities are constrained, by a loop, `nonholonomic`, `inactive` or `prescribe`: what is counted is ξ̇ before that"
+                .into(),
+        );
+    }
     let dimension: usize = model.blocks.iter().map(|block| block.dimension()).sum();
     if dimension != model.n() {
         return Err("there are fewer velocities than directions of the coordinates".into());

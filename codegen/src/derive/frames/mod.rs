@@ -286,7 +286,7 @@ fn outwards_in_world(
     for at in chain(model, index) {
         let frame = &model.frames[at];
         let (slide, turn) = relative(graph, calculus, frame);
-        let (growth, jerk) = change(graph, calculus, (slide, turn));
+        let (slide_rate, turn_rate) = change(graph, calculus, (slide, turn));
         let arm = match from {
             None => frame.position,
             Some(before) => {
@@ -300,9 +300,9 @@ fn outwards_in_world(
             None => v,
         };
         let slide = place(graph, slide);
-        let growth = place(graph, growth);
+        let slide_rate = place(graph, slide_rate);
         let own = apply3(graph, &frame.rotation, turn);
-        let own_rate = apply3(graph, &frame.rotation, jerk);
+        let own_rate = apply3(graph, &frame.rotation, turn_rate);
         let (v, w) = twist;
         let (a, alpha) = rates;
         // Of what turns with the frame before, and slides along it.
@@ -312,7 +312,7 @@ fn outwards_in_world(
         let first = cross(graph, alpha, arm);
         let second = cross(graph, w, inner);
         let both = add3(graph, first, second);
-        let both = add3(graph, both, growth);
+        let both = add3(graph, both, slide_rate);
         let gyro = cross(graph, w, own);
         let gyro = add3(graph, gyro, own_rate);
         rates = (add3(graph, a, both), add3(graph, alpha, gyro));
@@ -335,7 +335,7 @@ fn outwards_in_frames(
         let frame = &model.frames[at];
         let (rotation, place) = &frame.relative;
         let (slide, turn) = relative(graph, calculus, frame);
-        let (growth, jerk) = change(graph, calculus, (slide, turn));
+        let (slide_rate, turn_rate) = change(graph, calculus, (slide, turn));
         let (v, w) = twist;
         let (a, alpha) = rates;
         // In axes of the frame before: v + ω × q + q̇, and the rates of these components.
@@ -346,13 +346,13 @@ fn outwards_in_frames(
         let second = cross(graph, w, slide);
         let changed = add3(graph, a, first);
         let changed = add3(graph, changed, second);
-        let changed = add3(graph, changed, growth);
+        let changed = add3(graph, changed, slide_rate);
         // d/dt (R₁ᵀ a) = R₁ᵀ ȧ − w × R₁ᵀ a.
         let (linear, angular) = back(graph, rotation, (moved, w));
         let (linear_rate, angular_rate) = back(graph, rotation, (changed, alpha));
         let drift = cross(graph, turn, linear);
         let gyro = cross(graph, turn, angular);
-        let gyro = sub3(graph, jerk, gyro);
+        let gyro = sub3(graph, turn_rate, gyro);
         rates = (
             sub3(graph, linear_rate, drift),
             add3(graph, angular_rate, gyro),

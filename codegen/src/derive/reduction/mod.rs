@@ -24,8 +24,8 @@ use carrier::Carrier;
 use rows::{independent, keep, redundant, start_numbers};
 use std::sync::Arc;
 
-/// A factor is no pivot where another one of its row or its velocity is so many times larger at the start: what is
-/// solved with it loses the digits of that ratio twice. A row without pivots gets a multiplier.
+/// A factor is no pivot where another one of its row, or of its velocity in other rows, is so many times larger at the start:
+/// a solution by it would lose twice as many digits as that ratio has. A row without pivots gets a multiplier.
 const LONGEST: f64 = 30.0;
 
 /// ξ = C ξₐ + c, in the graph of the full model.

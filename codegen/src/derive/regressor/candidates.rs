@@ -233,7 +233,7 @@ fn moved(
     relation
 }
 
-/// The factors that are not 0, with the parameters that they belong to.
+/// A relation: the factors that are not 0, each with its parameter.
 pub fn joined(graph: &Graph, parameters: &[usize], factors: &[Edge]) -> Relation {
     let pairs = parameters.iter().copied().zip(factors.iter().copied());
     pairs

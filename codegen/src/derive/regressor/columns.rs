@@ -294,11 +294,11 @@ fn unit_wrenches(graph: &mut Graph, omega: Vec3, alpha: Vec3, a: Vec3) -> Vec<Wr
         });
     }
     for axis in unit {
-        let sway = cross(graph, alpha, axis);
+        let tangential = cross(graph, alpha, axis);
         let inner = cross(graph, omega, axis);
         let centripetal = cross(graph, omega, inner);
         wrenches.push(Wrench {
-            force: add3(graph, sway, centripetal),
+            force: add3(graph, tangential, centripetal),
             torque: cross(graph, axis, a),
         });
     }

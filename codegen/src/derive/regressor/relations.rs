@@ -43,7 +43,8 @@ pub fn find(
     let known = Known::new(model, samples);
     let mut relations = candidates(model, samples, &known, tree, links);
     let numbers = model.numbers(&model.defaults, &model.start_x, &[], &[], &[]);
-    let mut solved = solve(&mut model.graph, &numbers, &relations, (&order, nothing));
+    let ordered = (&order[..], nothing);
+    let mut solved = solve(&mut model.graph, &numbers, &relations, ordered, links.len());
     if solved.len() + rank < present.len() {
         let dependent: Vec<usize> = solved.iter().map(|(pivot, _)| *pivot).collect();
         let left: Vec<usize> = present
@@ -57,7 +58,7 @@ pub fn find(
             )?;
             relations.push(joined(&model.graph, &left, &exact));
         }
-        solved = solve(&mut model.graph, &numbers, &relations, (&order, nothing));
+        solved = solve(&mut model.graph, &numbers, &relations, ordered, links.len());
     }
     let graph = &model.graph;
     if solved.len() + rank != present.len()
@@ -105,6 +106,7 @@ fn solve(
     numbers: &[f64],
     relations: &[Relation],
     (order, nothing): (&[usize], usize),
+    links: usize,
 ) -> Vec<(usize, Relation)> {
     let (zero, one) = (graph.zero(), graph.one());
     let mut symbols = numbers.to_vec();
@@ -135,8 +137,9 @@ fn solve(
                 let length = row.iter().filter(|(entry, _)| *entry != zero).count();
                 (!plain, length)
             };
-            let open = (done..rows.len())
-                .filter(|&row| rows[row][column].0 != zero && !is_small(&rows[row], column, least));
+            let open = (done..rows.len()).filter(|&row| {
+                rows[row][column].0 != zero && !is_small(&rows[row], column, links, least)
+            });
             let Some(found) = open.min_by_key(|&row| cost(&rows[row])) else {
                 continue;
             };
@@ -178,8 +181,12 @@ fn solve(
         .collect()
 }
 
-/// Whether the factor of a column is small beside another one of the same kind and link.
-fn is_small(row: &[Factor], column: usize, least: f64) -> bool {
+/// Whether the factor of a column is small beside another one of the same kind and link; what joints have beside links, such as
+/// an armature, is of a kind of its own.
+fn is_small(row: &[Factor], column: usize, links: usize, least: f64) -> bool {
+    if column >= 10 * links {
+        return false;
+    }
     let (link, kind) = (column / 10, KINDS[column % 10]);
     let alike = row.iter().enumerate().skip(10 * link).take(10);
     let alike = alike.filter(|(k, _)| KINDS[k % 10] == kind);

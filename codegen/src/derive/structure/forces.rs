@@ -4,6 +4,7 @@ use super::variation::Variation;
 use crate::algebra::graph::{Edge, Graph};
 use crate::model::{Model, Wrench, class};
 use crate::program::structure::Reason;
+use std::collections::BTreeSet;
 
 /// The statements that make the generalised force depend on velocities; none where it does not, as a
 /// whole.
@@ -45,13 +46,8 @@ pub fn damped(
         let entries = wrench.at.iter().chain(&wrench.force).chain(&wrench.torque);
         entries.into_iter().any(moves)
     };
-    let mut frames: Vec<usize> = elements
-        .wrenches
-        .iter()
-        .filter(|load| wrench(load))
-        .map(|load| load.frame)
-        .collect();
-    frames.dedup();
+    let wrenches = elements.wrenches.iter().filter(|load| wrench(load));
+    let frames: BTreeSet<usize> = wrenches.map(|load| load.frame).collect();
     for frame in frames {
         let name = full
             .frames

@@ -10,7 +10,6 @@
 //! | `inertia` | what is left of inertia after it: rotors, and one constant block |
 //! | `forces` | what makes forces depend on velocities |
 //! | `functions` | centre, momenta, velocities, kicks as functions |
-//! | `proof` | their validation |
 //! | `choice` | the method that fits |
 //!
 //! M_c = Nᵀ M N is the inertia in the rates w. A system splits where, after the shift of plain

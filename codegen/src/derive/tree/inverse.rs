@@ -110,15 +110,15 @@ fn outward(
     };
     for freedom in &link.freedoms {
         let rate = freedom.rate_of(graph, xi);
-        let growth = freedom.rate_of(graph, xi_dot);
+        let acceleration = freedom.rate_of(graph, xi_dot);
         let (w, v) = (
             scale3(graph, rate, freedom.angular),
             scale3(graph, rate, freedom.linear),
         );
         relative = (add3(graph, relative.0, w), add3(graph, relative.1, v));
         let (w, v) = (
-            scale3(graph, growth, freedom.angular),
-            scale3(graph, growth, freedom.linear),
+            scale3(graph, acceleration, freedom.angular),
+            scale3(graph, acceleration, freedom.linear),
         );
         change = (add3(graph, change.0, w), add3(graph, change.1, v));
     }

@@ -23,7 +23,7 @@ pub struct Slopes {
 /// How all that hangs on a joint moves against its link: 2 ∫ v dm and 2 ∫ r vᵀ dm, v the velocity that the link sees.
 /// By a variation δω the acceleration of every point varies by 2 δω × v.
 #[derive(Clone, Copy)]
-struct Stream {
+struct RelativeMomentum {
     first: Vec3,
     second: Mat3,
 }
@@ -58,14 +58,15 @@ pub fn slopes(
     let motions = motions(graph, tree, xi, xi_dot, gravity);
     let mut masses: Vec<Mass> = tree.links.iter().map(|link| link.mass).collect();
     let mut totals = Vec::new();
-    let mut streams = vec![Stream::none(graph); tree.links.len()];
+    let mut relative_momenta = vec![RelativeMomentum::none(graph); tree.links.len()];
     for (link, motion) in tree.links.iter().zip(&motions) {
         totals.push(wrench(graph, &link.mass, motion));
     }
     for (index, link) in tree.links.iter().enumerate().rev() {
         if let Some(parent) = link.parent {
-            let moved = streams[index].to_parent(graph, link, &masses[index], &motions[index]);
-            streams[parent] = streams[parent].plus(graph, &moved);
+            let moved =
+                relative_momenta[index].to_parent(graph, link, &masses[index], &motions[index]);
+            relative_momenta[parent] = relative_momenta[parent].plus(graph, &moved);
             let mass = masses[index].to_parent(graph, link);
             masses[parent] = masses[parent].plus(graph, &mass);
             let total = to_parent(graph, link, &totals[index]);
@@ -90,7 +91,7 @@ pub fn slopes(
     for (index, link) in tree.links.iter().enumerate() {
         let composite = Composite {
             mass: masses[index],
-            stream: streams[index],
+            relative_momentum: relative_momenta[index],
             omega: motions[index].omega,
         };
         for (place, freedom) in link.freedoms.iter().enumerate() {
@@ -152,8 +153,8 @@ fn displaced(graph: &mut Graph, freedom: &Freedom, motion: &LinkMotion) -> Varia
     let gyro = cross(graph, omega, motion.relative.0);
     let alpha = add3(graph, alpha, gyro);
     // Its origin moves by l in the field of accelerations of the link before.
-    let [before, growth, _] = motion.from_parent;
-    let tangential = cross(graph, growth, freedom.linear);
+    let [before, turning, _] = motion.from_parent;
+    let tangential = cross(graph, turning, freedom.linear);
     let inner = cross(graph, before, freedom.linear);
     let outer = cross(graph, before, inner);
     let coriolis = cross(graph, omega, motion.relative.1);
@@ -233,10 +234,10 @@ fn centripetal(graph: &mut Graph, omega: Vec3, p: Vec3) -> Mat3 {
     })
 }
 
-/// All that hangs on a joint, as one body but for what streams in it.
+/// All that hangs on a joint, as one body but for what relative_momenta in it.
 struct Composite {
     mass: Mass,
-    stream: Stream,
+    relative_momentum: RelativeMomentum,
     omega: Vec3,
 }
 
@@ -250,14 +251,14 @@ impl Composite {
         let first = cross(graph, e, spun);
         let across = cross(graph, omega, e);
         let second = apply3(graph, &self.mass.second, across);
-        let streamed = self.stream.turned(graph, e, apply3);
-        let turned = [second, streamed];
+        let coupled = self.relative_momentum.turned(graph, e, apply3);
+        let turned = [second, coupled];
         let turned = turned
             .into_iter()
             .fold(first, |sum, term| add3(graph, sum, term));
         // (ω·l) h + (ω·h) l − 2 (h·l) ω + P × l.
         let h = self.mass.first;
-        let coriolis = cross(graph, self.stream.first, l);
+        let coriolis = cross(graph, self.relative_momentum.first, l);
         let pushed = centripetal_force(graph, h, omega, l);
         let pushed = add3(graph, pushed, coriolis);
         Variation {
@@ -272,7 +273,7 @@ impl Composite {
         let (mass, omega) = (&self.mass, self.omega);
         let (force, torque) = mass.wrench(graph, by.alpha, by.a);
         // ω (h·δω) + (ω·h) δω − 2 h (ω·δω) + δω × P.
-        let coriolis = cross(graph, by.omega, self.stream.first);
+        let coriolis = cross(graph, by.omega, self.relative_momentum.first);
         let centripetal = centripetal_force(graph, omega, mass.first, by.omega);
         let push = add3(graph, centripetal, coriolis);
         // S ω × δω − ω × S δω + tr D δω − Dᵀ δω.
@@ -280,8 +281,10 @@ impl Composite {
         let first = cross(graph, spun, by.omega);
         let varied = apply3(graph, &mass.second, by.omega);
         let second = cross(graph, varied, omega);
-        let streamed = self.stream.turned(graph, by.omega, apply_transposed);
-        let turn = [second, streamed];
+        let coupled = self
+            .relative_momentum
+            .turned(graph, by.omega, apply_transposed);
+        let turn = [second, coupled];
         let turn = turn
             .into_iter()
             .fold(first, |sum, term| add3(graph, sum, term));
@@ -306,16 +309,16 @@ fn centripetal_force(graph: &mut Graph, a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
         .fold(first, |sum, term| add3(graph, sum, term))
 }
 
-impl Stream {
+impl RelativeMomentum {
     fn none(graph: &Graph) -> Self {
-        Stream {
+        RelativeMomentum {
             first: zero3(graph),
             second: [zero3(graph); 3],
         }
     }
 
-    fn plus(&self, graph: &mut Graph, other: &Stream) -> Self {
-        Stream {
+    fn plus(&self, graph: &mut Graph, other: &RelativeMomentum) -> Self {
+        RelativeMomentum {
             first: add3(graph, self.first, other.first),
             second: std::array::from_fn(|i| add3(graph, self.second[i], other.second[i])),
         }
@@ -340,14 +343,14 @@ impl Stream {
     fn to_parent(self, graph: &mut Graph, link: &Link, mass: &Mass, motion: &LinkMotion) -> Self {
         let (spin, speed) = motion.relative;
         let (spin, speed) = (add3(graph, spin, spin), add3(graph, speed, speed));
-        let whirl = cross(graph, spin, mass.first);
+        let turning = cross(graph, spin, mass.first);
         let drift = scale3(graph, mass.mass, speed);
-        let relative = add3(graph, whirl, drift);
+        let relative = add3(graph, turning, drift);
         let mut first = add3(graph, self.first, relative);
         let mut second: Mat3 = std::array::from_fn(|i| {
-            let whirl = cross(graph, spin, mass.second[i]);
+            let turning = cross(graph, spin, mass.second[i]);
             let drift = scale3(graph, mass.first[i], speed);
-            let relative = add3(graph, whirl, drift);
+            let relative = add3(graph, turning, drift);
             add3(graph, self.second[i], relative)
         });
         for turn in link.turns.iter().rev() {
@@ -358,6 +361,6 @@ impl Stream {
             let far = scale3(graph, p, first);
             *row = add3(graph, *row, far);
         }
-        Stream { first, second }
+        RelativeMomentum { first, second }
     }
 }

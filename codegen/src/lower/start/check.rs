@@ -2,13 +2,14 @@
 
 use crate::algebra::graph::Node;
 use crate::algebra::numeric::evaluate;
+use crate::algebra::sizes::relative;
 use crate::diagnostics::{Diagnostic, Report, rough};
 use crate::lower::declare::Declared;
 use crate::lower::variety::{Origin, Variety};
 use crate::model::nearest::Nearest;
 use crate::syntax::ast::{CoordKind, ItemKind, Span, System};
 
-/// Largest violation of φ at the start that counts as rounding of the numbers given.
+/// Largest violation of φ at the start that counts as rounding of the numbers given, beside the size of φ.
 const ROUNDING: f64 = 1e-9;
 
 /// φ(x) = 0 at the start.
@@ -28,11 +29,17 @@ pub fn check(
     numbers.resize(variety.points.symbols, 0.0);
     let rows: Vec<_> = variety.phi.iter().map(|(edge, _)| *edge).collect();
     let residuals = evaluate(&variety.points.free, &rows, &numbers);
+    let parts = relative(
+        &variety.points.free,
+        &rows,
+        &numbers,
+        variety.points.places(),
+    );
     let mut reported: Vec<Origin> = Vec::new();
     let mut nearest = None;
     for (row, &residual) in residuals.iter().enumerate() {
         let origin = variety.origins[row];
-        if residual.abs() <= ROUNDING || reported.contains(&origin) {
+        if parts[row].abs() <= ROUNDING || reported.contains(&origin) {
             continue;
         }
         reported.push(origin);
@@ -125,8 +132,9 @@ fn violation(
             };
             Diagnostic::new(given, message.replace("this constraint", "a constraint"))
                 .help(format!(
-                    "give {} a start that satisfies it",
-                    list.join(", ")
+                    "give {} a start that satisfies it, or a guess: `start {} ~ …;`",
+                    list.join(", "),
+                    names.first().map_or("", |name| name)
                 ))
                 .note(place, "this constraint")
         }

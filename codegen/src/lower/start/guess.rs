@@ -124,7 +124,9 @@ pub fn assembled(
         blocks,
         guess: &start.x,
         given: (0..start.x.len()).filter(kept).collect(),
-    };
+        sizes: Vec::new(),
+    }
+    .measured();
     let mut found = nearest(&problem, &start.x)?;
     for &alpha in &problem.given {
         found[alpha] = start.x[alpha];

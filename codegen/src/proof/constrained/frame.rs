@@ -4,10 +4,12 @@
 
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Function, Graph};
+use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::transplant::{substitute, substitute_under_roots};
 use crate::derive::accel::saddle;
 use crate::derive::calculus::Calculus;
+use crate::derive::quantity;
 use crate::derive::reduction::{Reduction, drift};
 use crate::model::{Model, class};
 use crate::program::{FunctionId, Program};
@@ -15,6 +17,7 @@ use crate::proof::kernel::places;
 use crate::proof::numbers::Numbers;
 use crate::proof::points::{Unequal, at_fresh_points};
 use crate::proof::reference::Reference;
+use crate::proof::states;
 use num_rational::BigRational;
 
 /// Everything of the full frame that is compared with.
@@ -37,10 +40,12 @@ pub(super) struct Full {
     /// Kept rows in ξₐ and their right sides, in the reduced graph.
     pub(super) reduced: Model,
     pub(super) right: Vec<Edge>,
+    /// What is claimed to be constant, by its definition.
+    pub(super) claims: Vec<(String, Vec<Edge>)>,
 }
 
 impl Full {
-    pub(super) fn new(model: &Model, reduction: &Reduction) -> Option<Self> {
+    pub(super) fn new(model: &Model, reduction: &Reduction, program: &Program) -> Option<Self> {
         let full = Model {
             graph: reduction.graph.clone(),
             ..model.clone()
@@ -55,6 +60,13 @@ impl Full {
         let mut calculus = Calculus::new(full);
         let energy = full.graph.add(reference.kinetic, reference.potential);
         let change = calculus.rate(&mut full.graph, energy);
+        let energies = (reference.kinetic, reference.potential);
+        let claims = model.invariants.iter();
+        let claims = claims.map(|claim| {
+            let value = quantity::value(full, &mut calculus, energies, &claim.quantity);
+            (claim.name.clone(), value.entries())
+        });
+        let claims = claims.collect();
         let place = places(&full.graph, class::VELOCITY);
         let solved = reduction.solved.iter();
         let solved: Vec<(usize, Edge)> = solved
@@ -63,7 +75,7 @@ impl Full {
                 (place[i], full.graph.add(moved, section.shift[i]))
             })
             .collect();
-        let mut reduced = reduction.model.clone();
+        let mut reduced = states::with_rates(&reduction.model, program);
         let forms = solved.iter().map(|(symbol, _)| {
             let image = reduction.images[*symbol];
             let form = reduced.graph.form(Function::Exp, image);
@@ -86,6 +98,7 @@ impl Full {
             forms,
             reduced,
             right,
+            claims,
             reference,
             frame,
         };
@@ -126,7 +139,8 @@ impl Full {
             &mut self.complement,
             &mut self.rows,
         ];
-        for list in rows.chain(lists) {
+        let claims = self.claims.iter_mut().map(|(_, entries)| entries);
+        for list in rows.chain(lists).chain(claims) {
             *list = put(graph, list);
         }
         let single = [
@@ -153,8 +167,8 @@ pub(super) fn given(model: &Model) -> Vec<(usize, Edge)> {
     given.chain(time).collect()
 }
 
-/// Whether they agree at fresh points of X; `None` where there are none, as where roots have values only on a prescribed
-/// motion.
+/// Whether they agree at fresh points of X, or of a prescribed motion where roots have values only there; `None` where there are
+/// none.
 pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
     let numbers = Numbers::new(model)?;
     let mut roots = reference.mass.concat();
@@ -167,23 +181,30 @@ pub fn agrees(model: &Model, reference: &Reference) -> Option<bool> {
         reference.dissipation,
     ]);
     let graph = &reference.model.graph;
-    let compared = at_fresh_points(
-        |number| model.points.lane(0xf4a_3e0 + number),
-        |lane, _| {
-            let found = evaluate_at(graph, &roots, &mut lane.clone())?;
-            let Ok(values) = numbers.at(lane)? else {
-                return Some(Err(()));
-            };
-            let mut expected: Vec<Fp> = values.mass.concat();
-            for list in [&values.bias, &values.slope, &values.force] {
-                expected.extend(list);
-            }
-            expected.extend([values.kinetic, values.potential, values.dissipation]);
-            let [hamel, gibbs, levi_civita] = &values.left;
-            let same = hamel == gibbs && gibbs == levi_civita && found == expected;
-            Some(if same { Ok(()) } else { Err(()) })
-        },
-    );
+    let at = |lane: &Lane| {
+        let found = evaluate_at(graph, &roots, &mut lane.clone())?;
+        let Ok(values) = numbers.at(lane)? else {
+            return Some(Err(()));
+        };
+        let mut expected: Vec<Fp> = values.mass.concat();
+        for list in [&values.bias, &values.slope, &values.force] {
+            expected.extend(list);
+        }
+        expected.extend([values.kinetic, values.potential, values.dissipation]);
+        let [hamel, gibbs, levi_civita] = &values.left;
+        let same = hamel == gibbs && gibbs == levi_civita && found == expected;
+        Some(if same { Ok(()) } else { Err(()) })
+    };
+    let anywhere = |number| model.points.lane(0xf4a_3e0 + number);
+    let given = given(model);
+    let prescribed = |number| {
+        let unmoved = |_| Some(Vec::new());
+        (model.points).lane_moved(0xf4a_3e0 + number, &model.graph, &given, &unmoved)
+    };
+    let compared = match at_fresh_points(anywhere, |lane, _| at(lane)) {
+        Err(Unequal::Nowhere) => at_fresh_points(prescribed, |lane, _| at(lane)),
+        compared => compared,
+    };
     match compared {
         Ok(()) => Some(true),
         Err(Unequal::Differs(())) => Some(false),

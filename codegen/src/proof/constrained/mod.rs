@@ -1,20 +1,16 @@
 //! The proof for systems with constraints: at points of X, with ξ = C ξₐ, the emitted ξ̇ₐ and
 //! multipliers satisfy M ξ̇ + h + ∂V = f + Bᵀ λ in every row of the full frame, and d/dt (B ξ) is what
-//! the constraints ask for; M, h, V and f come from T and γ of the full frame.
+//! the constraints ask for; M, h, V and f are those of the full frame.
 
 pub mod frame;
 mod point;
+mod seen;
 
 use super::confidence::Confidence;
-use super::kernel::{dot, rows_at_rest, virtual_velocity};
+use super::kernel::rows_at_rest;
 use super::points::{POINTS, Unequal, at_fresh_points};
 use super::verdict::{Identity, Verdict, failure, nowhere};
-use super::{centroidal, derivatives, frames, outputs, states};
-use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
-use crate::algebra::lane::Lane;
-use crate::algebra::numeric::evaluate_at;
-use crate::derive::accel::saddle;
 use crate::derive::reduction::Reduction;
 use crate::diagnostics::Diagnostic;
 use crate::model::Model;
@@ -22,72 +18,173 @@ use crate::model::points::{Points, imposed};
 use crate::program::{FunctionId, Program};
 use frame::{Full, given};
 use point::At;
+use seen::Seen;
 
-/// What is compared, with the label and equation that `check` prints.
-const IDENTITIES: [(&str, &str); 14] = [
-    ("C", "B C = 0 for the rows that were solved"),
-    (
-        "(30c)",
-        "M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ for the emitted ξ̇ and λ",
-    ),
-    (
-        "B",
-        "d/dt (B ξ) = −2 λ B ξ − λ² φ for the emitted ξ̇, and rates that are given",
-    ),
-    ("M", "the emitted mass matrix is Cᵀ M C"),
-    ("(30a)", "the emitted bias is Cᵀ (Γ ξ ξ + M Ċ ξ)"),
-    ("(28)", "the emitted forces are Cᵀ f and Cᵀ ∂V"),
-    (
-        "power",
-        "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ + b = 0",
-    ),
-    (
-        "[A B]",
-        "the emitted [A B] are the slopes of ẋ and ξ̇ along δx = A h",
-    ),
-    (
-        "slopes",
-        "the emitted slopes are those of inverse dynamics, and of ξ̇ by parameters",
-    ),
-    ("states", "ż as described, with the emitted ξ̇"),
-    (
-        "outputs",
-        "the emitted outputs are those of the description",
-    ),
-    (
-        "frames",
-        "the emitted twists are Ṙ Rᵀ and ṗ, with their slopes by ξ and along ẋ",
-    ),
-    (
-        "momentum",
-        "the emitted centre of mass is Σ m c / Σ m, the momentum about it A_G ξ",
-    ),
-    (
-        "(30)",
-        "M, Γ ξ ξ, ∂V and f of the full frame are those of the three forms in numbers",
-    ),
-];
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Claim {
+    Complement,
+    Rate,
+    Balance,
+    Constraint,
+    Mass,
+    Bias,
+    Loads,
+    Power,
+    Projection,
+    Linearisation,
+    Slopes,
+    States,
+    Outputs,
+    Invariants,
+    Frames,
+    Momentum,
+    FullFrame,
+}
 
-/// The place of the power among them: it is compared at points of its own.
-const POWER: usize = 6;
+impl Claim {
+    /// All of them, in the order in which they are shown.
+    const ALL: [Claim; 17] = [
+        Claim::Complement,
+        Claim::Rate,
+        Claim::Balance,
+        Claim::Constraint,
+        Claim::Mass,
+        Claim::Bias,
+        Claim::Loads,
+        Claim::Power,
+        Claim::Projection,
+        Claim::Linearisation,
+        Claim::Slopes,
+        Claim::States,
+        Claim::Outputs,
+        Claim::Invariants,
+        Claim::Frames,
+        Claim::Momentum,
+        Claim::FullFrame,
+    ];
 
-/// That of the full frame, where no constraint acts.
-const FRAME: usize = 13;
+    /// The label and the equation that `check` prints.
+    fn said(self) -> (&'static str, &'static str) {
+        match self {
+            Claim::Complement => ("C", "B C = 0 for the rows that were solved"),
+            Claim::Rate => (
+                "(5)",
+                "the emitted ẋ is A C ξₐ, and K(x) times the rate of the chart",
+            ),
+            Claim::Balance => (
+                "(30c)",
+                "M ξ̇ + Γ ξ ξ + ∂V = f + Bᵀ λ for the emitted ξ̇ and λ",
+            ),
+            Claim::Constraint => (
+                "B",
+                "d/dt (B ξ) = −2 λ B ξ − λ² φ for the emitted ξ̇, and rates that are given",
+            ),
+            Claim::Mass => ("M", "the emitted mass matrix is Cᵀ M C"),
+            Claim::Bias => ("(30a)", "the emitted bias is Cᵀ (Γ ξ ξ + M Ċ ξ)"),
+            Claim::Loads => ("(28)", "the emitted forces are Cᵀ f and Cᵀ ∂V"),
+            Claim::Power => (
+                "power",
+                "d/dt (T + V) = fᵢ ξⁱ for the emitted ξ̇ where B ξ + b = 0",
+            ),
+            Claim::Projection => (
+                "back",
+                "the emitted φ is that of the loops; B δ = −φ and B δ = −B ξ for steps back along M⁻¹ Bᵀ",
+            ),
+            Claim::Linearisation => (
+                "[A B]",
+                "the emitted [A B] are the slopes of ẋ and ξ̇ along δx = A h",
+            ),
+            Claim::Slopes => (
+                "slopes",
+                "the emitted slopes are those of inverse dynamics, and of ξ̇ by parameters",
+            ),
+            Claim::States => ("states", "ż as described, with the emitted ξ̇"),
+            Claim::Outputs => (
+                "outputs",
+                "the emitted outputs are those of the description",
+            ),
+            Claim::Invariants => (
+                "claims",
+                "the emitted invariants are those of the full frame",
+            ),
+            Claim::Frames => (
+                "frames",
+                "the emitted twists are Ṙ Rᵀ and ṗ, with their slopes by ξ and along ẋ",
+            ),
+            Claim::Momentum => (
+                "momentum",
+                "the emitted centre of mass is Σ m c / Σ m, the momentum about it A_G ξ",
+            ),
+            Claim::FullFrame => (
+                "(30)",
+                "M, Γ ξ ξ, ∂V and f of the full frame are those of the three forms in numbers",
+            ),
+        }
+    }
+
+    /// Nothing is said of what is not there.
+    fn is_there(self, full: &Full, reduction: &Reduction, program: &Program) -> bool {
+        let has_entries = |id: &FunctionId| {
+            let function = program.function(*id);
+            function.is_some_and(|function| !function.outputs.is_empty())
+        };
+        let any = |ids: &[FunctionId]| ids.iter().any(has_entries);
+        match self {
+            Claim::FullFrame => full.frame.is_some(),
+            Claim::Power => full.power_is_known(program),
+            Claim::Complement => !reduction.solved.is_empty(),
+            Claim::Rate => any(&[FunctionId::Rate]),
+            Claim::Balance => any(&[
+                FunctionId::Accel,
+                FunctionId::ConstraintForce,
+                FunctionId::InverseDynamics,
+            ]),
+            Claim::Constraint => {
+                any(&[FunctionId::Accel])
+                    && !(reduction.kept.is_empty() && reduction.model.accelerated.is_empty())
+            }
+            Claim::Mass => any(&[FunctionId::MassMatrix, FunctionId::Momentum]),
+            Claim::Bias => any(&[FunctionId::Bias]),
+            Claim::Loads => any(&[
+                FunctionId::GeneralizedForce,
+                FunctionId::PotentialForce,
+                FunctionId::KineticEnergy,
+                FunctionId::PotentialEnergy,
+                FunctionId::Energy,
+                FunctionId::Dissipation,
+            ]),
+            Claim::Projection => any(&[FunctionId::ProjectVelocity]),
+            Claim::Linearisation => any(&[FunctionId::Linearize]),
+            Claim::Slopes => any(&[
+                FunctionId::InverseDynamicsSlopes,
+                FunctionId::ParameterSlopes,
+            ]),
+            Claim::States => !reduction.model.states.is_empty(),
+            Claim::Outputs => {
+                let mut outputs = reduction.model.outputs.iter();
+                outputs.any(|(name, _)| program.function(name).is_some())
+            }
+            Claim::Invariants => {
+                let mut claims = full.claims.iter();
+                claims.any(|(name, _)| program.function(name).is_some())
+            }
+            Claim::Frames => !reduction.model.asked.jacobians.is_empty(),
+            Claim::Momentum => any(&FunctionId::CENTROIDAL),
+        }
+    }
+}
 
 /// Validates the functions of a program with constraints; an error is a fault of the generator.
 pub fn validate(model: &Model, reduction: &Reduction, program: &Program) -> Result<(), Diagnostic> {
-    let Some(full) = Full::new(model, reduction) else {
+    let Some(full) = Full::new(model, reduction, program) else {
         return Err(failure(model, "Y A = I"));
     };
     let Some(failed) = compare(&full, model, reduction, program) else {
         return Err(nowhere(model));
     };
-    let mut rows = IDENTITIES.iter().zip(&failed);
-    let failing = rows.find(|((label, _), failed)| {
-        failed.is_some() && is_there(label, &full, reduction, program)
-    });
-    match failing {
-        Some(((_, equation), _)) => Err(failure(model, equation)),
+    match failed.first() {
+        Some(claim) => Err(failure(model, claim.said().1)),
         None => Ok(()),
     }
 }
@@ -100,7 +197,7 @@ fn compare(
     model: &Model,
     reduction: &Reduction,
     program: &Program,
-) -> Option<[Option<String>; IDENTITIES.len()]> {
+) -> Option<Vec<Claim>> {
     let wider = || compare_at(&model.points.extended()?, full, reduction, program);
     compare_at(&model.points, full, reduction, program).or_else(wider)
 }
@@ -110,8 +207,8 @@ fn compare_at(
     full: &Full,
     reduction: &Reduction,
     program: &Program,
-) -> Option<[Option<String>; IDENTITIES.len()]> {
-    let mut failed: [Option<String>; IDENTITIES.len()] = Default::default();
+) -> Option<Vec<Claim>> {
+    let mut failed: Vec<Claim> = Vec::new();
     // Prescribed coordinates are where they are prescribed to be, so that roots of them have values.
     let given = given(&full.reference.model);
     let compared = at_fresh_points(
@@ -122,9 +219,11 @@ fn compare_at(
             points.lane_moved(0xb0d5 + number, graph, &given, &solved)
         },
         |lane, _| {
-            let results = at_point(full, reduction, program, lane)?;
-            for (failed, result) in failed.iter_mut().zip(results) {
-                *failed = failed.take().or(result.err());
+            let seen = Seen::new(full, reduction, program, lane)?;
+            for claim in Claim::ALL {
+                if !seen.holds(claim)? {
+                    failed.push(claim);
+                }
             }
             Some(Ok::<(), ()>(()))
         },
@@ -148,40 +247,9 @@ fn compare_at(
         },
     );
     if let Err(Unequal::Differs(())) = still {
-        failed[POWER] = Some("the power differs".into());
-    }
-    if full.frame == Some(false) {
-        failed[FRAME] = Some("the full frame differs".into());
+        failed.push(Claim::Power);
     }
     (compared.is_ok() && still != Err(Unequal::Nowhere)).then_some(failed)
-}
-
-/// Nothing is said of what is not there.
-fn is_there(label: &str, full: &Full, reduction: &Reduction, program: &Program) -> bool {
-    match label {
-        "(30)" => full.frame.is_some(),
-        "power" => full.power_is_known(program),
-        "C" => !reduction.solved.is_empty(),
-        "B" => !reduction.kept.is_empty() || !reduction.model.accelerated.is_empty(),
-        "slopes" => [
-            FunctionId::InverseDynamicsSlopes,
-            FunctionId::ParameterSlopes,
-        ]
-        .iter()
-        .any(|&id| program.function(id).is_some()),
-        "states" => !reduction.model.states.is_empty(),
-        "outputs" => {
-            let mut outputs = reduction.model.outputs.iter();
-            outputs.any(|(name, _)| program.function(name).is_some())
-        }
-        "frames" => !reduction.model.asked.jacobians.is_empty(),
-        "momentum" => {
-            let mut all = FunctionId::CENTROIDAL.iter();
-            all.any(|id| program.function(id).is_some())
-        }
-        "[A B]" => program.function(FunctionId::Linearize).is_some(),
-        _ => true,
-    }
 }
 
 /// What agreement at all points says: all that is evaluated, in sums and solutions of n + rows terms.
@@ -215,179 +283,30 @@ fn confidence(full: &Full, model: &Model, program: &Program) -> Confidence {
 
 /// The identities with their verdicts.
 pub fn identities(model: &Model, reduction: &Reduction, program: &Program) -> Vec<Identity> {
-    let full = Full::new(model, reduction);
+    let full = Full::new(model, reduction, program);
     let failed = full
         .as_ref()
         .and_then(|full| compare(full, model, reduction, program));
     let confidence = full.as_ref().map(|full| confidence(full, model, program));
-    let verdict = |index: usize| match (&failed, confidence) {
-        (Some(failed), Some(confidence)) => match &failed[index] {
-            Some(message) => Verdict::Failed(message.clone()),
-            None => Verdict::Checked(confidence),
-        },
+    let verdict = |claim: Claim| match (&failed, confidence) {
+        (Some(failed), Some(_)) if failed.contains(&claim) => {
+            Verdict::Failed("both sides differ at a point".into())
+        }
+        (Some(_), Some(confidence)) => Verdict::Checked(confidence),
         _ => Verdict::Failed("no point was found to compare at".into()),
     };
-    IDENTITIES
-        .iter()
-        .enumerate()
-        .filter(|(_, (label, _))| {
-            let known = full.as_ref();
-            known.is_none_or(|full| is_there(label, full, reduction, program))
-        })
-        .map(|(index, &(label, equation))| Identity {
-            label,
-            equation: equation.into(),
-            verdict: verdict(index),
+    let is_there = |claim: &Claim| {
+        let known = full.as_ref();
+        known.is_none_or(|full| claim.is_there(full, reduction, program))
+    };
+    (Claim::ALL.into_iter().filter(is_there))
+        .map(|claim| {
+            let (label, equation) = claim.said();
+            Identity {
+                label,
+                equation: equation.into(),
+                verdict: verdict(claim),
+            }
         })
         .collect()
-}
-
-type Comparison = Result<(), String>;
-
-/// All comparisons at one point but that of the power; `None` where something has no value there.
-fn at_point(
-    full: &Full,
-    reduction: &Reduction,
-    program: &Program,
-    lane: &Lane,
-) -> Option<[Comparison; IDENTITIES.len()]> {
-    let (n, na) = (full.reference.model.n(), reduction.active.len());
-    let graph = &full.reference.model.graph;
-    let at = At::new(full, reduction, program, lane)?;
-    let c = &at.c;
-    let column = |j: usize| -> Vec<Fp> { (0..n).map(|i| c[i * na + j]).collect() };
-    let project = |v: &[Fp]| -> Vec<Fp> { (0..na).map(|j| dot(&column(j), v)).collect() };
-    let rows = evaluate_at(graph, &full.rows, &mut lane.clone())?;
-    let vanish = reduction.solved.iter().all(|&(row, _)| {
-        let row = &rows[row * n..][..n];
-        (0..na).all(|j| dot(row, &column(j)).is_zero()) && dot(row, &at.shift).is_zero()
-    });
-    let time = full.reference.model.clock.map(|clock| clock.xi);
-    let inner = &at.inner;
-    let values = at.values()?;
-    let [mass, bias, slope, force] = [&values.mass, &values.bias, &values.slope, &values.force];
-    let emitted = |name: &str| -> Option<Option<Vec<Fp>>> {
-        match program.function(name) {
-            None => Some(None),
-            Some(f) => evaluate_at(&program.graph, &f.outputs, &mut inner.clone()).map(Some),
-        }
-    };
-    // ξ̇, and behind it the rates of states.
-    let mut xi_dot = emitted("accel")?;
-    let state_rates = xi_dot.as_mut().map(|rates| rates.split_off(na));
-    let same_states = match (&xi_dot, state_rates) {
-        (Some(xi_dot), Some(found)) => states::rates(&full.reduced, xi_dot, inner)? == found,
-        _ => true,
-    };
-    let balanced = match (xi_dot.clone(), emitted("constraint_force")?) {
-        (Some(xi_dot), Some(lambda)) => {
-            let needed = values.needed(&values.lift(c, &xi_dot));
-            // The row of ξ⁰ is no equation of motion.
-            (0..n).filter(|&i| Some(i) != time).all(|i| {
-                let bonds = lambda.iter().zip(rows.chunks(n));
-                let bond = bonds.fold(Fp::ZERO, |sum, (&lambda, row)| sum + row[i] * lambda);
-                // Beyond the rows of constraints stand the forces of drives whose rates are given.
-                let drives = full.reference.model.accelerated.iter();
-                let drives = drives.zip(lambda.get(rows.len() / n..).unwrap_or(&[]));
-                let drive = drives.filter(|((velocity, _), _)| *velocity == i);
-                let drive = drive.fold(Fp::ZERO, |sum, (_, &force)| sum + force);
-                needed[i] == force[i] + bond + drive
-            })
-        }
-        _ => true,
-    };
-    let kept: Vec<Edge> = full
-        .reduced
-        .constraints
-        .iter()
-        .flat_map(|constraint| constraint.row.iter().copied())
-        .collect();
-    let inner_graph = &full.reduced.graph;
-    let kept = evaluate_at(inner_graph, &kept, &mut inner.clone())?;
-    let right = evaluate_at(inner_graph, &full.right, &mut inner.clone())?;
-    let reduced_mass: Vec<Fp> = (0..na)
-        .flat_map(|i| {
-            let moved: Vec<Fp> = (0..n)
-                .map(|k| dot(&mass[k * n..][..n], &column(i)))
-                .collect();
-            project(&moved)
-        })
-        .collect();
-    let projected: Vec<Fp> = (0..n)
-        .map(|k| bias[k] + dot(&mass[k * n..][..n], &values.drift))
-        .collect();
-    // Whatever the multipliers are, they do no work where B v = 0, nor do drives where what they give stands still: there
-    // the equations of motion hold by themselves.
-    let balanced = balanced
-        && match xi_dot.clone() {
-            None => true,
-            Some(xi_dot) => {
-                let needed = values.needed(&values.lift(c, &xi_dot));
-                let left = needed
-                    .iter()
-                    .zip(force)
-                    .map(|(&needed, &force)| needed - force);
-                let virtual_velocity = virtual_velocity(&full.reduced, &kept, &values.xi)?;
-                dot(&virtual_velocity, &project(&left.collect::<Vec<_>>())).is_zero()
-            }
-        };
-    let accelerated = &full.reduced.accelerated;
-    let given: Vec<Edge> = accelerated.iter().map(|(_, rate)| *rate).collect();
-    let given = evaluate_at(inner_graph, &given, &mut inner.clone())?;
-    let places = accelerated.iter().map(|(place, _)| *place);
-    let given: Vec<(usize, Fp)> = places.zip(given).collect();
-    let held = match xi_dot {
-        None => true,
-        Some(xi_dot) if full.reduced.overconstrained => {
-            let rest: Vec<Fp> = (0..n).map(|k| force[k] - slope[k] - projected[k]).collect();
-            let parts = [&reduced_mass[..], &project(&rest), &kept, &right];
-            saddle::solve_at(&full.reduced, parts, &given, inner)? == xi_dot
-        }
-        Some(xi_dot) => {
-            let mut driven = given.iter().map(|&(place, rate)| xi_dot[place] == rate);
-            let mut held = right.iter().zip(kept.chunks(na.max(1)));
-            driven.all(|holds| holds) && held.all(|(&right, row)| dot(row, &xi_dot) == right)
-        }
-    };
-    let equal = |name: &str, expected: Vec<Fp>| -> Option<bool> {
-        Some(emitted(name)?.is_none_or(|found| found == expected))
-    };
-    let same_mass = equal("mass_matrix", reduced_mass.clone())?;
-    let same_bias = equal("bias", project(&projected))?;
-    let same_loads = equal("generalized_force", project(force))?
-        && equal("potential_force", project(slope))?
-        && equal("kinetic_energy", vec![values.kinetic])?
-        && equal("potential_energy", vec![values.potential])?
-        && equal("energy", vec![values.kinetic + values.potential])?
-        && equal("dissipation", vec![values.dissipation])?;
-    let same_rate = equal("rate", at.rate()?)?;
-    let rates = evaluate_at(inner_graph, &full.reduced.xi_dot, &mut inner.clone())?;
-    let needed = values.needed(&values.lift(c, &rates));
-    let same_whole = equal("inverse_dynamics", project(&needed))?;
-    let momentum: Vec<Fp> = (0..n)
-        .map(|i| dot(&mass[i * n..][..n], &values.xi))
-        .collect();
-    let same_mass = same_mass && equal("momentum", project(&momentum))?;
-    let same_linear = at.linear()?;
-    let same_slopes = derivatives::hold(&full.reference.model, program, [&at.point, inner])?;
-    let same_outputs = outputs::values_hold(&full.reduced, program, inner)?;
-    let same_momentum = centroidal::holds(&full.reduced, program, inner)?;
-    let same_frames = frames::hold(&full.reduced, program, inner)?;
-    let result = |holds: bool, what: &str| if holds { Ok(()) } else { Err(what.to_string()) };
-    Some([
-        result(vanish && same_rate, "a row does not vanish, or ẋ differs"),
-        result(balanced && same_whole, "the forces do not balance"),
-        result(held, "the constraint is left"),
-        result(same_mass, "M or p differs"),
-        result(same_bias, "the bias differs"),
-        result(same_loads, "a force or energy differs"),
-        Ok(()),
-        result(same_linear, "a slope differs"),
-        result(same_slopes, derivatives::WHAT),
-        result(same_states, "ż differs"),
-        result(same_outputs, "an output differs"),
-        result(same_frames, frames::WHAT),
-        result(same_momentum, centroidal::WHAT),
-        Ok(()),
-    ])
 }

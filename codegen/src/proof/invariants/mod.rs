@@ -7,7 +7,6 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `quantity` | energy and momenta as expressions |
 //! | `constrained` | claims about systems with constraints on their velocities |
 //! | `proof` | normal forms of d/dt I |
 //! | `remainder` | a polynomial as people read it |

@@ -1,0 +1,115 @@
+//! The sizes of equations, beside which what is left of them is large or small, whatever units they are in.
+
+use super::graph::{Edge, Graph};
+use super::numbers::{Numbers, Step};
+use super::numeric::{Floats, evaluate};
+use super::slopes::slopes;
+use super::walk;
+use std::ops::Range;
+
+/// Values, and the sizes of the terms that they are sums of.
+struct Sized<'a>(Floats<'a>);
+
+impl Numbers for Sized<'_> {
+    type Number = (f64, f64);
+
+    fn make(&mut self, step: Step<(f64, f64)>) -> Option<(f64, f64)> {
+        let mut value = |step: Step<f64>| self.0.make(step);
+        let plain = |value: f64| (value, value.abs());
+        Some(match step {
+            Step::Neg(a) => (-a.0, a.1),
+            Step::Add(a, b) => (a.0 + b.0, a.1 + b.1),
+            Step::Sub(a, b) => (a.0 - b.0, a.1 + b.1),
+            Step::Mul(a, b) => (a.0 * b.0, a.1 * b.1),
+            Step::Div(a, b) => (a.0 / b.0, a.1 / b.0.abs()),
+            Step::Select(c, a, b) => {
+                if c.0 > 0.0 {
+                    *a
+                } else {
+                    *b
+                }
+            }
+            Step::Whole(number) => plain(value(Step::Whole(number))?),
+            Step::Constant(number) => plain(value(Step::Constant(number))?),
+            Step::Symbol(index) => plain(value(Step::Symbol(index))?),
+            Step::Apply(function, a, form) => {
+                let form = || {
+                    form()
+                        .into_iter()
+                        .map(|(a, factor)| (a.0, factor))
+                        .collect()
+                };
+                plain(value(Step::Apply(function, &a.0, &form))?)
+            }
+            Step::Atan2(y, x) => plain(value(Step::Atan2(&y.0, &x.0))?),
+            Step::Listed(..) | Step::External(..) => (f64::NAN, f64::NAN),
+        })
+    }
+
+    fn is_positive(&self, a: &(f64, f64)) -> Option<bool> {
+        self.0.is_positive(&a.0)
+    }
+}
+
+/// The sizes of equations, given the value of every symbol: what a change of 1 makes of them along any of the symbols at these
+/// places, and the terms that cancel, of which rounding takes a part. 0 where there is neither.
+pub fn sizes(graph: &Graph, equations: &[Edge], symbols: &[f64], places: Range<usize>) -> Vec<f64> {
+    let directions = places.map(|place| {
+        let mut direction = vec![0.0; place + 1];
+        direction[place] = 1.0;
+        direction
+    });
+    let directions: Vec<Vec<f64>> = directions.collect();
+    let slopes = slopes(graph, equations, symbols, &directions);
+    let terms = walk::evaluate(graph, equations, &mut Sized(Floats(symbols))).unwrap_or_default();
+    let size = |place: usize| {
+        let slopes = slopes.get(place).map_or(&[][..], |row| &row.along);
+        let moved: f64 = slopes.iter().map(|slope| slope.abs()).sum();
+        let size = moved + terms.get(place).map_or(0.0, |(_, size)| *size);
+        if size.is_finite() { size } else { 0.0 }
+    };
+    (0..equations.len()).map(size).collect()
+}
+
+/// What is left of equations, [beside] their [`sizes`].
+pub fn relative(
+    graph: &Graph,
+    equations: &[Edge],
+    symbols: &[f64],
+    places: Range<usize>,
+) -> Vec<f64> {
+    let sizes = sizes(graph, equations, symbols, places);
+    let left = evaluate(graph, equations, symbols).into_iter().zip(sizes);
+    left.map(|(left, size)| beside(left, size)).collect()
+}
+
+/// What is left of an equation as a part of its size, or as it is where it has none.
+pub fn beside(left: f64, size: f64) -> f64 {
+    left / if size > 0.0 { size } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{relative, sizes};
+    use crate::fp::Random;
+    use crate::graph::Graph;
+
+    /// x² + z² = r² has terms of r², and changes by 2 x and 2 z.
+    #[test]
+    fn a_circle_is_as_large_as_its_radius() {
+        let mut random = Random::new(5);
+        let mut graph = Graph::new(1, 1);
+        graph.symbol("pi", 0, crate::fp::Fp::PI);
+        let [r, x, z] = ["r", "x", "z"].map(|name| graph.symbol(name, 2, random.element()));
+        let squares = [x, z, r].map(|a| graph.mul(a, a));
+        let sum = graph.add(squares[0], squares[1]);
+        let circle = graph.sub(sum, squares[2]);
+        for r in [1e-6, 1.0, 1e4] {
+            let numbers = [0.0, r, 0.6 * r, 0.8 * r];
+            let size = sizes(&graph, &[circle], &numbers, 2..4)[0];
+            assert!((size / (2.8 * r + 2.0 * r * r) - 1.0).abs() < 1e-12);
+            assert!(relative(&graph, &[circle], &numbers, 2..4)[0].abs() < 1e-15);
+        }
+        assert_eq!(sizes(&graph, &[circle], &[0.0; 4], 2..4), [0.0]);
+    }
+}
