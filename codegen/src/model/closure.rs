@@ -313,8 +313,7 @@ impl<'a> Closure<'a> {
                 .iter()
                 .zip(&sizes)
                 .filter(|(other, _)| **other == span);
-            let largest = all.fold(0.0, |most, (_, &size)| f64::max(most, size));
-            largest
+            all.fold(0.0, |most, (_, &size)| f64::max(most, size))
         };
         spans.iter().map(|&span| of(span)).collect()
     }

@@ -68,7 +68,7 @@ fn constraint(model: &Model, program: &Program) -> Result<(), Diagnostic> {
     at_fresh_points(
         |number| {
             let mut lane = model.points.lane(0xf1_0ff + number)?;
-            let mut random = Random::new(0x0ff_f1 + number);
+            let mut random = Random::new(0x0f_f2e + number);
             for place in first..first + model.nu() {
                 lane.set_symbol(place, random.element());
             }
