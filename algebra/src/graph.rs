@@ -186,6 +186,20 @@ impl Graph {
         self.unfaithful
     }
 
+    /// The place among the symbols of the one that an edge is, if it is one.
+    pub fn as_symbol(&self, edge: Edge) -> Option<usize> {
+        match self.nodes[edge.node() as usize] {
+            Node::Symbol(index) => Some(index as usize),
+            _ => None,
+        }
+    }
+
+    /// The places of the symbols that edges are.
+    pub fn symbol_places(&self, edges: &[Edge]) -> Vec<usize> {
+        let place = |&edge: &Edge| self.as_symbol(edge);
+        edges.iter().filter_map(place).collect()
+    }
+
     /// The number that an edge is, if it is one.
     pub fn as_rational(&self, edge: Edge) -> Option<BigRational> {
         match self.nodes[edge.node() as usize] {

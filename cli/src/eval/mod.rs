@@ -36,7 +36,8 @@ const MOST_SHOWN: usize = 64;
 /// the text, the ones that loops and constraints tie to them move to the nearest values; a state that contradicts
 /// loops or constraints by itself is refused. Of a list of samples, as `hamel simulate --out` writes it to a .json
 /// file, the last is taken. Matrices are written by rows; gamma[i][j][k] is γ of lower i, j and upper k, Gamma[i][j][k]
-/// is Γ_ijk.
+/// is Γ_ijk. A, γ, M and Γ are those of all velocities, which `frame` names; forces, bias and accel are of those that
+/// constraints leave, which `velocities` names.
 ///
 /// STATE.json may also be about joints, for every command that takes a state: {"configuration": {"elbow": 0.3,
 /// "root_joint": {"position": […], "rotation": [[…]]}}, "velocity": {"elbow": 1, "root_joint": {"linear": […],

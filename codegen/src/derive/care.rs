@@ -21,6 +21,8 @@ pub const HELP: &str = "Frames near their bodies, and no differences of large te
 const ENOUGH: f64 = 2.5;
 /// The same for candidates: what is lost below counts nothing.
 const LITTLE: f64 = 1.5;
+/// More than there are: what a candidate loses that has no value.
+const ALL: f64 = 99.0;
 /// Losses are compared in steps of so many digits.
 const STEP: f64 = 0.5;
 
@@ -51,16 +53,18 @@ impl Care {
         }
     }
 
-    /// The digits that rounding takes of a candidate, in steps; 0 where cost alone decides.
+    /// The digits that rounding takes of a candidate, in steps; 0 where cost alone decides, and all of them where it has no
+    /// value at any state.
     pub fn loss(&self, graph: &Graph, outputs: &[Edge], guards: &[Edge]) -> usize {
         if !self.is_taken() {
             return 0;
         }
         let measured = Measured { outputs, guards };
-        match digits_lost(graph, &[measured], &self.states)[..] {
-            [Some(digits)] => ((digits.min(99.0) - LITTLE).max(0.0) / STEP).ceil() as usize,
-            _ => 0,
-        }
+        let digits = match digits_lost(graph, &[measured], &self.states)[..] {
+            [Some(digits)] => digits.min(ALL),
+            _ => ALL,
+        };
+        ((digits - LITTLE).max(0.0) / STEP).ceil() as usize
     }
 }
 

@@ -7,7 +7,7 @@
 //! way from there; at a crossing of components it ceases at once. Emitted are the constraints as they were written.
 
 use crate::algebra::fp::Random;
-use crate::algebra::graph::{Edge, Function, Graph, Node};
+use crate::algebra::graph::{Edge, Function, Graph};
 use crate::model::class;
 use crate::model::nearest::Equations;
 use crate::model::points::Points;
@@ -99,10 +99,7 @@ fn symbols(points: &Points) -> (Vec<usize>, Vec<usize>) {
         .reachable(&points.constraints)
         .into_iter()
         .filter(|&id| graph.class(id) & (class::COORD | class::PARAM) != 0)
-        .filter_map(|id| match graph.node(id) {
-            Node::Symbol(index) => Some(index as usize),
-            _ => None,
-        })
+        .filter_map(|id| graph.as_symbol(Edge::of(id)))
         .collect();
     all.sort_unstable();
     // π is the first symbol, parameters stand before coordinates.

@@ -17,6 +17,8 @@ use crate::syntax::ast::Span;
 
 /// Steps of Newton's method.
 const STEPS: usize = 60;
+/// Steps that constraints on velocities take at least: rounding is refined away.
+const LEAST_ROUNDS: usize = 3;
 /// Largest residual of a solution, beside its [size](sizes).
 const SOLVED: f64 = 1e-12;
 /// Largest residual that counts as rounding of the numbers given, which are then polished; beside the size of its terms, too.
@@ -275,8 +277,16 @@ impl<'a> Closure<'a> {
                 .chunks(n.max(1))
                 .map(|row| free.iter().map(|&i| row[i]).collect())
                 .collect();
-            for _ in 0..3 {
+            let mut before = f64::INFINITY;
+            for round in 0..STEPS {
                 let target: Vec<f64> = speeds(&settled).iter().map(|r| -r).collect();
+                // Rows that are short beside others are kept step by step.
+                let left = worst(&relative(&target, &sizes(&settled)));
+                let left = left.map_or(0.0, |(_, left)| left);
+                if left == 0.0 || round >= LEAST_ROUNDS && left >= 0.5 * before {
+                    break;
+                }
+                before = left;
                 let Some(step) = least_norm(&jacobian, &target) else {
                     break;
                 };

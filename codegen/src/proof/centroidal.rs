@@ -2,7 +2,8 @@
 //! and of axes by dual numbers along ẋ; the columns of A_G are the slopes of the momentum by ξ, the bias its slope along
 //! ẋ at ξ̇ = 0.
 
-use super::frames::{along_velocities, applied};
+use super::frames::along_velocities;
+use super::kernel::applied;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;

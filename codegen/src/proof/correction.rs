@@ -1,6 +1,6 @@
 //! The proof of φ, and of the stabilising term −Ψ φ, KR18 (8).
 
-use super::frames::applied;
+use super::kernel::applied;
 use super::points::{Unequal, at_fresh_points};
 use super::verdict::{failure, nowhere};
 use crate::algebra::fp::{Fp, Random};

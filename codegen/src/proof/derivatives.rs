@@ -1,7 +1,7 @@
 //! Slopes of inverse dynamics, and of ξ̇ by parameters, at a point modulo p: by dual numbers along random directions in the
 //! functions that they are slopes of, which are proved by themselves. No derivative of the generator's own takes part.
 
-use super::frames::applied;
+use super::kernel::applied;
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;

@@ -2,6 +2,7 @@
 //! its dual numbers along ẋ, with ω̂ = Ṙ Rᵀ; J has the slopes of the twist by ξ, and the bias acceleration is the slope
 //! of the twist along ẋ at ξ̇ = 0. No derivative of the generator's own takes part.
 
+use super::kernel::applied;
 use crate::algebra::fp::{Fp, Random};
 use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
@@ -94,16 +95,4 @@ pub(super) fn along_velocities(program: &Program, seeds: &[Fp]) -> (Vec<Fp>, Vec
     let mut direction = vec![Fp::ZERO; program.symbols()[2]];
     direction.extend(&eta);
     (eta, direction)
-}
-
-/// A matrix by rows times a vector; of so many rows where they have no entries.
-pub(super) fn applied(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
-    if vector.is_empty() {
-        return vec![Fp::ZERO; count];
-    }
-    let entry = |row: &[Fp]| {
-        let terms = row.iter().zip(vector).map(|(&a, &b)| a * b);
-        terms.fold(Fp::ZERO, |sum, term| sum + term)
-    };
-    rows.chunks(vector.len()).map(entry).collect()
 }

@@ -101,3 +101,11 @@ pub(super) fn virtual_velocity(model: &Model, kept: &[Fp], xi: &[Fp]) -> Option<
 pub fn dot(a: &[Fp], b: &[Fp]) -> Fp {
     a.iter().zip(b).fold(Fp::ZERO, |sum, (&x, &y)| sum + x * y)
 }
+
+/// A matrix by rows times a vector; of so many rows where they have no entries.
+pub fn applied(count: usize, rows: &[Fp], vector: &[Fp]) -> Vec<Fp> {
+    match vector.len() {
+        0 => vec![Fp::ZERO; count],
+        n => rows.chunks(n).map(|row| dot(row, vector)).collect(),
+    }
+}

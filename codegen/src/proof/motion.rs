@@ -114,7 +114,7 @@ pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
         let model = &mut geometry.model;
         let found = rebuild(&program.graph, &mut model.graph, found);
         let set = model.xi_dot.iter().zip(&xi_dot);
-        let set = set.filter_map(|(symbol, &rate)| Some((symbol_of(&model.graph, *symbol)?, rate)));
+        let set = set.filter_map(|(symbol, &rate)| Some((model.graph.as_symbol(*symbol)?, rate)));
         let set: Vec<(usize, Edge)> = set.collect();
         all.push(Sides {
             label: "states",
@@ -125,12 +125,6 @@ pub(super) fn emitted(symbols: &mut Symbols, program: &Program) -> Vec<Sides> {
     }
     all.extend(of_loads(geometry, program));
     all
-}
-
-/// The number of a symbol.
-fn symbol_of(graph: &Graph, edge: Edge) -> Option<usize> {
-    let mut symbols = graph.symbols().iter();
-    symbols.position(|symbol| symbol.node == edge.node())
 }
 
 /// (28): the emitted forces, 2 D, and the motions of points, each on the route of single particles.

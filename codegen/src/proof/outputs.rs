@@ -1,6 +1,6 @@
 //! Outputs and their slopes at a point modulo p, as the description has them.
 
-use super::frames::applied;
+use super::kernel::applied;
 use super::states::slopes_of;
 use crate::algebra::fp::Fp;
 use crate::algebra::lane::Lane;

@@ -6,10 +6,11 @@
 //! those of the emitted functions. Else M, h, ∂V and f are derived once more.
 
 use super::hamel_form;
+use super::kernel::dot;
 use super::reference::Reference;
 use super::{centroidal, derivatives, frames, outputs, states};
 use crate::algebra::fp::{Fp, Random};
-use crate::algebra::graph::{Edge, Node};
+use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
 use crate::algebra::linear::matrix;
 use crate::algebra::numeric::{evaluate_at, solve};
@@ -194,7 +195,12 @@ impl Slopes {
         }
         // M δξ̇ = δ(f − F(x, ξ, ξ̇)), ξ̇ held.
         let mut held = lane.clone();
-        for (place, &value) in symbols(model, &model.xi_dot).into_iter().zip(&xi_dot) {
+        for (place, &value) in model
+            .graph
+            .symbol_places(&model.xi_dot)
+            .into_iter()
+            .zip(&xi_dot)
+        {
             held.set_symbol(place, value);
         }
         let slopes = |name: &str| -> Option<Vec<Fp>> {
@@ -270,10 +276,10 @@ struct Displaced {
 
 impl Displaced {
     fn new(model: &Model, rate: &[Fp]) -> Self {
-        let x = symbols(model, &model.x);
+        let x = model.graph.symbol_places(&model.x);
         let (u, z) = model.u.split_at(model.m());
         let others = [&model.xi, z, u]
-            .map(|edges| symbols(model, edges))
+            .map(|edges| model.graph.symbol_places(edges))
             .concat();
         let columns = model.n() + others.len();
         let mut random = Random::new(rate.iter().fold(columns as u64, |seed, rate| {
@@ -310,15 +316,6 @@ impl Displaced {
     fn found(&self, linear: &[Fp]) -> Vec<Fp> {
         product(&matrix(linear, self.columns.len()), &self.columns)
     }
-}
-
-/// The numbers of symbols.
-fn symbols(model: &Model, edges: &[Edge]) -> Vec<usize> {
-    let index = |edge: &Edge| match model.graph.node(edge.node()) {
-        Node::Symbol(index) => Some(index as usize),
-        _ => None,
-    };
-    edges.iter().filter_map(index).collect()
 }
 
 /// By the slopes of a derivation of its own.
@@ -366,10 +363,5 @@ fn difference(a: &[Fp], b: &[Fp]) -> Vec<Fp> {
 }
 
 fn product(rows: &[Vec<Fp>], vector: &[Fp]) -> Vec<Fp> {
-    rows.iter()
-        .map(|row| {
-            let terms = row.iter().zip(vector).map(|(&a, &b)| a * b);
-            terms.fold(Fp::ZERO, |sum, term| sum + term)
-        })
-        .collect()
+    rows.iter().map(|row| dot(row, vector)).collect()
 }

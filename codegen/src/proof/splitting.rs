@@ -12,7 +12,7 @@
 
 use super::numbers::{Numbers, Values};
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::{evaluate_at, solve};
 use crate::algebra::tangent::tangent_at;
@@ -41,21 +41,12 @@ impl Proof {
         program.function(FunctionId::Kick)?;
         let mut model = model.clone();
         let rates = chart_rates(&mut model.graph, &model.blocks, &model.x, &model.rate);
-        let numbers = |graph: &Graph, edges: &[Edge]| -> Vec<usize> {
-            let nodes = edges.iter().map(|edge| graph.node(edge.node()));
-            nodes
-                .filter_map(|node| match node {
-                    Node::Symbol(index) => Some(index as usize),
-                    _ => None,
-                })
-                .collect()
-        };
         Some(Proof {
             parts: parts(&model),
             rates,
-            x: numbers(&model.graph, &model.x),
-            xi: numbers(&model.graph, &model.xi),
-            p: numbers(&model.graph, &model.momenta),
+            x: model.graph.symbol_places(&model.x),
+            xi: model.graph.symbol_places(&model.xi),
+            p: model.graph.symbol_places(&model.momenta),
             model,
         })
     }

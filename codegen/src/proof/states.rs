@@ -31,10 +31,10 @@ pub(super) fn with_rates(model: &Model, program: &Program) -> Model {
         _ => false,
     });
     if is_applied {
-        let places: Option<Vec<usize>> = model.xi_dot.iter().map(|xi| place(&model, xi)).collect();
+        let places = model.graph.symbol_places(&model.xi_dot);
         let n = model.n();
         let emitted = rebuild(&program.graph, &mut model.graph, &accel.outputs[..n]);
-        let set: Vec<(usize, Edge)> = places.into_iter().flatten().zip(emitted).collect();
+        let set: Vec<(usize, Edge)> = places.into_iter().zip(emitted).collect();
         let graph = &mut model.graph;
         model.state_rates = substitute(graph, &model.state_rates, &set);
         for (_, value) in &mut model.outputs {
@@ -48,7 +48,7 @@ pub(super) fn with_rates(model: &Model, program: &Program) -> Model {
 pub(super) fn rates(model: &Model, xi_dot: &[Fp], lane: &Lane) -> Option<Vec<Fp>> {
     let mut lane = lane.clone();
     for (symbol, &value) in model.xi_dot.iter().zip(xi_dot) {
-        lane.set_symbol(place(model, symbol)?, value);
+        lane.set_symbol(model.graph.as_symbol(*symbol)?, value);
     }
     evaluate_at(&model.graph, &model.state_rates, &mut lane)
 }
@@ -74,17 +74,10 @@ pub(super) fn slopes_of(
     let mut lane = lane.clone();
     let mut direction = direction.to_vec();
     for ((symbol, &value), &slope) in model.xi_dot.iter().zip(xi_dot).zip(change) {
-        let place = place(model, symbol)?;
+        let place = model.graph.as_symbol(*symbol)?;
         lane.set_symbol(place, value);
         direction[place] = slope;
     }
     let duals = tangent_at(&model.graph, expressions, &mut lane, &direction)?;
     Some(duals.into_iter().map(|dual| dual.1).collect())
-}
-
-fn place(model: &Model, symbol: &Edge) -> Option<usize> {
-    match model.graph.node(symbol.node()) {
-        Node::Symbol(index) => Some(index as usize),
-        _ => None,
-    }
 }

@@ -19,6 +19,7 @@
 use super::charts;
 use super::check::failures;
 use super::forms::Symbols;
+use super::kernel::dot;
 use super::numbers::{Numbers, Values};
 use super::points::{Unequal, at_fresh_points};
 use super::slopes::Slopes;
@@ -157,11 +158,8 @@ fn compare(
         return Some(Err(broken.join(", ")));
     }
     let product = |vector: &[Fp]| -> Vec<Fp> {
-        let entry = |row: &Vec<Fp>| {
-            let terms = row.iter().zip(vector);
-            terms.fold(Fp::ZERO, |sum, (&m, &v)| sum + m * v)
-        };
-        values.mass.iter().map(entry).collect()
+        let rows = values.mass.iter();
+        rows.map(|row| dot(row, vector)).collect()
     };
     let sum = |lists: &[&[Fp]]| -> Vec<Fp> {
         (0..model.n())

@@ -264,10 +264,7 @@ fn rewritten(model: &Model, combination: &[(Move, Way)]) -> Result<Choice, Strin
         .xi
         .iter()
         .zip(&old)
-        .filter_map(|(xi, &value)| match graph.node(xi.node()) {
-            Node::Symbol(index) => Some((index as usize, value)),
-            _ => None,
-        })
+        .filter_map(|(xi, &value)| Some((graph.as_symbol(*xi)?, value)))
         .collect();
     // All that ξ stands in.
     own.kinetic = substitute(graph, &[own.kinetic], &set)[0];

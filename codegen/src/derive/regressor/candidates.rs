@@ -9,7 +9,7 @@ use super::parameters::{Link, moments, ten};
 use super::samples::Samples;
 use crate::algebra::echelon::Echelon;
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, multiply3, scale3, sub3, transpose3, zero3,
 };
@@ -293,15 +293,11 @@ fn at_zero(model: &mut Model, edges: &[Edge]) -> Vec<Edge> {
             .map(|k| if k % 4 == 0 { one } else { zero })
             .collect(),
     });
-    let symbol = |edge: &Edge| match graph.node(edge.node()) {
-        Node::Symbol(index) => Some(index as usize),
-        _ => None,
-    };
     let set: Vec<(usize, Edge)> = model
         .x
         .iter()
         .zip(values)
-        .filter_map(|(x, value)| Some((symbol(x)?, value)))
+        .filter_map(|(x, value)| Some((graph.as_symbol(*x)?, value)))
         .collect();
     substitute(graph, edges, &set)
 }

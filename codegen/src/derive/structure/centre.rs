@@ -6,7 +6,7 @@
 //! i, j, k cyclic. G is read off at the twelve rotations of the tetrahedron, over which products of
 //! entries of R average to δ/3; that it gives K back is seen by the inertia that is left.
 
-use super::constant::{resting, symbol};
+use super::constant::resting;
 use super::rates::Part;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, dot_mat3};
@@ -111,7 +111,7 @@ fn offset(
     let at = |graph: &mut Graph, numbers: &[(i64, i64)]| -> Vec<Edge> {
         let mut set = rest.clone();
         for (&entry, &(p, q)) in x.iter().zip(numbers) {
-            let Some(index) = symbol(graph, entry) else {
+            let Some(index) = graph.as_symbol(entry) else {
                 continue;
             };
             let number = graph.ratio(p, q);

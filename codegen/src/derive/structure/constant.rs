@@ -2,21 +2,13 @@
 
 use super::rates::Part;
 use super::variation::Variation;
-use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::transplant::substitute;
 use crate::model::Model;
 use crate::model::layout::identity;
 
 /// A symbol, by its number, and what stands in its place.
 pub type Substitution = Vec<(usize, Edge)>;
-
-/// The number of a symbol.
-pub fn symbol(graph: &Graph, edge: Edge) -> Option<usize> {
-    match graph.node(edge.node()) {
-        Node::Symbol(index) => Some(index as usize),
-        _ => None,
-    }
-}
 
 /// Numbers for all coordinates: no rotation, angle 0, and this number for plain ones.
 pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> Substitution {
@@ -26,7 +18,7 @@ pub fn resting(model: &Model, graph: &mut Graph, parts: &[Part], plain: i64) -> 
         for (&entry, value) in part.entries(&model.x).iter().zip(identity(part.block)) {
             let value = if flat { plain } else { value as i64 };
             let number = graph.ratio(value, 1);
-            set.extend(symbol(graph, entry).map(|index| (index, number)));
+            set.extend(graph.as_symbol(entry).map(|index| (index, number)));
         }
     }
     set
@@ -60,7 +52,7 @@ pub fn settle(
             model
                 .xi
                 .iter()
-                .filter_map(|&xi| Some((symbol(graph, xi)?, zero))),
+                .filter_map(|&xi| Some((graph.as_symbol(xi)?, zero))),
         );
         let images = substitute(graph, &constant, &set);
         for (&index, image) in places.iter().zip(images) {

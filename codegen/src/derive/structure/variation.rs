@@ -2,7 +2,7 @@
 //! others held. That an expression depends on none of them errs as node identity does.
 
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph, Node};
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tape::Tape;
@@ -62,11 +62,7 @@ impl Dependence<'_> {
     /// For each expression whether it changes with the symbols that `moved` are; where no second point
     /// was found, it is said to.
     pub fn changes(&self, moved: &[Edge]) -> Vec<bool> {
-        let symbol = |edge: &Edge| match self.graph.node(edge.node()) {
-            Node::Symbol(index) => Some(index as usize),
-            _ => None,
-        };
-        let places: Vec<usize> = moved.iter().filter_map(symbol).collect();
+        let places = self.graph.symbol_places(moved);
         let there = (0..TRIES).find_map(|seed| {
             let other = self.variation.model.points.lane(SEED + TRIES + seed)?;
             let mut there = self.variation.here.clone();

@@ -3,7 +3,6 @@
 use super::motion::entries;
 use super::space::{Mat3, Vec3};
 use crate::algebra::fp::Fp;
-use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::tape::Tape;
 use crate::derive::{energy, kinematics};
 use crate::model::Model;
@@ -91,8 +90,8 @@ impl Expressions {
             velocity: Tape::new(graph, &velocity)?,
             constants: Tape::new(graph, &constants)?,
             frames,
-            x: places(graph, &model.x),
-            xi: places(graph, &model.xi),
+            x: graph.symbol_places(&model.x),
+            xi: graph.symbol_places(&model.xi),
             symbols: graph.symbols().len(),
             model,
         })
@@ -135,15 +134,6 @@ impl Expressions {
     pub fn of_x_and_xi(&self, x: &[Fp], xi: &[Fp]) -> Vec<Fp> {
         self.seed([(&self.x, x), (&self.xi, xi)])
     }
-}
-
-/// The places of symbols among all.
-pub fn places(graph: &Graph, symbols: &[Edge]) -> Vec<usize> {
-    let place = |edge: &Edge| match graph.node(edge.node()) {
-        Node::Symbol(index) => Some(index as usize),
-        _ => None,
-    };
-    symbols.iter().filter_map(place).collect()
 }
 
 /// Reads values in the order in which their expressions were listed.
