@@ -25,12 +25,13 @@ pub struct Loops<'c, 'a> {
 }
 
 impl<'c, 'a> Loops<'c, 'a> {
-    /// The loops of a description; what is given stays as it is in the guess.
+    /// The loops of a description, measured by these sizes; what is given stays as it is in the guess.
     pub fn new(
         closure: &'c Closure<'a>,
         mass: &[Vec<f64>],
         guess: &'c [f64],
         given: &[bool],
+        sizes: &[f64],
     ) -> Self {
         let directions = 0..closure.n;
         let mut loops = Loops {
@@ -38,7 +39,7 @@ impl<'c, 'a> Loops<'c, 'a> {
             guess,
             given: (0..given.len()).filter(|&alpha| given[alpha]).collect(),
             free: directions.filter(|&i| closure.time != Some(i)).collect(),
-            sizes: closure.sizes(guess),
+            sizes: sizes.to_vec(),
             weight: None,
         };
         loops.weight = loops.weights(mass);

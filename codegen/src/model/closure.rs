@@ -13,10 +13,11 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
 use crate::algebra::numeric::{evaluate, least_norm};
 use crate::algebra::sizes::{beside, sizes};
-use crate::syntax::ast::Span;
 
 /// Steps of Newton's method.
 const STEPS: usize = 60;
+/// How often a closed loop is looked for with the sizes that its equations have where the last search ended.
+const JUDGED: usize = 3;
 /// Steps that constraints on velocities take at least: rounding is refined away.
 const LEAST_ROUNDS: usize = 3;
 /// Largest residual of a solution, beside its [size](sizes).
@@ -106,7 +107,7 @@ impl<'a> Closure<'a> {
         let all = vec![false; given.len()];
         let attempts = [Some(given), (beside <= ROUNDING).then_some(&all[..])];
         for fixed in attempts.into_iter().flatten() {
-            if let Some(closed) = self.newton(x, fixed, &sizes) {
+            if let Some(closed) = self.newton(x, fixed, &sizes).filter(|x| self.is_closed(x)) {
                 *x = closed;
                 return Ok(());
             }
@@ -124,8 +125,19 @@ impl<'a> Closure<'a> {
         let Some((which, _)) = worst(&relative(&before, &self.sizes(x))) else {
             return Ok(());
         };
-        let loops = Loops::new(self, mass, x, given);
-        let Some(closed) = nearest(&loops, x) else {
+        // Sizes at the guess say little of what is far from it.
+        let mut sizes = self.sizes(x);
+        let mut found = None;
+        for _ in 0..JUDGED {
+            let loops = Loops::new(self, mass, x, given, &sizes);
+            found = nearest(&loops, x);
+            let Some(there) = found.as_ref().filter(|x| !self.is_closed(x)) else {
+                break;
+            };
+            let less = sizes.iter_mut().zip(self.sizes(there));
+            less.for_each(|(size, there)| *size = size.min(there));
+        }
+        let Some(closed) = found.filter(|x| self.is_closed(x)) else {
             let constraint = self.loops()[which];
             return Err(Open {
                 constraint,
@@ -304,6 +316,12 @@ impl<'a> Closure<'a> {
         })
     }
 
+    /// Whether all loops are closed, beside their sizes here.
+    fn is_closed(&self, x: &[f64]) -> bool {
+        let left = relative(&self.residuals(x), &self.sizes(x));
+        worst(&left).is_none_or(|(_, left)| left <= 2.0 * SOLVED)
+    }
+
     /// The sizes beside which the residuals of the loops are large or small.
     pub(super) fn sizes(&self, x: &[f64]) -> Vec<f64> {
         let loops = self.loops();
@@ -315,17 +333,19 @@ impl<'a> Closure<'a> {
         self.shared(loops.iter().copied(), sizes)
     }
 
-    /// Rows of one statement share the largest of their sizes.
+    /// Rows of one equation between vectors share the largest of their sizes.
     fn shared(&self, rows: impl Iterator<Item = usize>, sizes: Vec<f64>) -> Vec<f64> {
-        let spans: Vec<Span> = rows.map(|row| self.constraints[row].span).collect();
-        let of = |span: Span| {
-            let all = spans
+        let texts: Vec<&str> = rows
+            .map(|row| self.constraints[row].written.as_str())
+            .collect();
+        let of = |text: &str| {
+            let all = texts
                 .iter()
                 .zip(&sizes)
-                .filter(|(other, _)| **other == span);
+                .filter(|(other, _)| **other == text);
             all.fold(0.0, |most, (_, &size)| f64::max(most, size))
         };
-        spans.iter().map(|&span| of(span)).collect()
+        texts.iter().map(|text| of(text)).collect()
     }
 
     pub(super) fn residuals(&self, x: &[f64]) -> Vec<f64> {

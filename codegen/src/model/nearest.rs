@@ -38,15 +38,10 @@ pub struct Equations {
 /// Where Newton's method ends.
 struct End {
     x: Vec<f64>,
-    /// max |φ| there, and what the slopes of φ make of the coordinates.
+    /// max |φ| there.
     residual: f64,
-    size: f64,
-}
-
-impl End {
-    fn is_close(&self) -> bool {
-        self.residual <= CLOSE * self.size
-    }
+    /// Whether each of φ is small beside 1 or what its slopes make of the coordinates.
+    is_close: bool,
 }
 
 /// Looks for x with φ(x) = 0 near a start; `numbers` are those of all symbols there.
@@ -54,8 +49,8 @@ pub fn nearest(points: &Points, phi: &[(Edge, String)], numbers: &[f64], x: &[f6
     let equations = Equations::new(points, phi);
     let mut least = f64::INFINITY;
     for guess in guesses(x) {
-        let end = equations.descend(guess, numbers, STEPS);
-        if end.is_close() {
+        let end = equations.descend(guess, numbers, STEPS, true);
+        if end.is_close {
             return Nearest::Found(end.x);
         }
         least = least.min(end.residual);
@@ -102,11 +97,12 @@ impl Equations {
         }
     }
 
-    /// x with φ(x) = 0 near that of some values of all symbols, if Newton's method finds it soon.
+    /// x with φ(x) = 0 near that of some values of all symbols, if Newton's method finds it soon. Walks on X are of the size of
+    /// 1: where φ is so large that rounding hides 1e-12, nothing is found.
     pub fn near(&self, numbers: &[f64]) -> Option<Vec<f64>> {
         let x = numbers.get(self.first..self.first + self.dimension)?;
-        let end = self.descend(x.to_vec(), numbers, FEW_STEPS);
-        end.is_close().then_some(end.x)
+        let end = self.descend(x.to_vec(), numbers, FEW_STEPS, false);
+        end.is_close.then_some(end.x)
     }
 
     /// √det(∂φ/∂x ∂φ/∂xᵀ) where all symbols have these values: 0 where rows depend on one another, as they do where
@@ -136,18 +132,26 @@ impl Equations {
         evaluate(&self.graph, edges, &numbers)
     }
 
-    /// Newton's method from a guess.
-    fn descend(&self, mut x: Vec<f64>, numbers: &[f64], steps: usize) -> End {
+    /// Newton's method from a guess; φ is small beside its size where that is `relative`, and beside 1 else.
+    fn descend(&self, mut x: Vec<f64>, numbers: &[f64], steps: usize, relative: bool) -> End {
         let mut phi = self.at(&self.phi, numbers, &x);
         let mut damping = 1e-6;
-        let mut size: f64 = 1.0;
+        let mut is_close = false;
         for _ in 0..steps {
             let slopes = self.at(&self.slopes, numbers, &x);
-            size = slopes
-                .chunks(x.len().max(1))
-                .map(|row| row.iter().zip(&x).map(|(slope, x)| (slope * x).abs()).sum())
-                .fold(1.0, f64::max);
-            if largest(&phi) <= CLOSE * size {
+            let sizes = slopes.chunks(x.len().max(1)).map(|row| {
+                let moved = row.iter().zip(&x).map(|(slope, x)| (slope * x).abs());
+                if relative {
+                    f64::max(1.0, moved.sum())
+                } else {
+                    1.0
+                }
+            });
+            is_close = phi
+                .iter()
+                .zip(sizes)
+                .all(|(phi, size)| phi.abs() <= CLOSE * size);
+            if is_close {
                 break;
             }
             let rows: Vec<&[f64]> = slopes.chunks(x.len().max(1)).collect();
@@ -182,7 +186,7 @@ impl Equations {
         End {
             x,
             residual: largest(&phi),
-            size,
+            is_close,
         }
     }
 }

@@ -317,3 +317,37 @@ fn lengths_are_in_any_unit() {
         }
     }
 }
+
+/// Each loop is judged beside its own terms: one of a million metres excuses none that cannot be closed, and no guess that is
+/// far away does.
+#[test]
+fn large_loops_excuse_no_others() {
+    let open = |text: &str| {
+        let text = format!(
+            "system A {{ coord a, b, c; velocity u, v, w; rate a = u, b = v, c = w;
+                kinetic (u^2 + v^2 + w^2) / 2; {text} }}"
+        );
+        build(&parse_text(&text).expect("a description")).is_err()
+    };
+    assert!(open(
+        "loop a^2 + b^2 = 1e6^2; loop cos(c) = 1.4; start a ~ 6e5, b ~ 8e5;"
+    ));
+    assert!(!open(
+        "loop a^2 + b^2 = 1e6^2; loop cos(c) = 0.9; start a ~ 6e5, b ~ 8e5, c ~ 0.3;"
+    ));
+    assert!(open(
+        "loop 0.3 * sin(a) + 0.5 * sin(b) = 0.9; loop c = 6.371e6; start a = 1;"
+    ));
+    assert!(open(
+        "loop cos(a) + 3 * cos(b) = c, sin(a) + 3 * sin(b) = 5; start c ~ 1e13;"
+    ));
+}
+
+/// Loops that say a thing twice, of velocities without mass: steps back to them are proved.
+#[test]
+fn redundant_loops_without_mass_are_led_back_to() {
+    crate::common::generated(
+        "system Twice { coord a, b; velocity u, v; rate a = u, b = v; kinetic u^2 / 2;
+            loop cos(b) = cos(a), sin(b) = sin(a); start a = 0.7, b ~ 0.6; }",
+    );
+}

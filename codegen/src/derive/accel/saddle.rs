@@ -63,19 +63,14 @@ const REFINED: usize = 2;
 /// its equation, too.
 const SHARE: i64 = 1024;
 
-/// For each row the rows whose diagonal of S raises its own: those of a loop between vectors; all loops between numbers; a
-/// row of another kind by itself. `more` rows of given rates stand behind the constraints.
+/// For each row the rows whose diagonal of S raises its own: all constraints, of a row of a loop; a row of another kind by itself.
+/// `more` rows of given rates stand behind the constraints.
 pub fn raising(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {
     let is_loop = |i: usize| constraints.get(i).is_some_and(|c| c.kind == Kind::Loop);
-    let mates = |i: usize| {
-        (0..constraints.len()).filter(move |&j| constraints[j].span == constraints[i].span)
-    };
-    let alone = |i: usize| is_loop(i) && mates(i).count() == 1;
     let rows = 0..constraints.len() + more;
-    rows.map(|i| match (is_loop(i), alone(i)) {
-        (false, _) => vec![i],
-        (true, false) => mates(i).collect(),
-        (true, true) => (0..constraints.len()).filter(|&j| alone(j)).collect(),
+    rows.map(|i| match is_loop(i) {
+        false => vec![i],
+        true => (0..constraints.len()).collect(),
     })
     .collect()
 }
@@ -303,11 +298,13 @@ fn backward(graph: &mut Graph, factors: &Factors, v: &mut [Edge]) {
 
 /// ξ̇ in numbers modulo p, by plain elimination: what the emitted code has to agree with. The parts are M, the forces, B by
 /// rows, and the right side of B ξ̇; then come velocities whose rates are given. Of the lane is what `Raised` multiplies by
-/// where the system is overconstrained.
+/// where the system is overconstrained. Where M is raised by w BᵀB, w Bᵀ b is added to forces that `balance` it, as in ξ̇; steps
+/// back to constraints have no forces.
 pub fn solve_at(
     model: &Model,
     [mass, force, rows, right]: [&[Fp]; 4],
     given: &[(usize, Fp)],
+    balance: bool,
     lane: &Lane,
 ) -> Option<Vec<Fp>> {
     let n = force.len();
@@ -325,7 +322,9 @@ pub fn solve_at(
         let weight = trace * squares.inv()?;
         for (row, &right) in rows.chunks(n).zip(&right) {
             for (i, &b) in row.iter().enumerate() {
-                force[i] = force[i] + weight * b * right;
+                if balance {
+                    force[i] = force[i] + weight * b * right;
+                }
                 (0..n).for_each(|j| mass[i * n + j] = mass[i * n + j] + weight * b * row[j]);
             }
         }

@@ -184,10 +184,22 @@ impl<'a> Seen<'a> {
         })
     }
 
-    /// ξ̇ₐ of Cᵀ M C ξ̇ₐ = force + Bᵀ λ, B ξ̇ₐ = right, by elimination in numbers.
-    fn solution(&self, force: &[Fp], right: &[Fp], driven: &[(usize, Fp)]) -> Option<Vec<Fp>> {
-        let parts = [&self.mass[..], force, &self.kept, right];
-        saddle::solve_at(&self.full.reduced, parts, driven, &self.at.inner)
+    /// ξ̇ₐ of Cᵀ M C ξ̇ₐ = force + Bᵀ λ, B ξ̇ₐ = right, by elimination in numbers; steps have no forces.
+    fn solution(
+        &self,
+        force: Option<&[Fp]>,
+        right: &[Fp],
+        driven: &[(usize, Fp)],
+    ) -> Option<Vec<Fp>> {
+        let none = vec![Fp::ZERO; self.reduction.active.len()];
+        let parts = [&self.mass[..], force.unwrap_or(&none), &self.kept, right];
+        saddle::solve_at(
+            &self.full.reduced,
+            parts,
+            driven,
+            force.is_some(),
+            &self.at.inner,
+        )
     }
 
     /// The ξ̇ₐ that the forces imply.
@@ -195,7 +207,7 @@ impl<'a> Seen<'a> {
         let Values { force, slope, .. } = &self.values;
         let rest = (0..self.n()).map(|k| force[k] - slope[k] - self.bias[k]);
         let rest: Vec<Fp> = rest.collect();
-        self.solution(&self.projected(&rest), &self.right, &self.driven)
+        self.solution(Some(&self.projected(&rest)), &self.right, &self.driven)
     }
 
     /// M ξ̇ + h + ∂V of the full frame for active rates.
@@ -291,11 +303,10 @@ impl<'a> Seen<'a> {
         let residuals = inner(&residuals)?;
         let shifts: Vec<Edge> = constraints.iter().map(|c| c.shift).collect();
         let xi = inner(&reduced.xi)?;
-        let rest = vec![Fp::ZERO; na];
         let held: Vec<(usize, Fp)> = self.driven.iter().map(|&(i, _)| (i, Fp::ZERO)).collect();
         let back = |left: &[Fp]| {
             let right: Vec<Fp> = left.iter().map(|&left| -left).collect();
-            self.solution(&rest, &right, &held)
+            self.solution(None, &right, &held)
         };
         if let Some(found) = self.emitted("project_position")?
             && found[..na] != back(&residuals)?
