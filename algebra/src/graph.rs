@@ -8,6 +8,7 @@
 //! Children stand before parents.
 
 mod calls;
+mod leaves;
 mod merge;
 mod powers;
 mod side;
@@ -184,40 +185,6 @@ impl Graph {
     /// Whether a number was met that one of the primes divides: comparisons say nothing of it.
     pub fn is_unfaithful(&self) -> bool {
         self.unfaithful
-    }
-
-    /// The place among the symbols of the one that an edge is, if it is one.
-    pub fn as_symbol(&self, edge: Edge) -> Option<usize> {
-        match self.nodes[edge.node() as usize] {
-            Node::Symbol(index) => Some(index as usize),
-            _ => None,
-        }
-    }
-
-    /// The places of the symbols that edges are.
-    pub fn symbol_places(&self, edges: &[Edge]) -> Vec<usize> {
-        let place = |&edge: &Edge| self.as_symbol(edge);
-        edges.iter().filter_map(place).collect()
-    }
-
-    /// The number that an edge is, if it is one.
-    pub fn as_rational(&self, edge: Edge) -> Option<BigRational> {
-        match self.nodes[edge.node() as usize] {
-            Node::Constant(index) => {
-                let value = &self.constants[index as usize];
-                Some(if edge.is_negative() {
-                    -value.clone()
-                } else {
-                    value.clone()
-                })
-            }
-            _ => None,
-        }
-    }
-
-    /// Whether an edge is a number.
-    pub(super) fn is_number(&self, edge: Edge) -> bool {
-        matches!(self.nodes[edge.node() as usize], Node::Constant(_))
     }
 
     fn both_rational(&self, a: Edge, b: Edge) -> Option<(BigRational, BigRational)> {

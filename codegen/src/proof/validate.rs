@@ -16,7 +16,7 @@
 //! | `momentum_rate` | Ṁ ξ + f − h − ∂V |
 //! | `velocity_from_momentum` | the ξ with M ξ = p |
 
-use super::charts;
+use super::charts::Charts;
 use super::check::failures;
 use super::forms::Symbols;
 use super::kernel::dot;
@@ -66,6 +66,7 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<S
         Emitted::new(model, program).ok_or_else(|| without("that numbers have values"))?;
     let slopes = Slopes::new(&with_rates, program).ok_or_else(|| without("Y A = I"))?;
     let splitting = Proof::new(model, program);
+    let charts = Charts::new(program).ok_or_else(|| without("that charts have values"))?;
     let at_point = |lane: &Lane| -> Option<Result<(), String>> {
         let values = match numbers.at(lane)? {
             Ok(values) => values,
@@ -80,6 +81,10 @@ pub(super) fn compared(model: &Model, program: &Program) -> Result<(), Unequal<S
                 lane,
             )?,
             slopes.at_point(program, lane)?,
+            match charts.hold(&values.rate, lane)? {
+                true => Ok(()),
+                false => Err("K(x) times the rate of the chart = ẋ".into()),
+            },
             splitting.as_ref().map_or(Some(Ok(())), |splitting| {
                 splitting.at_point(&numbers, program, lane)
             })?,
@@ -209,9 +214,6 @@ fn compare(
         if emitted.get(name).is_some_and(|value| value != expected) {
             return Some(Err(what.into()));
         }
-    }
-    if !charts::hold(program, &values.rate, lane)? {
-        return Some(Err("K(x) times the rate of the chart = ẋ".into()));
     }
     if let Some(rates) = emitted.get("accel") {
         let (xi_dot, state_rates) = rates.split_at(model.n());

@@ -6,6 +6,7 @@ pub mod frame;
 mod point;
 mod seen;
 
+use super::charts::Charts;
 use super::confidence::Confidence;
 use super::kernel::rows_at_rest;
 use super::points::{POINTS, Unequal, at_fresh_points};
@@ -209,6 +210,7 @@ fn compare_at(
     program: &Program,
 ) -> Option<Vec<Claim>> {
     let mut failed: Vec<Claim> = Vec::new();
+    let charts = Charts::new(program)?;
     // Prescribed coordinates are where they are prescribed to be, so that roots of them have values.
     let given = given(&full.reference.model);
     let compared = at_fresh_points(
@@ -219,7 +221,7 @@ fn compare_at(
             points.lane_moved(0xb0d5 + number, graph, &given, &solved)
         },
         |lane, _| {
-            let seen = Seen::new(full, reduction, program, lane)?;
+            let seen = Seen::new(full, reduction, (program, &charts), lane)?;
             for claim in Claim::ALL {
                 if !seen.holds(claim)? {
                     failed.push(claim);

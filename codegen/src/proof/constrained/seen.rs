@@ -10,14 +10,16 @@ use crate::algebra::numeric::evaluate_at;
 use crate::derive::accel::saddle;
 use crate::derive::reduction::Reduction;
 use crate::program::{FunctionId, Program};
+use crate::proof::charts::Charts;
 use crate::proof::kernel::{dot, virtual_velocity};
-use crate::proof::{centroidal, charts, derivatives, frames, outputs, states};
+use crate::proof::{centroidal, derivatives, frames, outputs, states};
 
 /// A point with everything there that several comparisons need.
 pub(super) struct Seen<'a> {
     full: &'a Full,
     reduction: &'a Reduction,
     program: &'a Program,
+    charts: &'a Charts,
     at: At<'a>,
     values: Values,
     /// B of the full frame, by rows.
@@ -41,7 +43,7 @@ impl<'a> Seen<'a> {
     pub(super) fn new(
         full: &'a Full,
         reduction: &'a Reduction,
-        program: &'a Program,
+        (program, charts): (&'a Program, &'a Charts),
         lane: &Lane,
     ) -> Option<Self> {
         let (n, na) = (full.reference.model.n(), reduction.active.len());
@@ -84,6 +86,7 @@ impl<'a> Seen<'a> {
             full,
             reduction,
             program,
+            charts,
             at,
             values,
             rows,
@@ -104,7 +107,7 @@ impl<'a> Seen<'a> {
             Claim::Complement => self.solved_rows_vanish(),
             Claim::Rate => {
                 let rate = self.at.rate()?;
-                self.equal("rate", &rate)? && charts::hold(program, &rate, inner)?
+                self.equal("rate", &rate)? && self.charts.hold(&rate, inner)?
             }
             Claim::Balance => self.balances()?,
             Claim::Constraint => self.is_kept()?,
