@@ -194,12 +194,15 @@ fn read_at(
     ) && !defaults.iter().any(|number| number.is_nan())
     {
         let (all, n) = (&declared.coordinates, declared.xi.len());
+        let rows = || variety.phi.iter().map(|(edge, _)| *edge).collect();
+        let constrained = !variety.user_rows().is_empty();
         let closure = Closure::new(
             graph,
             all,
             (&kinematics.a, n),
             declared.clock,
             &constraints,
+            constrained.then(|| (&variety.points.free, rows())),
             defaults,
         );
         let mass = |x: &[f64]| {

@@ -17,6 +17,8 @@ pub struct Loops<'c, 'a> {
     closure: &'c Closure<'a>,
     guess: &'c [f64],
     given: Vec<usize>,
+    /// Which entries they are.
+    fixed: Vec<bool>,
     free: Vec<usize>,
     /// What residuals of the loops are measured by.
     sizes: Vec<f64>,
@@ -38,6 +40,7 @@ impl<'c, 'a> Loops<'c, 'a> {
             closure,
             guess,
             given: (0..given.len()).filter(|&alpha| given[alpha]).collect(),
+            fixed: given.to_vec(),
             free: directions.filter(|&i| closure.time != Some(i)).collect(),
             sizes: sizes.to_vec(),
             weight: None,
@@ -167,7 +170,7 @@ impl Assembly for Loops<'_, '_> {
                 .map(|(&i, h)| row[i] * h)
                 .sum::<f64>();
         }
-        normalise(&self.closure.blocks, &mut moved);
+        self.closure.lead_back(&mut moved, &self.fixed);
         moved
     }
 }

@@ -13,6 +13,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
 use crate::algebra::numeric::{evaluate, least_norm};
 use crate::algebra::sizes::{beside, sizes};
+use crate::algebra::slopes::slopes;
 
 /// Steps of Newton's method.
 const STEPS: usize = 60;
@@ -29,6 +30,8 @@ const ROUNDING: f64 = 1e-6;
 pub struct Closure<'a> {
     pub(super) graph: &'a Graph,
     pub(super) blocks: Vec<Block>,
+    /// φ of the coordinates, where the description has constraints of its own, in the graph with free points.
+    phi: Option<(&'a Graph, Vec<Edge>)>,
     pub(super) a: Vec<Edge>,
     pub(super) n: usize,
     /// The place of ξ⁰ among the velocities: the time is always given.
@@ -48,19 +51,21 @@ pub struct Open {
 }
 
 impl<'a> Closure<'a> {
-    /// The equations of a description that is being read.
+    /// The equations of a description that is being read, with φ where it has constraints of its own.
     pub fn new(
         graph: &'a Graph,
         coordinates: &[Coordinate],
         (a, n): (&[Vec<Edge>], usize),
         clock: Option<Clock>,
         constraints: &'a [Pfaffian],
+        phi: Option<(&'a Graph, Vec<Edge>)>,
         params: &'a [f64],
     ) -> Self {
         let kinds = coordinates.iter().map(|coordinate| coordinate.kind);
         Closure {
             graph,
             blocks: kinds.flat_map(blocks).collect(),
+            phi,
             a: a.concat(),
             n,
             time: clock.map(|clock| clock.xi),
@@ -72,9 +77,12 @@ impl<'a> Closure<'a> {
 
     /// The equations of a model, whose loops are those of all its constraints.
     pub fn of(model: &'a Model, params: &'a [f64]) -> Self {
+        let rows = || model.phi.iter().map(|(edge, _)| *edge).collect();
+        let constrained = !model.points.constraints.is_empty();
         Closure {
             graph: &model.graph,
             blocks: model.blocks.clone(),
+            phi: constrained.then(|| (&model.points.free, rows())),
             a: model.a.concat(),
             n: model.n(),
             time: model.clock.filter(|_| model.spans).map(|clock| clock.xi),
@@ -239,10 +247,53 @@ impl<'a> Closure<'a> {
                     .map(|(&i, h)| a[alpha * n + i] * h)
                     .sum::<f64>();
             }
-            normalise(&self.blocks, &mut x);
+            self.lead_back(&mut x, fixed);
         }
         let (_, size) = worst(&relative(&self.residuals(&x), sizes))?;
         (size <= SOLVED).then_some(x)
+    }
+
+    /// Back to φ = 0 of the coordinates, which a step along A leaves by its square; entries that are fixed stay.
+    pub(super) fn lead_back(&self, x: &mut [f64], fixed: &[bool]) {
+        normalise(&self.blocks, x);
+        let Some((free, phi)) = &self.phi else {
+            return;
+        };
+        let first = 1 + self.params.len();
+        let open = |&alpha: &usize| !fixed.get(alpha).is_some_and(|&fixed| fixed);
+        let open: Vec<usize> = (0..x.len()).filter(open).collect();
+        let directions = open.iter().map(|&alpha| {
+            let mut direction = vec![0.0; first + alpha + 1];
+            direction[first + alpha] = 1.0;
+            direction
+        });
+        let directions: Vec<Vec<f64>> = directions.collect();
+        let mut before = f64::INFINITY;
+        let mut best = x.to_vec();
+        for _ in 0..STEPS {
+            let mut numbers = self.numbers(x);
+            numbers.resize(free.symbols().len(), 0.0);
+            let left = slopes(free, phi, &numbers, &directions);
+            let size = left
+                .iter()
+                .fold(0.0, |sum, row| sum + row.value * row.value);
+            if size.is_nan() || size >= 0.25 * before {
+                break;
+            }
+            before = size;
+            best.copy_from_slice(x);
+            let columns = 0..open.len();
+            let rows = left
+                .iter()
+                .map(|row| columns.clone().map(|k| row.slope(k)).collect());
+            let rows: Vec<Vec<f64>> = rows.collect();
+            let target: Vec<f64> = left.iter().map(|row| -row.value).collect();
+            let Some(step) = least_norm(&rows, &target) else {
+                break;
+            };
+            open.iter().zip(step).for_each(|(&alpha, h)| x[alpha] += h);
+        }
+        x.copy_from_slice(&best);
     }
 
     /// Whether a velocity is given, beside that of time.

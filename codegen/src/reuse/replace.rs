@@ -340,8 +340,12 @@ impl<'w, 'a> Replacing<'w, 'a> {
         let (value, taken) = match found {
             Err(error) => return self.report.push_once(error),
             Ok(Found::Unknown) if base > 1 => {
-                let error = Diagnostic::new(expr.span, "unknown name");
-                let help = "behind an index stands what a joint's coordinates and velocities end in, as in `j[2]_dot`";
+                let name = match path.first() {
+                    Some(Step::Name(name)) => name.as_str(),
+                    _ => "",
+                };
+                let error = Diagnostic::new(expr.span, format!("unknown name `{name}`"));
+                let help = "declare it, or check its spelling; of a joint, what its coordinates and velocities end in stands behind the index, as in `j[2]_dot`";
                 return self.report.push_once(error.help(help));
             }
             Ok(Found::Unknown) => (None, base),

@@ -351,3 +351,37 @@ fn redundant_loops_without_mass_are_led_back_to() {
             loop cos(b) = cos(a), sin(b) = sin(a); start a = 0.7, b ~ 0.6; }",
     );
 }
+
+/// Steps along A leave a constraint of the coordinates by their square: a start that loops have moved is on φ = 0 all the same.
+#[test]
+fn starts_that_loops_have_moved_keep_constraints() {
+    let mut random = Random::new(0x9_4a1);
+    let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+    for _ in 0..40 {
+        let (angle, a, lean) = (3.0 * number(), 2.0 * number(), 0.4 * number());
+        let text = format!(
+            "system Bead {{
+                coord x, z, a, q: S1; constraint x^2 + z^2 = 1;
+                velocity w, u, s; rate x = -z * w, z = x * w, a = u, q = s;
+                kinetic (w^2 + u^2 + s^2) / 2 + {lean} * u * w;
+                loop a = 1.5 * x + 0.3 * q.c; loop q.s = z / 2;
+                start x ~ {:?}, z ~ {:?}, a ~ {a:?};
+            }}",
+            angle.cos(),
+            angle.sin()
+        );
+        let x = build(&parse_text(&text).expect("a description"))
+            .unwrap_or_else(|errors| panic!("{text}: {errors:?}"))
+            .start_x;
+        let left = [
+            x[0] * x[0] + x[1] * x[1] - 1.0,
+            x[3] * x[3] + x[4] * x[4] - 1.0,
+            x[2] - 1.5 * x[0] - 0.3 * x[3],
+            x[4] - x[1] / 2.0,
+        ];
+        assert!(
+            left.iter().all(|left| left.abs() < 1e-14),
+            "{left:?}\n{text}"
+        );
+    }
+}
