@@ -258,18 +258,9 @@ impl Completion<'_> {
         let loops: Vec<Edge> = holonomic.map(|row| row.residual).collect();
         let phi: Vec<Edge> = model.phi.iter().map(|(edge, _)| *edge).collect();
         let free = &model.points.free;
-        let mut open = relative(
-            &model.graph,
-            &loops,
-            &numbers,
-            places.0..places.0 + places.1,
-        );
-        open.extend(relative(
-            free,
-            &phi,
-            &numbers,
-            places.0..places.0 + places.1,
-        ));
+        let all = model.points.places();
+        let mut open = relative(&model.graph, &loops, &numbers, all.clone());
+        open.extend(relative(free, &phi, &numbers, all));
         let loops = loops
             .iter()
             .map(|&edge| symbols(&model.graph, edge, places, time));

@@ -137,6 +137,33 @@ fn inputs_know_entries_of_vectors() {
     }
 }
 
+/// An entry of a coordinate is not one of a velocity that is called like it: q̈ = r₂ = 2, and not `r_2` = 0.
+#[test]
+fn entries_of_coordinates_are_no_velocities() {
+    let two = "system Two { coord r: R3, q; velocity r_1, r_2, r_3, u; rate r = [r_1, r_2, r_3], q = u; particle mass 1 at r;
+        kinetic u^2 / 2; input F; generalized force u = F; output y = q; start r = [0, 2, 0]; }";
+    let description = file("two.eom", two).display().to_string();
+    let output = hamel(
+        &[
+            "simulate",
+            &description,
+            "--until",
+            "1",
+            "--input",
+            "F = r[2]",
+        ],
+        "",
+    );
+    let said = text(&output.stdout);
+    let line = said
+        .lines()
+        .find(|line| line.trim_start().starts_with("u "));
+    assert!(
+        line.is_some_and(|line| line.trim_end().ends_with(" 2")),
+        "{said}"
+    );
+}
+
 #[test]
 fn what_cannot_be_used_is_said() {
     let path = |name: &str, content: &str| file(name, content).display().to_string();

@@ -37,7 +37,7 @@ impl Expressions {
         }
         let entries: Vec<String> = model.inputs.iter().flat_map(names::group).collect();
         let (known, timed) = known(model);
-        let entries_of = entries_of(model);
+        let entries_of = entries_of(model, &known);
         let groups = model.velocities.iter().chain(&model.states);
         let moving: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
         let mut first = None;
@@ -172,16 +172,16 @@ fn known(model: &Model) -> (Vec<String>, bool) {
 }
 
 /// Entries of vectors of which constraints have taken others away, as the description writes them, and their names: `v[2]`
-/// is `v_2`.
-fn entries_of(model: &Model) -> Vec<(String, String)> {
-    let groups = model.velocities.iter().chain(&model.states);
-    let names: Vec<&str> = groups.map(|group| group.name.as_str()).collect();
-    let entry = |name: &&str| {
-        let (vector, index) = name.rsplit_once('_')?;
-        let is_entry = !names.contains(&vector) && index.parse::<usize>().is_ok_and(|i| i > 0);
-        is_entry.then(|| (format!("{vector}[{index}]"), name.to_string()))
+/// is `v_2`, where nothing else that is known is called `v`.
+fn entries_of(model: &Model, known: &[String]) -> Vec<(String, String)> {
+    let is_known = |name: &str| known.iter().any(|one| one.split(':').next() == Some(name));
+    let entry = |group: &Group| {
+        let (vector, index) = group.name.rsplit_once('_')?;
+        let is_entry = !is_known(vector) && index.parse::<usize>().is_ok_and(|i| i > 0);
+        is_entry.then(|| (format!("{vector}[{index}]"), group.name.clone()))
     };
-    names.iter().filter_map(entry).collect()
+    let groups = model.velocities.iter().chain(&model.states);
+    groups.filter_map(entry).collect()
 }
 
 /// An expression with these entries by their names.
