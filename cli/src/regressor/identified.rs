@@ -95,7 +95,7 @@ fn base(map: &Map, standard: &[f64]) -> Vec<f64> {
 /// β of a file's text.
 fn read(all: &BaseParameters, path: &str, text: &str) -> Result<Vec<f64>, Failure> {
     let json = strict::parse(text).map_err(|error| Failure::usages(path, &[error]))?;
-    let kept: Vec<String> = all.kept().map(|standard| standard.name()).collect();
+    let kept: Vec<&str> = all.names().collect();
     let mut beta = base(&all.map(), all.values());
     let mut errors = Vec::new();
     match &json {
@@ -114,13 +114,13 @@ fn read(all: &BaseParameters, path: &str, text: &str) -> Result<Vec<f64>, Failur
         )),
         Value::Object(members) => {
             for (name, value) in members {
-                match (kept.iter().position(|kept| kept == name), value.as_f64()) {
+                match (kept.iter().position(|kept| *kept == name), value.as_f64()) {
                     (Some(place), Some(value)) => beta[place] = value,
                     (Some(_), None) => {
                         errors.push(format!("{name}: expected a number, found `{value}`"));
                     }
                     (None, _) => {
-                        let near = closest(name, kept.iter().map(String::as_str));
+                        let near = closest(name, kept.iter().copied());
                         let near = near.map(|near| format!("; did you mean `{near}`?"));
                         errors.push(format!(
                             "{name}: no base parameter is kept by this name{}",

@@ -156,7 +156,7 @@ fn is_force(description: &str, count: usize) {
         }
         let mut sum = vec![0.0; force.len()];
         for (base, beta) in plain.base.iter().zip(&beta) {
-            let column = evaluate(&model.graph, &plain.columns[base.kept], &numbers);
+            let column = evaluate(&model.graph, &base.column, &numbers);
             sum.iter_mut()
                 .zip(column)
                 .for_each(|(sum, entry)| *sum += entry * beta);
@@ -408,7 +408,7 @@ fn agrees(folder: &Path, reference: &Value) {
     let kept: Vec<Edge> = found
         .base
         .iter()
-        .flat_map(|base| found.columns[base.kept].clone())
+        .flat_map(|base| base.column.clone())
         .collect();
     println!(
         "{name}: columns differ by {:.1e}; {} operations for those of {} base parameters",

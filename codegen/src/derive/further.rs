@@ -248,16 +248,12 @@ impl Builder<'_> {
     /// Y of the base parameters, and β by the values of the description.
     pub(super) fn regressor(&mut self, regressor: &Regressor) {
         let (from, n) = (&regressor.model.graph, regressor.model.n());
-        let kept = regressor.base.iter();
-        let columns: Vec<&Vec<Edge>> = kept.map(|base| &regressor.columns[base.kept]).collect();
+        let columns: Vec<&Vec<Edge>> = regressor.base.iter().map(|base| &base.column).collect();
         let rows = (0..n).flat_map(|row| columns.iter().map(move |column| column[row]));
         let outputs = graft(from, &mut self.graph, &rows.collect::<Vec<_>>());
         self.push(FunctionId::Regressor, outputs);
-        let names = regressor
-            .base
-            .iter()
-            .map(|base| format!("`{}`", regressor.standard[base.kept].name()));
-        let names: Vec<String> = names.collect();
+        let names = regressor.base.iter();
+        let names: Vec<String> = names.map(|base| format!("`{}`", base.name)).collect();
         // Four to a line.
         let listed: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();
         let mut lines = vec![format!("{}.", listed.join(",\n"))];

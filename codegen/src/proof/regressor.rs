@@ -26,6 +26,7 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
     let mut edges: Vec<Edge> = factors.map(|&(_, factor)| factor).collect();
     edges.extend(regressor.standard.iter().map(|one| one.value));
     edges.extend(regressor.columns.iter().flatten());
+    edges.extend(regressor.base.iter().flat_map(|base| &base.column));
     edges.extend(&regressor.other_potentials);
     let tape = Tape::new(&regressor.model.graph, &edges)
         .ok_or_else(|| failed("its columns have no numbers"))?;
@@ -46,8 +47,7 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
 /// A fault of the generator, never emitted.
 pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Result<(), Diagnostic> {
     prove(model, regressor).map_err(|what| failure(model, &what))?;
-    let kept = regressor.base.iter();
-    let columns: Vec<&Vec<Edge>> = kept.map(|base| &regressor.columns[base.kept]).collect();
+    let columns: Vec<&Vec<Edge>> = regressor.base.iter().map(|base| &base.column).collect();
     let n = regressor.model.n();
     let rows = (0..n).flat_map(|row| columns.iter().map(move |column| column[row]));
     let rows: Vec<Edge> = rows.collect();
@@ -99,7 +99,8 @@ fn at(
     let (factors, values) = values.split_at_checked(terms)?;
     let (given, values) = values.split_at_checked(regressor.standard.len())?;
     let n = regressor.model.n();
-    let (columns, rest) = values.split_at_checked(given.len() * n)?;
+    let (columns, values) = values.split_at_checked(given.len() * n)?;
+    let (kept, rest) = values.split_at_checked(regressor.base.len() * n)?;
     let column = |k: usize| &columns[k * n..(k + 1) * n];
     let whole = |pi: &[Fp]| -> Vec<Fp> {
         let mut sum = vec![Fp::ZERO; n];
@@ -109,10 +110,10 @@ fn at(
     let based = |pi: &[Fp]| -> Vec<Fp> {
         let mut sum = vec![Fp::ZERO; n];
         let mut factors = factors.iter();
-        for base in &regressor.base {
+        for (place, base) in regressor.base.iter().enumerate() {
             let terms = base.terms.iter().zip(&mut factors);
             let beta = terms.fold(Fp::ZERO, |beta, (&(k, _), &factor)| beta + factor * pi[k]);
-            increase(&mut sum, column(base.kept), beta);
+            increase(&mut sum, &kept[place * n..(place + 1) * n], beta);
         }
         sum
     };

@@ -35,7 +35,8 @@ pub fn pseudo_inertia(ten: [f64; 10]) -> [[f64; 4]; 4] {
 
 /// A base parameter with its factors written out.
 struct Row {
-    kept: usize,
+    name: String,
+    kind: Kind,
     value: f64,
     /// Place of the parameter, factor, and its number.
     terms: Vec<(usize, Term, f64)>,
@@ -77,7 +78,8 @@ impl BaseParameters {
                 .map(|&(k, factor)| (k, writer.value(factor), number(&[factor])[0]));
             let terms: Vec<(usize, Term, f64)> = terms.collect();
             Row {
-                kept: base.kept,
+                name: base.name.clone(),
+                kind: base.kind,
                 value: terms.iter().map(|(k, _, factor)| factor * values[*k]).sum(),
                 terms,
             }
@@ -85,8 +87,8 @@ impl BaseParameters {
         let rows = rows.collect();
         let (mut definitions, rest) = writer.definitions();
         definitions.extend(rest);
-        let kept = regressor.base.iter().map(|base| base.kept);
-        let columns: Vec<Edge> = kept.flat_map(|k| regressor.columns[k].clone()).collect();
+        let columns = regressor.base.iter().map(|base| &base.column);
+        let columns: Vec<Edge> = columns.flatten().copied().collect();
         BaseParameters {
             operations: count(&model.graph, &columns).flops(),
             system: model.name.clone(),
@@ -116,9 +118,9 @@ impl BaseParameters {
         &self.links
     }
 
-    /// The standard parameter that stands for each base parameter.
-    pub fn kept(&self) -> impl Iterator<Item = &Standard> {
-        self.rows.iter().map(|row| &self.standard[row.kept])
+    /// What the base parameters are called.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.rows.iter().map(|row| row.name.as_str())
     }
 
     /// β = K π: for each base parameter the places and factors of its terms.
@@ -134,7 +136,7 @@ impl BaseParameters {
 
     /// Base parameters of inertia, and of joints.
     fn counts(&self) -> (usize, usize) {
-        let inertial = |row: &&Row| matches!(self.standard[row.kept].kind, Kind::Inertia(_));
+        let inertial = |row: &&Row| matches!(row.kind, Kind::Inertia(_));
         let own = self.rows.iter().filter(inertial).count();
         (own, self.rows.len() - own)
     }
@@ -171,7 +173,7 @@ impl BaseParameters {
         true
     }
 
-    fn names(&self, places: &[usize]) -> String {
+    fn listed(&self, places: &[usize]) -> String {
         let names: Vec<String> = places.iter().map(|&k| self.standard[k].name()).collect();
         names.join(", ")
     }
@@ -259,7 +261,7 @@ fn rest(all: &BaseParameters, between: &str) -> String {
     if !all.idle.is_empty() {
         text.push_str(&format!(
             "{between}Without effect: {}\n",
-            all.names(&all.idle)
+            all.listed(&all.idle)
         ));
     }
     if !all.besides.is_empty() {
@@ -362,7 +364,7 @@ pub fn json(all: &BaseParameters) -> Value {
                 })
             });
             object!({
-                "kept": all.standard[row.kept].name(),
+                "kept": row.name,
                 "terms": terms.collect::<Vec<Value>>(),
                 "value": row.value,
             })

@@ -1,16 +1,13 @@
-//! The columns of Y for the inertia of links: what a unit of each parameter needs, about the origin and in the axes of
-//! the frame that the link's joint carries, with ω, α and the acceleration a of its origin, less gravity:
-//! m: a; m s: force U s with U = α̂ + ω̂ω̂, torque s × a; Θ: torque Θ α + ω × Θ ω. A wrench (force f, torque t) has the
-//! generalised force S_ω·t + S_v·f at a joint with the column S = (S_ω, S_v), in axes of the link; where the joint turns about
-//! a point c that others turn about, too, this is S_ω·(t − c × f).
+//! The columns of Y for the inertia of links: the generalised forces of the wrenches that a unit of each parameter needs. A
+//! wrench (force f, torque t) has the generalised force S_ω·t + S_v·f at a joint with the column S = (S_ω, S_v); where the
+//! joint turns about a point c that others turn about, too, this is S_ω·(t − c × f).
 
-use super::parameters::{ENTRIES, Link};
+use super::parameters::Link;
+use super::wrenches::{AXES, Axes, Moving};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{
-    Vec3, add3, apply_transposed, apply3, cross, identity3, scale3, sub3, zero3,
-};
+use crate::algebra::linear::{Vec3, add3, cross, scale3, sub3, zero3};
 use crate::algebra::transplant::rebuild;
-use crate::derive::tree::inverse::{LinkMotion, Wrench, motions, to_parent};
+use crate::derive::tree::inverse::{Wrench, to_parent};
 use crate::derive::tree::{Link as TreeLink, Tree};
 use crate::model::Model;
 use crate::program::count::count;
@@ -32,21 +29,18 @@ enum Route {
 /// All of them.
 const ROUTES: [Route; 4] = [Route::Wrenches, Route::Mixed, Route::Twists, Route::Meeting];
 
-/// The columns of all links, ten of each.
+/// The columns of all links, ten of each, of second moments in the place of Θ on its diagonal.
 pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
-    let motions = motions_of(model, tree);
-    let graph = &mut model.graph;
-    let all = links.iter().zip(&motions).enumerate();
-    all.flat_map(|(index, (link, motion))| {
-        let all: Vec<usize> = (0..10).collect();
-        of_link(graph, tree, index, (link, motion), &all, Route::Wrenches)
-    })
-    .collect()
+    let moving = Moving::new(model, tree, Axes::Own);
+    let all: Vec<usize> = (0..10).collect();
+    let links = links.iter().enumerate();
+    links
+        .flat_map(|link| of_link(&mut model.graph, &moving, link, &all, Route::Wrenches))
+        .collect()
 }
 
-/// The same, those that are kept at the least cost: by the cheapest routes of each link.
+/// The same, those that are kept at the least cost: in the cheapest axes, and by the cheapest routes of each link.
 pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) -> Vec<Vec<Edge>> {
-    let motions = motions_of(model, tree);
     let kept: Vec<Vec<usize>> = (0..links.len())
         .map(|index| {
             let own = (0..10).filter(|k| kept.contains(&(10 * index + k)));
@@ -54,43 +48,41 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
         })
         .collect();
     let costly: Vec<usize> = (0..links.len()).filter(|&i| !kept[i].is_empty()).collect();
-    let with = |graph: &Graph, index: usize, route: Route| {
-        let mut graph = graph.clone();
-        let link = (&links[index], &motions[index]);
-        let found = of_link(&mut graph, tree, index, link, &kept[index], route);
-        (graph, found.concat())
-    };
     // Link by link, after those before it. Velocities of origins serve several links, which one after the other does not
     // see; so both are tried, with points of meeting and without.
-    let found = [&ROUTES[..3], &ROUTES[..]].map(|allowed| {
-        let mut taken = vec![Route::Wrenches; links.len()];
-        let (mut least, mut graph, mut roots) = (0, model.graph.clone(), Vec::new());
-        for &index in &costly {
-            let tried = allowed.iter().map(|&route| {
-                let (graph, found) = with(&graph, index, route);
-                let roots = [&roots[..], &found].concat();
-                (count(&graph, &roots).weight(), route, graph, roots)
-            });
-            if let Some(best) = tried.min_by_key(|(cost, ..)| *cost) {
-                (least, taken[index], graph, roots) = best;
+    let found = AXES.iter().flat_map(|&axes| {
+        let mut tried = model.clone();
+        let moving = Moving::new(&mut tried, tree, axes);
+        [&ROUTES[..3], &ROUTES[..]].map(|allowed| {
+            let mut taken = vec![Route::Wrenches; links.len()];
+            let (mut least, mut graph, mut roots) = (0, tried.graph.clone(), Vec::new());
+            for &index in &costly {
+                let tried = allowed.iter().map(|&route| {
+                    let mut graph = graph.clone();
+                    let link = (index, &links[index]);
+                    let found = of_link(&mut graph, &moving, link, &kept[index], route);
+                    let roots = [&roots[..], &found.concat()].concat();
+                    (count(&graph, &roots).weight(), route, graph, roots)
+                });
+                if let Some(best) = tried.min_by_key(|(cost, ..)| *cost) {
+                    (least, taken[index], graph, roots) = best;
+                }
             }
-        }
-        (least, taken)
+            (least, axes, taken)
+        })
     });
-    let [(without, apart), (with_points, meeting)] = found;
-    let routes = if with_points < without {
-        meeting
-    } else {
-        apart
+    let Some((_, axes, routes)) = found.min_by_key(|(cost, ..)| *cost) else {
+        return Vec::new();
     };
     // Those that are kept come first: what is equal is computed as they need it.
-    let graph = &mut model.graph;
+    let moving = Moving::new(model, tree, axes);
     let mut columns: Vec<Option<Vec<Edge>>> = vec![None; 10 * links.len()];
     for first in [true, false] {
-        for (index, link) in links.iter().zip(&motions).enumerate() {
+        for (index, link) in links.iter().enumerate() {
             let own = (0..10).filter(|k| kept[index].contains(k) == first);
             let own: Vec<usize> = own.collect();
-            let found = of_link(graph, tree, index, link, &own, routes[index]);
+            let route = routes[index];
+            let found = of_link(&mut model.graph, &moving, (index, link), &own, route);
             for (k, column) in own.into_iter().zip(found) {
                 columns[10 * index + k] = Some(column);
             }
@@ -99,37 +91,23 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
     columns.into_iter().flatten().collect()
 }
 
-fn motions_of(model: &mut Model, tree: &Tree) -> Vec<LinkMotion> {
-    let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
-    motions(&mut model.graph, tree, &xi, &xi_dot, gravity)
-}
-
 /// The columns of some parameters of a link.
 fn of_link(
     graph: &mut Graph,
-    tree: &Tree,
-    index: usize,
-    (link, motion): (&Link, &LinkMotion),
+    moving: &Moving,
+    (index, link): (usize, &Link),
     own: &[usize],
     route: Route,
 ) -> Vec<Vec<Edge>> {
-    let [omega, alpha, a] =
-        [motion.omega, motion.alpha, motion.a].map(|v| apply_transposed(graph, &link.axes, v));
-    let wrenches = unit_wrenches(graph, omega, alpha, a);
-    let wrenches = own.iter().map(|&k| wrenches[k]);
-    let wrenches: Vec<Wrench> = wrenches
-        .map(|wrench| Wrench {
-            force: apply3(graph, &link.axes, wrench.force),
-            torque: apply3(graph, &link.axes, wrench.torque),
-        })
-        .collect();
+    let tree = &moving.tree;
+    let wrenches = moving.wrenches(graph, index, link);
     let zero = zero3(graph);
     let mut path = Path::new(tree, index);
     if route == Route::Meeting {
         path.find_meetings(graph, tree);
     }
+    let wrenches = own.iter().map(|&k| wrenches[k]);
     wrenches
-        .into_iter()
         .map(|wrench| match route {
             Route::Wrenches => by_wrenches(graph, tree, index, wrench),
             Route::Mixed if wrench.force != zero => by_wrenches(graph, tree, index, wrench),
@@ -272,41 +250,6 @@ impl Meeting {
         let from = sub3(graph, point, position);
         Some(Meeting::At(link.from_parent_axes(graph, from)))
     }
-}
-
-/// What a unit of each of the ten parameters needs.
-fn unit_wrenches(graph: &mut Graph, omega: Vec3, alpha: Vec3, a: Vec3) -> Vec<Wrench> {
-    let unit = identity3(graph);
-    let zero = zero3(graph);
-    let mut wrenches = Vec::with_capacity(10);
-    for (i, j) in ENTRIES {
-        // Θ v of the matrix with ones at (i, j) and (j, i).
-        let by = |v: Vec3| {
-            let mut product = zero;
-            product[i] = v[j];
-            product[j] = v[i];
-            product
-        };
-        let gyro = cross(graph, omega, by(omega));
-        wrenches.push(Wrench {
-            force: zero,
-            torque: add3(graph, by(alpha), gyro),
-        });
-    }
-    for axis in unit {
-        let tangential = cross(graph, alpha, axis);
-        let inner = cross(graph, omega, axis);
-        let centripetal = cross(graph, omega, inner);
-        wrenches.push(Wrench {
-            force: add3(graph, tangential, centripetal),
-            torque: cross(graph, axis, a),
-        });
-    }
-    wrenches.push(Wrench {
-        force: a,
-        torque: zero,
-    });
-    wrenches
 }
 
 /// The generalised force of a wrench on a link, transformed from link to link.

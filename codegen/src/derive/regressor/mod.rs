@@ -5,14 +5,17 @@
 //! | file | owns |
 //! |---|---|
 //! | `parameters` | the standard parameters: ten of each link, and those of joints; their names and values |
-//! | `columns` | the columns of Y, as expressions |
+//! | `wrenches` | what a unit of each parameter needs, in axes of the generator's choice |
+//! | `columns` | the columns of Y: what these wrenches are at the joints |
 //! | `samples` | Y at random states, modulo p, where what is constant at run time has one value |
 //! | `candidates` | relations that hold between a link and the one before, with exact coefficients |
 //! | `relations` | elimination; what remains to be found; the base parameters |
 //!
 //! A link is all that moves rigidly together; its parameters are those in the frame that its joint carries. They are
 //! put in order: links from the root on, of each Θ, then m s, then m; armatures, dampers and springs at the end.
-//! A parameter whose column is a combination of those of earlier ones is regrouped with them, all others stay.
+//! A parameter whose column is a combination of those of earlier ones is regrouped with them, all others stay. In this Θ_xx,
+//! Θ_yy and Θ_zz are represented by the second moments Σ_xx, Σ_yy and Σ_zz, Σ = tr(Θ)/2 I − Θ: a column of these takes three
+//! operations at a joint where one of Θ takes five, and what is regrouped is the same.
 //!
 //! Rank and relations are found at random states in two fields of 2⁶² elements each, at one random value of every
 //! run-time parameter. A relation is accepted only with exact coefficients, numbers or expressions in run-time
@@ -23,6 +26,7 @@ mod columns;
 mod parameters;
 mod relations;
 mod samples;
+mod wrenches;
 
 pub use parameters::{Kind, Standard};
 
@@ -31,15 +35,21 @@ use super::tree::Tree;
 use crate::algebra::graph::Edge;
 use crate::algebra::transplant::rebuild;
 use crate::model::Model;
+use crate::program::count::count;
 use samples::Samples;
 
-/// A base parameter: Σ k π over standard parameters.
+/// A base parameter β = Σ k π over standard parameters.
 #[derive(Clone, Debug)]
 pub struct Base {
-    /// The standard parameter whose column is that of this one.
-    pub kept: usize,
-    /// The terms, that of `kept` with the factor 1 first.
+    /// What it is called: as the standard parameter that it is, those apart that are regrouped with it, or as a second moment
+    /// Σ_xx = (Θ_yy + Θ_zz − Θ_xx) / 2.
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Its terms: places of standard parameters with their factors, those of its own link or joint first.
     pub terms: Vec<(usize, Edge)>,
+    /// Its column of Y.
+    pub column: Vec<Edge>,
 }
 
 /// F = Y π and what follows from it.
@@ -63,15 +73,29 @@ pub struct Regressor {
     pub other_potentials: Vec<Edge>,
 }
 
-/// Derives the base parameters of a model.
+/// Derives the base parameters of a model: about the origins of its frames, or about origins that are moved along hinges
+/// where Y is cheaper then.
 ///
 /// # Errors
 /// Why a model has none, or why their relations could not be found.
 pub fn regressor(model: &Model) -> Result<Regressor, String> {
     refused(model)?;
+    let described = about(model, false)?;
+    let cost = |found: &Regressor| {
+        let columns = found.base.iter().flat_map(|base| &base.column);
+        count(&found.model.graph, &columns.copied().collect::<Vec<Edge>>()).weight()
+    };
+    Ok(match about(model, true) {
+        Ok(moved) if cost(&moved) < cost(&described) => moved,
+        _ => described,
+    })
+}
+
+/// The base parameters about the origins of frames, or about origins that are moved.
+fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
     let mut model = model.clone();
     let mut calculus = Calculus::new(&model);
-    let (tree, carriers) = Tree::with_frames(&mut model, &mut calculus).ok_or(
+    let (tree, carriers) = Tree::with_frames(&mut model, &mut calculus, moved).ok_or(
         "its inertia is not that of bodies on frames and of armatures alone: describe it by `body` statements, without `kinetic` and `particle`",
     )?;
     let links = parameters::links(&mut model, &tree, &carriers);
@@ -90,29 +114,38 @@ pub fn regressor(model: &Model) -> Result<Regressor, String> {
     let samples = Samples::new(&model, &columns)
         .ok_or("at random states its expressions have no values modulo p")?;
     let found = relations::find(&mut model, &samples, &tree, &links, standard.len())?;
-    let kept: Vec<usize> = found.base.iter().map(|base| base.kept).collect();
-    let mut columns = columns::cheapest(&mut derived, &tree, &links, &kept);
-    columns.extend(joints.parameters.into_iter().map(|(_, column)| column));
+    let kept: Vec<usize> = found.iter().map(|(kept, _)| *kept).collect();
+    let mut moments = columns::cheapest(&mut derived, &tree, &links, &kept);
+    let mut columns = parameters::standard_columns(&mut derived.graph, &links, &moments);
+    let of_joints: Vec<Vec<Edge>> = joints.parameters.into_iter().map(|(_, column)| column).collect();
+    moments.extend(of_joints.clone());
+    columns.extend(of_joints);
     // Links without mass take part in the relations, and have no parameters.
     let present: Vec<usize> = (0..standard.len())
         .filter(|&k| standard[k].present)
         .collect();
     let place = |k: usize| present.binary_search(&k).ok();
-    let base = found.base.into_iter().filter_map(|base| {
-        let factors: Vec<Edge> = base.terms.iter().map(|&(_, factor)| factor).collect();
+    let mut base = Vec::with_capacity(found.len());
+    for (kept, terms) in found {
+        let factors: Vec<Edge> = terms.iter().map(|&(_, factor)| factor).collect();
         let factors = rebuild(&model.graph, &mut derived.graph, &factors);
-        let terms = base.terms.into_iter().zip(factors);
-        Some(Base {
-            kept: place(base.kept)?,
+        let terms = terms.iter().map(|&(k, _)| k).zip(factors);
+        let terms = parameters::standard_terms(&mut derived.graph, &links, kept, terms);
+        base.push(Base {
+            name: parameters::name(&derived.graph, &standard, kept, &terms),
+            kind: standard[kept].kind,
             terms: terms
-                .filter_map(|((k, _), factor)| Some((place(k)?, factor)))
+                .into_iter()
+                .filter_map(|(k, factor)| Some((place(k)?, factor)))
                 .collect(),
-        })
-    });
-    let base = base.collect();
+            column: std::mem::take(&mut moments[kept]),
+        });
+    }
+    let idle = parameters::idle(&model, &samples, &links, &present)
+        .ok_or("at random states its expressions have no values modulo p")?;
     Ok(Regressor {
         base,
-        idle: found.idle.into_iter().filter_map(place).collect(),
+        idle: idle.into_iter().filter_map(place).collect(),
         links: links
             .iter()
             .filter(|link| link.present)

@@ -1,7 +1,9 @@
 //! The standard parameters: of every link Θ about its frame's origin, m s and m, of joints their armatures, dampers
 //! and springs.
 
-use crate::algebra::graph::{Edge, Node};
+use super::samples::Samples;
+use crate::algebra::fp::Fp;
+use crate::algebra::graph::{Edge, Graph, Node};
 use crate::algebra::linear::{Mat3, Vec3, transpose3, zero3};
 use crate::derive::calculus::Calculus;
 use crate::derive::tree::Tree;
@@ -68,23 +70,27 @@ pub struct Link {
     pub frame: usize,
     /// The frame's axes in those of the link.
     pub axes: Mat3,
+    /// The link's origin, in the frame.
+    pub origin: Vec3,
     /// The link before.
     pub parent: Option<usize>,
     /// Whether it has mass.
     pub present: bool,
     /// Its parameters.
     pub standard: Vec<Standard>,
+    /// The moments of a unit of each of its parameters.
+    moments: Vec<Vec<Edge>>,
 }
 
 /// The links of a tree.
 pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> {
     let pairs = tree.links.iter().zip(carriers);
     pairs
-        .map(|(link, &(frame, axes))| {
+        .map(|(link, carrier)| {
             let graph = &mut model.graph;
-            let back = Turn::By(transpose3(&axes));
-            let mass = link.mass.turned(graph, &back);
-            let name = model.frames[frame].name.clone();
+            let back = Turn::By(transpose3(&carrier.axes));
+            let mass = carrier.mass.turned(graph, &back);
+            let name = model.frames[carrier.frame].name.clone();
             let mut values: Vec<Edge> = {
                 let inertia = mass.inertia(graph);
                 ENTRIES.iter().map(|&(i, j)| inertia[i][j]).collect()
@@ -93,7 +99,16 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
             values.push(mass.mass);
             let present = values.iter().any(|&value| value != graph.zero());
             let standard = values.into_iter().enumerate();
+            let (zero, one) = (graph.zero(), graph.one());
+            let back = carrier.origin.map(|entry| -entry);
+            let unit = |place: usize| {
+                let mut ten = [zero; 10];
+                ten[place] = one;
+                let mass = of_standard(graph, &ten).shifted(graph, back);
+                moments_of(&mass)
+            };
             Link {
+                moments: (0..10).map(unit).collect(),
                 standard: standard
                     .map(|(place, value)| Standard {
                         kind: Kind::Inertia(place),
@@ -103,8 +118,9 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
                     })
                     .collect(),
                 name,
-                frame,
-                axes,
+                frame: carrier.frame,
+                axes: carrier.axes,
+                origin: carrier.origin,
                 parent: link.parent,
                 present,
             }
@@ -112,37 +128,145 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
         .collect()
 }
 
-/// The ten parameters as m, m s and second moments.
-pub fn moments(graph: &mut crate::algebra::graph::Graph, ten: &[Edge]) -> Mass {
-    let mut theta: Mat3 = [zero3(graph); 3];
-    for (&(i, j), &entry) in ENTRIES.iter().zip(ten) {
-        theta[i][j] = entry;
-        theta[j][i] = entry;
-    }
-    let trace = graph.sum(&[theta[0][0], theta[1][1], theta[2][2]]);
+/// The inertia of ten standard parameters.
+fn of_standard(graph: &mut Graph, ten: &[Edge; 10]) -> Mass {
+    let trace = graph.sum(&[ten[0], ten[3], ten[5]]);
     let half = graph.ratio(1, 2);
     let half = graph.mul(half, trace);
-    let second = std::array::from_fn(|i| {
-        std::array::from_fn(|j| match i == j {
-            true => graph.sub(half, theta[i][j]),
-            false => -theta[i][j],
-        })
-    });
-    let first: Vec3 = std::array::from_fn(|i| ten[6 + i]);
+    let mut moments = *ten;
+    for k in DIAGONAL {
+        moments[k] = graph.sub(half, ten[k]);
+    }
+    of_moments(graph, &moments)
+}
+
+/// The places of the diagonal among the ten parameters.
+const DIAGONAL: [usize; 3] = [0, 3, 5];
+
+/// Names of second moments, which stand at the places of the diagonal.
+const MOMENTS: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
+
+/// The inertia of ten moments: Σ_xx, −Σ_xy, −Σ_xz, Σ_yy, −Σ_yz, Σ_zz, h, m.
+pub fn of_moments(graph: &Graph, ten: &[Edge]) -> Mass {
+    let mut second: Mat3 = [zero3(graph); 3];
+    for (&(i, j), &entry) in ENTRIES.iter().zip(ten) {
+        second[i][j] = if i == j { entry } else { -entry };
+        second[j][i] = second[i][j];
+    }
     Mass {
         mass: ten[9],
-        first,
+        first: std::array::from_fn(|i| ten[6 + i]),
         second,
     }
 }
 
-/// The ten parameters of m, m s and second moments.
-pub fn ten(graph: &mut crate::algebra::graph::Graph, mass: &Mass) -> Vec<Edge> {
-    let theta = mass.inertia(graph);
-    let mut ten: Vec<Edge> = ENTRIES.iter().map(|&(i, j)| theta[i][j]).collect();
+/// The ten moments of an inertia.
+pub fn moments_of(mass: &Mass) -> Vec<Edge> {
+    let second = ENTRIES.map(|(i, j)| {
+        let entry = mass.second[i][j];
+        if i == j { entry } else { -entry }
+    });
+    let mut ten = second.to_vec();
     ten.extend(mass.first);
     ten.push(mass.mass);
     ten
+}
+
+/// Columns of the standard parameters from those of moments: what a unit of a parameter needs is what its moments need.
+pub fn standard_columns(
+    graph: &mut Graph,
+    links: &[Link],
+    moments: &[Vec<Edge>],
+) -> Vec<Vec<Edge>> {
+    let pairs = links.iter().zip(moments.chunks(10));
+    let column = |graph: &mut Graph, ten: &[Vec<Edge>], unit: &[Edge]| {
+        let rows = 0..ten[0].len();
+        let row = |row: usize| {
+            let entries: Vec<Edge> = ten.iter().map(|column| column[row]).collect();
+            graph.dot(unit, &entries)
+        };
+        rows.map(row).collect()
+    };
+    pairs
+        .flat_map(|(link, ten)| link.moments.iter().map(move |unit| (ten, unit)))
+        .map(|(ten, unit)| column(graph, ten, unit))
+        .collect()
+}
+
+/// A sum over moments as one over the standard parameters: first the terms of the link or joint of the parameter that is kept,
+/// those with a minus sign last among them.
+pub fn standard_terms(
+    graph: &mut Graph,
+    links: &[Link],
+    kept: usize,
+    terms: impl Iterator<Item = (usize, Edge)>,
+) -> Vec<(usize, Edge)> {
+    let zero = graph.zero();
+    let mut factors = vec![zero; 10 * links.len()];
+    let mut all = Vec::new();
+    for (k, factor) in terms {
+        match factors.get_mut(k) {
+            Some(entry) => *entry = factor,
+            None => all.push((k, factor)),
+        }
+    }
+    for (index, (link, ten)) in links.iter().zip(factors.chunks(10)).enumerate() {
+        for (place, unit) in link.moments.iter().enumerate() {
+            let factor = graph.dot(unit, ten);
+            if factor != zero {
+                all.push((10 * index + place, factor));
+            }
+        }
+    }
+    let own = kept < factors.len();
+    all.sort_by_key(|&(k, factor)| {
+        let of_own = match own {
+            true => k / 10 == kept / 10,
+            false => k == kept,
+        };
+        (!of_own, of_own && factor.is_negative(), k)
+    });
+    all
+}
+
+/// What a base parameter is called: as the one standard parameter of its link in it, or else as what is kept.
+pub fn name(graph: &Graph, standard: &[Standard], kept: usize, terms: &[(usize, Edge)]) -> String {
+    let Kind::Inertia(place) = standard[kept].kind else {
+        return standard[kept].name();
+    };
+    let Some(axis) = DIAGONAL.iter().position(|&k| k == place) else {
+        return standard[kept].name();
+    };
+    let of_link = |&&(k, _): &&(usize, Edge)| {
+        matches!(standard[k].kind, Kind::Inertia(_)) && k / 10 == kept / 10
+    };
+    match terms.iter().filter(of_link).collect::<Vec<_>>()[..] {
+        [&(k, factor)] if factor == graph.one() => standard[k].name(),
+        _ => format!("{}.{}", standard[kept].of, MOMENTS[axis]),
+    }
+}
+
+/// Which standard parameters have columns of zeros, of those that are present; the samples are of moments.
+pub fn idle(
+    model: &Model,
+    samples: &Samples,
+    links: &[Link],
+    present: &[usize],
+) -> Option<Vec<usize>> {
+    let mut idle = Vec::new();
+    for &k in present {
+        let terms: Vec<(usize, Fp)> = match links.get(k / 10) {
+            Some(link) => {
+                let values = samples.constants(&model.graph, &link.moments[k % 10])?;
+                (k - k % 10..).zip(values).collect()
+            }
+            None => vec![(k, Fp::ONE)],
+        };
+        if samples.vanishes(&terms) {
+            idle.push(k);
+        }
+    }
+    Some(idle)
 }
 
 /// Parameters of joints with their columns, and what is no parameter.

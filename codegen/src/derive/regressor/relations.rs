@@ -1,6 +1,5 @@
 //! Elimination with exact factors, and the base parameters that it leaves.
 
-use super::Base;
 use super::candidates::{Known, Relation, candidates, holds, joined};
 use super::parameters::Link;
 use super::samples::Samples;
@@ -17,13 +16,8 @@ const LEAST: f64 = 0.1;
 /// What each of the ten parameters of a link is: of second order, of first order, a mass.
 const KINDS: [u8; 10] = [2, 2, 2, 2, 2, 2, 1, 1, 1, 0];
 
-/// Base parameters by the places of parameters among all.
-pub struct Found {
-    /// The base parameters.
-    pub base: Vec<Base>,
-    /// Parameters without effect.
-    pub idle: Vec<usize>,
-}
+/// A base parameter: the place of the parameter that is kept, and all terms, its own with the factor 1 first.
+pub type Found = (usize, Vec<(usize, Edge)>);
 
 /// Finds all relations and solves them.
 pub fn find(
@@ -32,7 +26,7 @@ pub fn find(
     tree: &Tree,
     links: &[Link],
     total: usize,
-) -> Result<Found, String> {
+) -> Result<Vec<Found>, String> {
     let massless = |k: usize| links.get(k / 10).is_some_and(|link| !link.present);
     let present: Vec<usize> = (0..total).filter(|&k| !massless(k)).collect();
     let rank = Echelon::new(samples.of(&present)).rank();
@@ -71,7 +65,6 @@ pub fn find(
                 .into(),
         );
     }
-    let zero_column = |k: usize| samples.rows.iter().all(|row| row[k].is_zero());
     let kept = present
         .iter()
         .copied()
@@ -83,17 +76,9 @@ pub fn find(
             let factor = relation.iter().find(|(place, _)| *place == k);
             terms.extend(factor.map(|&(_, factor)| (*pivot, -factor)));
         }
-        terms[1..].sort_by_key(|(place, _)| *place);
-        Base { kept: k, terms }
+        (k, terms)
     });
-    Ok(Found {
-        base: base.collect(),
-        idle: present
-            .iter()
-            .copied()
-            .filter(|&k| zero_column(k))
-            .collect(),
-    })
+    Ok(base.collect())
 }
 
 /// A factor, and its value with the parameters of the description.

@@ -117,8 +117,18 @@ pub fn draft(model: &mut Model, calculus: &mut Calculus) -> Option<Vec<Draft>> {
     Some(draft_with_carriers(model, calculus)?.0)
 }
 
-/// The frame that a joint carries: its index, and its axes in those of the link. Both have one origin.
-pub type Carrier = (usize, Mat3);
+/// The frame that a joint carries.
+#[derive(Clone, Copy, Debug)]
+pub struct Carrier {
+    /// Its index in the model.
+    pub frame: usize,
+    /// Its axes in those of the link.
+    pub axes: Mat3,
+    /// The origin of the link, in this frame.
+    pub origin: Vec3,
+    /// The inertia of the link about the origin of this frame, in axes of the link.
+    pub mass: Mass,
+}
 
 /// The links of a model, and the frame that each of them was made from.
 pub fn draft_with_carriers(
@@ -163,7 +173,12 @@ pub fn draft_with_carriers(
             motion,
             mass: Mass::none(graph),
         });
-        carriers.push((index, rotation));
+        carriers.push(Carrier {
+            frame: index,
+            axes: rotation,
+            origin: zero3(graph),
+            mass: Mass::none(graph),
+        });
         places.push(Place {
             link: Some(links.len() - 1),
             rotation,
@@ -178,6 +193,9 @@ pub fn draft_with_carriers(
         let (frame, position) = carrier(model, particle.position)?;
         let mass = Mass::point(&model.graph, particle.mass).shifted(&mut model.graph, position);
         load(&mut model.graph, &mut links, places.get(frame)?, &mass);
+    }
+    for (carrier, link) in carriers.iter_mut().zip(&links) {
+        carrier.mass = link.mass;
     }
     Some((links, carriers))
 }

@@ -5,7 +5,9 @@
 use super::mass::Mass;
 use super::{Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::{Mat3, Vec3, add3, apply3, cross, scale3, zero3};
+use crate::algebra::linear::{
+    Mat3, Vec3, add3, apply3, cross, identity3, multiply3, scale3, transpose3, zero3,
+};
 
 /// Force and torque about the origin of a link, in its axes.
 #[derive(Clone, Copy, Debug)]
@@ -67,12 +69,32 @@ pub fn wrenches(
         .collect()
 }
 
+/// How U = α̂ + ω̂ ω̂ is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tensors {
+    /// From ω and α of each link.
+    Each,
+    /// From U of the link before, where only signs and order of the axes change between them.
+    Chained,
+}
+
 /// The motion of every link.
 pub(crate) fn motions(
     graph: &mut Graph,
     tree: &Tree,
     xi: &[Edge],
     xi_dot: &[Edge],
+    gravity: Vec3,
+) -> Vec<LinkMotion> {
+    motions_by(Tensors::Each, graph, tree, (xi, xi_dot), gravity)
+}
+
+/// The same, with U computed in one way or the other.
+pub(crate) fn motions_by(
+    tensors: Tensors,
+    graph: &mut Graph,
+    tree: &Tree,
+    (xi, xi_dot): (&[Edge], &[Edge]),
     gravity: Vec3,
 ) -> Vec<LinkMotion> {
     let zero = zero3(graph);
@@ -87,7 +109,7 @@ pub(crate) fn motions(
     let mut motions: Vec<LinkMotion> = Vec::with_capacity(tree.links.len());
     for link in &tree.links {
         let before = link.parent.map_or(ground, |parent| motions[parent]);
-        motions.push(outward(graph, link, &before, xi, xi_dot));
+        motions.push(outward(graph, link, &before, (xi, xi_dot), tensors));
     }
     motions
 }
@@ -96,8 +118,8 @@ fn outward(
     graph: &mut Graph,
     link: &Link,
     before: &LinkMotion,
-    xi: &[Edge],
-    xi_dot: &[Edge],
+    (xi, xi_dot): (&[Edge], &[Edge]),
+    tensors: Tensors,
 ) -> LinkMotion {
     let zero = zero3(graph);
     let mut relative = (zero, zero);
@@ -138,14 +160,59 @@ fn outward(
         a = add3(graph, a, coriolis);
     }
     let a = add3(graph, a, change.1);
+    // One of the two: equal expressions are computed as the first of them says.
+    let u = match tensors {
+        Tensors::Each => None,
+        Tensors::Chained => chained(graph, link, before, omega_before, (xi, xi_dot)),
+    };
     LinkMotion {
         omega,
         alpha,
         a,
-        u: tensor(graph, omega, alpha),
+        u: u.unwrap_or_else(|| tensor(graph, omega, alpha)),
         from_parent,
         relative,
     }
+}
+
+/// U of a link on a hinge from U₀ of the link before: U₀ + θ̈ ẑ + 2 θ̇ ω̂₀ ẑ + θ̇² ẑ ẑ, whose third column is that of U₀,
+/// with ω₀ in the axes of this link; `None` for other joints, and where the axes in between are turned.
+fn chained(
+    graph: &mut Graph,
+    link: &Link,
+    before: &LinkMotion,
+    [x, y, z]: Vec3,
+    (xi, xi_dot): (&[Edge], &[Edge]),
+) -> Option<Mat3> {
+    let (zero, one) = (graph.zero(), graph.one());
+    let [freedom] = link.freedoms.as_slice() else {
+        return None;
+    };
+    if freedom.angular != [zero, zero, one] || freedom.linear != zero3(graph) {
+        return None;
+    }
+    let turn = identity3(graph).map(|axis| link.from_parent_axes(graph, axis));
+    let is_kept = |entry: &Edge| *entry == zero || entry.abs() == one;
+    if !turn.iter().flatten().all(is_kept) {
+        return None;
+    }
+    let mut u = multiply3(graph, &before.u, &turn);
+    u = multiply3(graph, &transpose3(&turn), &u);
+    let (rate, acceleration) = (freedom.rate_of(graph, xi), freedom.rate_of(graph, xi_dot));
+    let twice = graph.add(rate, rate);
+    let (along_x, along_y) = (graph.mul(twice, x), graph.mul(twice, y));
+    let along_z = {
+        let both = graph.add(z, z);
+        let sum = graph.add(both, rate);
+        graph.mul(sum, rate)
+    };
+    u[0][0] = graph.sub(u[0][0], along_z);
+    u[1][1] = graph.sub(u[1][1], along_z);
+    u[1][0] = graph.add(u[1][0], acceleration);
+    u[0][1] = graph.sub(u[0][1], acceleration);
+    u[2][0] = graph.add(u[2][0], along_x);
+    u[2][1] = graph.add(u[2][1], along_y);
+    Some(u)
 }
 
 /// α̂ + ω̂ ω̂ = α̂ + ω ωᵀ − |ω|² I.

@@ -23,7 +23,7 @@ pub mod uniform;
 
 use super::calculus::Calculus;
 use crate::algebra::graph::{Edge, Graph};
-use crate::algebra::linear::Vec3;
+use crate::algebra::linear::{Vec3, apply_transposed};
 use crate::model::Model;
 use inverse::Wrench;
 use mass::Mass;
@@ -137,20 +137,30 @@ impl Tree {
             armature: model.armature.clone(),
         };
         Some(match placement {
-            Placement::Parallel => tree.sharing_axes(&mut model.graph),
+            Placement::Parallel => tree.sharing_axes(&mut model.graph).0,
             Placement::Chosen | Placement::Described => tree,
         })
     }
 
-    /// The tree with the frames of the description, and for each link the frame that its joint carries, with the
-    /// frame's axes in those of the link; `None` as above.
+    /// The tree with the frames of the description, their origins moved along the hinges if that is asked for, and for each
+    /// link the frame that its joint carries; `None` as above.
     pub fn with_frames(
         model: &mut Model,
         calculus: &mut Calculus,
+        moved: bool,
     ) -> Option<(Tree, Vec<draft::Carrier>)> {
-        let (mut draft, carriers) = draft::draft_with_carriers(model, calculus)?;
+        let (mut draft, mut carriers) = draft::draft_with_carriers(model, calculus)?;
         let safe = safe::Safe::of(model, &draft);
-        reframe::keep(&mut model.graph, &mut draft, &safe);
+        let graph = &mut model.graph;
+        if moved {
+            let distances = reframe::slide_all(graph, &mut draft, &safe);
+            for (carrier, distance) in carriers.iter_mut().zip(distances) {
+                let along = [graph.zero(), graph.zero(), distance];
+                carrier.origin = apply_transposed(graph, &carrier.axes, along);
+            }
+        } else {
+            reframe::keep(graph, &mut draft, &safe);
+        }
         let links = draft.into_iter().map(|link| link.finish(&mut model.graph));
         let tree = Tree {
             links: links.collect(),

@@ -10,8 +10,8 @@ use super::{Link, Tree};
 use crate::algebra::graph::{Edge, Graph};
 
 impl Tree {
-    /// The same links, in shared axes.
-    pub fn sharing_axes(&self, graph: &mut Graph) -> Tree {
+    /// The same links, in shared axes, and for each the turn of its own axes in those, where it has given them up.
+    pub fn sharing_axes(&self, graph: &mut Graph) -> (Tree, Vec<Option<Turn>>) {
         let shares = self.shares(graph);
         let mut lags: Vec<Option<Plane>> = Vec::with_capacity(self.links.len());
         let mut links = Vec::with_capacity(self.links.len());
@@ -45,14 +45,13 @@ impl Tree {
             lags.push(lag);
             links.push(moved);
         }
-        Tree {
+        let tree = Tree {
             links,
             armature: self.armature.clone(),
-        }
+        };
+        (tree, lags.iter().map(|lag| lag.map(Plane::turn)).collect())
     }
-}
 
-impl Tree {
     /// Which links give up axes of their own: those whose hinge is parallel to the one before or to one behind, and the
     /// last of each chain.
     fn shares(&self, graph: &Graph) -> Vec<bool> {

@@ -48,6 +48,24 @@ pub fn keep(graph: &mut Graph, links: &mut [Draft], safe: &Safe) {
     }
 }
 
+/// The same, with origins moved along their hinges as above; how far, for each link.
+pub fn slide_all(graph: &mut Graph, links: &mut [Draft], safe: &Safe) -> Vec<Edge> {
+    let mut distances = vec![graph.zero(); links.len()];
+    // Each after the link before, on whose frame its own position depends.
+    for j in 0..links.len() {
+        if !is_hinge(&links[j]) {
+            continue;
+        }
+        let hinged = links[j].parent.is_some_and(|link| is_hinge(&links[link]));
+        if let Some(distance) = foot(graph, &links[j], hinged, safe) {
+            slide(graph, links, j, distance);
+            distances[j] = distance;
+        }
+    }
+    keep(graph, links, safe);
+    distances
+}
+
 fn is_hinge(link: &Draft) -> bool {
     matches!(link.motion, JointMotion::Hinge { .. })
 }
