@@ -21,13 +21,29 @@ enum Route {
     /// transformed to the link.
     Mixed,
     /// Columns S are transformed for all wrenches.
-    Twists,
-    /// The same, as angular velocities alone where axes meet: there f acts by its torque about the point.
-    Meeting,
+    Twists {
+        /// As angular velocities alone where axes meet: there f acts by its torque about the point.
+        meeting: bool,
+        /// To the link before, and f to its origin: where both share axes this is a shift.
+        carried: bool,
+    },
 }
 
 /// All of them.
-const ROUTES: [Route; 4] = [Route::Wrenches, Route::Mixed, Route::Twists, Route::Meeting];
+const ROUTES: [Route; 6] = [
+    Route::Wrenches,
+    Route::Mixed,
+    Route::Twists { meeting: false, carried: false },
+    Route::Twists { meeting: false, carried: true },
+    Route::Twists { meeting: true, carried: false },
+    Route::Twists { meeting: true, carried: true },
+];
+
+/// Places of routes that are tried together.
+const TRIED_TOGETHER: [&[usize]; 4] = [&[0, 1, 2], &[0, 1, 2, 3], &[0, 1, 2, 4], &[0, 1, 2, 3, 4, 5]];
+
+/// How many changes of single routes are tried at most.
+const MOST_CHANGES: usize = 200;
 
 /// The columns of all links, ten of each, of second moments in the place of Θ on its diagonal.
 pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
@@ -47,41 +63,23 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
             own.collect()
         })
         .collect();
-    let costly: Vec<usize> = (0..links.len()).filter(|&i| !kept[i].is_empty()).collect();
-    // Link by link, after those before it. Velocities of origins serve several links, which one after the other does not
-    // see; so both are tried, with points of meeting and without.
-    let found = AXES.iter().flat_map(|&axes| {
-        let mut tried = model.clone();
-        let moving = Moving::new(&mut tried, tree, axes);
-        [&ROUTES[..3], &ROUTES[..]].map(|allowed| {
-            let mut taken = vec![Route::Wrenches; links.len()];
-            let (mut least, mut graph, mut roots) = (0, tried.graph.clone(), Vec::new());
-            for &index in &costly {
-                let tried = allowed.iter().map(|&route| {
-                    let mut graph = graph.clone();
-                    let link = (index, &links[index]);
-                    let found = of_link(&mut graph, &moving, link, &kept[index], route);
-                    let roots = [&roots[..], &found.concat()].concat();
-                    (count(&graph, &roots).weight(), route, graph, roots)
-                });
-                if let Some(best) = tried.min_by_key(|(cost, ..)| *cost) {
-                    (least, taken[index], graph, roots) = best;
-                }
-            }
-            (least, axes, taken)
-        })
-    });
-    let Some((_, axes, routes)) = found.min_by_key(|(cost, ..)| *cost) else {
+    let search = Search {
+        model,
+        tree,
+        links,
+        kept: &kept,
+    };
+    let Some(way) = search.best() else {
         return Vec::new();
     };
     // Those that are kept come first: what is equal is computed as they need it.
-    let moving = Moving::new(model, tree, axes);
+    let moving = Moving::new(model, tree, way.axes);
     let mut columns: Vec<Option<Vec<Edge>>> = vec![None; 10 * links.len()];
     for first in [true, false] {
         for (index, link) in links.iter().enumerate() {
             let own = (0..10).filter(|k| kept[index].contains(k) == first);
             let own: Vec<usize> = own.collect();
-            let route = routes[index];
+            let route = way.routes[index];
             let found = of_link(&mut model.graph, &moving, (index, link), &own, route);
             for (k, column) in own.into_iter().zip(found) {
                 columns[10 * index + k] = Some(column);
@@ -89,6 +87,91 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
         }
     }
     columns.into_iter().flatten().collect()
+}
+
+/// The search for the cheapest way.
+struct Search<'a> {
+    model: &'a Model,
+    tree: &'a Tree,
+    links: &'a [Link],
+    /// Which parameters of each link are kept.
+    kept: &'a [Vec<usize>],
+}
+
+/// The axes of all links and the route of each, with what they cost.
+struct Way {
+    cost: usize,
+    axes: Axes,
+    routes: Vec<Route>,
+}
+
+impl Search<'_> {
+    /// The best way: link by link, after those before it, with all routes and with some; then, one after the other, with other
+    /// routes, since what is transformed serves several links.
+    fn best(&self) -> Option<Way> {
+        let ways = AXES.iter().flat_map(|&axes| {
+            let mut tried = self.model.clone();
+            let moving = Moving::new(&mut tried, self.tree, axes);
+            let graph = tried.graph;
+            TRIED_TOGETHER.map(|allowed| {
+                let (cost, routes) = self.one_by_one(&graph, &moving, allowed);
+                Way { cost, axes, routes }
+            })
+        });
+        let mut best = ways.min_by_key(|way| way.cost)?;
+        let mut tried = self.model.clone();
+        let moving = Moving::new(&mut tried, self.tree, best.axes);
+        let mut left = MOST_CHANGES;
+        loop {
+            let before = best.cost;
+            for (index, route) in self.costly().rev().flat_map(|i| ROUTES.map(|route| (i, route))) {
+                if left == 0 || best.routes[index] == route {
+                    continue;
+                }
+                left -= 1;
+                let mut routes = best.routes.clone();
+                routes[index] = route;
+                let mut graph = tried.graph.clone();
+                let all = self.costly();
+                let roots = all.flat_map(|i| self.kept_columns(&mut graph, &moving, i, routes[i]));
+                let roots: Vec<Edge> = roots.collect();
+                let cost = count(&graph, &roots).weight();
+                if cost < best.cost {
+                    best = Way { cost, routes, ..best };
+                }
+            }
+            if best.cost == before {
+                return Some(best);
+            }
+        }
+    }
+
+    fn costly(&self) -> impl DoubleEndedIterator<Item = usize> {
+        (0..self.links.len()).filter(|&index| !self.kept[index].is_empty())
+    }
+
+    fn kept_columns(&self, graph: &mut Graph, moving: &Moving, index: usize, route: Route) -> Vec<Edge> {
+        let link = (index, &self.links[index]);
+        of_link(graph, moving, link, &self.kept[index], route).concat()
+    }
+
+    /// The cheapest of some routes for each link after the other.
+    fn one_by_one(&self, graph: &Graph, moving: &Moving, allowed: &[usize]) -> (usize, Vec<Route>) {
+        let mut taken = vec![Route::Wrenches; self.links.len()];
+        let (mut least, mut graph, mut roots) = (0, graph.clone(), Vec::new());
+        for index in self.costly() {
+            let tried = allowed.iter().map(|&place| {
+                let (route, mut graph) = (ROUTES[place], graph.clone());
+                let found = self.kept_columns(&mut graph, moving, index, route);
+                let roots = [&roots[..], &found].concat();
+                (count(&graph, &roots).weight(), route, graph, roots)
+            });
+            if let Some(best) = tried.min_by_key(|(cost, ..)| *cost) {
+                (least, taken[index], graph, roots) = best;
+            }
+        }
+        (least, taken)
+    }
 }
 
 /// The columns of some parameters of a link.
@@ -102,18 +185,29 @@ fn of_link(
     let tree = &moving.tree;
     let wrenches = moving.wrenches(graph, index, link);
     let zero = zero3(graph);
-    let mut path = Path::new(tree, index);
-    if route == Route::Meeting {
+    let (meeting, carried) = match route {
+        Route::Wrenches | Route::Mixed => (false, false),
+        Route::Twists { meeting, carried } => (meeting, carried),
+    };
+    let before = tree.links[index].parent.filter(|_| carried);
+    let mut path = Path::new(tree, before.unwrap_or(index));
+    if meeting {
         path.find_meetings(graph, tree);
     }
-    let wrenches = own.iter().map(|&k| wrenches[k]);
-    wrenches
-        .map(|wrench| match route {
-            Route::Wrenches => by_wrenches(graph, tree, index, wrench),
-            Route::Mixed if wrench.force != zero => by_wrenches(graph, tree, index, wrench),
-            Route::Mixed | Route::Twists | Route::Meeting => path.by_twists(graph, tree, wrench),
-        })
-        .collect()
+    let mut of = |wrench: Wrench| match route {
+        Route::Wrenches => by_wrenches(graph, tree, index, wrench),
+        Route::Mixed if wrench.force != zero => by_wrenches(graph, tree, index, wrench),
+        Route::Mixed => path.by_twists(graph, tree, wrench),
+        Route::Twists { .. } if before.is_none() => path.by_twists(graph, tree, wrench),
+        Route::Twists { .. } => {
+            let link = &tree.links[index];
+            let carried = to_parent(graph, link, &wrench);
+            let mut forces = path.by_twists(graph, tree, carried);
+            link.add_forces(graph, &wrench, &mut forces);
+            forces
+        }
+    };
+    own.iter().map(|&k| of(wrenches[k])).collect()
 }
 
 /// The links from the root to one of them.
@@ -196,11 +290,7 @@ impl Path {
                     }
                     twist.angular = link.from_parent_axes(graph, twist.angular);
                 }
-                let force = twist.force_of(graph, &wrench);
-                for &(i, k) in &freedom.rate {
-                    let share = graph.mul(k, force);
-                    forces[i] = graph.add(forces[i], share);
-                }
+                twist.add_force(graph, &wrench, &mut forces);
             }
         }
         forces
@@ -258,13 +348,7 @@ fn by_wrenches(graph: &mut Graph, tree: &Tree, link: usize, wrench: Wrench) -> V
     let (mut at, mut wrench) = (Some(link), wrench);
     while let Some(index) = at {
         let link = &tree.links[index];
-        for freedom in &link.freedoms {
-            let force = freedom.force_of(graph, &wrench);
-            for &(i, k) in &freedom.rate {
-                let share = graph.mul(k, force);
-                forces[i] = graph.add(forces[i], share);
-            }
-        }
+        link.add_forces(graph, &wrench, &mut forces);
         wrench = to_parent(graph, link, &wrench);
         at = link.parent;
     }

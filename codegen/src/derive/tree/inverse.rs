@@ -271,13 +271,7 @@ pub(super) fn collect_with(
     for (index, link) in tree.links.iter().enumerate().rev() {
         let total = totals[index];
         let acting = becomes(graph, index, &total);
-        for freedom in &link.freedoms {
-            let force = freedom.force_of(graph, &acting);
-            for &(i, k) in &freedom.rate {
-                let share = graph.mul(k, force);
-                forces[i] = graph.add(forces[i], share);
-            }
-        }
+        link.add_forces(graph, &acting, &mut forces);
         if let Some(parent) = link.parent {
             let total = to_parent(graph, link, &total);
             totals[parent] = totals[parent].plus(graph, &total);

@@ -60,6 +60,15 @@ impl Freedom {
         );
         graph.add(angular, linear)
     }
+
+    /// Adds this force to those of the velocities that make its rate.
+    pub fn add_force(&self, graph: &mut Graph, wrench: &Wrench, forces: &mut [Edge]) {
+        let force = self.force_of(graph, wrench);
+        for &(i, k) in &self.rate {
+            let share = graph.mul(k, force);
+            forces[i] = graph.add(forces[i], share);
+        }
+    }
 }
 
 /// A link: what moves against the link before by a joint.
@@ -82,6 +91,13 @@ pub struct Link {
 }
 
 impl Link {
+    /// Adds the generalised forces of a wrench on the link at its joint.
+    pub fn add_forces(&self, graph: &mut Graph, wrench: &Wrench, forces: &mut [Edge]) {
+        for freedom in &self.freedoms {
+            freedom.add_force(graph, wrench, forces);
+        }
+    }
+
     /// A vector in the axes of the link before.
     pub fn to_parent_axes(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         self.turns
