@@ -8,9 +8,9 @@ use super::print::Notation;
 use super::simplify::Simplifier;
 use super::style::Style;
 use super::write::Writer;
-use crate::algebra::graph::Edge;
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::numeric::evaluate;
-use crate::derive::regressor::{Kind, Regressor, Standard};
+use crate::derive::regressor::{DIAGONAL, Kind, MOMENTS, Regressor, Standard};
 use crate::program::count::count;
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -40,6 +40,53 @@ struct Row {
     value: f64,
     /// Place of the parameter, factor, and its number.
     terms: Vec<(usize, Term, f64)>,
+    /// The same sum as it is written: Θ_xx, Θ_yy and Θ_zz of a link as second moments where there are fewer of these.
+    shown: Vec<(Shown, Term)>,
+}
+
+/// A parameter in a sum.
+#[derive(Clone, Copy)]
+enum Shown {
+    /// A standard parameter.
+    Standard(usize),
+    /// Σ_xx, Σ_yy or Σ_zz of the link that this standard parameter is of.
+    Moment(usize, usize),
+}
+
+/// What is shown of a sum of standard parameters.
+fn shown(graph: &mut Graph, standard: &[Standard], terms: &[(usize, Edge)]) -> Vec<(Shown, Edge)> {
+    let zero = graph.zero();
+    let first = |k: usize| match standard[k].kind {
+        Kind::Inertia(place) if DIAGONAL.contains(&place) => Some(k - place),
+        _ => None,
+    };
+    let mut all = Vec::new();
+    let mut done = Vec::new();
+    for &(k, factor) in terms {
+        let Some(link) = first(k) else {
+            all.push((Shown::Standard(k), factor));
+            continue;
+        };
+        if done.contains(&link) {
+            continue;
+        }
+        done.push(link);
+        let of = |place: usize| terms.iter().find(|(k, _)| *k == link + place);
+        let inertia = DIAGONAL.map(|place| of(place).map_or(zero, |&(_, factor)| factor));
+        // Θ_xx = Σ_yy + Σ_zz, and so on.
+        let moments: [Edge; 3] =
+            std::array::from_fn(|i| graph.add(inertia[(i + 1) % 3], inertia[(i + 2) % 3]));
+        let count = |factors: &[Edge; 3]| factors.iter().filter(|&&factor| factor != zero).count();
+        let fewer = count(&moments) < count(&inertia);
+        for (axis, place) in DIAGONAL.into_iter().enumerate() {
+            all.push(match fewer {
+                true => (Shown::Moment(link, axis), moments[axis]),
+                false => (Shown::Standard(link + place), inertia[axis]),
+            });
+        }
+    }
+    all.retain(|&(_, factor)| factor != zero);
+    all
 }
 
 /// What is printed.
@@ -61,17 +108,27 @@ impl BaseParameters {
     /// Writes the base parameters out; `π` stands for its number, run-time parameters for their defaults.
     pub fn new(regressor: &Regressor) -> Self {
         let model = &regressor.model;
+        let mut graph = model.graph.clone();
+        let sums = regressor
+            .base
+            .iter()
+            .map(|base| shown(&mut graph, &regressor.standard, &base.terms));
+        let sums: Vec<Vec<(Shown, Edge)>> = sums.collect();
         let factors = regressor.base.iter().flat_map(|base| base.terms.iter());
-        let roots: Vec<Edge> = factors.map(|&(_, factor)| factor).collect();
+        let mut roots: Vec<Edge> = factors.map(|&(_, factor)| factor).collect();
+        roots.extend(sums.iter().flatten().map(|&(_, factor)| factor));
         let mut simplifier = Simplifier::free(&model.points);
-        let names = Temporaries::new(&model.graph, &roots, &[]);
-        let mut writer = Writer::new(&model.graph, &mut simplifier, Style::Table, names);
+        let names = Temporaries::new(&graph, &roots, &[]);
+        let mut writer = Writer::new(&graph, &mut simplifier, Style::Table, names);
         writer.prepare(&roots);
         let numbers = model.numbers(&model.defaults, &[], &[], &[], &[]);
-        let number = |edges: &[Edge]| evaluate(&model.graph, edges, &numbers);
+        let number = |edges: &[Edge]| evaluate(&graph, edges, &numbers);
         let standard: Vec<Edge> = regressor.standard.iter().map(|one| one.value).collect();
         let values = number(&standard);
-        let rows = regressor.base.iter().map(|base| {
+        let rows = regressor.base.iter().zip(sums).map(|(base, sum)| {
+            let shown = sum.into_iter();
+            let shown = shown.map(|(what, factor)| (what, writer.value(factor)));
+            let shown = shown.collect();
             let terms = base
                 .terms
                 .iter()
@@ -82,6 +139,7 @@ impl BaseParameters {
                 kind: base.kind,
                 value: terms.iter().map(|(k, _, factor)| factor * values[*k]).sum(),
                 terms,
+                shown,
             }
         });
         let rows = rows.collect();
@@ -190,14 +248,25 @@ impl BaseParameters {
         (sign, if text == "1" { String::new() } else { text })
     }
 
-    fn sum(&self, row: &Row, notation: Notation, name: &dyn Fn(&Standard) -> String) -> String {
+    fn sum(&self, row: &Row, notation: Notation) -> String {
         let mut text = String::new();
-        for (place, (k, term, _)) in row.terms.iter().enumerate() {
+        for (place, (what, term)) in row.shown.iter().enumerate() {
             let (sign, factor) = Self::factor(term, notation);
             if place > 0 || sign == '-' {
                 text.push_str(&format!(" {sign} "));
             }
-            let name = name(&self.standard[*k]);
+            let name = match (*what, notation) {
+                (Shown::Standard(k), Notation::Text) => self.standard[k].name(),
+                (Shown::Standard(k), Notation::Latex) => symbol(&self.standard[k]),
+                (Shown::Moment(k, axis), Notation::Text) => {
+                    format!("{}.{}", self.standard[k].of, MOMENTS[axis])
+                }
+                (Shown::Moment(k, axis), Notation::Latex) => {
+                    let of = self.standard[k].of.replace('_', r"\_");
+                    let axes = ["xx", "yy", "zz"][axis];
+                    format!(r"\Sigma_{{{axes}}}^{{\text{{{of}}}}}")
+                }
+            };
             let is_sum = term.bare_sum().is_some();
             text.push_str(&match (factor.as_str(), notation) {
                 ("", _) => name,
@@ -235,7 +304,7 @@ const CONDITIONS: &str = "Physically consistent where for each link the pseudo-i
 /// As text.
 pub fn text(all: &BaseParameters) -> String {
     let mut text = format!("{}: {}\n", all.system, all.summary());
-    text.push_str("F = Y(x, xi, xi_dot) beta: the force that a motion needs; Theta about the frame's origin, h = m s\n");
+    text.push_str("F = Y(x, xi, xi_dot) beta: the force that a motion needs; Theta about the frame's origin, h = m s, Sigma = tr(Theta)/2 I - Theta\n");
     if !all.definitions.is_empty() {
         text.push('\n');
     }
@@ -248,7 +317,7 @@ pub fn text(all: &BaseParameters) -> String {
     }
     text.push('\n');
     for (place, row) in all.rows.iter().enumerate() {
-        let sum = all.sum(row, Notation::Text, &Standard::name);
+        let sum = all.sum(row, Notation::Text);
         text.push_str(&format!("  beta[{}] = {sum}\n", place + 1));
     }
     text.push_str(&rest(all, "\n"));
@@ -300,7 +369,7 @@ pub fn markdown(all: &BaseParameters) -> String {
     }
     text.push_str("| β | standard parameters | value |\n|---|---|---|\n");
     for (place, row) in all.rows.iter().enumerate() {
-        let sum = all.sum(row, Notation::Text, &Standard::name);
+        let sum = all.sum(row, Notation::Text);
         text.push_str(&format!("| β{} | `{sum}` | {} |\n", place + 1, row.value));
     }
     text.push_str(&rest(all, "\n"));
@@ -315,7 +384,7 @@ pub fn latex(all: &BaseParameters) -> String {
         format!("  {} &= {value}", latex_name(&definition.name))
     });
     let rows = all.rows.iter().enumerate().map(|(place, row)| {
-        let sum = all.sum(row, Notation::Latex, &symbol);
+        let sum = all.sum(row, Notation::Latex);
         format!("  \\beta_{{{}}} &= {sum}", place + 1)
     });
     let lines: Vec<String> = definitions.chain(rows).collect();

@@ -33,14 +33,31 @@ enum Route {
 const ROUTES: [Route; 6] = [
     Route::Wrenches,
     Route::Mixed,
-    Route::Twists { meeting: false, carried: false },
-    Route::Twists { meeting: false, carried: true },
-    Route::Twists { meeting: true, carried: false },
-    Route::Twists { meeting: true, carried: true },
+    Route::Twists {
+        meeting: false,
+        carried: false,
+    },
+    Route::Twists {
+        meeting: false,
+        carried: true,
+    },
+    Route::Twists {
+        meeting: true,
+        carried: false,
+    },
+    Route::Twists {
+        meeting: true,
+        carried: true,
+    },
 ];
 
 /// Places of routes that are tried together.
-const TRIED_TOGETHER: [&[usize]; 4] = [&[0, 1, 2], &[0, 1, 2, 3], &[0, 1, 2, 4], &[0, 1, 2, 3, 4, 5]];
+const TRIED_TOGETHER: [&[usize]; 4] = [
+    &[0, 1, 2],
+    &[0, 1, 2, 3],
+    &[0, 1, 2, 4],
+    &[0, 1, 2, 3, 4, 5],
+];
 
 /// How many changes of single routes are tried at most.
 const MOST_CHANGES: usize = 200;
@@ -124,7 +141,11 @@ impl Search<'_> {
         let mut left = MOST_CHANGES;
         loop {
             let before = best.cost;
-            for (index, route) in self.costly().rev().flat_map(|i| ROUTES.map(|route| (i, route))) {
+            for (index, route) in self
+                .costly()
+                .rev()
+                .flat_map(|i| ROUTES.map(|route| (i, route)))
+            {
                 if left == 0 || best.routes[index] == route {
                     continue;
                 }
@@ -137,7 +158,11 @@ impl Search<'_> {
                 let roots: Vec<Edge> = roots.collect();
                 let cost = count(&graph, &roots).weight();
                 if cost < best.cost {
-                    best = Way { cost, routes, ..best };
+                    best = Way {
+                        cost,
+                        routes,
+                        ..best
+                    };
                 }
             }
             if best.cost == before {
@@ -150,7 +175,13 @@ impl Search<'_> {
         (0..self.links.len()).filter(|&index| !self.kept[index].is_empty())
     }
 
-    fn kept_columns(&self, graph: &mut Graph, moving: &Moving, index: usize, route: Route) -> Vec<Edge> {
+    fn kept_columns(
+        &self,
+        graph: &mut Graph,
+        moving: &Moving,
+        index: usize,
+        route: Route,
+    ) -> Vec<Edge> {
         let link = (index, &self.links[index]);
         of_link(graph, moving, link, &self.kept[index], route).concat()
     }

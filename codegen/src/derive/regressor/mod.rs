@@ -28,7 +28,7 @@ mod relations;
 mod samples;
 mod wrenches;
 
-pub use parameters::{Kind, Standard};
+pub use parameters::{DIAGONAL, Kind, MOMENTS, Standard};
 
 use super::calculus::Calculus;
 use super::tree::Tree;
@@ -117,7 +117,11 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
     let kept: Vec<usize> = found.iter().map(|(kept, _)| *kept).collect();
     let mut moments = columns::cheapest(&mut derived, &tree, &links, &kept);
     let mut columns = parameters::standard_columns(&mut derived.graph, &links, &moments);
-    let of_joints: Vec<Vec<Edge>> = joints.parameters.into_iter().map(|(_, column)| column).collect();
+    let of_joints: Vec<Vec<Edge>> = joints
+        .parameters
+        .into_iter()
+        .map(|(_, column)| column)
+        .collect();
     moments.extend(of_joints.clone());
     columns.extend(of_joints);
     // Links without mass take part in the relations, and have no parameters.

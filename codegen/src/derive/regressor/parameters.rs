@@ -141,10 +141,10 @@ fn of_standard(graph: &mut Graph, ten: &[Edge; 10]) -> Mass {
 }
 
 /// The places of the diagonal among the ten parameters.
-const DIAGONAL: [usize; 3] = [0, 3, 5];
+pub const DIAGONAL: [usize; 3] = [0, 3, 5];
 
 /// Names of second moments, which stand at the places of the diagonal.
-const MOMENTS: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
+pub const MOMENTS: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
 
 /// The inertia of ten moments: Σ_xx, −Σ_xy, −Σ_xz, Σ_yy, −Σ_yz, Σ_zz, h, m.
 pub fn of_moments(graph: &Graph, ten: &[Edge]) -> Mass {
@@ -193,8 +193,7 @@ pub fn standard_columns(
         .collect()
 }
 
-/// A sum over moments as one over the standard parameters: first the terms of the link or joint of the parameter that is kept,
-/// those with a minus sign last among them.
+/// A sum over moments as one over the standard parameters, those of the link or joint of the parameter that is kept first.
 pub fn standard_terms(
     graph: &mut Graph,
     links: &[Link],
@@ -219,12 +218,12 @@ pub fn standard_terms(
         }
     }
     let own = kept < factors.len();
-    all.sort_by_key(|&(k, factor)| {
+    all.sort_by_key(|&(k, _)| {
         let of_own = match own {
             true => k / 10 == kept / 10,
             false => k == kept,
         };
-        (!of_own, of_own && factor.is_negative(), k)
+        (!of_own, k)
     });
     all
 }

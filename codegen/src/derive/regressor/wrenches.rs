@@ -105,12 +105,7 @@ fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrenc
 
 /// In axes against which the link is turned about the third one. The torque along that one is computed in the link's own
 /// axes, where it takes less: U_xx + U_yy and U_yx − U_xy are the same in both.
-fn in_shared_axes(
-    graph: &mut Graph,
-    motion: &LinkMotion,
-    lag: &Turn,
-    axes: &Mat3,
-) -> Vec<Wrench> {
+fn in_shared_axes(graph: &mut Graph, motion: &LinkMotion, lag: &Turn, axes: &Mat3) -> Vec<Wrench> {
     let LinkMotion { u, a, .. } = motion;
     let own = transpose3(axes);
     let units = own.map(|e| lag.rotate(graph, e));
@@ -156,7 +151,11 @@ fn assembled(
     let second = ENTRIES.iter().map(|&(i, j)| Wrench {
         force: zero,
         // Products of inertia are second moments with the other sign.
-        torque: if i == j { torques[i][i] } else { torques[i][j].map(|entry| -entry) },
+        torque: if i == j {
+            torques[i][i]
+        } else {
+            torques[i][j].map(|entry| -entry)
+        },
     });
     let mut wrenches: Vec<Wrench> = second.collect();
     for (&unit, &force) in units.iter().zip(forces) {
