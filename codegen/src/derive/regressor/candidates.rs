@@ -5,7 +5,7 @@
 //! So lengths and mount angles come in as the description has them. On a hinge such δ are masses on its axis; those of
 //! other joints, and of links that move together, are found at random states.
 
-use super::parameters::{Link, moments_of, of_moments};
+use super::parameters::{Link, of_standard, standard_of};
 use super::samples::Samples;
 use crate::algebra::echelon::Echelon;
 use crate::algebra::fp::Fp;
@@ -114,7 +114,7 @@ pub fn candidates(
             &tree.links[index],
             &links[index],
         ) {
-            let exact = moments_of(&masses);
+            let exact = standard_of(&mut model.graph, &masses);
             let group = (&[index][..], links[index].parent);
             relations.push(moved(model, links, group, &exact));
         }
@@ -218,12 +218,12 @@ fn moved(
     if let Some(anchor) = anchor {
         let mut all = vec![model.graph.zero(); 10];
         for (&index, exact) in group.iter().zip(exact.chunks(10)) {
-            let pose = pose_at_zero(model, &links[index], &links[anchor]);
+            let pose = pose_at_zero(model, links[index].frame, links[anchor].frame);
             let graph = &mut model.graph;
-            let moved = of_moments(graph, exact)
+            let moved = of_standard(graph, exact)
                 .turned(graph, &Turn::By(pose.0))
                 .shifted(graph, pose.1);
-            for (sum, entry) in all.iter_mut().zip(moments_of(&moved)) {
+            for (sum, entry) in all.iter_mut().zip(standard_of(graph, &moved)) {
                 *sum = graph.sub(*sum, entry);
             }
         }
@@ -251,16 +251,13 @@ pub fn holds(graph: &Graph, samples: &Samples, relation: &Relation) -> bool {
     samples.vanishes(&parameters.zip(values).collect::<Vec<_>>())
 }
 
-/// The pose of a link in another one, in axes of their frames, where all coordinates are zero or the identity.
-fn pose_at_zero(model: &mut Model, link: &Link, on: &Link) -> (Mat3, Vec3) {
-    let (turn, shift) = relative(model, link.frame, on.frame);
+/// The pose of a frame in another one, where all coordinates are zero or the identity.
+fn pose_at_zero(model: &mut Model, frame: usize, on: usize) -> (Mat3, Vec3) {
+    let (turn, shift) = relative(model, frame, on);
     let entries: Vec<Edge> = turn.iter().flatten().chain(&shift).copied().collect();
     let entries = at_zero(model, &entries);
-    let turn: Mat3 = std::array::from_fn(|i| std::array::from_fn(|j| entries[3 * i + j]));
-    let graph = &mut model.graph;
-    let moved = apply3(graph, &turn, link.origin);
-    let shift = add3(graph, std::array::from_fn(|i| entries[9 + i]), moved);
-    (turn, sub3(graph, shift, on.origin))
+    let turn = std::array::from_fn(|i| std::array::from_fn(|j| entries[3 * i + j]));
+    (turn, std::array::from_fn(|i| entries[9 + i]))
 }
 
 /// The pose of a frame in one that it hangs on, or else that of two frames in the world.

@@ -13,9 +13,10 @@
 //!
 //! A link is all that moves rigidly together; its parameters are those in the frame that its joint carries. They are
 //! put in order: links from the root on, of each Θ, then m s, then m; armatures, dampers and springs at the end.
-//! A parameter whose column is a combination of those of earlier ones is regrouped with them, all others stay. In this Θ_xx,
-//! Θ_yy and Θ_zz are represented by the second moments Σ_xx, Σ_yy and Σ_zz, Σ = tr(Θ)/2 I − Θ: a column of these takes three
-//! operations at a joint where one of Θ takes five, and what is regrouped is the same.
+//! Relations are found between these, and solved between the moments of each link: m, h, products of inertia and the second
+//! moments Σ_xx, Σ_yy and Σ_zz, Σ = tr(Θ)/2 I − Θ, about the frame's origin or another point of the joint's axis. A moment whose column is a
+//! combination of those of earlier ones is regrouped with them, all others are kept: a column of Σ_xx takes three operations at a
+//! joint where one of Θ_xx takes five.
 //!
 //! Rank and relations are found at random states in two fields of 2⁶² elements each, at one random value of every
 //! run-time parameter. A relation is accepted only with exact coefficients, numbers or expressions in run-time
@@ -106,7 +107,8 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
     let joints = parameters::of_joints(&mut model, &mut calculus);
     // What is emitted is derived apart: equal expressions of one graph are computed in one way.
     let mut derived = model.clone();
-    let mut columns = columns::inertial(&mut model, &tree, &links);
+    let moments = columns::inertial(&mut model, &tree, &links);
+    let mut columns = parameters::standard_columns(&mut model.graph, &links, &moments);
     for (parameter, column) in &joints.parameters {
         standard.push(parameter.clone());
         columns.push(column.clone());
@@ -145,11 +147,11 @@ fn about(model: &Model, moved: bool) -> Result<Regressor, String> {
             column: std::mem::take(&mut moments[kept]),
         });
     }
-    let idle = parameters::idle(&model, &samples, &links, &present)
-        .ok_or("at random states its expressions have no values modulo p")?;
+    let is_idle = |&k: &usize| samples.rows.iter().all(|row| row[k].is_zero());
+    let idle = present.iter().copied().filter(is_idle);
     Ok(Regressor {
         base,
-        idle: idle.into_iter().filter_map(place).collect(),
+        idle: idle.filter_map(place).collect(),
         links: links
             .iter()
             .filter(|link| link.present)

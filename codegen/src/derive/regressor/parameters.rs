@@ -1,10 +1,9 @@
 //! The standard parameters: of every link Θ about its frame's origin, m s and m, of joints their armatures, dampers
 //! and springs.
 
-use super::samples::Samples;
-use crate::algebra::fp::Fp;
+use super::candidates::Relation;
 use crate::algebra::graph::{Edge, Graph, Node};
-use crate::algebra::linear::{Mat3, Vec3, transpose3, zero3};
+use crate::algebra::linear::{Mat3, transpose3, zero3};
 use crate::derive::calculus::Calculus;
 use crate::derive::tree::Tree;
 use crate::derive::tree::draft::Carrier;
@@ -70,8 +69,6 @@ pub struct Link {
     pub frame: usize,
     /// The frame's axes in those of the link.
     pub axes: Mat3,
-    /// The link's origin, in the frame.
-    pub origin: Vec3,
     /// The link before.
     pub parent: Option<usize>,
     /// Whether it has mass.
@@ -91,12 +88,7 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
             let back = Turn::By(transpose3(&carrier.axes));
             let mass = carrier.mass.turned(graph, &back);
             let name = model.frames[carrier.frame].name.clone();
-            let mut values: Vec<Edge> = {
-                let inertia = mass.inertia(graph);
-                ENTRIES.iter().map(|&(i, j)| inertia[i][j]).collect()
-            };
-            values.extend(mass.first);
-            values.push(mass.mass);
+            let values = standard_of(graph, &mass);
             let present = values.iter().any(|&value| value != graph.zero());
             let standard = values.into_iter().enumerate();
             let (zero, one) = (graph.zero(), graph.one());
@@ -120,7 +112,6 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
                 name,
                 frame: carrier.frame,
                 axes: carrier.axes,
-                origin: carrier.origin,
                 parent: link.parent,
                 present,
             }
@@ -129,28 +120,17 @@ pub fn links(model: &mut Model, tree: &Tree, carriers: &[Carrier]) -> Vec<Link> 
 }
 
 /// The inertia of ten standard parameters.
-fn of_standard(graph: &mut Graph, ten: &[Edge; 10]) -> Mass {
-    let trace = graph.sum(&[ten[0], ten[3], ten[5]]);
+pub fn of_standard(graph: &mut Graph, ten: &[Edge]) -> Mass {
+    let mut second: Mat3 = [zero3(graph); 3];
+    let trace = graph.sum(&DIAGONAL.map(|k| ten[k]));
     let half = graph.ratio(1, 2);
     let half = graph.mul(half, trace);
-    let mut moments = *ten;
-    for k in DIAGONAL {
-        moments[k] = graph.sub(half, ten[k]);
-    }
-    of_moments(graph, &moments)
-}
-
-/// The places of the diagonal among the ten parameters.
-pub const DIAGONAL: [usize; 3] = [0, 3, 5];
-
-/// Names of second moments, which stand at the places of the diagonal.
-pub const MOMENTS: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
-
-/// The inertia of ten moments: Σ_xx, −Σ_xy, −Σ_xz, Σ_yy, −Σ_yz, Σ_zz, h, m.
-pub fn of_moments(graph: &Graph, ten: &[Edge]) -> Mass {
-    let mut second: Mat3 = [zero3(graph); 3];
     for (&(i, j), &entry) in ENTRIES.iter().zip(ten) {
-        second[i][j] = if i == j { entry } else { -entry };
+        second[i][j] = if i == j {
+            graph.sub(half, entry)
+        } else {
+            -entry
+        };
         second[j][i] = second[i][j];
     }
     Mass {
@@ -160,8 +140,23 @@ pub fn of_moments(graph: &Graph, ten: &[Edge]) -> Mass {
     }
 }
 
-/// The ten moments of an inertia.
-pub fn moments_of(mass: &Mass) -> Vec<Edge> {
+/// The ten standard parameters of an inertia.
+pub fn standard_of(graph: &mut Graph, mass: &Mass) -> Vec<Edge> {
+    let theta = mass.inertia(graph);
+    let mut ten = ENTRIES.map(|(i, j)| theta[i][j]).to_vec();
+    ten.extend(mass.first);
+    ten.push(mass.mass);
+    ten
+}
+
+/// The places of the diagonal among the ten parameters.
+pub const DIAGONAL: [usize; 3] = [0, 3, 5];
+
+/// Names of second moments, which stand at the places of the diagonal.
+pub const MOMENTS: [&str; 3] = ["Sigma_xx", "Sigma_yy", "Sigma_zz"];
+
+/// The ten moments of an inertia: Σ_xx, −Σ_xy, −Σ_xz, Σ_yy, −Σ_yz, Σ_zz, h, m.
+fn moments_of(mass: &Mass) -> Vec<Edge> {
     let second = ENTRIES.map(|(i, j)| {
         let entry = mass.second[i][j];
         if i == j { entry } else { -entry }
@@ -191,6 +186,27 @@ pub fn standard_columns(
         .flat_map(|(link, ten)| link.moments.iter().map(move |unit| (ten, unit)))
         .map(|(ten, unit)| column(graph, ten, unit))
         .collect()
+}
+
+/// A relation between the columns of standard parameters as one between those of moments.
+pub fn between_moments(graph: &mut Graph, links: &[Link], relation: &Relation) -> Relation {
+    let zero = graph.zero();
+    let mut factors = vec![zero; 10 * links.len()];
+    let mut all = Relation::new();
+    for &(k, factor) in relation {
+        let Some(link) = links.get(k / 10) else {
+            all.push((k, factor));
+            continue;
+        };
+        let ten = &mut factors[k - k % 10..][..10];
+        for (entry, &unit) in ten.iter_mut().zip(&link.moments[k % 10]) {
+            let share = graph.mul(factor, unit);
+            *entry = graph.add(*entry, share);
+        }
+    }
+    let of_links = factors.into_iter().enumerate();
+    all.extend(of_links.filter(|(_, factor)| *factor != zero));
+    all
 }
 
 /// A sum over moments as one over the standard parameters, those of the link or joint of the parameter that is kept first.
@@ -243,29 +259,6 @@ pub fn name(graph: &Graph, standard: &[Standard], kept: usize, terms: &[(usize, 
         [&(k, factor)] if factor == graph.one() => standard[k].name(),
         _ => format!("{}.{}", standard[kept].of, MOMENTS[axis]),
     }
-}
-
-/// Which standard parameters have columns of zeros, of those that are present; the samples are of moments.
-pub fn idle(
-    model: &Model,
-    samples: &Samples,
-    links: &[Link],
-    present: &[usize],
-) -> Option<Vec<usize>> {
-    let mut idle = Vec::new();
-    for &k in present {
-        let terms: Vec<(usize, Fp)> = match links.get(k / 10) {
-            Some(link) => {
-                let values = samples.constants(&model.graph, &link.moments[k % 10])?;
-                (k - k % 10..).zip(values).collect()
-            }
-            None => vec![(k, Fp::ONE)],
-        };
-        if samples.vanishes(&terms) {
-            idle.push(k);
-        }
-    }
-    Some(idle)
 }
 
 /// Parameters of joints with their columns, and what is no parameter.

@@ -1,7 +1,7 @@
 //! Elimination with exact factors, and the base parameters that it leaves.
 
 use super::candidates::{Known, Relation, candidates, holds, joined};
-use super::parameters::Link;
+use super::parameters::{Link, between_moments};
 use super::samples::Samples;
 use crate::algebra::echelon::Echelon;
 use crate::algebra::graph::{Edge, Graph};
@@ -16,10 +16,10 @@ const LEAST: f64 = 0.1;
 /// What each of the ten parameters of a link is: of second order, of first order, a mass.
 const KINDS: [u8; 10] = [2, 2, 2, 2, 2, 2, 1, 1, 1, 0];
 
-/// A base parameter: the place of the parameter that is kept, and all terms, its own with the factor 1 first.
+/// A base parameter: the place of the moment that is kept, and all terms, its own with the factor 1 first.
 pub type Found = (usize, Vec<(usize, Edge)>);
 
-/// Finds all relations and solves them.
+/// Finds all relations between standard parameters, and solves them as relations between moments, of which some are kept.
 pub fn find(
     model: &mut Model,
     samples: &Samples,
@@ -64,6 +64,15 @@ pub fn find(
             "internal check failed: its relations do not agree with the rank of the regressor"
                 .into(),
         );
+    }
+    let graph = &mut model.graph;
+    let relations: Vec<Relation> = relations
+        .iter()
+        .map(|relation| between_moments(graph, links, relation))
+        .collect();
+    let solved = solve(graph, &numbers, &relations, ordered, links.len());
+    if solved.len() + rank != present.len() {
+        return Err("internal check failed: its relations cannot be solved for moments".into());
     }
     let kept = present
         .iter()
