@@ -5,6 +5,8 @@
 
 use super::function::Slope;
 use super::graph::{Edge, Graph, Node, NodeId, Power};
+use num_rational::BigRational;
+use num_traits::One;
 use rustc_hash::FxHashMap;
 
 /// A derivation, given by what it does to symbols; it remembers what it has differentiated.
@@ -158,14 +160,15 @@ impl Derivation {
         }
     }
 
-    /// (w a √s)′ = w′ a √s + 3/2 w a′ √s where a is s, or |a|, times a constant: nothing is divided by a root that
-    /// may be 0. `None` of other products.
+    /// (w a sᶠ)′ = w′ a sᶠ + (1 + f) w a′ sᶠ where a is s, or |a|, times a constant: nothing is divided by what may
+    /// be 0. `None` of other products.
     fn of_power(&self, graph: &mut Graph, id: NodeId) -> Option<Edge> {
-        let power = graph.half_integer_power(id)?;
+        let power = graph.fractional_power(id)?;
         let Power {
             rest,
             base,
             root,
+            exponent,
             constants,
         } = power;
         let all = || rest.iter().chain(&base).chain(&constants);
@@ -184,7 +187,7 @@ impl Derivation {
         let (base, d_base) = self.of_product(graph, &base);
         let with_root = graph.mul(base, root);
         let left = graph.mul(d_rest, with_root);
-        let ratio = graph.ratio(3, 2);
+        let ratio = graph.rational(&(exponent + BigRational::one()));
         let right = graph.mul(rest, d_base);
         let right = graph.mul(right, root);
         let right = graph.mul(ratio, right);

@@ -111,6 +111,18 @@ impl Graph {
         self.shadow.contradicted
     }
 
+    /// Nothing with a square root below it is taken for what is equal at the point: only for the same expression.
+    pub fn keep_roots_apart(&mut self) {
+        self.shadow.apart = true;
+    }
+
+    /// Whether an expression with a square root below it was taken for another one that it is not, or of which many real values
+    /// of the symbols do not say whether it is its negative.
+    pub fn is_doubtful(&self, samples: impl Iterator<Item = Vec<Reals>>) -> bool {
+        self.shadow
+            .is_doubtful(&self.nodes, &self.constants, samples)
+    }
+
     /// The real values of a symbol.
     pub fn reals(&self, symbol: usize) -> Reals {
         self.shadow.symbol(symbol)

@@ -26,7 +26,16 @@ pub(super) struct Shadow {
     pub(super) contradicted: bool,
     /// Numbers between certain bounds; `None` where none are known.
     numbers: FxHashMap<NodeId, Option<Interval>>,
+    /// What was taken for what although there are square roots below it.
+    taken: Vec<(Node, Edge)>,
+    /// Whether nothing with a square root below it is taken for anything else.
+    pub(super) apart: bool,
 }
+
+/// At how many samples a sign has to be certain.
+const DECISIVE: usize = 16;
+/// Error of a number that is 0.
+const SMALL: f64 = 1e-6;
 
 impl Shadow {
     /// Other values of the symbols.
@@ -63,6 +72,9 @@ impl Shadow {
         if !rooted && !self.watched {
             return false;
         }
+        if rooted && self.apart {
+            return true;
+        }
         self.fill(nodes, constants);
         if !rooted {
             let half = SAMPLES / 2;
@@ -71,7 +83,46 @@ impl Shadow {
             self.contradicted |= contradicts;
             return contradicts;
         }
-        contradict(&self.value(constants, node), &self.read(known))
+        let contradicts = contradict(&self.value(constants, node), &self.read(known));
+        if !contradicts {
+            self.taken.push((node, known));
+        }
+        contradicts
+    }
+
+    /// Whether what was taken for something else is another number at one of many samples, or is known at too few of them to
+    /// be told from its negative.
+    pub(super) fn is_doubtful(
+        &self,
+        nodes: &[Node],
+        constants: &[BigRational],
+        samples: impl Iterator<Item = Vec<Reals>>,
+    ) -> bool {
+        if self.taken.is_empty() {
+            return false;
+        }
+        let mut decisive = vec![0; self.taken.len()];
+        let mut shadow = Shadow::default();
+        for symbols in samples {
+            shadow.set(symbols);
+            shadow.fill(nodes, constants);
+            for (&(node, known), decisive) in self.taken.iter().zip(&mut decisive) {
+                let (a, b) = (shadow.value(constants, node), shadow.read(known));
+                if contradict(&a, &b) {
+                    return true;
+                }
+                let is_zero = known.node() == 0;
+                *decisive += a
+                    .iter()
+                    .zip(&b)
+                    .filter(|(a, b)| match is_zero {
+                        true => a.is_within(SMALL),
+                        false => a.has_sign() && b.has_sign(),
+                    })
+                    .count();
+            }
+        }
+        decisive.iter().any(|&count| count < DECISIVE)
     }
 
     fn fill(&mut self, nodes: &[Node], constants: &[BigRational]) {

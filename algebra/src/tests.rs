@@ -407,6 +407,40 @@ fn coefficients_at_the_end_of_the_whole_numbers() {
     assert_eq!(g.apply(Function::Sin, -argument), -sine);
 }
 
+/// The same of aᵏ exp(f log a), for other fractions.
+#[test]
+fn slopes_of_fractional_powers_are_finite_at_zero() {
+    let (mut g, [k, b, a, ..]) = graph();
+    for (whole, n, d) in [(1, 1, 3), (2, 3, 10), (2, 2, 3), (3, 1, 5)] {
+        let fraction = g.ratio(n, d);
+        let p = f64::from(whole) + n as f64 / d as f64;
+        let log = g.apply(Function::Log, a);
+        let product = g.mul(fraction, log);
+        let rest = g.apply(Function::Exp, product);
+        let power = g.powi(a, whole.into()).expect("no divisor");
+        let power = g.mul(power, rest);
+        let with = g.mul(b, power);
+        let factor = g.mul(k, with);
+        let first = Derivation::new([(a.node(), g.one())]).of(&mut g, factor);
+        let second = Derivation::new([(a.node(), g.one())]).of(&mut g, first);
+        let cross = Derivation::new([(b.node(), g.one())]).of(&mut g, first);
+        for at in [0.0, 0.25, 4.0] {
+            let mut numbers = vec![0.0; g.symbols().len()];
+            for (edge, value) in [(k, 2.0), (b, -3.0), (a, at)] {
+                numbers[g.as_symbol(edge).expect("a symbol")] = value;
+            }
+            let found = evaluate(&g, &[first, second, cross], &numbers);
+            let slope = p * at.powf(p - 1.0);
+            let bend = p * (p - 1.0) * at.powf(p - 2.0);
+            let expected = [-6.0 * slope, -6.0 * bend, 2.0 * slope];
+            for (found, expected) in found.iter().zip(expected) {
+                let close = (found - expected).abs() <= 1e-12 * expected.abs();
+                assert!(close || expected.is_infinite(), "{p} at {at}: {found}");
+            }
+        }
+    }
+}
+
 /// (w a^p)′ = w′ a^p + p w a^(p−1) a′ for half-integer p, which has a value at a = 0 where p > 1.
 #[test]
 fn slopes_of_half_integer_powers_are_finite_at_zero() {

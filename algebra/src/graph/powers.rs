@@ -1,31 +1,58 @@
-//! Powers: those of sums, and those with a half-integer exponent, which are products with a root.
+//! Powers: those of sums, and those with a fractional exponent, which are products with a root √s or with exp(f log s).
 
 use super::{Edge, Function, Graph, Node, NodeId};
+use num_rational::BigRational;
 
 /// Products of more factors are not looked at.
 const MOST_FACTORS: usize = 12;
 
-/// w a √s, where a is a constant multiple of s, but for signs of its factors.
+/// w a sᶠ, where a is a constant multiple of s, but for signs of its factors.
 pub(crate) struct Power {
     /// The factors of w.
     pub rest: Vec<Edge>,
     /// Those of a.
     pub base: Vec<Edge>,
-    /// √s.
+    /// sᶠ: √s or exp(f log s).
     pub root: Edge,
+    /// f.
+    pub exponent: BigRational,
     /// The factors of s that are constant at run time.
     pub constants: Vec<Edge>,
 }
 
 impl Graph {
+    /// √s or exp(f log s), as s and f.
+    fn root_of(&self, root: Edge) -> Option<(Edge, BigRational)> {
+        match self.node(root.node()) {
+            Node::Apply(Function::Sqrt, square) => {
+                Some((square, BigRational::new(1.into(), 2.into())))
+            }
+            Node::Apply(Function::Exp, product) => {
+                let Node::Mul(a, b) = self.node(product.node()) else {
+                    return None;
+                };
+                let (factor, log) = match self.as_rational(a) {
+                    Some(factor) => (factor, b),
+                    None => (self.as_rational(b)?, a),
+                };
+                match self.node(log.node()) {
+                    Node::Apply(Function::Log, base) if !log.is_negative() => {
+                        let sign = if product.is_negative() { -1 } else { 1 };
+                        Some((base, factor * BigRational::from_integer(sign.into())))
+                    }
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
     /// A product as such a power; of a factor |v| of s there may be v beside the root.
-    pub(crate) fn half_integer_power(&self, id: NodeId) -> Option<Power> {
+    pub(crate) fn fractional_power(&self, id: NodeId) -> Option<Power> {
         let factors = self.whole_factors(Edge::of(id))?;
         (0..factors.len()).find_map(|place| {
             let root = factors[place];
-            let Node::Apply(Function::Sqrt, square) = self.node(root.node()) else {
-                return None;
-            };
+            let (square, exponent) = self.root_of(root)?;
             let mut rest = factors.clone();
             rest.remove(place);
             let (mut base, mut constants) = (Vec::new(), Vec::new());
@@ -52,6 +79,7 @@ impl Graph {
                     rest,
                     base,
                     root: root.abs(),
+                    exponent,
                     constants,
                 }
             })

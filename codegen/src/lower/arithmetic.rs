@@ -2,7 +2,7 @@
 
 use super::expression::Evaluator;
 use super::functions;
-use crate::algebra::graph::{Edge, Function};
+use crate::algebra::graph::{Edge, Function, Node};
 use crate::algebra::linear::{add3, apply3, multiply, multiply3};
 use crate::diagnostics::Diagnostic;
 use crate::model::value::Value;
@@ -127,6 +127,55 @@ impl Evaluator<'_> {
         })
     }
 
+    /// aʳ where r is no whole number: aᵏ √a, or aᵏ exp(f log a) with 0 < f < 1, so that as many derivatives are finite at a = 0
+    /// as there are; of max(a, 0) and other choices between an expression and a number that of each. `None` where something is
+    /// divided by 0.
+    fn fractional_power(&mut self, base: Edge, exponent: &BigRational) -> Option<Edge> {
+        let graph = &mut *self.graph;
+        if base == graph.one() {
+            return Some(base);
+        }
+        if let Node::Select(c, a, b) = graph.node(base.node()) {
+            let [a, b] = [a, b].map(|branch| branch.signed(base.is_negative()));
+            let is_base = |number: &BigRational| {
+                number.is_positive() || number.is_zero() && exponent.is_positive()
+            };
+            let numbers = [a, b].map(|branch| graph.as_rational(branch));
+            if numbers.iter().flatten().count() == 1 && numbers.iter().flatten().all(is_base) {
+                let a = self.fractional_power(a, exponent)?;
+                let b = self.fractional_power(b, exponent)?;
+                return Some(self.graph.select(c, a, b));
+            }
+        }
+        if base == graph.zero() {
+            return Some(base);
+        }
+        let twice = exponent + exponent;
+        if twice.is_integer() {
+            let root = functions::root(graph, base);
+            return graph.powi(root, twice.to_integer().to_i64()?);
+        }
+        // Of a norm as a power of its square.
+        let half = exponent / BigRational::from_integer(2.into());
+        if let (Node::Apply(Function::Sqrt, square), false, true) = (
+            graph.node(base.node()),
+            base.is_negative(),
+            half > BigRational::one(),
+        ) {
+            return self.fractional_power(square, &half);
+        }
+        let below = match exponent.is_negative() {
+            true => BigRational::zero(),
+            false => exponent.floor(),
+        };
+        let factor = graph.rational(&(exponent - &below));
+        let log = graph.apply(Function::Log, base);
+        let product = graph.mul(factor, log);
+        let rest = graph.apply(Function::Exp, product);
+        let power = graph.powi(base, below.to_integer().to_i64()?)?;
+        Some(graph.mul(power, rest))
+    }
+
     fn power(&mut self, a: Value, b: Value, left: &Expr, right: &Expr) -> Option<Value> {
         let (base, exponent) = (a.as_scalar()?, b.as_scalar()?);
         let Some(exponent) = self.graph.as_rational(exponent) else {
@@ -156,7 +205,6 @@ impl Evaluator<'_> {
             return Some(Value::Scalar(if zero { base } else { self.graph.one() }));
         }
         let whole = |n: &BigRational| n.is_integer().then(|| n.to_integer().to_i64()).flatten();
-        let twice = &exponent + &exponent;
         let number = self.graph.as_rational(base);
         if number.as_ref().is_some_and(Signed::is_negative) && !exponent.is_integer() {
             return self.error(
@@ -171,16 +219,8 @@ impl Evaluator<'_> {
                 return self.error(error.help("round the numbers that it is made of"));
             }
             self.graph.powi(base, n)
-        } else if let Some(n) = whole(&twice) {
-            let root = functions::root(self.graph, base);
-            self.graph.powi(root, n)
-        } else if number.is_some_and(|n| n.is_one()) {
-            Some(base)
         } else {
-            let factor = self.graph.rational(&exponent);
-            let log = self.graph.apply(Function::Log, base);
-            let product = self.graph.mul(factor, log);
-            Some(self.graph.apply(Function::Exp, product))
+            self.fractional_power(base, &exponent)
         };
         match result {
             Some(result) => Some(Value::Scalar(result)),

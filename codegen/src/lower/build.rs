@@ -13,6 +13,7 @@ use crate::diagnostics::{Diagnostic, Report};
 use crate::model::Model;
 use crate::model::closure::Closure;
 use crate::model::opening::Opening;
+use crate::model::samples;
 use crate::reuse;
 use crate::syntax::ast::{ItemKind, Origins, System};
 use crate::{shapes, symbols};
@@ -20,6 +21,12 @@ use std::collections::BTreeSet;
 
 /// Points are chosen anew this often when a square root has no value there.
 const ATTEMPTS: u64 = 8;
+
+/// After so many points at which square roots are not told apart with certainty, they are kept apart.
+const DOUBTS: usize = 3;
+
+/// How often real values are drawn, eight of each symbol, to tell square roots apart.
+const DRAWN: u64 = 16;
 
 /// Seed of the points: fixed, so that builds repeat.
 const SEED: u64 = 0x4a6d_656c;
@@ -53,13 +60,17 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
     let mut variety = Variety::of(system, &names, own, &mut first);
     let mut errors = first.finish().err().unwrap_or_default();
     let mut branches = false;
+    let mut doubts = 0;
     for seed in own..own + ATTEMPTS {
         let mut choice = Report::new();
         let point = variety.choose(system, seed, &mut choice);
         errors.extend(choice.finish().err().unwrap_or_default());
         let mut report = Report::new();
         errors.iter().cloned().for_each(|error| report.push(error));
-        let ground = Ground::on(&variety, &point, system, &names, seed, &mut report);
+        let mut ground = Ground::on(&variety, &point, system, &names, seed, &mut report);
+        if doubts == DOUBTS {
+            ground.graph.keep_roots_apart();
+        }
         let result = read_at(system, &variety, &names.order, ground, report);
         match result {
             Ok(model) if model.graph.is_unfaithful() => {
@@ -77,6 +88,7 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
             Err((_, Some(graph))) if graph.is_contradicted() => branches = true,
             Ok(model) if model.graph.is_stuck() => variety.points.require_roots(&model.graph),
             Err((_, Some(graph))) if graph.is_stuck() => variety.points.require_roots(&graph),
+            Ok(model) if doubts < DOUBTS && is_doubtful(&variety, &model) => doubts += 1,
             Ok(mut model) => {
                 model.points.require_roots(&model.graph);
                 let strange = strange::warnings(described, &model);
@@ -113,6 +125,14 @@ fn read(system: &System, used: &BTreeSet<String>, number: u64) -> Result<Model, 
         .help("let a parameter stand for the root of a product, such as 3 * a^2"),
     );
     Err(errors)
+}
+
+/// Whether an expression was taken for another one that it is only at some real points, such as √(e²) for e.
+fn is_doubtful(variety: &Variety, model: &Model) -> bool {
+    let near = variety.near.as_deref();
+    let samples =
+        (1..=DRAWN).map(|seed| samples::sample(&variety.points, &variety.phi, seed, near));
+    model.graph.is_doubtful(samples)
 }
 
 /// What failed, and the graph where there is one.
