@@ -123,6 +123,11 @@ impl Graph {
             .is_doubtful(&self.nodes, &self.constants, samples)
     }
 
+    /// Whether there is a square root in an expression: what has its value may be another number.
+    pub fn has_root_below(&self, edge: Edge) -> bool {
+        self.shadow.is_rooted(edge.node())
+    }
+
     /// The real values of a symbol.
     pub fn reals(&self, symbol: usize) -> Reals {
         self.shadow.symbol(symbol)

@@ -55,6 +55,11 @@ impl Shadow {
         self.rooted.push(self.has_root(node));
     }
 
+    /// Whether a square root is below a node.
+    pub(super) fn is_rooted(&self, id: NodeId) -> bool {
+        self.rooted[id as usize]
+    }
+
     fn has_root(&self, node: Node) -> bool {
         let below = |edge: Edge| self.rooted[edge.node() as usize];
         node.is_root() || node.children().any(below)

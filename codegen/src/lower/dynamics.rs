@@ -142,11 +142,21 @@ fn name_of(item: &crate::syntax::ast::Item) -> Option<String> {
 /// The names of the outputs; those that are taken are reported.
 fn output_names<'a>(system: &'a System, report: &mut Report) -> Vec<&'a Ident> {
     let mut outputs: Vec<&Ident> = Vec::new();
+    let described: Vec<String> = system.items.iter().filter_map(name_of).collect();
     for item in &system.items {
         let ItemKind::Output { name, .. } = &item.kind else {
             continue;
         };
         let first = outputs.iter().find(|known| known.name == name.name);
+        if let Some(of) = name.name.strip_suffix(SLOPES)
+            && described.iter().any(|name| name == of)
+        {
+            let message = format!("`{}` are the slopes of the output `{of}`", name.name);
+            report.push(
+                Diagnostic::new(name.span, message).help("choose another name for this output"),
+            );
+            continue;
+        }
         if first.is_none() && !is_taken(&name.name) {
             outputs.push(name);
             continue;
@@ -180,10 +190,27 @@ fn asked(system: &System, outputs: &[&Ident], report: &mut Report) -> Asked {
             Wanted::Function(name) => function(name, (system, outputs), &mut asked, report),
             Wanted::Jacobian { frame, axes } => {
                 let own = |axes: &Ident| axes.name == frame.name || axes.name == "body";
-                asked.jacobians.push(Jacobian {
+                let jacobian = Jacobian {
                     frame: frame.name.clone(),
                     own: axes.as_ref().is_some_and(own),
+                };
+                let others = asked.jacobians.iter();
+                let mut others = others.filter(|other| other.frame != jacobian.frame);
+                let both = others.find_map(|other| {
+                    let name = other
+                        .names()
+                        .find(|name| jacobian.names().any(|own| own == *name))?;
+                    Some((other.frame.clone(), name))
                 });
+                if let Some((other, name)) = both {
+                    let message = format!(
+                        "the frames `{other}` and `{}` would both have a function `{name}`",
+                        jacobian.frame
+                    );
+                    let error = Diagnostic::new(frame.span, message);
+                    report.push(error.help("give one of these frames another name"));
+                }
+                asked.jacobians.push(jacobian);
             }
         }
     }

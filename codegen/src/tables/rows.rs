@@ -64,7 +64,8 @@ enum Key {
 }
 
 /// For every cell that is not zero its row, and whether it has the row's negative. Values are equal
-/// where they agree at the graph's point; the expression without coordinates is kept.
+/// where they agree at the graph's point, or with square roots below them are one node; the expression without coordinates
+/// is kept.
 pub fn rows(cells: &[Cell], graph: &Graph) -> (Vec<Row>, Vec<Option<(usize, bool)>>) {
     let mut rows: Vec<Row> = Vec::new();
     let mut known: FxHashMap<Key, (usize, bool)> = FxHashMap::default();
@@ -75,8 +76,8 @@ pub fn rows(cells: &[Cell], graph: &Graph) -> (Vec<Row>, Vec<Option<(usize, bool
             continue;
         }
         let value = graph.value(cell.edge);
-        // Nodes that the graph does not merge carry no values: they are their own key.
-        let (key, negative) = if value.is_zero() {
+        // Nodes that the graph does not merge are their own key.
+        let (key, negative) = if value.is_zero() || graph.has_root_below(cell.edge) {
             (Key::Node(cell.edge.node()), cell.edge.is_negative())
         } else if value.is_negative() {
             (Key::Value(-value), true)

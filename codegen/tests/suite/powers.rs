@@ -1,4 +1,4 @@
-//! Powers with a half-integer exponent where their base is 0: contacts in the air, friction and drag at rest.
+//! Powers with a fractional exponent where their base is 0: contacts in the air, friction and drag at rest.
 
 use crate::common::{generated, value};
 
@@ -16,23 +16,50 @@ fn system(statements: &str) -> String {
     )
 }
 
-/// A contact by Hertz does nothing in the air, and has the slopes of its law in the ground.
+/// A contact by Hertz, and by Hunt and Crossley, does nothing in the air, and has the slopes of its law in the ground.
 #[test]
 fn a_contact_in_the_air_does_nothing() {
-    let of = generated(&system("potential k * max(0, -z)^(5/2);"));
-    let force = |z: f64| value(&of, "potential_force", [&[z], &[0.0], &[], &[]])[0];
-    assert_eq!(force(1.0), 0.0);
-    assert_eq!(value(&of, "accel", [&[1.0], &[0.3], &[], &[]]), [0.0]);
-    assert_eq!(slopes(&of, &[1.0], &[0.3]), [0.0, 0.0]);
-    assert!((force(-0.25) + 100.0 * 2.5 * 0.125).abs() < 1e-12);
-    let [by_z, _] = slopes(&of, &[-0.25], &[0.0]);
-    assert!((by_z + 100.0 * 2.5 * 1.5 * 0.5).abs() < 1e-11);
+    for (law, p) in [
+        ("max(0, -z)^(5/2)", 2.5),
+        ("max(-z, 0)^2.3", 2.3),
+        ("max(-z, 0)^(3/2)", 1.5),
+        ("max(-z, 0)^(4/3)", 4.0 / 3.0),
+        ("(if z < 0 { -z } else { 0 })^2.1", 2.1),
+    ] {
+        let of = generated(&system(&format!("potential k * ({law});")));
+        let force = |z: f64| value(&of, "potential_force", [&[z], &[0.0], &[], &[]])[0];
+        assert_eq!(force(1.0), 0.0, "{law}");
+        assert_eq!(
+            value(&of, "accel", [&[1.0], &[0.3], &[], &[]]),
+            [0.0],
+            "{law}"
+        );
+        assert_eq!(slopes(&of, &[1.0], &[0.3]), [0.0, 0.0], "{law}");
+        let expected = 100.0 * p * 0.25_f64.powf(p - 1.0);
+        assert!((force(-0.25) + expected).abs() < 1e-11, "{law}");
+        let [by_z, _] = slopes(&of, &[-0.25], &[0.0]);
+        let expected = 100.0 * p * (p - 1.0) * 0.25_f64.powf(p - 2.0);
+        assert!((by_z + expected).abs() < 1e-11 * expected, "{law}: {by_z}");
+    }
 }
 
 /// Slopes of forces at 0 are 0 where the exponent is above 1; beside it they are those of the laws.
 #[test]
 fn forces_by_powers_have_slopes_at_zero() {
-    let cases: [(&str, f64, f64); 9] = [
+    let third = 0.25_f64.powf(1.0 / 3.0);
+    let cases: [(&str, f64, f64); 13] = [
+        ("k * max(0, -z)^1.3", 0.0, 0.0),
+        ("abs(z)^(4/3) * sign(z)", 4.0 / 3.0 * third, 0.0),
+        (
+            "(z^2 + w^2)^(4/3)",
+            8.0 / 3.0 * 0.25 * 0.125_f64.powf(1.0 / 3.0),
+            8.0 / 3.0 * 0.25 * 0.125_f64.powf(1.0 / 3.0),
+        ),
+        (
+            "k * norm([z, w])^(7/3)",
+            700.0 / 3.0 * 0.25 * 0.125_f64.powf(1.0 / 6.0),
+            700.0 / 3.0 * 0.25 * 0.125_f64.powf(1.0 / 6.0),
+        ),
         ("k * max(0, -z)^(3/2)", 0.0, 0.0),
         ("k * max(0, -z)^(5/2)", 0.0, 0.0),
         ("-abs(w)^(3/2) * sign(w)", 0.0, -1.5 * 0.5),

@@ -358,3 +358,54 @@ fn roots_of_roots_of_logarithms_have_values() {
         assert!((found - expected).abs() < CLOSE, "{n}: {found}");
     }
 }
+
+/// |e| by a root, and e, whatever stands beside it: e of either sign, with roots in it, of which many real values of
+/// coordinates know nothing.
+#[test]
+fn roots_of_squares_are_absolute() {
+    let parts: [(&str, fn(f64, f64) -> f64); 6] = [
+        ("asin(x)", |x, _| x.asin()),
+        ("(x * sqrt(2 + x))", |x, _| x * (2.0 + x).sqrt()),
+        ("(acos(x) - acos(y))", |x, y| x.acos() - y.acos()),
+        ("(x * sqrt(1 - x^2))", |x, _| x * (1.0 - x * x).sqrt()),
+        ("(acos(x * x) - 1)", |x, _| (x * x).acos() - 1.0),
+        ("asin(x * y)", |x, y| (x * y).asin()),
+    ];
+    let forms: [(&str, fn(f64) -> f64); 6] = [
+        ("((E)^(-2))^(-1/2)", f64::abs),
+        ("1 / sqrt((E)^2)", |e| 1.0 / e.abs()),
+        ("sqrt((E)^2) * (E)", |e| e.abs() * e),
+        ("sqrt((E)^2)", f64::abs),
+        ("((E)^2)^(3/2)", |e| e.abs().powi(3)),
+        ("1 / (E)", |e| 1.0 / e),
+    ];
+    for (part, of_part) in parts {
+        for case in 0..8 {
+            // Other symbols before them lead to other points.
+            let count = 2 + case % 3;
+            let chosen: Vec<_> = (0..count)
+                .map(|k| forms[(case + k * (1 + case / 3)) % 6])
+                .collect();
+            let lines = chosen.iter().enumerate();
+            let lines =
+                lines.map(|(k, (form, _))| format!("output o{k} = {};", form.replace('E', part)));
+            let parameters = (0..case).map(|k| format!("param _a{k} = {k} / 3 + 1;"));
+            let of = generated(&format!(
+                "system Roots {{ {} coord x, y; velocity v, w; rate x = v, y = w; kinetic (v^2 + w^2) / 2; {} }}",
+                parameters.collect::<String>(),
+                lines.collect::<String>(),
+            ));
+            for [x, y] in [[0.4, 0.7], [-0.4, 0.7], [0.4, -0.7], [-0.4, -0.7]] {
+                for (k, (form, value)) in chosen.iter().enumerate() {
+                    let (found, expected) =
+                        (output(&of, &format!("o{k}"), &[x, y]), value(of_part(x, y)));
+                    let error = (found - expected).abs();
+                    assert!(
+                        error <= CLOSE * (1.0 + expected.abs()),
+                        "{form} of {part} at {x}, {y} is {expected}, not {found} (case {case})"
+                    );
+                }
+            }
+        }
+    }
+}
