@@ -89,14 +89,15 @@ fn errors<S: Scalar>() -> Result<[f64; 2], String> {
 }
 
 /// Beside the loops their rows contradict one another. That is left out before anything is divided by what the diagonal is raised
-/// by, in numbers of either length: neither accelerations nor slopes lose more than rounding.
+/// by, in numbers of either length, so that neither accelerations nor slopes lose digits to it. Slopes lose some where the first
+/// rows nearly depend on one another without the last, as where the cranks are level: elimination begins with these.
 #[test]
 fn what_the_diagonal_is_raised_by_costs_no_digits() -> Result<(), String> {
     fn holds<S: Scalar>() -> Result<(), String> {
         let [accelerations, slopes] = errors::<S>()?;
         println!("{accelerations:.1e} {slopes:.1e}");
         assert!(accelerations < 1e3 * S::EPSILON, "{accelerations}");
-        assert!(slopes < 1e3 * S::EPSILON, "{slopes}");
+        assert!(slopes < 4e3 * S::EPSILON, "{slopes}");
         Ok(())
     }
     holds::<f64>()?;

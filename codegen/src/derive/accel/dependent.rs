@@ -1,16 +1,18 @@
-//! Rows of B that depend on one another along the whole motion, as the loops of overconstrained mechanisms have them:
-//! S = B M⁻¹ Bᵀ is singular there, and λ of S λ = r is found by S⁺ in place of S⁻¹.
+//! Rows of B that depend on one another along the whole motion, as those of overconstrained mechanisms do where their loops are
+//! closed. S = B M⁻¹ Bᵀ is singular there, and S λ = r is solved by S⁺ in place of S⁻¹.
 //!
 //! The diagonal of S is raised by a small part of itself that rounding does not hide (`Function::Raised`): R = S + E with a
-//! diagonal E. With T = E R⁻¹, which is small across what is independent and 1 along what is not, S⁻¹ is R⁻¹ (1 − T)⁻¹, and
+//! diagonal E. T = E R⁻¹ is small across the rows that are independent and 1 along what contradicts them. S⁻¹ is
+//! R⁻¹ (1 − T)⁻¹, and
 //!
 //! S⁺ = R⁻¹ (1 + 3 T + 6 T²) (1 − T)²
 //!
-//! is the same up to third order in T, and 0 where T is 1. So what contradicts the other rows in r is taken away before it is
-//! divided by E. There is none in the r of ξ̇ where the loops are closed, but there is in its slopes: displacements and
-//! velocities lead away from the loops, where their rows are independent. Solutions that only agree with S⁻¹ where r is
-//! without contradiction have slopes as large as 1/E along those of λ that B does not see; what B leaves of these is their
-//! rounding.
+//! agrees with it up to the second order in T, but is 0 where T is 1: what is contradictory in r is taken away before it is
+//! divided by E.
+//!
+//! The right side for ξ̇ is not contradictory where the loops are closed, and steps of refinement by R would serve it. But its
+//! slopes are: displacements and velocities also open the loops. With refinement the slopes of λ are as large as 1/E along what
+//! Bᵀ maps to 0, and Bᵀ leaves of them their rounding, 1e-8 of the slopes of ξ̇. With S⁺ nothing is that large.
 
 use super::saddle::solve_columns;
 use crate::algebra::fp::Fp;
