@@ -27,6 +27,7 @@ mod linearize;
 mod methods;
 #[path = "common/pinocchio.rs"]
 mod pinocchio;
+mod redundant;
 mod regressor;
 mod robots;
 mod sampling;

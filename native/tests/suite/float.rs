@@ -88,17 +88,16 @@ fn errors<S: Scalar>() -> Result<[f64; 2], String> {
     Ok(worst.map(|error| error * INERTIA / (9.81 * along.hypot(across))))
 }
 
-/// Beside the loops the multipliers grow like 1/r with what the diagonal is raised by, 1 + r: along the motion this cancels, and
-/// leaves rounding of ε/r in slopes, with the same factor in numbers of either length. Accelerations have it nowhere.
+/// Beside the loops their rows contradict one another. That is left out before anything is divided by what the diagonal is raised
+/// by, in numbers of either length, so that neither accelerations nor slopes lose digits to it. Slopes lose some where the first
+/// rows nearly depend on one another without the last, as where the cranks are level: elimination begins with these.
 #[test]
-fn slopes_lose_what_the_diagonal_is_raised_by_and_accelerations_nothing() -> Result<(), String> {
+fn what_the_diagonal_is_raised_by_costs_no_digits() -> Result<(), String> {
     fn holds<S: Scalar>() -> Result<(), String> {
         let [accelerations, slopes] = errors::<S>()?;
-        let raised = S::from_f64(1.0).raised().largest_lane() - 1.0;
-        assert!(raised > 0.0);
-        assert!(accelerations < 1e3 * S::EPSILON, "{accelerations}");
-        assert!(slopes < 20.0 * S::EPSILON / raised, "{slopes}");
         println!("{accelerations:.1e} {slopes:.1e}");
+        assert!(accelerations < 1e3 * S::EPSILON, "{accelerations}");
+        assert!(slopes < 4e3 * S::EPSILON, "{slopes}");
         Ok(())
     }
     holds::<f64>()?;

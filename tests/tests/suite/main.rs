@@ -32,6 +32,7 @@ mod physics_loads;
 mod physics_long;
 mod pivots;
 mod public_api;
+mod redundant;
 mod references;
 #[path = "../../../codegen/tests/suite/common/size.rs"]
 mod size;

@@ -7,6 +7,7 @@
 pub(super) mod best;
 pub mod branches;
 pub mod cheapest;
+mod dependent;
 pub(super) mod hybrid;
 pub mod parts;
 pub mod polynomial;
@@ -123,7 +124,7 @@ fn constrained(setting: &Setting, care: &Care) -> Option<(Acceleration, Computat
     let n = setting.model.n();
     let rows = hybrid::rows(&setting.model);
     let constraints = &setting.model.constraints;
-    let raising = saddle::raising(constraints, rows.len() - constraints.len());
+    let raising = dependent::raising(constraints, rows.len() - constraints.len());
     let raising = setting.model.overconstrained.then_some(&raising[..]);
     let mut best: Option<(Acceleration, Parts)> = None;
     for variant in variants(&setting.model, n <= SMALL) {

@@ -1,13 +1,13 @@
 //! ξ̇ and the multipliers λ of M ξ̇ = f − h + Bᵀ λ, B ξ̇ = b, by M = L D Lᵀ and the Schur complement
 //! S = B M⁻¹ Bᵀ, both unrolled.
 
+use super::dependent::{CLEARED, SERIES, multipliers_at, raise, raising};
 use super::parts::Parts;
 use crate::algebra::fp::Fp;
 use crate::algebra::graph::{Edge, Function, Graph};
 use crate::algebra::lane::Lane;
 use crate::derive::calculus::Calculus;
 use crate::model::Model;
-use crate::model::pfaffian::{Kind, Pfaffian};
 
 /// The solution.
 #[derive(Clone, Debug)]
@@ -50,29 +50,9 @@ pub struct Factored {
     /// L⁻¹ Bᵀ by columns, and the same divided by D.
     bonds: Vec<Vec<Edge>>,
     scaled: Vec<Vec<Edge>>,
-    schur: Vec<Vec<Edge>>,
     inner: Factors,
-    refined: usize,
-}
-
-/// Where rows of B depend on one another along the whole motion, S is singular: its diagonal is raised by a small part of
-/// itself that rounding does not hide (`Function::Raised`), and two steps of refinement take the error of that away.
-const REFINED: usize = 2;
-
-/// Since a single row may vanish on the way, the diagonal is raised by the same part of a share of the sum over all rows of
-/// its equation, too.
-const SHARE: i64 = 1024;
-
-/// For each row the rows whose diagonal of S raises its own: all constraints, of a row of a loop; a row of another kind by itself.
-/// `more` rows of given rates stand behind the constraints.
-pub fn raising(constraints: &[Pfaffian], more: usize) -> Vec<Vec<usize>> {
-    let is_loop = |i: usize| constraints.get(i).is_some_and(|c| c.kind == Kind::Loop);
-    let rows = 0..constraints.len() + more;
-    rows.map(|i| match is_loop(i) {
-        false => vec![i],
-        true => (0..constraints.len()).collect(),
-    })
-    .collect()
+    /// The diagonal that S was raised by before it was factored, where it is singular.
+    raised: Vec<Edge>,
 }
 
 /// Factors with an order of elimination of M; `None` where a pivot vanishes identically.
@@ -105,31 +85,15 @@ pub fn factored(
             (schur[i][j], schur[j][i]) = (entry, entry);
         }
     }
-    let mut raised = schur.clone();
-    for (i, rows) in raising.unwrap_or(&[]).iter().enumerate() {
-        let own = schur[i][i];
-        raised[i][i] = match rows.len() {
-            1 => graph.apply(Function::Raised, own),
-            _ => {
-                let all: Vec<Edge> = rows.iter().map(|&j| schur[j][j]).collect();
-                let share = graph.ratio(1, SHARE);
-                let all = graph.sum(&all);
-                let all = graph.mul(share, all);
-                let size = graph.add(own, all);
-                let more = graph.apply(Function::Raised, size);
-                let more = graph.sub(more, size);
-                graph.add(own, more)
-            }
-        };
-    }
+    let mut matrix = schur;
+    let raised = raising.map_or(Vec::new(), |rows| raise(graph, &mut matrix, rows));
     Some(Factored {
         order: order.to_vec(),
-        inner: factor(graph, &mut raised)?,
+        inner: factor(graph, &mut matrix)?,
         mass,
         bonds,
         scaled,
-        schur,
-        refined: if raising.is_some() { REFINED } else { 0 },
+        raised,
     })
 }
 
@@ -177,28 +141,40 @@ impl Factored {
         }
     }
 
-    /// S⁻¹ r.
+    /// S⁻¹ r, or S⁺ r where S is singular.
     fn multipliers(&self, graph: &mut Graph, wanted: Vec<Edge>) -> Vec<Edge> {
-        let mut solution = vec![graph.zero(); wanted.len()];
-        for _ in 0..=self.refined {
-            let mut step: Vec<Edge> = wanted
-                .iter()
-                .zip(&self.schur)
-                .map(|(&wanted, row)| {
-                    let reached = graph.dot(row, &solution);
-                    graph.sub(wanted, reached)
-                })
-                .collect();
-            forward(graph, &self.inner, &mut step);
-            for (entry, &inverse) in step.iter_mut().zip(&self.inner.inverses) {
-                *entry = graph.mul(*entry, inverse);
+        if self.raised.is_empty() {
+            return self.divided(graph, wanted);
+        }
+        let mut left = wanted;
+        for _ in 0..CLEARED {
+            let step = self.divided(graph, left.clone());
+            for ((left, &raised), step) in left.iter_mut().zip(&self.raised).zip(step) {
+                let kept = graph.mul(raised, step);
+                *left = graph.sub(*left, kept);
             }
-            backward(graph, &self.inner, &mut step);
-            for (entry, more) in solution.iter_mut().zip(step) {
-                *entry = graph.add(*entry, more);
+        }
+        let mut solution = vec![graph.zero(); left.len()];
+        for factor in SERIES {
+            let factor = graph.ratio(factor, 1);
+            let step = self.divided(graph, left.clone());
+            for (place, &step) in step.iter().enumerate() {
+                let more = graph.mul(factor, step);
+                solution[place] = graph.add(solution[place], more);
+                left[place] = graph.mul(self.raised[place], step);
             }
         }
         solution
+    }
+
+    /// What L D Lᵀ of S, or of what it was raised to, makes of a right side.
+    fn divided(&self, graph: &mut Graph, mut right: Vec<Edge>) -> Vec<Edge> {
+        forward(graph, &self.inner, &mut right);
+        for (entry, &inverse) in right.iter_mut().zip(&self.inner.inverses) {
+            *entry = graph.mul(*entry, inverse);
+        }
+        backward(graph, &self.inner, &mut right);
+        right
     }
 }
 
@@ -344,27 +320,8 @@ pub fn solve_at(
             .function(Function::Raised, Fp::ONE, &Vec::new()),
         false => Fp::ONE,
     };
-    let mut raised = schur.clone();
-    for (i, rows) in raising.iter().enumerate() {
-        let own = schur[i * m + i];
-        let all = rows.iter().fold(Fp::ZERO, |sum, &j| sum + schur[j * m + j]);
-        let size = match rows.len() {
-            1 => own,
-            _ => own + all * Fp::from_i64(SHARE).inv()?,
-        };
-        raised[i * m + i] = own + size * factor - size;
-    }
-    let mut multipliers = vec![Fp::ZERO; m];
-    for _ in 0..=REFINED {
-        let rest: Vec<Fp> = (0..m)
-            .map(|i| right[i] - dot(row(i), free) - dot(&schur[i * m..(i + 1) * m], &multipliers))
-            .collect();
-        let step = solve_columns(&raised, m, &[rest])?;
-        multipliers
-            .iter_mut()
-            .zip(&step[0])
-            .for_each(|(sum, &more)| *sum = *sum + more);
-    }
+    let wanted: Vec<Fp> = (0..m).map(|i| right[i] - dot(row(i), free)).collect();
+    let multipliers = multipliers_at(&schur, &raising, wanted, factor)?;
     let moved = (0..n).map(|k| {
         let column: Vec<Fp> = bonds.iter().map(|bond| bond[k]).collect();
         free[k] + dot(&column, &multipliers)
@@ -377,7 +334,7 @@ pub fn solve_at(
 }
 
 /// A⁻¹ b for several b.
-fn solve_columns(a: &[Fp], n: usize, columns: &[Vec<Fp>]) -> Option<Vec<Vec<Fp>>> {
+pub(super) fn solve_columns(a: &[Fp], n: usize, columns: &[Vec<Fp>]) -> Option<Vec<Vec<Fp>>> {
     let mut rows: Vec<Vec<Fp>> = (0..n)
         .map(|i| {
             let right = columns.iter().map(|column| column[i]);
