@@ -4,9 +4,9 @@ use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor}
 use serde_json::{Map, Value};
 use std::fmt;
 
-/// The value of a text; the error says what is wrong, and where.
+/// The value of a text, with or without a byte order mark; the error says what is wrong, and where.
 pub fn parse(text: &str) -> Result<Value, String> {
-    match serde_json::from_str::<Strict>(text) {
+    match serde_json::from_str::<Strict>(text.strip_prefix('\u{feff}').unwrap_or(text)) {
         Ok(Strict(value)) => Ok(value),
         Err(error) if error.is_data() => Err(error.to_string()),
         Err(error) => Err(format!("not valid JSON: {error}")),
@@ -88,6 +88,7 @@ mod tests {
         assert_eq!(error, "`q` stands twice in one object at line 2 column 4");
         // The same name in two objects is two names.
         assert!(parse("{\"a\": {\"q\": 1}, \"b\": {\"q\": 1}}").is_ok());
+        assert!(parse("\u{feff}{\"q\": 1}").is_ok());
         let error = parse("{\"q\": NaN}").expect_err("no JSON");
         assert!(error.starts_with("not valid JSON"), "{error}");
         let error = parse("{\"q\": 1e999}").expect_err("too large");

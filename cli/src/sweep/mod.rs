@@ -152,9 +152,10 @@ const LONG: &str = "\
   input F = grid(0, 10, 11)                      11 numbers from 0 to 10; several grids make all combinations
   start R = normal(0, 0.1)                       a rotation, by the vector of a turn from its start, about axes of the
                                                  body (rad); of a pose X so X.R, and its position as X.p
-A single number stands for all entries. Arguments may be expressions of parameters that are not varied. A member
-begins at the start that the description would have if it contained its numbers: what is not varied follows
-where prescribed motion, loops and other constraints ask for it, and else stay.
+A single number stands for all entries. Arguments may be expressions of parameters that other items do not vary:
+`m = normal(m, m / 10)` is about the value that m has. A member begins at the start that the description would have
+if it contained its numbers: what is not varied follows where prescribed motion, loops and other constraints ask for
+it, and else stays.
 
 --keep takes items, `;` between them:
   end                      the time at which the run ended, coordinates and velocities; where the description declares

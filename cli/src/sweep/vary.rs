@@ -36,6 +36,13 @@ pub struct Vary {
     members: u64,
 }
 
+/// The parameter that an item varies.
+fn parameter<'a>(item: Piece<'a>) -> Option<&'a str> {
+    let (left, _) = item.text.split_once('=')?;
+    let name = left.split('[').next()?.trim();
+    (!name.is_empty() && !name.contains(char::is_whitespace)).then_some(name)
+}
+
 impl Vary {
     /// Reads the option; `members` is how many are asked for, where that is said.
     pub fn read(
@@ -54,9 +61,11 @@ impl Vary {
             members: 0,
         };
         let mut errors = Vec::new();
-        for item in whole.split(';') {
+        let items = whole.split(';');
+        let varied: Vec<&str> = items.iter().filter_map(|item| parameter(*item)).collect();
+        for item in items {
             if !item.text.is_empty()
-                && let Err(more) = vary.item(item, generated, state)
+                && let Err(more) = vary.item(item, &varied, generated, state)
             {
                 errors.extend(more);
             }
@@ -83,6 +92,7 @@ impl Vary {
     fn item(
         &mut self,
         item: Piece,
+        varied: &[&str],
         generated: &Generated,
         state: &State,
     ) -> Result<(), Vec<Diagnostic>> {
@@ -104,6 +114,13 @@ impl Vary {
         let taken = |entry: &Entry| entry.target == number && places.contains(&entry.place);
         if self.entries.iter().any(taken) {
             return Err(vec![left.wrong(format!("`{}` is varied twice", left.text))]);
+        }
+        let mut words = right.text.split(|c: char| !c.is_alphanumeric() && !matches!(c, '_' | '.'));
+        let own = parameter(item);
+        if let Some(word) = words.find(|word| varied.contains(word) && own != Some(*word)) {
+            let message = format!("`{word}` is varied itself, and has no value here");
+            let help = "arguments are numbers, and expressions of parameters that other items do not vary";
+            return Err(vec![right.wrong(message).help(help)]);
         }
         let numbers = |text: &str| inputs::constant(text, generated, &state.params);
         let distributions = Distribution::read(*right, places.len(), &numbers)?;

@@ -185,6 +185,21 @@ fn grids_make_all_combinations() {
     );
 }
 
+/// A distribution about the value of a parameter is about its own, or about one that is the same for all members.
+#[test]
+fn arguments_are_not_varied_by_others() {
+    let said = refused(&[
+        "--vary",
+        "m = normal(m, m / 10); start w = normal(m, 1)",
+        "--members",
+        "3",
+        "--until",
+        "1",
+    ]);
+    assert!(said.contains("`m` is varied itself, and has no value here"), "{said}");
+    assert!(said.contains(":1:34") && said.contains("1 error"), "{said}");
+}
+
 #[test]
 fn all_that_is_wrong_is_said_at_once() {
     let said = refused(&[

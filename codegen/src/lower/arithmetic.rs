@@ -157,7 +157,7 @@ impl Evaluator<'_> {
         }
         // Of a norm as a power of its square.
         let half = exponent / BigRational::from_integer(2.into());
-        if let (Node::Apply(Function::Sqrt, square), false, true) = (
+        if let (Node::Apply(Function::Sqrt | Function::Norm, square), false, true) = (
             graph.node(base.node()),
             base.is_negative(),
             half > BigRational::one(),

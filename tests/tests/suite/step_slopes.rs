@@ -13,13 +13,13 @@ use hamel_tests::dc_pendulum::{DcPendulum, DcPendulumParameters};
 use hamel_tests::linear;
 
 hamel::rigid_eom! {
-    /// The resistance of a turbulent flow by a power of the speed, which has no slope at rest by the logarithm.
+    /// The resistance of a turbulent flow by the logarithm of the speed, which has no slope at rest.
     system Turbulent {
         coord x;
         velocity v;
         rate x = v;
         kinetic v^2 / 2;
-        generalized force v = -norm([v])^1.7 * v;
+        generalized force v = -exp(1.7 * log(norm([v]))) * v;
         generate all, linearize;
     }
 }

@@ -17,7 +17,7 @@ use crate::program::count::count;
 enum Route {
     /// f is transformed from link to link.
     Wrenches,
-    /// The same for wrenches with a force; for pure torques, which are those of Θ, columns S of all joints before are
+    /// The same for wrenches with a force; for pure torques, which are those of second moments, columns S of all joints before are
     /// transformed to the link.
     Mixed,
     /// Columns S are transformed for all wrenches.
