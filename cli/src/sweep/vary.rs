@@ -115,11 +115,14 @@ impl Vary {
         if self.entries.iter().any(taken) {
             return Err(vec![left.wrong(format!("`{}` is varied twice", left.text))]);
         }
-        let mut words = right.text.split(|c: char| !c.is_alphanumeric() && !matches!(c, '_' | '.'));
+        let mut words = right
+            .text
+            .split(|c: char| !c.is_alphanumeric() && !matches!(c, '_' | '.'));
         let own = parameter(item);
         if let Some(word) = words.find(|word| varied.contains(word) && own != Some(*word)) {
             let message = format!("`{word}` is varied itself, and has no value here");
-            let help = "arguments are numbers, and expressions of parameters that other items do not vary";
+            let help =
+                "arguments are numbers, and expressions of parameters that other items do not vary";
             return Err(vec![right.wrong(message).help(help)]);
         }
         let numbers = |text: &str| inputs::constant(text, generated, &state.params);

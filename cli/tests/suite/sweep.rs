@@ -196,7 +196,10 @@ fn arguments_are_not_varied_by_others() {
         "--until",
         "1",
     ]);
-    assert!(said.contains("`m` is varied itself, and has no value here"), "{said}");
+    assert!(
+        said.contains("`m` is varied itself, and has no value here"),
+        "{said}"
+    );
     assert!(said.contains(":1:34") && said.contains("1 error"), "{said}");
 }
 

@@ -3,7 +3,7 @@
 //! joint turns about a point c that others turn about, too, this is S_ω·(t − c × f).
 
 use super::parameters::Link;
-use super::wrenches::{AXES, Axes, Moving};
+use super::wrenches::{AXES, Axes, Motions};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, add3, cross, scale3, sub3, zero3};
 use crate::algebra::transplant::rebuild;
@@ -29,46 +29,41 @@ enum Route {
     },
 }
 
+const fn twists(meeting: bool, carried: bool) -> Route {
+    Route::Twists { meeting, carried }
+}
+
 /// All of them.
 const ROUTES: [Route; 6] = [
     Route::Wrenches,
     Route::Mixed,
-    Route::Twists {
-        meeting: false,
-        carried: false,
-    },
-    Route::Twists {
-        meeting: false,
-        carried: true,
-    },
-    Route::Twists {
-        meeting: true,
-        carried: false,
-    },
-    Route::Twists {
-        meeting: true,
-        carried: true,
-    },
+    twists(false, false),
+    twists(false, true),
+    twists(true, false),
+    twists(true, true),
 ];
 
-/// Places of routes that are tried together.
-const TRIED_TOGETHER: [&[usize]; 4] = [
-    &[0, 1, 2],
-    &[0, 1, 2, 3],
-    &[0, 1, 2, 4],
-    &[0, 1, 2, 3, 4, 5],
+/// Routes of which the cheapest is taken for link after link: without points of meeting, and with them.
+const TRIED_TOGETHER: [&[Route]; 2] = [
+    &[
+        Route::Wrenches,
+        Route::Mixed,
+        twists(false, false),
+        twists(false, true),
+    ],
+    &[Route::Wrenches, twists(true, false)],
 ];
 
 /// How many changes of single routes are tried at most.
-const MOST_CHANGES: usize = 200;
+const MOST_CHANGES: usize = 60;
 
 /// The columns of all links, ten of each, of second moments in the place of Θ on its diagonal.
 pub fn inertial(model: &mut Model, tree: &Tree, links: &[Link]) -> Vec<Vec<Edge>> {
-    let moving = Moving::new(model, tree, Axes::Own);
+    let motions = Motions::new(model, tree, Axes::Own);
     let all: Vec<usize> = (0..10).collect();
     let links = links.iter().enumerate();
     links
-        .flat_map(|link| of_link(&mut model.graph, &moving, link, &all, Route::Wrenches))
+        .flat_map(|link| of_link(&mut model.graph, &motions, link, &all, Route::Wrenches))
         .collect()
 }
 
@@ -90,14 +85,14 @@ pub fn cheapest(model: &mut Model, tree: &Tree, links: &[Link], kept: &[usize]) 
         return Vec::new();
     };
     // Those that are kept come first: what is equal is computed as they need it.
-    let moving = Moving::new(model, tree, way.axes);
+    let motions = Motions::new(model, tree, way.axes);
     let mut columns: Vec<Option<Vec<Edge>>> = vec![None; 10 * links.len()];
     for first in [true, false] {
         for (index, link) in links.iter().enumerate() {
             let own = (0..10).filter(|k| kept[index].contains(k) == first);
             let own: Vec<usize> = own.collect();
             let route = way.routes[index];
-            let found = of_link(&mut model.graph, &moving, (index, link), &own, route);
+            let found = of_link(&mut model.graph, &motions, (index, link), &own, route);
             for (k, column) in own.into_iter().zip(found) {
                 columns[10 * index + k] = Some(column);
             }
@@ -123,21 +118,21 @@ struct Way {
 }
 
 impl Search<'_> {
-    /// The best way: link by link, after those before it, with all routes and with some; then, one after the other, with other
-    /// routes, since what is transformed serves several links.
+    /// The best way: link by link, after those before it; then with other routes of single links, since what is transformed
+    /// serves several of them.
     fn best(&self) -> Option<Way> {
         let ways = AXES.iter().flat_map(|&axes| {
             let mut tried = self.model.clone();
-            let moving = Moving::new(&mut tried, self.tree, axes);
+            let motions = Motions::new(&mut tried, self.tree, axes);
             let graph = tried.graph;
             TRIED_TOGETHER.map(|allowed| {
-                let (cost, routes) = self.one_by_one(&graph, &moving, allowed);
+                let (cost, routes) = self.one_by_one(&graph, &motions, allowed);
                 Way { cost, axes, routes }
             })
         });
         let mut best = ways.min_by_key(|way| way.cost)?;
         let mut tried = self.model.clone();
-        let moving = Moving::new(&mut tried, self.tree, best.axes);
+        let motions = Motions::new(&mut tried, self.tree, best.axes);
         let mut left = MOST_CHANGES;
         loop {
             let before = best.cost;
@@ -154,7 +149,7 @@ impl Search<'_> {
                 routes[index] = route;
                 let mut graph = tried.graph.clone();
                 let all = self.costly();
-                let roots = all.flat_map(|i| self.kept_columns(&mut graph, &moving, i, routes[i]));
+                let roots = all.flat_map(|i| self.kept_columns(&mut graph, &motions, i, routes[i]));
                 let roots: Vec<Edge> = roots.collect();
                 let cost = count(&graph, &roots).weight();
                 if cost < best.cost {
@@ -178,22 +173,27 @@ impl Search<'_> {
     fn kept_columns(
         &self,
         graph: &mut Graph,
-        moving: &Moving,
+        motions: &Motions,
         index: usize,
         route: Route,
     ) -> Vec<Edge> {
         let link = (index, &self.links[index]);
-        of_link(graph, moving, link, &self.kept[index], route).concat()
+        of_link(graph, motions, link, &self.kept[index], route).concat()
     }
 
     /// The cheapest of some routes for each link after the other.
-    fn one_by_one(&self, graph: &Graph, moving: &Moving, allowed: &[usize]) -> (usize, Vec<Route>) {
+    fn one_by_one(
+        &self,
+        graph: &Graph,
+        motions: &Motions,
+        allowed: &[Route],
+    ) -> (usize, Vec<Route>) {
         let mut taken = vec![Route::Wrenches; self.links.len()];
         let (mut least, mut graph, mut roots) = (0, graph.clone(), Vec::new());
         for index in self.costly() {
-            let tried = allowed.iter().map(|&place| {
-                let (route, mut graph) = (ROUTES[place], graph.clone());
-                let found = self.kept_columns(&mut graph, moving, index, route);
+            let tried = allowed.iter().map(|&route| {
+                let mut graph = graph.clone();
+                let found = self.kept_columns(&mut graph, motions, index, route);
                 let roots = [&roots[..], &found].concat();
                 (count(&graph, &roots).weight(), route, graph, roots)
             });
@@ -208,13 +208,13 @@ impl Search<'_> {
 /// The columns of some parameters of a link.
 fn of_link(
     graph: &mut Graph,
-    moving: &Moving,
+    motions: &Motions,
     (index, link): (usize, &Link),
     own: &[usize],
     route: Route,
 ) -> Vec<Vec<Edge>> {
-    let tree = &moving.tree;
-    let wrenches = moving.wrenches(graph, index, link);
+    let tree = &motions.tree;
+    let wrenches = motions.wrenches(graph, index, link);
     let zero = zero3(graph);
     let (meeting, carried) = match route {
         Route::Wrenches | Route::Mixed => (false, false),

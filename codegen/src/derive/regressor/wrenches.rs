@@ -30,7 +30,7 @@ pub enum Axes {
 pub const AXES: [Axes; 3] = [Axes::Own, Axes::Shared, Axes::Stepwise];
 
 /// The motion of all links in some axes.
-pub struct Moving {
+pub struct Motions {
     /// The links in these axes.
     pub tree: Tree,
     /// The turn of a link's own axes in these, where they differ.
@@ -38,9 +38,9 @@ pub struct Moving {
     motions: Vec<LinkMotion>,
 }
 
-impl Moving {
+impl Motions {
     /// The motion of the model's links.
-    pub fn new(model: &mut Model, tree: &Tree, axes: Axes) -> Self {
+    pub(super) fn new(model: &mut Model, tree: &Tree, axes: Axes) -> Self {
         let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
         let graph = &mut model.graph;
         let (tree, lags) = match axes {
@@ -52,7 +52,7 @@ impl Moving {
             Axes::Stepwise => Tensors::Chained,
         };
         let motions = motions_by(tensors, graph, &tree, (&xi, &xi_dot), gravity);
-        Moving {
+        Motions {
             tree,
             lags,
             motions,
@@ -60,7 +60,7 @@ impl Moving {
     }
 
     /// The wrenches of a link's ten parameters, in the axes of the tree.
-    pub fn wrenches(&self, graph: &mut Graph, index: usize, link: &Link) -> Vec<Wrench> {
+    pub(super) fn wrenches(&self, graph: &mut Graph, index: usize, link: &Link) -> Vec<Wrench> {
         let motion = &self.motions[index];
         match &self.lags[index] {
             None => in_own_axes(graph, motion, &link.axes),
