@@ -359,11 +359,15 @@ fn roots_of_roots_of_logarithms_have_values() {
     }
 }
 
+/// e of x and y, and a form of e, with their values.
+type Part = (&'static str, fn(f64, f64) -> f64);
+type Form = (&'static str, fn(f64) -> f64);
+
 /// |e| by a root, and e, whatever stands beside it: e of either sign, with roots in it, of which many real values of
 /// coordinates know nothing.
 #[test]
 fn roots_of_squares_are_absolute() {
-    let parts: [(&str, fn(f64, f64) -> f64); 6] = [
+    let parts: [Part; 6] = [
         ("asin(x)", |x, _| x.asin()),
         ("(x * sqrt(2 + x))", |x, _| x * (2.0 + x).sqrt()),
         ("(acos(x) - acos(y))", |x, y| x.acos() - y.acos()),
@@ -371,7 +375,7 @@ fn roots_of_squares_are_absolute() {
         ("(acos(x * x) - 1)", |x, _| (x * x).acos() - 1.0),
         ("asin(x * y)", |x, y| (x * y).asin()),
     ];
-    let forms: [(&str, fn(f64) -> f64); 6] = [
+    let forms: [Form; 6] = [
         ("((E)^(-2))^(-1/2)", f64::abs),
         ("1 / sqrt((E)^2)", |e| 1.0 / e.abs()),
         ("sqrt((E)^2) * (E)", |e| e.abs() * e),
