@@ -116,8 +116,8 @@ impl Graph {
         self.shadow.apart = true;
     }
 
-    /// Whether an expression with a square root below it was taken for another one that it is not, or of which many real values
-    /// of the symbols do not say whether it is its negative.
+    /// Whether an expression with a square root below it was taken for another one that it is not at some real values of the
+    /// symbols, or that has a value at too few of them.
     pub fn is_doubtful(&self, samples: impl Iterator<Item = Vec<Reals>>) -> bool {
         self.shadow
             .is_doubtful(&self.nodes, &self.constants, samples)

@@ -45,16 +45,6 @@ impl Real {
         !self.value.is_nan()
     }
 
-    /// Whether its sign is certain.
-    pub(super) fn has_sign(self) -> bool {
-        self.value.abs() > 4.0 * self.error
-    }
-
-    /// Whether it is known to be no larger.
-    pub(super) fn is_within(self, size: f64) -> bool {
-        self.value.abs() + self.error <= size
-    }
-
     fn is_undefined(self) -> bool {
         self.value.is_nan() && self.error == 0.0
     }

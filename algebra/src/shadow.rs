@@ -32,10 +32,8 @@ pub(super) struct Shadow {
     pub(super) apart: bool,
 }
 
-/// At how many samples a sign has to be certain.
-const DECISIVE: usize = 16;
-/// Error of a number that is 0.
-const SMALL: f64 = 1e-6;
+/// At how many samples two numbers have to be known, to be one.
+const FEWEST: usize = 16;
 
 impl Shadow {
     /// Other values of the symbols.
@@ -95,8 +93,7 @@ impl Shadow {
         contradicts
     }
 
-    /// Whether what was taken for something else is another number at one of many samples, or is known at too few of them to
-    /// be told from its negative.
+    /// Whether what was taken for something else is another number at one of many samples, or is known at too few of them.
     pub(super) fn is_doubtful(
         &self,
         nodes: &[Node],
@@ -106,28 +103,21 @@ impl Shadow {
         if self.taken.is_empty() {
             return false;
         }
-        let mut decisive = vec![0; self.taken.len()];
+        let mut counts = vec![0; self.taken.len()];
         let mut shadow = Shadow::default();
         for symbols in samples {
             shadow.set(symbols);
             shadow.fill(nodes, constants);
-            for (&(node, known), decisive) in self.taken.iter().zip(&mut decisive) {
+            for (&(node, known), count) in self.taken.iter().zip(&mut counts) {
                 let (a, b) = (shadow.value(constants, node), shadow.read(known));
                 if contradict(&a, &b) {
                     return true;
                 }
-                let is_zero = known.node() == 0;
-                *decisive += a
-                    .iter()
-                    .zip(&b)
-                    .filter(|(a, b)| match is_zero {
-                        true => a.is_within(SMALL),
-                        false => a.has_sign() && b.has_sign(),
-                    })
-                    .count();
+                let both = a.iter().zip(&b);
+                *count += both.filter(|(a, b)| a.is_known() && b.is_known()).count();
             }
         }
-        decisive.iter().any(|&count| count < DECISIVE)
+        counts.iter().any(|&count| count < FEWEST)
     }
 
     fn fill(&mut self, nodes: &[Node], constants: &[BigRational]) {

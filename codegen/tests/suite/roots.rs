@@ -3,6 +3,7 @@
 
 use crate::common::{Random, generated, value};
 use hamel_codegen::generate::Generated;
+use hamel_codegen::program::count::count;
 
 /// Roundings of a few operations, some of which cancel.
 const CLOSE: f64 = 1e-13;
@@ -412,4 +413,25 @@ fn roots_of_squares_are_absolute() {
             }
         }
     }
+}
+
+/// An axis that is tilted by 1e-7 has a root in its length, and entries near rounding: what is equal is still one node, and the
+/// hinge is found.
+#[test]
+fn hinges_that_are_tilted_by_little_are_hinges() {
+    let of = generated(
+        "system Tilted {
+            gravity [0.3, -1.1, -9.81];
+            joint a: revolute [0, 1e-7, 1] at pose(identity(3), [-0.31, -0.23, 0]) moves f;
+            joint b: prismatic [0.4, 0.835, 0.1] on f at pose(roty(-pi / 2), [-0.52, 0, 0]) moves g;
+            body on f { mass 1; com [0, 0, 0]; inertia diag(1, 1, 1) about com; }
+            body on g { mass 1; com [0, 0, 0]; inertia diag(1, 1, 1) about com; }
+        }",
+    );
+    let function = of
+        .program
+        .function("inverse_dynamics")
+        .expect("it is there");
+    let flops = count(&of.program.graph, &function.outputs).flops();
+    assert!(flops <= 60, "{flops}");
 }
