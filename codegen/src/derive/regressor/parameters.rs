@@ -1,5 +1,5 @@
-//! The standard parameters: of every link Θ about its frame's origin, m s and m, of joints their armatures, dampers
-//! and springs.
+//! The standard parameters: of every link Θ (kg m²) about its frame's origin, m s (kg m) and m (kg), of joints their armatures,
+//! dampers and springs; and the moments of a link about its origin that they are.
 
 use super::candidates::Relation;
 use crate::algebra::graph::{Edge, Graph, Node};

@@ -1,4 +1,5 @@
-//! What a unit of each inertial parameter of a link needs: a wrench about the origin of the frame that the link's joint carries.
+//! What a unit of each moment of a link needs: a wrench (N, N m) about the link's origin, which is that of the frame that its joint
+//! carries or another point of the joint's axis.
 //!
 //! With U = α̂ + ω̂ ω̂ and the acceleration a of the origin, less gravity, a mass at the origin needs the force a; a first moment
 //! along e the force U e and the torque e × a; a second moment ∫ r rᵀ dm = e eᵀ the torque e × U e; and e fᵀ + f eᵀ the torque
@@ -11,7 +12,7 @@ use crate::algebra::linear::{
     Mat3, Vec3, add3, apply_transposed, apply3, cross, identity3, transpose3, zero3,
 };
 use crate::derive::tree::Tree;
-use crate::derive::tree::inverse::{LinkMotion, Tensors, Wrench, motions_by};
+use crate::derive::tree::inverse::{LinkMotion, Tensors, Wrench, motions_by, tensor};
 use crate::derive::tree::turn::Turn;
 use crate::model::Model;
 
@@ -74,15 +75,8 @@ fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrenc
     let [omega, alpha, a] =
         [motion.omega, motion.alpha, motion.a].map(|v| apply_transposed(graph, axes, v));
     let square = omega.map(|w| graph.mul(w, w));
-    let mut u = [zero3(graph); 3];
+    let u = tensor(graph, omega, alpha);
     let mut torques = [[zero3(graph); 3]; 3];
-    for i in 0..3 {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        u[i][i] = -graph.add(square[j], square[k]);
-        let product = graph.mul(omega[j], omega[k]);
-        u[j][k] = graph.sub(product, alpha[i]);
-        u[k][j] = graph.add(product, alpha[i]);
-    }
     for i in 0..3 {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         torques[i][i][j] = -u[k][i];

@@ -216,7 +216,7 @@ fn chained(
 }
 
 /// α̂ + ω̂ ω̂ = α̂ + ω ωᵀ − |ω|² I.
-fn tensor(graph: &mut Graph, omega: Vec3, alpha: Vec3) -> Mat3 {
+pub(crate) fn tensor(graph: &mut Graph, omega: Vec3, alpha: Vec3) -> Mat3 {
     let square = omega.map(|w| graph.mul(w, w));
     let mut u = [zero3(graph); 3];
     for i in 0..3 {
