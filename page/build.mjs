@@ -1,6 +1,6 @@
 // Puts the page together: one file, page/dist/index.html, which needs nothing beside it and no server.
 
-import { build } from "esbuild";
+import { build, transform } from "esbuild";
 import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
@@ -59,7 +59,7 @@ async function style() {
     css = css.replace(face, inline ?? "");
   }
   const own = await readFile(join(here, "src", "style.css"), "utf8");
-  const { code } = await (await import("esbuild")).transform(css + own, { loader: "css", minify: true });
+  const { code } = await transform(css + own, { loader: "css", minify: true });
   return code;
 }
 
@@ -83,18 +83,30 @@ async function examples() {
   return all.sort((a, b) => (a.name < b.name ? -1 : 1));
 }
 
-// Instructions of WebAssembly and texts have no alignment, of which positions would say something; bytes before say more.
+// Instructions of WebAssembly and texts have no alignment, of which positions would say something; so many bits of the byte
+// before say more.
 class Unaligned extends Encoder {
+  constructor(bits) {
+    super();
+    this.bits = bits;
+  }
+
   configure(mode) {
     super.configure(mode);
-    [this._numLiteralContextBits, this._posStateBits, this._posStateMask] = [4, 0, 0];
+    [this._numLiteralContextBits, this._posStateBits, this._posStateMask] = [this.bits, 0, 0];
   }
 }
 
+// A module of the page's sources, for the page's own construction.
+async function module(file) {
+  const { code } = await transform(await readFile(join(here, "src", file), "utf8"), { loader: "ts", format: "esm" });
+  return import(`data:text/javascript,${encodeURIComponent(code)}`);
+}
+
 // LZMA makes them a quarter smaller than what hosts compress by.
-function packed(bytes) {
+function packed(bytes, bits = 4) {
   const output = new OutputBuffer(bytes.length);
-  new Unaligned().compress(new InputBuffer(bytes), output, MODES[9]);
+  new Unaligned(bits).compress(new InputBuffer(bytes), output, MODES[9]);
   return Buffer.from(output.toArray()).toString("base64");
 }
 
@@ -116,7 +128,12 @@ const put = (text, place, part) => {
   return text.replace(place, () => part);
 };
 let whole = html;
-const generator = packed(wasm);
+const { apart, together } = await module("instructions.ts");
+const streams = apart(wasm);
+if (!WebAssembly.validate(together(streams)) || Buffer.compare(apart(together(streams)), streams) !== 0) {
+  throw new Error("what is put together is not the module that was taken apart");
+}
+const generator = packed(streams, 2);
 const script = packed(Buffer.from(page));
 whole = put(whole, "/* style */", css);
 whole = put(whole, 'id="module">', `id="module">${generator}`);

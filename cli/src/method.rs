@@ -316,6 +316,40 @@ where
     where
         U: Fn(f64, &Numbers, &Numbers) -> Sys::Inputs,
     {
+        self.stepped(system, state, h, inputs)
+    }
+
+    fn follow<U>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: &U,
+        force: &mut Option<Sys::Chart>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        U: Fn(f64, &Numbers, &Numbers) -> Sys::Inputs,
+    {
+        self.followed(system, state, h, inputs, force)
+    }
+}
+
+/// Inputs in closed form, as a method asks for them. Every method is compiled for this one type, whatever a run computes
+/// its inputs by.
+pub type Given<'a, Sys> = &'a dyn Fn(f64, &Numbers, &Numbers) -> <Sys as System>::Inputs;
+
+impl Stepper {
+    fn stepped<Sys>(
+        &self,
+        system: &Sys,
+        state: &State<Sys>,
+        h: f64,
+        inputs: Given<Sys>,
+    ) -> Result<State<Sys>, StepError>
+    where
+        Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
+    {
+        let inputs = &inputs;
         match self {
             Stepper::General(method) => method.step(system, state, h, inputs),
             Stepper::Baseline(method) => method.step(system, state, h, inputs),
@@ -333,22 +367,22 @@ where
         }
     }
 
-    fn follow<U>(
+    fn followed<Sys>(
         &self,
         system: &Sys,
         state: &State<Sys>,
         h: f64,
-        inputs: &U,
+        inputs: Given<Sys>,
         force: &mut Option<Sys::Chart>,
     ) -> Result<State<Sys>, StepError>
     where
-        U: Fn(f64, &Numbers, &Numbers) -> Sys::Inputs,
+        Sys: Split<Scalar = f64, Coordinates = Numbers, Velocities = Numbers> + Canonical,
     {
         match self {
-            Stepper::Splitting(method) => method.follow(system, state, h, inputs, force),
-            Stepper::Lgvi => Lgvi.follow(system, state, h, inputs, force),
-            Stepper::Buss(method) => method.follow(system, state, h, inputs, force),
-            _ => self.step(system, state, h, inputs),
+            Stepper::Splitting(method) => method.follow(system, state, h, &inputs, force),
+            Stepper::Lgvi => Lgvi.follow(system, state, h, &inputs, force),
+            Stepper::Buss(method) => method.follow(system, state, h, &inputs, force),
+            _ => self.stepped(system, state, h, inputs),
         }
     }
 }

@@ -4,6 +4,7 @@ import type { Advice, Checked, Imported, Mark, Operations, System, Tables } from
 import { byId, element } from "./dom";
 import { Editor } from "./editor";
 import { Dropped, Generator } from "./generator";
+import { together } from "./instructions";
 import { packed, unpacked } from "./link";
 import { Motion } from "./motion";
 import * as reports from "./reports";
@@ -321,7 +322,7 @@ class Page {
 declare const hamelPart: (id: string) => Uint8Array<ArrayBuffer>;
 
 async function begin(): Promise<void> {
-  const module = await WebAssembly.compile(hamelPart("module"));
+  const module = await WebAssembly.compile(together(hamelPart("module")));
   const examples = JSON.parse(new TextDecoder().decode(hamelPart("examples-packed"))) as Example[];
   const worker = byId("worker").textContent ?? "";
   const linked = location.hash.length > 1 ? await unpacked(location.hash.slice(1)) : undefined;

@@ -6,7 +6,7 @@ use super::plan::{Plan, Spacing};
 use super::sample::Sample;
 use super::steady::Steady;
 use crate::mechanism::{Glance, Instance, Numbers};
-use crate::method::Stepper;
+use crate::method::{Given, Stepper};
 use hamel::adaptive::{Adaptive, Event, Report};
 use hamel::methods::General;
 use hamel::{Clock, State, StepError};
@@ -48,7 +48,7 @@ fn show<const D: usize>(
     report: Report<'_, Instance, D>,
     spacing: f64,
     samples: &Spacing,
-    observer: &mut impl Observer,
+    observer: &mut dyn Observer,
 ) {
     let Report::Step(step) = report else {
         return;
@@ -72,9 +72,10 @@ pub fn advance(
     plan: &Plan,
     state: &mut State<Instance>,
     (balance, watched): (&Cell<Balance>, &mut Events),
-    observer: &mut impl Observer,
+    observer: &mut dyn Observer,
 ) -> Result<(), StepError> {
-    let inputs = |t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
+    // As the methods are given them: compiled once.
+    let inputs: Given<Instance> = &|t, x: &Numbers, xi: &Numbers| system.inputs(t, x, xi);
     let (Some(tolerance), Stepper::General(general)) = (plan.tolerance, &plan.method.stepper)
     else {
         let steady = Steady {

@@ -10,7 +10,7 @@ use hamel::{Clock, State, StepError, integrate_while};
 use std::ops::ControlFlow;
 
 /// A run in equal steps, who looks at it, and where it is.
-pub struct Steady<'a, O> {
+pub struct Steady<'a> {
     /// What moves.
     pub system: &'a Instance,
     /// How.
@@ -20,10 +20,10 @@ pub struct Steady<'a, O> {
     /// What it may end at before its time.
     pub events: Option<&'a mut Events>,
     /// Is shown the start and the ends of steps, or of stretches where nobody looks at steps; and samples.
-    pub observer: &'a mut O,
+    pub observer: &'a mut dyn Observer,
 }
 
-impl<'a, O: Observer> Steady<'a, O> {
+impl<'a> Steady<'a> {
     /// The run on its own, to its end.
     ///
     /// # Errors
@@ -251,7 +251,7 @@ impl<'a, O: Observer> Steady<'a, O> {
 
 /// Shows the sample after so many steps of a stretch, where there is one.
 fn show(
-    observer: &mut impl Observer,
+    observer: &mut dyn Observer,
     (stretch, clock): (&Stretch, Option<Clock<f64>>),
     index: u64,
     state: &State<Instance>,

@@ -154,7 +154,7 @@ impl<'a> Running<'a> {
         advance(system, plan, &mut self.state, watched, &mut observe)
     }
 
-    fn steady(&mut self) -> Steady<'_, Watch<'a>> {
+    fn steady(&mut self) -> Steady<'_> {
         Steady {
             system: &self.member.system,
             plan: &self.member.plan,
