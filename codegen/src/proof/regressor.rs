@@ -1,6 +1,6 @@
 //! The proof of base parameters: at fresh points, which have other run-time parameters than those at which the relations
-//! were found, Y_b β is Y π for random π, and for the values of the description the force of (30b), from accelerations of
-//! mass points in numbers modulo p.
+//! were found, Y_b β is Y π for random π, and the force of (30b), from accelerations of mass points in numbers modulo p: for the
+//! bodies of the description together with a body of random inertia on every link, so that no column goes without a factor.
 
 use super::numbers::Numbers;
 use super::points::{Unequal, at_fresh_points};
@@ -10,9 +10,9 @@ use crate::algebra::graph::Edge;
 use crate::algebra::lane::Lane;
 use crate::algebra::numeric::evaluate_at;
 use crate::algebra::tape::Tape;
-use crate::derive::regressor::{Kind, Regressor};
+use crate::derive::regressor::{ENTRIES, Kind, Regressor};
 use crate::diagnostics::Diagnostic;
-use crate::model::Model;
+use crate::model::{Body, Model};
 use crate::program::{FunctionId, Program};
 
 /// Proves the base parameters of a model.
@@ -21,7 +21,9 @@ use crate::program::{FunctionId, Program};
 /// A fault of the generator: what differs.
 pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
     let failed = |what: &str| format!("internal check failed: {what}");
-    let numbers = Numbers::new(model).ok_or_else(|| failed("its forces have no numbers"))?;
+    let (heavier, added) = with_random_bodies(model, regressor)
+        .ok_or_else(|| failed("its links are not those of the description"))?;
+    let numbers = Numbers::new(&heavier).ok_or_else(|| failed("its forces have no numbers"))?;
     let factors = regressor.base.iter().flat_map(|base| &base.terms);
     let mut edges: Vec<Edge> = factors.map(|&(_, factor)| factor).collect();
     edges.extend(regressor.standard.iter().map(|one| one.value));
@@ -32,7 +34,7 @@ pub fn prove(model: &Model, regressor: &Regressor) -> Result<(), String> {
         .ok_or_else(|| failed("its columns have no numbers"))?;
     let compared = at_fresh_points(
         |seed| model.points.lane(seed),
-        |lane, seed| at(&numbers, &tape, regressor, lane, seed),
+        |lane, seed| at(&numbers, (&tape, &added), regressor, lane, seed),
     );
     match compared {
         Ok(()) => Ok(()),
@@ -82,10 +84,58 @@ pub fn validate(model: &Model, regressor: &Regressor, program: &Program) -> Resu
     })
 }
 
+/// A model with one more body on each link that has parameters, and what it adds to each of the standard parameters. In the
+/// description most of them are zero, and their columns would be compared with nothing.
+fn with_random_bodies(model: &Model, regressor: &Regressor) -> Option<(Model, Vec<Fp>)> {
+    let mut model = model.clone();
+    let mut random = Random::new(0xb0d1e5);
+    let mut number = || (random.bits() % 50) as i64 + 1;
+    let mut added = vec![Fp::ZERO; regressor.standard.len()];
+    for link in &regressor.links {
+        let frame = model.frames.iter().position(|frame| frame.name == *link)?;
+        let mass = number();
+        let com: [i64; 3] = std::array::from_fn(|_| number());
+        let mut about_com = [[0; 3]; 3];
+        for (i, j) in ENTRIES {
+            about_com[i][j] = number();
+            about_com[j][i] = about_com[i][j];
+        }
+        let square: i64 = com.iter().map(|entry| entry * entry).sum();
+        let about_origin: [[i64; 3]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let square = if i == j { square } else { 0 };
+                about_com[i][j] + mass * (square - com[i] * com[j])
+            })
+        });
+        for (value, one) in added.iter_mut().zip(&regressor.standard) {
+            if let Kind::Inertia(place) = one.kind
+                && one.of == *link
+            {
+                let number = match place {
+                    0..6 => about_origin[ENTRIES[place].0][ENTRIES[place].1],
+                    6..9 => mass * com[place - 6],
+                    _ => mass,
+                };
+                *value = Fp::from_i64(number);
+            }
+        }
+        let graph = &mut model.graph;
+        let body = Body {
+            frame,
+            mass: graph.ratio(mass, 1),
+            com: com.map(|entry| graph.ratio(entry, 1)),
+            inertia_com: about_com.map(|row| row.map(|entry| graph.ratio(entry, 1))),
+            inertia_origin: about_origin.map(|row| row.map(|entry| graph.ratio(entry, 1))),
+        };
+        model.bodies.push(body);
+    }
+    Some((model, added))
+}
+
 /// Compares at a point; `None` where something has no value.
 fn at(
     numbers: &Numbers,
-    tape: &Tape,
+    (tape, added): (&Tape, &[Fp]),
     regressor: &Regressor,
     lane: &Lane,
     seed: u64,
@@ -123,7 +173,8 @@ fn at(
         return Some(Err("base parameters do not stand for all parameters".into()));
     }
     // Dampers are no part of (30b), and what else has a potential no part of the regressor.
-    let mut force = based(given);
+    let all: Vec<Fp> = given.iter().zip(added).map(|(&own, &more)| own + more).collect();
+    let mut force = based(&all);
     for (k, one) in regressor.standard.iter().enumerate() {
         if one.kind == Kind::Damping {
             increase(&mut force, column(k), -given[k]);

@@ -160,6 +160,38 @@ fn one_wrong_entry_of_a_regressor_is_refused() {
     }
 }
 
+/// Columns of Y_b that are wrong, and those of Y as they would be then; most of their parameters are zero in the description.
+#[test]
+fn wrong_columns_of_parameters_that_are_zero_are_refused() {
+    let text = "system Arm {
+        joint a: revolute [0, 1, 0] moves f;
+        joint b: revolute [1, 2, 2] on f at translation([0.3, 0, 0]) moves g;
+        body on f { mass 2; com [0, 0, 0]; inertia diag(0.03, 0.03, 0.04) about com; }
+        body on g { mass 1; com [0, 0, 0]; inertia diag(0.02, 0.03, 0.04) about com; }
+        gravity [0, 0, -9.81];
+        generate regressor;
+    }";
+    let generated = from_text(text).expect("a program");
+    let right = derived(&generated.model).expect("base parameters");
+    assert!(regressor::prove(&generated.model, &right).is_ok());
+    assert_eq!(right.base.len(), 10);
+    for place in 0..right.base.len() {
+        let mut wrong = right.clone();
+        let base = &mut wrong.base[place];
+        let graph = &mut wrong.model.graph;
+        for &(k, factor) in &base.terms {
+            for (entry, &of_base) in wrong.columns[k].iter_mut().zip(&base.column) {
+                let share = graph.mul(factor, of_base);
+                let twice = graph.add(share, share);
+                *entry = graph.sub(*entry, twice);
+            }
+        }
+        base.column.iter_mut().for_each(|entry| *entry = -*entry);
+        let found = regressor::prove(&generated.model, &wrong);
+        assert!(found.is_err(), "{}", right.base[place].name);
+    }
+}
+
 /// What is wrong in one entry alone is noticed: in its value, in its sign, and where it is left out.
 #[test]
 fn one_wrong_entry_of_a_correction_is_refused() {

@@ -29,7 +29,7 @@ mod relations;
 mod samples;
 mod wrenches;
 
-pub use parameters::{DIAGONAL, Kind, MOMENTS, Standard};
+pub use parameters::{DIAGONAL, ENTRIES, Kind, MOMENTS, Standard};
 
 use super::calculus::Calculus;
 use super::tree::Tree;
