@@ -9,19 +9,13 @@
 //!
 //! | module | what it owns |
 //! |---|---|
-//! | [`syntax`] | grammar and source positions |
-//! | [`reuse`] | components, parts and repetition, which are written out here |
-//! | [`algebra`] | expression graph, polynomials and normal forms, without mechanics |
-//! | `symbols` | what names stand for, and every error about them |
-//! | `shapes` | the shapes of all expressions, and every error about them |
-//! | [`mod@lower`] | from a description to a model, and every other semantic error |
-//! | [`model`] | a mechanical system as expressions of a graph |
+//! | [`algebra`] | a crate of its own: expression graph, polynomials and normal forms, without mechanics |
+//! | [`syntax`], [`reuse`], [`mod@lower`], [`model`] | the crate `hamel-language`: from a description to a mechanical system as expressions of a graph |
 //! | [`mod@derive`] | the symbols of the formalism, and ξ̇ by the cheapest route |
 //! | [`proof`] | everything derived once more by other routes, and compared |
 //! | [`program`] | binding times, operation counts, tapes, interpretation |
 //! | [`emit`] | Rust and C99 as text, without any algebra |
 //! | [`tables`] | the tables of coefficients that people read |
-//! | [`vocabulary`] | the words of the language, for references and editors |
 //! | `scene` | descriptions as data, built in Rust or read from text |
 //! | [`generate`], [`expand()`], [`Builder`] | the front ends |
 //!
@@ -38,29 +32,20 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub use hamel_algebra as algebra;
+pub use hamel_language::{diagnostics, functions, lower, model, render, reuse, syntax, vocabulary};
 #[cfg(feature = "files")]
 pub mod builder;
 pub mod derive;
-pub mod diagnostics;
 pub mod emit;
 mod expand;
-pub mod functions;
 pub mod generate;
-pub mod lower;
-pub mod model;
 pub mod program;
 pub mod proof;
-pub mod render;
-pub mod reuse;
 #[cfg(feature = "files")]
 pub mod scene;
-mod shapes;
-mod symbols;
-pub mod syntax;
 pub mod tables;
 #[cfg(feature = "urdf")]
 pub mod urdf;
-pub mod vocabulary;
 
 #[cfg(feature = "files")]
 pub use builder::{BuildError, Builder};

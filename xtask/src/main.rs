@@ -14,7 +14,7 @@ type Task = &'static [&'static str];
 /// Seconds once everything is built: format, and what the stages say of themselves.
 const QUICK: Task = &[
     "cargo fmt --all --check",
-    "cargo test --locked -p hamel-algebra -p hamel-codegen --lib",
+    "cargo test --locked -p hamel-algebra -p hamel-language -p hamel-codegen --lib",
     "cargo test --locked -p hamel-tests --test layers --test wrong",
 ];
 

@@ -173,7 +173,11 @@ fn at(
         return Some(Err("base parameters do not stand for all parameters".into()));
     }
     // Dampers are no part of (30b), and what else has a potential no part of the regressor.
-    let all: Vec<Fp> = given.iter().zip(added).map(|(&own, &more)| own + more).collect();
+    let all: Vec<Fp> = given
+        .iter()
+        .zip(added)
+        .map(|(&own, &more)| own + more)
+        .collect();
     let mut force = based(&all);
     for (k, one) in regressor.standard.iter().enumerate() {
         if one.kind == Kind::Damping {

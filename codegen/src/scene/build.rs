@@ -1,7 +1,6 @@
 //! The builder of scenes: a method for each statement of the language.
 
 use super::claim::{Claim, claimed};
-use super::expression::ident;
 use super::parts::{Body, Element, Frame, Joint, Load};
 use super::{Scene, SceneError, check};
 use crate::syntax::ast::{
@@ -9,6 +8,7 @@ use crate::syntax::ast::{
     Origins, Shape, ShapeKind, Source, Span, System, Table, Target, Wanted,
 };
 use crate::syntax::parse_text;
+use hamel_language::expression::ident;
 
 /// Builds a [`Scene`] statement by statement, in the order in which a text would have them.
 ///

@@ -8,18 +8,10 @@ use crate::diagnostics::Diagnostic;
 use crate::syntax::ast::visit::{Visit, parts, visit};
 use crate::syntax::ast::{Counter, Expr, ExprKind, Ident, Item, ItemKind, Span, System, Target};
 use crate::syntax::{MAX_DEPTH, parse_text};
+use hamel_language::expression::{INFINITE, NO_NUMBER};
 
-/// What is printed, since no name has it, for what no text can say.
-const NO_NUMBER: &str = "((0 / 0))";
-const INFINITE: &str = "((1 / 0))";
+/// What is printed in the place of an expression that is too deep for a text, since no name is spelt so.
 const TOO_DEEP: &str = "((deeper))";
-
-/// The name that stands for a number that is not finite.
-pub(super) fn not_finite(value: f64) -> Expr {
-    let name = if value.is_nan() { NO_NUMBER } else { INFINITE };
-    let inner = named(name);
-    if value < 0.0 { -inner } else { inner }
-}
 
 fn named(name: &str) -> Expr {
     Expr {

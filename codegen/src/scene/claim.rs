@@ -1,8 +1,8 @@
 //! Claims that energy or momentum is constant along the motion.
 
-use super::expression::ident;
 use super::parts::Frame;
 use crate::syntax::ast::{Condition, Conserved, Expr, ExprKind, Ident, ItemKind};
+use hamel_language::expression::ident;
 
 /// A claim about energy or momentum, by the name of that unless [`named`](Self::named) gives another one; proved, or
 /// refused with what d/dt leaves.

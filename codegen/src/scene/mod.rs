@@ -37,7 +37,6 @@
 mod build;
 mod check;
 mod claim;
-mod expression;
 mod parts;
 mod print;
 mod reuse;
@@ -55,7 +54,9 @@ pub use crate::syntax::ast::{
 };
 pub use build::SceneBuilder;
 pub use claim::Claim;
-pub use expression::{call, choice, cos, diagonal, if_less, in_axes, pose, shifted, sin, sqrt};
+pub use hamel_language::expression::{
+    call, choice, cos, diagonal, if_less, in_axes, pose, shifted, sin, sqrt,
+};
 pub use parts::{Between, Body, Element, Frame, Joint, Load, Point, WORLD};
 pub use reuse::Parameter;
 

@@ -1,9 +1,9 @@
 //! What statements of a scene are made of: frames, points, joints, bodies, loads, springs and dampers.
 
-use super::expression::ident;
 use crate::syntax::ast::{
     self, About, Acting, Components, End, Expr, Ident, ItemKind, JointField, JointKind, Span,
 };
+use hamel_language::expression::ident;
 
 /// A frame of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]

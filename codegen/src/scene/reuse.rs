@@ -1,10 +1,10 @@
 //! Statements of a scene that stand for others: repetition, components and their parts, included files.
 
 use super::build::SceneBuilder;
-use super::expression::ident;
 use crate::syntax::ast::{
     self, Argument, Component, Counter, Expr, ItemKind, Part, Repeat, Shape, ShapeKind, Span,
 };
+use hamel_language::expression::ident;
 
 /// A parameter of a component.
 #[derive(Clone, Debug)]

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The generator, and the crates that it is made of.
-const CRATES: [&str; 4] = ["algebra", "codegen", "files", "urdf"];
+const CRATES: [&str; 5] = ["algebra", "language", "codegen", "files", "urdf"];
 /// Where the program that checks a model stands in the copy: Cargo finds it there without a line in a manifest.
 const CHECK: &str = "codegen/src/bin/check.rs";
 
@@ -166,6 +166,7 @@ impl Copy {
             ])
             .args(["--bin", "check", "--config", "profile.dev.debug=false"])
             .args(["--config", "profile.dev.package.hamel-codegen.opt-level=0"])
+            .args(["--config", "profile.dev.package.hamel-language.opt-level=0"])
             .current_dir(&self.folder)
             .env("CARGO_TARGET_DIR", &target)
             .env("CARGO_INCREMENTAL", "1")

@@ -26,5 +26,5 @@ macro_rules! locked {
 }
 
 locked!(
-    algebra, codegen, files, macros, native, report, runtime, urdf
+    algebra, codegen, files, language, macros, native, report, runtime, urdf
 );

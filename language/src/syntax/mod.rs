@@ -53,15 +53,11 @@ mod tests;
 pub use files::read_files;
 pub use tokens::Places;
 
-pub use joint::kind_name as joint_kind;
+pub use joint::{field_name as joint_field, kind_name as joint_kind};
 
 pub(crate) use body::fields_of as body_fields;
-#[cfg(feature = "files")]
-pub(crate) use expression::MAX_DEPTH;
-pub(crate) use joint::{
-    endings as joint_endings, field_name as joint_field, fields_of as joint_fields,
-    kinds as joint_kinds,
-};
+pub use expression::MAX_DEPTH;
+pub(crate) use joint::{endings as joint_endings, fields_of as joint_fields, kinds as joint_kinds};
 pub(crate) use words::forms as statement_forms;
 
 /// Parses a description given as tokens; places in it are places of these tokens.

@@ -98,7 +98,7 @@ pub(crate) fn fields_of() -> impl Iterator<Item = (&'static str, &'static str)> 
 }
 
 /// The name of a field.
-pub(crate) fn field_name(field: JointField) -> &'static str {
+pub fn field_name(field: JointField) -> &'static str {
     FIELDS
         .iter()
         .find(|(_, known, _)| *known == field)

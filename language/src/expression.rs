@@ -1,6 +1,5 @@
 //! Expressions written in Rust: numbers, arrays, operators and the functions of the language.
 
-use super::check::not_finite;
 use crate::syntax::ast::{BinaryOp, Choice, Comparison, Expr, ExprKind, Ident, Span};
 use crate::syntax::path;
 use num_bigint::BigInt;
@@ -8,7 +7,14 @@ use num_rational::BigRational;
 use num_traits::Signed;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-pub(super) fn ident(name: &str) -> Ident {
+/// What is written in the place of what is not a number, since no name is spelt so.
+pub const NO_NUMBER: &str = "((0 / 0))";
+
+/// What is written in the place of a number that is not finite.
+pub const INFINITE: &str = "((1 / 0))";
+
+/// A name, which stands nowhere in a text.
+pub fn ident(name: &str) -> Ident {
     Ident {
         name: path::spelling(name),
         span: Span::NOWHERE,
@@ -22,6 +28,13 @@ fn expr(kind: ExprKind) -> Expr {
     }
 }
 
+/// The name that stands for a number that is not finite.
+fn not_finite(value: f64) -> Expr {
+    let name = if value.is_nan() { NO_NUMBER } else { INFINITE };
+    let inner = expr(ExprKind::Name(name.to_string()));
+    if value < 0.0 { -inner } else { inner }
+}
+
 fn number(number: BigRational) -> Expr {
     let size = expr(ExprKind::Number(number.abs()));
     if number.is_negative() { -size } else { size }
@@ -31,7 +44,8 @@ fn number(number: BigRational) -> Expr {
 /// reference of the language.
 ///
 /// ```
-/// use hamel_codegen::scene::{Expr, call};
+/// use hamel_language::expression::call;
+/// use hamel_language::syntax::ast::Expr;
 /// let r = Expr::name("r");
 /// assert_eq!(call("dot", [r.clone(), r]).to_string(), "dot(r, r)");
 /// ```
@@ -43,7 +57,8 @@ pub fn call(function: &str, arguments: impl IntoIterator<Item = Expr>) -> Expr {
 /// Components of the motion of a frame in the axes of another: `velocity(f, p) in g`; the `motion` is a [`call`].
 ///
 /// ```
-/// use hamel_codegen::scene::{Expr, call, in_axes};
+/// use hamel_language::expression::{call, in_axes};
+/// use hamel_language::syntax::ast::Expr;
 /// let hull = Expr::name("hull");
 /// let spin = in_axes(call("angular_velocity", [hull]), "hull");
 /// assert_eq!(spin.to_string(), "angular_velocity(hull) in hull");
@@ -58,7 +73,8 @@ pub fn in_axes(motion: Expr, frame: &str) -> Expr {
 /// `if a < b { then } else { otherwise }`: of two values of one shape the first where a < b.
 ///
 /// ```
-/// use hamel_codegen::scene::{Expr, if_less};
+/// use hamel_language::expression::if_less;
+/// use hamel_language::syntax::ast::Expr;
 /// let z = Expr::name("z");
 /// let push = if_less(&z, 0.0, -&z, 0.0);
 /// assert_eq!(push.to_string(), "if z < 0 { -z } else { 0 }");
@@ -162,8 +178,8 @@ impl From<&Expr> for Expr {
     }
 }
 
-/// The decimal number that `{}` prints, exactly: 0.1 is 1/10. A scene with what is not finite is refused where it is
-/// [built](super::SceneBuilder::build).
+/// The decimal number that `{}` prints, exactly: 0.1 is 1/10. For what is not finite there is a name that no text has, so that
+/// a scene with it is refused where it is built.
 impl From<f64> for Expr {
     fn from(value: f64) -> Expr {
         if !value.is_finite() {

@@ -215,7 +215,7 @@ impl Points {
     }
 
     /// The same variety with roots of squares of F_p(i), which every number of F_p is; `None` where they have values already.
-    pub(crate) fn extended(&self) -> Option<Self> {
+    pub fn extended(&self) -> Option<Self> {
         (self.roots == Roots::OfSquares).then(|| Points {
             roots: Roots::Extended,
             ..self.clone()

@@ -74,10 +74,8 @@ fn compile_error(error: &Diagnostic, places: &Places) -> [TokenTree; 8] {
     ]
 }
 
-#[cfg(feature = "urdf")]
-pub(crate) use text::{Level, Note, notes, span_bytes};
 #[cfg(feature = "files")]
-pub use text::{render, warnings};
+pub use text::{Level, Note, notes, render, span_bytes, warnings};
 
 #[cfg(feature = "files")]
 mod text {
@@ -134,9 +132,11 @@ mod text {
     }
 
     /// What is wrong, or looks as if it were.
-    #[derive(Clone, Copy, PartialEq, Eq)]
-    pub(crate) enum Level {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Level {
+        /// Wrong.
         Error,
+        /// Legal.
         Warning,
     }
 
@@ -150,22 +150,18 @@ mod text {
     }
 
     /// An error or a warning about a text that is no description.
-    #[cfg(feature = "urdf")]
-    pub(crate) struct Note {
-        pub(crate) range: Range<usize>,
-        pub(crate) message: String,
-        pub(crate) help: Vec<String>,
+    #[derive(Clone, Debug)]
+    pub struct Note {
+        /// The bytes that it is about.
+        pub range: Range<usize>,
+        /// What it says.
+        pub message: String,
+        /// What to do, a sentence each.
+        pub help: Vec<String>,
     }
 
     /// The notes in the order of the text, underlined; errors with their number.
-    #[cfg(feature = "urdf")]
-    pub(crate) fn notes(
-        list: &[Note],
-        level: Level,
-        path: &str,
-        source: &str,
-        color: bool,
-    ) -> String {
+    pub fn notes(list: &[Note], level: Level, path: &str, source: &str, color: bool) -> String {
         let renderer = renderer(color);
         let mut sorted: Vec<&Note> = list.iter().collect();
         sorted.sort_by_key(|note| (note.range.start, note.range.end));
@@ -296,8 +292,7 @@ mod text {
     }
 
     /// The bytes of a region in a text.
-    #[cfg(feature = "urdf")]
-    pub(crate) fn span_bytes(span: Span, source: &str) -> Option<Range<usize>> {
+    pub fn span_bytes(span: Span, source: &str) -> Option<Range<usize>> {
         place(span, source)
     }
 

@@ -28,7 +28,7 @@ use crate::diagnostics::Diagnostic;
 const MAX_OPERANDS: usize = 500;
 
 /// The deepest tree of one expression: a longest chain and what its operands hold.
-pub(crate) const MAX_DEPTH: usize = 600;
+pub const MAX_DEPTH: usize = 600;
 
 /// An expression and the depth of its tree.
 struct Node {

@@ -140,7 +140,7 @@ impl Report {
 }
 
 /// A number with four digits, as messages show how far something is off: `3`, `-0.62`, `1.556e-7`.
-pub(crate) fn rough(value: f64) -> String {
+pub fn rough(value: f64) -> String {
     let text = format!("{value:.3e}");
     let exponent = text
         .split_once('e')
