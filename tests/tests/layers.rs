@@ -398,6 +398,33 @@ fn the_generator_is_built_once() {
         twice.is_empty(),
         "built with several sets of features: {twice:?}"
     );
+    // What tests of a crate of ours switch on, build scripts ask for, too.
+    let features = |package: &str, edges: &str| {
+        let all = tree(&["-p", package, "-e", edges, "-f", "{p}|{f}"]);
+        all.into_iter()
+            .filter_map(|line| {
+                let (name, features) = line.split_once('|')?;
+                let name = name.split(' ').next()?.to_string();
+                let features = features.split(',').map(String::from);
+                Some((name, features.collect::<HashSet<String>>()))
+            })
+            .filter(|(name, _)| name.starts_with("hamel-"))
+    };
+    let mut checked = 0;
+    for (package, of_scripts) in features("hamel-tests", "build,normal") {
+        if !needed
+            .iter()
+            .any(|line| line.split(' ').next() == Some(&*package))
+        {
+            continue;
+        }
+        for (_, own) in features(&package, "normal").filter(|(name, _)| *name == package) {
+            let missing: Vec<&String> = own.difference(&of_scripts).collect();
+            assert!(missing.is_empty(), "{package} is built twice: {missing:?}");
+            checked += 1;
+        }
+    }
+    assert!(checked >= 5, "{checked}");
 }
 
 /// Libraries of generated code are not compiled once more for tests that they do not have.
