@@ -259,6 +259,25 @@ fn axes_of_many_digits_are_as_good_as_others() {
     }
 }
 
+/// Sliders on a link that turns about an axis at rest: no force feels a first moment along that axis, however they are mounted.
+#[test]
+fn sliders_may_be_mounted_in_any_way() {
+    let body = "mass 1; com [0.1, -0.2, 0.3]; inertia [[1.1, 0.1, 0.2], [0.1, 1.2, 0.3], [0.2, 0.3, 1]] about com;";
+    is_force(
+        &format!(
+            "system Sliders {{
+                gravity [0.3, -1.1, -9.81];
+                joint a: revolute [1, 1, 0] at pose(roty(-pi / 2), [0, -0.01, 0]) moves f;
+                joint b: prismatic [0, 0, 1] on f at pose(rpy(-1.217, 0.4, 1.1), [0, 0, 0.38]) moves g;
+                joint c: prismatic [-0.697, -0.2, 0.949] on g at pose(roty(pi / 6), [0.1, 0, 0]) moves h;
+                body on f {{ {body} }}
+                body on g {{ {body} }}
+                body on h {{ {body} }}"
+        ),
+        9,
+    );
+}
+
 /// A body whose centre of mass is where no body can be, and what is no tree of bodies.
 #[test]
 fn what_has_no_regressor_says_why() {

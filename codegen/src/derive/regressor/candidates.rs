@@ -118,6 +118,12 @@ pub fn candidates(
             let group = (&[index][..], links[index].parent);
             relations.push(moved(model, links, group, &exact));
         }
+        if let Some(masses) = along_earlier_axis(model, &numbers, tree, links, index) {
+            let exact = standard_of(&mut model.graph, &masses);
+            for parent in [None, links[index].parent] {
+                relations.push(moved(model, links, (&[index], parent), &exact));
+            }
+        }
     }
     for (group, anchor) in groups {
         relations.extend(among(model, samples, known, links, (&group, anchor)));
@@ -127,30 +133,70 @@ pub fn candidates(
 }
 
 /// Masses on the axis a of a hinge through the frame's origin, which do not move against the link before: m, h = a and
-/// ∫ r rᵀ dm = a aᵀ, whatever numbers a has. Its largest entry is 1.
+/// ∫ r rᵀ dm = a aᵀ, whatever numbers a has.
 fn along_axis(graph: &mut Graph, numbers: &[f64], link: &TreeLink, frame: &Link) -> Vec<Mass> {
-    let [freedom] = link.freedoms.as_slice() else {
+    let Some(axis) = hinge(graph, link, frame) else {
         return Vec::new();
     };
-    if freedom.linear != zero3(graph) {
-        return Vec::new();
-    }
-    let axis = apply_transposed(graph, &frame.axes, freedom.angular);
-    let mut symbols = numbers.to_vec();
-    symbols.resize(graph.symbols().len(), f64::NAN);
-    let sizes = evaluate(graph, &axis, &symbols);
-    let largest = (0..3).max_by(|&i, &j| sizes[i].abs().total_cmp(&sizes[j].abs()));
-    let scaled = largest.map(|k| axis.map(|entry| graph.div(entry, axis[k])));
-    let Some([Some(x), Some(y), Some(z)]) = scaled else {
+    let Some(a) = scaled(graph, numbers, axis) else {
         return Vec::new();
     };
-    let (a, one, none) = ([x, y, z], graph.one(), Mass::none(graph));
+    let (one, none) = (graph.one(), Mass::none(graph));
     let second = a.map(|entry| scale3(graph, entry, a));
     vec![
         Mass { mass: one, ..none },
         Mass { first: a, ..none },
         Mass { second, ..none },
     ]
+}
+
+/// A first moment of a slider along the axis of a hinge before it: where that axis stands still, no force feels it.
+fn along_earlier_axis(
+    model: &mut Model,
+    numbers: &[f64],
+    tree: &Tree,
+    links: &[Link],
+    index: usize,
+) -> Option<Mass> {
+    let slides = |graph: &Graph, link: &TreeLink| match link.freedoms.as_slice() {
+        [freedom] => freedom.angular == zero3(graph),
+        _ => false,
+    };
+    let mut before = index;
+    while slides(&model.graph, &tree.links[before]) {
+        before = tree.links[before].parent?;
+    }
+    if before == index {
+        return None;
+    }
+    let axis = hinge(&mut model.graph, &tree.links[before], &links[before])?;
+    let (turn, _) = pose_at_zero(model, links[index].frame, links[before].frame);
+    let graph = &mut model.graph;
+    let axis = apply_transposed(graph, &turn, axis);
+    let first = scaled(graph, numbers, axis)?;
+    Some(Mass {
+        first,
+        ..Mass::none(graph)
+    })
+}
+
+/// The axis of a hinge through the origin of its frame, in the axes of the frame; `None` for other joints.
+fn hinge(graph: &mut Graph, link: &TreeLink, frame: &Link) -> Option<Vec3> {
+    let [freedom] = link.freedoms.as_slice() else {
+        return None;
+    };
+    let turns = freedom.linear == zero3(graph);
+    turns.then(|| apply_transposed(graph, &frame.axes, freedom.angular))
+}
+
+/// A direction whose largest entry is 1.
+fn scaled(graph: &mut Graph, numbers: &[f64], axis: Vec3) -> Option<Vec3> {
+    let mut symbols = numbers.to_vec();
+    symbols.resize(graph.symbols().len(), f64::NAN);
+    let sizes = evaluate(graph, &axis, &symbols);
+    let largest = (0..3).max_by(|&i, &j| sizes[i].abs().total_cmp(&sizes[j].abs()))?;
+    let [x, y, z] = axis.map(|entry| graph.div(entry, axis[largest]));
+    Some([x?, y?, z?])
 }
 
 /// Links whose joints have a velocity in common, alone and with the link that all of them hang on.
