@@ -1,7 +1,7 @@
 //! Claims of constancy: proved where they are true, refused at every front end where they are not, and
 //! watched by generated functions.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{State, System, integrate};
 use hamel_codegen::builder::source;
 use hamel_codegen::generate::from_text;
@@ -138,16 +138,7 @@ fn driven<Sys>(
             *worst = worst.max((now - first).abs() / first.abs().max(1.0));
         }
     };
-    integrate(
-        system,
-        General::Rkmk4,
-        &mut state,
-        5e-4,
-        2.0,
-        inputs,
-        observe,
-    )
-    .expect("a run");
+    integrate(system, Rkmk4, &mut state, 5e-4, 2.0, inputs, observe).expect("a run");
     for worst in worst {
         assert!(worst < DRIFT, "{worst:e}");
     }

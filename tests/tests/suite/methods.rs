@@ -1,6 +1,6 @@
 //! Methods on generated systems, by the traits that the generator implements for those they fit.
 
-use hamel::methods::{Gauss6, General, Scheme, Splitting};
+use hamel::methods::{Gauss6, Rkmk4, Rkmk8, Scheme, Splitting};
 use hamel::rotor::{Rotor, Symmetry};
 use hamel::{Canonical, Method, Split, State, System, integrate};
 use hamel_tests::benchmark_top::BenchmarkTop;
@@ -45,7 +45,7 @@ fn agree<Sys>(system: &Sys, u: &Sys::Inputs)
 where
     Sys: Split<Scalar = f64> + Canonical,
 {
-    let expected = end(system, General::Rkmk8, 400, 1.0, u);
+    let expected = end(system, Rkmk8, 400, 1.0, u);
     let splitting = Splitting::new(system, Scheme::Nystrom6);
     let ends = [
         end(system, splitting, 200, 1.0, u),
@@ -88,7 +88,7 @@ fn symmetries_of_rotors_are_known() {
 #[test]
 fn chains_of_bodies_run_by_gauss() {
     let system = TwoBodies::default();
-    let expected = end(&system, General::Rkmk8, 400, 0.5, &[]);
+    let expected = end(&system, Rkmk8, 400, 0.5, &[]);
     let found = end(&system, Gauss6, 400, 0.5, &[]);
     assert!(relative(&found.x, &expected.x) <= SAME);
 }
@@ -97,12 +97,12 @@ fn chains_of_bodies_run_by_gauss() {
 /// the order as it is.
 fn is_led_back<Sys: System<Scalar = f64>>(system: &Sys) {
     let u = system.zero_inputs();
-    let long = end(system, General::Rkmk4, 20_000, 100.0, &u);
+    let long = end(system, Rkmk4, 20_000, 100.0, &u);
     let off = system.constraint_norm(&long.x);
     assert!(off < 1e-11, "off by {off:e} at the end");
-    let exact = end(system, General::Rkmk8, 800, 0.5, &u);
+    let exact = end(system, Rkmk8, 800, 0.5, &u);
     let [coarse, fine] = [100, 200].map(|steps| {
-        let found = end(system, General::Rkmk4, steps, 0.5, &u);
+        let found = end(system, Rkmk4, steps, 0.5, &u);
         relative(found.x.as_ref(), exact.x.as_ref())
             .max(relative(found.xi.as_ref(), exact.xi.as_ref()))
     });

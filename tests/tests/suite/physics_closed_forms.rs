@@ -1,6 +1,6 @@
 //! Motions with closed forms of textbooks.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{State, System, integrate, s1, so3};
 use hamel_tests::cart_pole::{CartPole, CartPoleParameters};
 use hamel_tests::free_body::{FreeBody, FreeBodyParameters};
@@ -27,7 +27,7 @@ fn end<Sys: System>(
     until: f64,
 ) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
-    run(system, General::Rkmk4, start, until, STEPS).expect("a run without failure")
+    run(system, Rkmk4, start, until, STEPS).expect("a run without failure")
 }
 
 #[track_caller]
@@ -270,16 +270,7 @@ fn hovering_body_under_a_torque() {
     state.xi = [0.0; 6];
     let (x0, until) = (state.x, 2.0);
     let inputs = |_, _: &_, _: &_| [0.0, 0.0, m * g, 0.0, 0.0, tau];
-    integrate(
-        &system,
-        General::Rkmk4,
-        &mut state,
-        1e-3,
-        until,
-        inputs,
-        |_| {},
-    )
-    .expect("a run");
+    integrate(&system, Rkmk4, &mut state, 1e-3, until, inputs, |_| {}).expect("a run");
     let (sin, cos) = (0.5 * tau / 0.04 * until * until).sin_cos();
     let expected = [cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0];
     for k in 0..9 {

@@ -1,7 +1,7 @@
 //! Systems with constraints on their velocities, against reference solutions, published states and
 //! conservation laws.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{Singular, State, StepError, System, integrate};
 use hamel_tests::bicycle::Bicycle;
 use hamel_tests::bricard::Bricard;
@@ -28,18 +28,10 @@ fn drift<Sys: System<Scalar = f64>>(
     let first = energy(system, &state);
     let (mut change, mut open) = (0.0_f64, 0.0_f64);
     let none = |_, _: &_, _: &_| system.zero_inputs();
-    integrate(
-        system,
-        General::Rkmk4,
-        &mut state,
-        step,
-        until,
-        none,
-        |state| {
-            change = change.max(((energy(system, state) - first) / first).abs());
-            open = open.max(system.constraint_norm(&state.x));
-        },
-    )?;
+    integrate(system, Rkmk4, &mut state, step, until, none, |state| {
+        change = change.max(((energy(system, state) - first) / first).abs());
+        open = open.max(system.constraint_norm(&state.x));
+    })?;
     Ok((change, open, state))
 }
 
@@ -68,7 +60,7 @@ fn spherical_pendulum_passes_both_poles() {
         x: rotation,
         xi,
     };
-    let end = run(&system, General::Rkmk4, start, 10.0, 8000).expect("a run");
+    let end = run(&system, Rkmk4, start, 10.0, 8000).expect("a run");
     let rod = [end.x[2], end.x[5], end.x[8]];
     let error = relative(&rod, &reference.sample::<3>(10.0, "x"));
     assert!(error < 1e-9, "{error:e}");
@@ -87,7 +79,7 @@ fn squeezer_reaches_the_published_state() {
         1.048080741042263,
     ];
     let system = Squeezer::<f64>::default();
-    let end = run(&system, General::Rkmk4, State::start(&system), 0.03, 3000).expect("a run");
+    let end = run(&system, Rkmk4, State::start(&system), 0.03, 3000).expect("a run");
     for (found, expected) in end.x.iter().zip(published) {
         assert!((found - expected).abs() < 1e-8, "{found} {expected}");
     }
@@ -175,16 +167,7 @@ fn snakeboard_moves_by_turning_its_rotor() {
     let system = Snakeboard::default();
     let mut state = State::start(&system);
     let twist = |t: f64, _: &_, _: &_| [0.3 * (3.0 * t).sin(), 0.02 * (3.0 * t).cos()];
-    integrate(
-        &system,
-        General::Rkmk4,
-        &mut state,
-        1e-3,
-        4.0,
-        twist,
-        |_| {},
-    )
-    .expect("a run");
+    integrate(&system, Rkmk4, &mut state, 1e-3, 4.0, twist, |_| {}).expect("a run");
     assert!(state.x[0].hypot(state.x[1]) > 0.05, "{:?}", state.x);
 }
 
@@ -200,7 +183,7 @@ fn bicycle_is_stable_at_five_metres_a_second() {
         xi = [0.05, xi[1], xi[2], xi[3], -speed / rr, -speed / rf];
         state.xi = system.project_velocity(&state.x, &xi).expect("regular");
         let none = |_, _: &_, _: &_| system.zero_inputs();
-        integrate(&system, General::Rkmk4, &mut state, 2e-3, 6.0, none, |_| {}).map(|()| {
+        integrate(&system, Rkmk4, &mut state, 2e-3, 6.0, none, |_| {}).map(|()| {
             // Sine of the lean angle: how far the frame's y axis points down.
             state.x[3 + 7].abs()
         })

@@ -1,6 +1,6 @@
 //! What cannot be: singular mass, by parameters and by configuration, is a typed error and never NaN.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{Singular, State, StepError, integrate};
 use hamel_tests::cart_pole::{CartPole, CartPoleParameters};
 use hamel_tests::free_body::{FreeBody, FreeBodyParameters};
@@ -142,7 +142,7 @@ fn a_mass_matrix_singular_in_places_is_an_error_there() {
         x: on_axis,
         xi,
     };
-    let step = hamel::step(&system, General::Rkmk4, &mut state, 0.1, &|_, _, _| [0.0]);
+    let step = hamel::step(&system, Rkmk4, &mut state, 0.1, &|_, _, _| [0.0]);
     assert_eq!(
         step,
         Err(StepError::Singular {
@@ -191,15 +191,7 @@ fn states_that_are_not_numbers_are_errors() {
     let system: HeavyTop<f64> = HeavyTop::default();
     let mut state = State::start(&system);
     state.xi[1] = f64::NAN;
-    let run = integrate(
-        &system,
-        General::Rkmk4,
-        &mut state,
-        1e-3,
-        1.0,
-        |_, _, _| [],
-        |_| {},
-    );
+    let run = integrate(&system, Rkmk4, &mut state, 1e-3, 1.0, |_, _, _| [], |_| {});
     assert_eq!(run, Err(StepError::NonFinite { time: 0.0 }));
 
     let hoop: HoopBead<f64> = HoopBead::default();

@@ -5,7 +5,7 @@
 //! longitudinal motion of chapter 4 and the lateral motion of chapter 5 with the modes of the Navion in their examples.
 
 use hamel::State;
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel_tests::navion::{Navion, NavionParameters, NavionState};
 use nalgebra::{DMatrix, Matrix3, Matrix4, Rotation3, SMatrix, SVector, Vector3};
 
@@ -398,7 +398,7 @@ fn a_small_gust_is_answered_by_the_linear_equations() {
     let inputs: [f64; 4] = u.into();
     let h = 0.02;
     for _ in 0..3000 {
-        hamel::step(&aircraft, General::Rkmk4, &mut state, h, &|_, _, _| inputs).expect("a step");
+        hamel::step(&aircraft, Rkmk4, &mut state, h, &|_, _, _| inputs).expect("a step");
     }
     let a = linear(&aircraft, &s, &u)
         .fixed_columns::<12>(0)

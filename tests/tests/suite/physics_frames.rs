@@ -1,6 +1,6 @@
 //! One body, many descriptions: the motion does not depend on coordinates, velocities or frames.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{State, System, s1, s3, so3};
 use hamel_tests::double_pendulum_angles::{DoublePendulum, DoublePendulumParameters};
 use hamel_tests::double_pendulum_circles::{CircleDoublePendulum, CircleDoublePendulumParameters};
@@ -29,7 +29,7 @@ type Matrix = [f64; 9];
 
 fn end<Sys: System>(system: &Sys, x: Sys::Coordinates, xi: Sys::Velocities) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
-    run(system, General::Rkmk4, start, UNTIL, STEPS).expect("a run without failure")
+    run(system, Rkmk4, start, UNTIL, STEPS).expect("a run without failure")
 }
 
 fn join<const A: usize, const B: usize, const C: usize>(a: [f64; A], b: [f64; B]) -> [f64; C] {

@@ -1,6 +1,6 @@
 //! Systems with branches, lengths and tables against equations written by hand.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{State, System};
 use hamel_codegen::generate::from_text;
 use hamel_codegen::program::interpret::Interpreter;
@@ -71,7 +71,7 @@ fn a_ball_bounces_as_long_as_it_should() {
         x: [0.0, h],
         xi: [0.3, 0.0],
     };
-    let end = run(&system, General::Rkmk4, start, period, 40_000).expect("a run");
+    let end = run(&system, Rkmk4, start, period, 40_000).expect("a run");
     near("x", end.x[0], 0.3 * period, 1e-9);
     near("height", end.x[1], h, 1e-7);
     near("speed", end.xi[1], 0.0, 1e-5);
@@ -93,7 +93,7 @@ fn a_ball_falls_through_air() {
         xi: start.1,
     };
     let until = 2.0;
-    let end = run(&system, General::Rkmk4, start, until, 4000).expect("a run");
+    let end = run(&system, Rkmk4, start, until, 4000).expect("a run");
     near("speed", end.xi[2], -u * (g * until / u).tanh(), 1e-11);
     let fallen = u * u / g * (g * until / u).cosh().ln();
     near("height", end.x[2], -fallen, 1e-11);

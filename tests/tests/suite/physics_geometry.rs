@@ -1,7 +1,7 @@
 //! Frames and groups beyond the plain ones: the same motion in frames with constant and with varying γ,
 //! bodies known by their particles, rotors, Heisenberg's group.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{State, System, so3};
 use hamel_tests::body_with_rotor::BodyWithRotor;
 use hamel_tests::gyrostat::Gyrostat;
@@ -23,7 +23,7 @@ const SAME: f64 = 1e-10;
 
 fn end<Sys: System>(system: &Sys, x: Sys::Coordinates, xi: Sys::Velocities) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
-    run(system, General::Rkmk4, start, UNTIL, STEPS).expect("a run without failure")
+    run(system, Rkmk4, start, UNTIL, STEPS).expect("a run without failure")
 }
 
 #[track_caller]

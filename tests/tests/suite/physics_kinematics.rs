@@ -1,7 +1,7 @@
 //! A from definitions of velocities and from constraints, [A Ψ] = [Y; Φ]⁻¹: the motions are those of
 //! descriptions that give A, linkages move as their trigonometry says, and lock with a typed error.
 
-use hamel::methods::General;
+use hamel::methods::{Rk4, Rkmk4};
 use hamel::{Monitor, Singular, State, StepError, System, integrate, s3, so3};
 use hamel_tests::four_bar::{FourBar, FourBarParameters};
 use hamel_tests::free_body::FreeBody;
@@ -98,8 +98,8 @@ fn columns_of_reals_turn_as_a_rotation_does() {
 fn a_body_with_both_moves_as_one_with_rates() {
     let (both, rates) = (FreeBodyBoth::<f64>::default(), FreeBody::<f64>::default());
     let start = State::start(&both);
-    let end = run(&both, General::Rkmk4, start, 1.0, 2000).expect("a run");
-    let other = run(&rates, General::Rkmk4, State::start(&rates), 1.0, 2000).expect("a run");
+    let end = run(&both, Rkmk4, start, 1.0, 2000).expect("a run");
+    let other = run(&rates, Rkmk4, State::start(&rates), 1.0, 2000).expect("a run");
     let q: [f64; 4] = std::array::from_fn(|i| end.x[3 + i]);
     assert_close("r", &end.x[..3], &other.x[..3], 1e-10);
     assert_close("R", &s3::to_matrix(q), &other.x[3..], 1e-10);
@@ -165,16 +165,7 @@ fn a_four_bar_keeps_its_energy() {
         turns += i32::from(before < 0.0 && state.x[1] >= 0.0);
         before = state.x[1];
     };
-    integrate(
-        &system,
-        General::Rkmk4,
-        &mut state,
-        2e-4,
-        10.0,
-        inputs,
-        observe,
-    )
-    .expect("a run");
+    integrate(&system, Rkmk4, &mut state, 2e-4, 10.0, inputs, observe).expect("a run");
     println!(
         "{turns} {:e} {:e}",
         monitor.relative_energy_deviation(),
@@ -226,15 +217,7 @@ fn a_locked_four_bar_is_a_typed_error() {
         xi: [3.0],
     };
     let inputs = |_, _: &_, _: &_| [0.0];
-    let outcome = integrate(
-        &system,
-        General::Rkmk4,
-        &mut state,
-        1e-3,
-        10.0,
-        inputs,
-        |_| {},
-    );
+    let outcome = integrate(&system, Rkmk4, &mut state, 1e-3, 10.0, inputs, |_| {});
     match outcome {
         Err(StepError::Singular { cause, .. }) => {
             assert_eq!(cause, Singular::Kinematics { pivot: 0 })
@@ -264,16 +247,7 @@ fn a_slider_crank_moves_as_its_trigonometry_says() {
     let mut monitor = Monitor::new(&system, &state);
     let inputs = |_, _: &_, _: &_| [0.0];
     let observe = |state: &_| monitor.observe(&system, state);
-    integrate(
-        &system,
-        General::Rkmk4,
-        &mut state,
-        1e-4,
-        3.0,
-        inputs,
-        observe,
-    )
-    .expect("a run");
+    integrate(&system, Rkmk4, &mut state, 1e-4, 3.0, inputs, observe).expect("a run");
     println!("{:e}", monitor.relative_energy_deviation());
     assert!(monitor.relative_energy_deviation() < 1e-8);
     let [c, s, ..] = state.x;
@@ -299,7 +273,7 @@ fn disturbed_linkages_decay_exponentially() {
             *x += 1e-7 * [1.0, -2.0, 1.5, 0.7, -1.2, 2.3, 0.9, -0.4, 1.7][k];
         }
         let before = phi(&state.x);
-        let method = General::Rk4 { lambda: LAMBDA };
+        let method = Rk4 { lambda: LAMBDA };
         let end = run(system, method, state, UNTIL, 2000).expect("a run");
         for (before, after) in before.iter().zip(phi(&end.x)) {
             println!("{before:e} {after:e}");

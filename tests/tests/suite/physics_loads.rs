@@ -1,6 +1,6 @@
 //! Loads and sensors against closed forms, finite differences and the balance of energy.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{State, System, so3};
 use hamel_tests::actuated_pendulum::ActuatedPendulum;
 use hamel_tests::drone::Drone;
@@ -53,9 +53,8 @@ fn energy_of_a_suspended_body_goes_into_its_dampers() {
     let mut lost = 0.0;
     for _ in 0..steps {
         // Simpson's rule over one step.
-        let middle =
-            run(&body, General::Rkmk4, state.clone(), state.t + h / 2.0, 4).expect("a run");
-        let end = run(&body, General::Rkmk4, middle.clone(), state.t + h, 4).expect("a run");
+        let middle = run(&body, Rkmk4, state.clone(), state.t + h / 2.0, 4).expect("a run");
+        let end = run(&body, Rkmk4, middle.clone(), state.t + h, 4).expect("a run");
         let power = |s: &State<_>| 2.0 * body.dissipation(&s.x, &s.xi);
         lost += h / 6.0 * (power(&state) + 4.0 * power(&middle) + power(&end));
         state = end;
@@ -128,7 +127,7 @@ fn energy_of_an_actuated_pendulum_balances() {
         };
         hamel::integrate(
             &arm,
-            General::Rkmk4,
+            Rkmk4,
             &mut state,
             STEP * steps.signum(),
             STEP * steps,
@@ -147,7 +146,7 @@ fn energy_of_an_actuated_pendulum_balances() {
     };
     hamel::integrate(
         &arm,
-        General::Rkmk4,
+        Rkmk4,
         &mut state,
         STEP,
         STEP,
@@ -168,9 +167,8 @@ where
     Sys: System<Scalar = f64>,
     State<Sys>: Clone,
 {
-    let next = |from: &State<Sys>| {
-        run(system, General::Rkmk4, from.clone(), from.t + STEP, 1).expect("a run")
-    };
+    let next =
+        |from: &State<Sys>| run(system, Rkmk4, from.clone(), from.t + STEP, 1).expect("a run");
     let middle = next(&start);
     let last = next(&middle);
     [start, middle, last]

@@ -1,6 +1,6 @@
 //! Long runs: drift of what is conserved, decay of what is disturbed, orders, and work done.
 
-use hamel::methods::General;
+use hamel::methods::{General, Rk4, Rkmk4};
 use hamel::{Monitor, State, System, integrate, so3};
 use hamel_tests::heavy_top::HeavyTop;
 use hamel_tests::hoop_bead::HoopBead;
@@ -28,18 +28,10 @@ fn heavy_top_keeps_energy_vertical_momentum_and_rotation() {
         let mut monitor = Monitor::new(&system, &state);
         let mut drift = 0.0_f64;
         let inputs = |_, _: &_, _: &_| [];
-        integrate(
-            &system,
-            General::Rkmk4,
-            &mut state,
-            step,
-            50.0,
-            inputs,
-            |state| {
-                monitor.observe(&system, state);
-                drift = drift.max((vertical(state) - momentum).abs());
-            },
-        )
+        integrate(&system, Rkmk4, &mut state, step, 50.0, inputs, |state| {
+            monitor.observe(&system, state);
+            drift = drift.max((vertical(state) - momentum).abs());
+        })
         .expect("a run");
         println!(
             "{step}: {:e} {drift:e}",
@@ -66,16 +58,7 @@ fn two_bodies_keep_energy_and_vertical_momentum() {
         let mut monitor = Monitor::new(&system, &state);
         let inputs = |_, _: &_, _: &_| [];
         let observe = |state: &_| monitor.observe(&system, state);
-        integrate(
-            &system,
-            General::Rkmk4,
-            &mut state,
-            step,
-            10.0,
-            inputs,
-            observe,
-        )
-        .expect("a run");
+        integrate(&system, Rkmk4, &mut state, step, 10.0, inputs, observe).expect("a run");
         assert!(monitor.constraint() < 2e-15, "{}", monitor.constraint());
         energies.push(monitor.relative_energy_deviation());
     }
@@ -102,7 +85,7 @@ where
         *x += disturb(k);
     }
     let before = phi(&state.x);
-    let method = General::Rk4 { lambda: LAMBDA };
+    let method = Rk4 { lambda: LAMBDA };
     let end = run(system, method, state, UNTIL, 500).expect("a run");
     let expected = (-LAMBDA * UNTIL).exp();
     for (before, after) in before.iter().zip(phi(&end.x)) {
@@ -155,17 +138,9 @@ fn hoop_takes_up_the_work_of_its_torque() {
     let until = 10.0;
     let mut powers = Vec::new();
     let inputs = |t, _: &_, _: &_| [torque(t)];
-    integrate(
-        &system,
-        General::Rkmk4,
-        &mut state,
-        1e-3,
-        until,
-        inputs,
-        |state| {
-            powers.push(torque(state.t) * state.xi[0]);
-        },
-    )
+    integrate(&system, Rkmk4, &mut state, 1e-3, until, inputs, |state| {
+        powers.push(torque(state.t) * state.xi[0]);
+    })
     .expect("a run");
 
     let intervals = powers.len() - 1;

@@ -4,7 +4,7 @@
 //! of systems written by hand; a correct one gives them to about 5 %. A wrong term gives errors of
 //! order 1.
 
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{State, System, integrate};
 use hamel_tests::double_pendulum_circles::{CircleDoublePendulum, CircleDoublePendulumParameters};
 use hamel_tests::heavy_top::{HeavyTop, HeavyTopParameters};
@@ -33,7 +33,7 @@ fn ends<Sys: System>(
     n: u32,
 ) -> State<Sys> {
     let start = State { t: 0.0, x, xi };
-    run(system, General::Rkmk4, start, until, n).expect("a run without failure")
+    run(system, Rkmk4, start, until, n).expect("a run without failure")
 }
 
 fn heavy_top(reference: &Reference) -> HeavyTop<f64> {
@@ -81,7 +81,7 @@ fn benchmark_top_with_its_own_start() {
     // The model carries the parameters and the start of the benchmark.
     let case = "heavy-top-benchmark-150";
     let system = AxisTop::default();
-    let end = run(&system, General::Rkmk4, State::start(&system), 1.0, 2000).expect(case);
+    let end = run(&system, Rkmk4, State::start(&system), 1.0, 2000).expect(case);
     let expected = Reference::read(case).sample::<9>(1.0, "R");
     assert_size(case, distance(&end.x, &expected), 2.75e-5);
 }
@@ -143,21 +143,13 @@ fn chaotic_double_pendulum_on_circles() {
         let mut theta = reference.initial::<2>("theta");
         let step = 10.0 / f64::from(n);
         let inputs = |_, _: &_, _: &_| [];
-        integrate(
-            &system,
-            General::Rkmk4,
-            &mut end,
-            step,
-            10.0,
-            inputs,
-            |state| {
-                for (k, theta) in theta.iter_mut().enumerate() {
-                    let (c, s) = (state.x[2 * k], state.x[2 * k + 1]);
-                    let (sin, cos) = theta.sin_cos();
-                    *theta += (cos * s - sin * c).atan2(cos * c + sin * s);
-                }
-            },
-        )
+        integrate(&system, Rkmk4, &mut end, step, 10.0, inputs, |state| {
+            for (k, theta) in theta.iter_mut().enumerate() {
+                let (c, s) = (state.x[2 * k], state.x[2 * k + 1]);
+                let (sin, cos) = theta.sin_cos();
+                *theta += (cos * s - sin * c).atan2(cos * c + sin * s);
+            }
+        })
         .expect("a run without failure");
         assert_size(
             "on circles",

@@ -3,7 +3,7 @@
 
 use crate::described::{CLOSE, assert_near, generated, states, text, value};
 use hamel::adaptive::Adaptive;
-use hamel::methods::General;
+use hamel::methods::{General, Rkmk54};
 use hamel::{State, System};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::FunctionId;
@@ -339,7 +339,7 @@ fn error_control_sees_states() {
     .expect("a motor");
     let (x, xi) = system.start();
     let state = State { t: 0.0, x, xi };
-    let end = run(&system, General::Rkmk54, state.clone(), 0.01, 4000).expect("a run");
+    let end = run(&system, Rkmk54, state.clone(), 0.01, 4000).expect("a run");
     let exact = 0.2 * (-1.2_f64 * 0.01 / 1e-3).exp();
     assert_near("fixed", end.xi[1], exact, 1e-12);
     let mut controlled = state;

@@ -2,7 +2,7 @@
 //! against inverse dynamics.
 
 use crate::described::{CLOSE, assert_near, generated, states, text, value};
-use hamel::methods::General;
+use hamel::methods::{General, Rkmk4, Rkmk8};
 use hamel::{State, System};
 use hamel_codegen::generate::Generated;
 use hamel_codegen::program::Program;
@@ -61,7 +61,7 @@ fn kapitzas_pendulum_stands_on_its_head() {
         };
         let mut farthest = 0.0_f64;
         for k in 1..=200 {
-            state = run(&system, General::Rkmk8, state, 0.1 * f64::from(k), 40).expect("a run");
+            state = run(&system, Rkmk8, state, 0.1 * f64::from(k), 40).expect("a run");
             farthest = farthest.max((state.x[1] - PI).abs());
         }
         assert_eq!(farthest < 0.3, stands, "{factor}: {farthest} rad");
@@ -141,7 +141,7 @@ fn an_engine_at_constant_speed() {
     }
     // A turn of the crank later the engine is where it was.
     let start = State::start(&system);
-    let end = run(&system, General::Rkmk8, start.clone(), TAU / of.speed, 200).expect("a run");
+    let end = run(&system, Rkmk8, start.clone(), TAU / of.speed, 200).expect("a run");
     for (end, start) in end.x[1..].iter().zip(&start.x[1..]) {
         assert_near("after a turn", *end, *start, 1e-11);
     }
@@ -167,7 +167,7 @@ fn a_ball_on_a_turntable() {
     }
     assert_near("vz", vz, 0.0, CLOSE);
     let start = State { t: 0.0, x, xi };
-    let end = run(&system, General::Rkmk8, start, TAU / turn, 400).expect("a run");
+    let end = run(&system, Rkmk8, start, TAU / turn, 400).expect("a run");
     assert_near("x after a turn", end.x[1], x[1], 1e-10);
     assert_near("y after a turn", end.x[2], x[2], 1e-10);
 }
@@ -466,6 +466,6 @@ fn a_clock_does_not_drift() {
     let mut state = State::start(&system);
     state.x[0] = 1.7e9;
     let none = |_: f64, _: &[f64; 2], _: &[f64; 1]| [];
-    hamel::integrate(&system, General::Rkmk4, &mut state, 1e-4, 1.0, none, |_| {}).expect("a run");
+    hamel::integrate(&system, Rkmk4, &mut state, 1e-4, 1.0, none, |_| {}).expect("a run");
     assert_eq!(state.x[0], 1.7e9 + 1.0);
 }

@@ -2,7 +2,7 @@
 
 use super::lists::{assert_close, largest};
 use crate::derived;
-use hamel::methods::General;
+use hamel::methods::Rkmk4;
 use hamel::{Block, Singular, State, System, manifold};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -235,7 +235,7 @@ macro_rules! models {
             }
             fn energy_after(&self, h: f64) -> f64 {
                 let mut state = self.state.clone();
-                let step = hamel::step(&self.system, General::Rkmk4, &mut state, h, &|_, _, _| self.inputs);
+                let step = hamel::step(&self.system, Rkmk4, &mut state, h, &|_, _, _| self.inputs);
                 step.expect(&self.label);
                 self.system.energy(&state.x, &state.xi)
             }
