@@ -1,6 +1,6 @@
 // A module of WebAssembly whose code is taken apart into streams, and put together again: what instructions do in one, which
-// variables, places in memory, constants and functions they do it with in others. Of each stream more repeats than of their
-// mixture, and what is packed is a tenth shorter. Lengths of functions follow from their ends. How memory is aligned is a
+// variables, places in memory, constants and functions they do it with in others. More repeats within each stream than in
+// their mixture, so that it is packed shorter. Lengths of functions follow from their ends. How memory is aligned is a
 // hint without an effect on any value, and is left out: it comes back as "not at all".
 
 type Bytes = Uint8Array<ArrayBuffer>;
@@ -23,7 +23,7 @@ const enum Stream {
 const STREAMS = 12;
 const CODE = 10;
 
-// Where bytes come from, and where they go.
+// Where bytes come from.
 class Reader {
   at = 0;
 
@@ -57,6 +57,7 @@ class Reader {
   }
 }
 
+// Where they go.
 class Writer {
   private bytes: Bytes = new Uint8Array(1 << 16);
   private length = 0;
