@@ -61,7 +61,7 @@ impl Builder<'_> {
             let mass = rebuild(&bodies.graph, &mut self.graph, &[mass]);
             self.constant_guards.extend(mass);
         }
-        let recursion = Recursion::of(&Setting::given(model), Placement::Described);
+        let recursion = Recursion::of(&Setting::given(model), Placement::Described, &self.care);
         for id in FunctionId::CENTROIDAL {
             if !model.asked.wants(id) {
                 continue;

@@ -296,7 +296,7 @@ impl Builder<'_> {
         let mut calculus = Calculus::new(&model);
         let given = Setting::given(self.model);
         let total = (!self.model.invariants.is_empty())
-            .then(|| Recursion::of(&given, Placement::Described))
+            .then(|| Recursion::of(&given, Placement::Described, &self.care))
             .flatten()
             .map(|recursion| recursion.total_momentum());
         for claim in &self.model.invariants {

@@ -99,7 +99,7 @@ pub fn forces(model: &Model, care: &Care) -> Option<Computation> {
 pub fn recursions(given: &Setting, care: &Care) -> Vec<Recursion> {
     let placements = care.placements().iter();
     placements
-        .filter_map(|&placement| Recursion::of(given, placement))
+        .filter_map(|&placement| Recursion::of(given, placement, care))
         .collect()
 }
 

@@ -11,8 +11,9 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, matrix, zero3};
 use crate::algebra::transplant::map_symbols;
 use crate::derive::calculus::Calculus;
+use crate::derive::care::Care;
 use crate::derive::loads;
-use crate::derive::tree::inverse::{Wrench, inverse, wrenches};
+use crate::derive::tree::inverse::{TENSORS, Tensors, Wrench, inverse, wrenches};
 use crate::derive::tree::momentum::{columns, quadratic_rate, total};
 use crate::derive::tree::slopes::{Slopes, slopes};
 use crate::derive::tree::uniform::Uniform;
@@ -23,11 +24,16 @@ use crate::program::count::{count, depth};
 /// Trees with more links are not tried by other routes.
 const SHORT: usize = 3;
 
+/// Ways of computing U that have α of all links, too, which slopes need.
+const WITH_ALPHA: [Tensors; 2] = [Tensors::Each, Tensors::Carried];
+
 /// A model whose inertia is that of links.
 pub struct Recursion {
     /// The model, its graph holding constants and loads: in its full frame, where the other velocities are given.
     model: Model,
     tree: Tree,
+    /// Whether digits come before cost.
+    careful: bool,
     /// −∂V of what is not gravity.
     elastic: Vec<Edge>,
     /// fᴱ.
@@ -48,7 +54,7 @@ struct Free {
 
 impl Recursion {
     /// The recursion over a model's links, where they are a tree.
-    pub fn of(setting: &Setting, placement: Placement) -> Option<Self> {
+    pub fn of(setting: &Setting, placement: Placement, care: &Care) -> Option<Self> {
         let reduced = &setting.model;
         if !reduced.constraints.is_empty() || setting.back.is_some() {
             return None;
@@ -79,10 +85,37 @@ impl Recursion {
         Some(Recursion {
             model,
             tree,
+            careful: care.is_taken(),
             elastic,
             applied,
             free,
         })
+    }
+
+    /// The tree with U of its links computed as M ξ̇ + Γ ξ ξ + ∂V costs least in a graph.
+    fn cheapest(&self, graph: &Graph, xi: &[Edge], xi_dot: &[Edge], gravity: Vec3) -> Tree {
+        self.cheapest_of(&TENSORS, graph, (xi, xi_dot, gravity))
+    }
+
+    /// The same of some ways; from ω and α of each link where digits come first.
+    fn cheapest_of(
+        &self,
+        ways: &[Tensors],
+        graph: &Graph,
+        (xi, xi_dot, gravity): (&[Edge], &[Edge], Vec3),
+    ) -> Tree {
+        let with = |&tensors: &Tensors| Tree {
+            tensors,
+            ..self.tree.clone()
+        };
+        let cost = |tree: &Tree| {
+            let mut graph = graph.clone();
+            let forces = inverse(&mut graph, tree, xi, xi_dot, gravity);
+            count(&graph, &forces).weight()
+        };
+        let ways = ways.iter().filter(|_| !self.careful);
+        let cheapest = ways.map(with).min_by_key(cost);
+        cheapest.unwrap_or_else(|| self.tree.clone())
     }
 
     /// Whether the tree is so long that the recursion is certainly cheapest.
@@ -150,11 +183,16 @@ impl Recursion {
             .filter(|i| !given.contains(i))
             .collect();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
+        // Where the time gives velocities, other functions need ω of links more than ξ̇ gains.
+        let tree = match self.free {
+            Some(_) => self.tree.clone(),
+            None => self.cheapest(&self.model.graph, xi, &rates, gravity),
+        };
         if self.tree.is_plain(&self.model.graph, n, &given) {
             let mut graph = self.model.graph.clone();
             self.tree.know_polars(&mut graph);
             let load = self.load(&mut graph);
-            let forces = wrenches(&mut graph, &self.tree, xi, &rates, gravity);
+            let forces = wrenches(&mut graph, &tree, xi, &rates, gravity);
             let solution = articulated::forward(&mut graph, &self.tree, &given, &forces, &load);
             if let Some(Solution { xi_dot, pivots }) = solution {
                 let route = "links traced, articulated bodies".to_string();
@@ -168,7 +206,7 @@ impl Recursion {
         let mut graph = self.model.graph.clone();
         self.tree.know_polars(&mut graph);
         let load = self.load(&mut graph);
-        let bias = inverse(&mut graph, &self.tree, xi, &rates, gravity);
+        let bias = inverse(&mut graph, &tree, xi, &rates, gravity);
         let mass = composite::mass_matrix(&mut graph, &self.tree, n);
         let right = solved.iter().map(|&i| graph.sub(load[i], bias[i]));
         let right = right.collect();
@@ -215,11 +253,14 @@ impl Recursion {
         let (active, _) = self.places();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
         let (still, weightless) = (vec![graph.zero(); n], zero3(&graph));
-        let force = inverse(&mut graph, &self.tree, xi, &self.model.xi_dot, gravity);
+        let tree = self.cheapest(&graph, xi, &self.model.xi_dot, gravity);
+        let force = inverse(&mut graph, &tree, xi, &self.model.xi_dot, gravity);
         let inverse_dynamics = (active.iter())
             .map(|&i| graph.sub(force[i], self.elastic[i]))
             .collect();
-        let bias = inverse(&mut graph, &self.tree, xi, &self.given_rates(), weightless);
+        let rates = self.given_rates();
+        let tree = self.cheapest(&graph, xi, &rates, weightless);
+        let bias = inverse(&mut graph, &tree, xi, &rates, weightless);
         let weight = inverse(&mut graph, &self.tree, &still, &still, gravity);
         let momentum = inverse(&mut graph, &self.tree, &still, xi, weightless);
         let mass = composite::mass_matrix_alone(&mut graph, &self.tree, n);
@@ -272,7 +313,8 @@ impl Recursion {
     pub fn residuals(&self, velocities: &[usize]) -> (Graph, Vec<Edge>) {
         let mut graph = self.model.graph.clone();
         let (xi, xi_dot) = (&self.model.xi, &self.model.xi_dot);
-        let force = inverse(&mut graph, &self.tree, xi, xi_dot, self.model.gravity);
+        let tree = self.cheapest(&graph, xi, xi_dot, self.model.gravity);
+        let force = inverse(&mut graph, &tree, xi, xi_dot, self.model.gravity);
         let load = self.load(&mut graph);
         let rows = velocities.iter().map(|&i| graph.sub(force[i], load[i]));
         let rows = rows.collect();
@@ -350,7 +392,8 @@ impl Recursion {
             gravity,
             ..
         } = &self.model;
-        let found = slopes(&mut graph, &self.tree, xi, xi_dot, *gravity)?;
+        let tree = self.cheapest_of(&WITH_ALPHA, &graph, (xi, xi_dot, *gravity));
+        let found = slopes(&mut graph, &tree, xi, xi_dot, *gravity)?;
         let mut columns = self.changes(&self.elastic, &mut graph, &found);
         columns.truncate(2 * self.model.n());
         let row = |i: usize| columns.iter().map(|column| -column[i]).collect();
@@ -367,13 +410,15 @@ impl Recursion {
         }
         let mut graph = model.graph.clone();
         let load = self.load(&mut graph);
-        let tree = &self.tree;
+        let rates = self.given_rates();
+        let motion = (&model.xi[..], &rates[..], model.gravity);
+        let tree = &self.cheapest_of(&WITH_ALPHA, &graph, motion);
         let free = tree.uniform(&mut graph, &model.xi, model.gravity);
         let (proper, gravity) = match &free {
             Some(uniform) => (&uniform.xi, zero3(&graph)),
             None => (&model.xi, model.gravity),
         };
-        let bias = inverse(&mut graph, tree, proper, &self.given_rates(), gravity);
+        let bias = inverse(&mut graph, tree, proper, &rates, gravity);
         let mass = composite::by_second_moments(&mut graph, tree, n);
         let twins = tree.twins(&mut graph);
         let branches = Branches::of(&mut graph, &mass, &twins)?;

@@ -7,23 +7,23 @@
 //! that the link has before it turns, where U is the one of the link before and a few terms of the joint's rate.
 
 use super::parameters::{ENTRIES, Link};
-use crate::algebra::graph::Graph;
+use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{
-    Mat3, Vec3, add3, apply_transposed, apply3, cross, identity3, transpose3, zero3,
+    Mat3, Vec3, add3, apply_transposed, apply3, cross, identity3, multiply3, transpose3, zero3,
 };
 use crate::derive::tree::Tree;
-use crate::derive::tree::inverse::{LinkMotion, Tensors, Wrench, motions_by, tensor};
+use crate::derive::tree::inverse::{LinkMotion, Tensors, Turning, Wrench, motions};
 use crate::derive::tree::turn::Turn;
 use crate::model::Model;
 
 /// Axes in which wrenches are computed, and how U is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// Those of each link.
+    /// Those of each link, columns of U carried from link to link.
     Own,
-    /// Those that parallel hinges share, and the last link of a chain with the one before.
+    /// Those that parallel hinges share, and the last link of a chain with the one before; U in the same way.
     Shared,
-    /// The same, U by steps from link to link.
+    /// The same, all of U by steps from link to link in them.
     Stepwise,
 }
 
@@ -44,15 +44,15 @@ impl Motions {
     pub(super) fn new(model: &mut Model, tree: &Tree, axes: Axes) -> Self {
         let (xi, xi_dot, gravity) = (model.xi.clone(), model.xi_dot.clone(), model.gravity);
         let graph = &mut model.graph;
-        let (tree, lags) = match axes {
+        let (mut tree, lags) = match axes {
             Axes::Own => (tree.clone(), vec![None; tree.links.len()]),
             Axes::Shared | Axes::Stepwise => tree.sharing_axes(graph),
         };
-        let tensors = match axes {
-            Axes::Own | Axes::Shared => Tensors::Each,
+        tree.tensors = match axes {
+            Axes::Own | Axes::Shared => Tensors::Carried,
             Axes::Stepwise => Tensors::Chained,
         };
-        let motions = motions_by(tensors, graph, &tree, (&xi, &xi_dot), gravity);
+        let motions = motions(graph, &tree, &xi, &xi_dot, gravity);
         Motions {
             tree,
             lags,
@@ -72,17 +72,27 @@ impl Motions {
 
 /// In the axes of the frame; its axes in those of the link are given.
 fn in_own_axes(graph: &mut Graph, motion: &LinkMotion, axes: &Mat3) -> Vec<Wrench> {
-    let [omega, alpha, a] =
-        [motion.omega, motion.alpha, motion.a].map(|v| apply_transposed(graph, axes, v));
-    let square = omega.map(|w| graph.mul(w, w));
-    let u = tensor(graph, omega, alpha);
+    let a = apply_transposed(graph, axes, motion.a);
+    let is_kept = |entry: &Edge| *entry == graph.zero() || entry.abs() == graph.one();
+    let (u, differences) = if axes.iter().flatten().all(is_kept) {
+        let u = multiply3(graph, &motion.u, axes);
+        let u = multiply3(graph, &transpose3(axes), &u);
+        let place = |i: usize| (0..3).find(|&row| axes[row][i] != graph.zero());
+        let places = [0, 1, 2].map(|i| place(i).unwrap_or(i));
+        let difference = |i: usize| motion.difference(places[(i + 2) % 3], places[(i + 1) % 3]);
+        (u, [0, 1, 2].map(difference))
+    } else {
+        let [omega, alpha] = [motion.omega, motion.alpha].map(|v| apply_transposed(graph, axes, v));
+        let turning = Turning::of(graph, omega, alpha);
+        (turning.u, turning.differences)
+    };
     let mut torques = [[zero3(graph); 3]; 3];
     for i in 0..3 {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         torques[i][i][j] = -u[k][i];
         torques[i][i][k] = u[j][i];
-        // Of j and k: along i, U_kk − U_jj, which is ω_k² − ω_j².
-        torques[j][k][i] = graph.sub(square[k], square[j]);
+        // Of j and k: along i, U_kk − U_jj.
+        torques[j][k][i] = differences[i];
         torques[j][k][j] = u[i][j];
         torques[j][k][k] = -u[i][k];
         torques[k][j] = torques[j][k];

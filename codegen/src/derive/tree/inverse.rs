@@ -1,6 +1,9 @@
 //! Inverse dynamics by recursion: velocities and accelerations outwards, forces inwards
 //! (Luh, Walker and Paul 1980), with U = α̂ + ω̂ ω̂ and second moments S:
 //! force m a + U h, torque vee(U S − (U S)ᵀ) + h × a about the origin of each link.
+//!
+//! Behind a hinge about an axis e the column U e is that of the link before, since ê e = 0. With it, ω and α·e the rest of U takes
+//! fewer operations than with ω and α.
 
 use super::mass::Mass;
 use super::{Link, Tree};
@@ -47,10 +50,24 @@ pub(crate) struct LinkMotion {
     pub(crate) a: Vec3,
     /// α̂ + ω̂ ω̂.
     pub(crate) u: Mat3,
+    /// U_zz − U_yy, U_xx − U_zz and U_yy − U_xx.
+    differences: Vec3,
     /// Its motion if its joint were locked, ω, α and a: that of the link before.
     pub(crate) from_parent: [Vec3; 3],
     /// Its joint's own angular velocity and velocity.
     pub(crate) relative: (Vec3, Vec3),
+}
+
+impl LinkMotion {
+    /// U_jj − U_kk of two axes.
+    pub(crate) fn difference(&self, j: usize, k: usize) -> Edge {
+        let difference = self.differences[3 - j - k];
+        if (j + 1) % 3 == k {
+            -difference
+        } else {
+            difference
+        }
+    }
 }
 
 /// What the motion of every link needs, at rates ξ (the model's, or zero) and ξ̇ and under gravity (world
@@ -71,12 +88,17 @@ pub fn wrenches(
 
 /// How U = α̂ + ω̂ ω̂ is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Tensors {
+pub enum Tensors {
     /// From ω and α of each link.
     Each,
-    /// From U of the link before, where only signs and order of the axes change between them.
+    /// Behind a hinge about an axis of the link before, with the column along it from there.
+    Carried,
+    /// All of it from the link before where only signs and order of the axes change between them, and its column elsewhere.
     Chained,
 }
+
+/// All of them, the plainest first.
+pub(crate) const TENSORS: [Tensors; 3] = [Tensors::Each, Tensors::Carried, Tensors::Chained];
 
 /// The motion of every link.
 pub(crate) fn motions(
@@ -86,30 +108,32 @@ pub(crate) fn motions(
     xi_dot: &[Edge],
     gravity: Vec3,
 ) -> Vec<LinkMotion> {
-    motions_by(Tensors::Each, graph, tree, (xi, xi_dot), gravity)
-}
-
-/// The same, with U computed in one way or the other.
-pub(crate) fn motions_by(
-    tensors: Tensors,
-    graph: &mut Graph,
-    tree: &Tree,
-    (xi, xi_dot): (&[Edge], &[Edge]),
-    gravity: Vec3,
-) -> Vec<LinkMotion> {
     let zero = zero3(graph);
     let ground = LinkMotion {
         omega: zero,
         alpha: zero,
         a: gravity.map(|entry| -entry),
         u: [zero; 3],
+        differences: zero,
         from_parent: [zero; 3],
         relative: (zero, zero),
     };
-    let mut motions: Vec<LinkMotion> = Vec::with_capacity(tree.links.len());
+    // At rest U is α̂.
+    let rest = xi.iter().all(|&rate| rate == graph.zero());
+    let tensors = if rest { Tensors::Each } else { tree.tensors };
+    // The links behind which α is needed.
+    let mut passing = vec![false; tree.links.len()];
     for link in &tree.links {
+        let is_chained = tensors == Tensors::Chained && kept_axes(graph, link).is_some();
+        if let Some(parent) = link.parent.filter(|_| !is_chained) {
+            passing[parent] = true;
+        }
+    }
+    let mut motions: Vec<LinkMotion> = Vec::with_capacity(tree.links.len());
+    for (link, passes) in tree.links.iter().zip(passing) {
         let before = link.parent.map_or(ground, |parent| motions[parent]);
-        motions.push(outward(graph, link, &before, (xi, xi_dot), tensors));
+        let way = (tensors, passes);
+        motions.push(outward(graph, link, &before, (xi, xi_dot), way));
     }
     motions
 }
@@ -119,7 +143,7 @@ fn outward(
     link: &Link,
     before: &LinkMotion,
     (xi, xi_dot): (&[Edge], &[Edge]),
-    tensors: Tensors,
+    (tensors, passes): (Tensors, bool),
 ) -> LinkMotion {
     let zero = zero3(graph);
     let mut relative = (zero, zero);
@@ -146,10 +170,28 @@ fn outward(
     }
     let omega_before = link.from_parent_axes(graph, before.omega);
     let omega = add3(graph, omega_before, relative.0);
-    let gyro = cross(graph, omega_before, relative.0);
     let alpha_before = link.from_parent_axes(graph, before.alpha);
-    let alpha = add3(graph, alpha_before, gyro);
-    let alpha = add3(graph, alpha, change.0);
+    let turning = match tensors {
+        Tensors::Each => None,
+        Tensors::Chained if kept_axes(graph, link).is_some() => None,
+        Tensors::Carried | Tensors::Chained => {
+            let along = add3(graph, alpha_before, change.0);
+            carried(graph, link, before, (omega, along), passes)
+        }
+    };
+    let turning = turning.unwrap_or_else(|| {
+        let gyro = cross(graph, omega_before, relative.0);
+        let alpha = add3(graph, alpha_before, gyro);
+        let alpha = add3(graph, alpha, change.0);
+        let chained = match tensors {
+            Tensors::Each | Tensors::Carried => None,
+            Tensors::Chained => chained(graph, link, before, omega_before, (xi, xi_dot)),
+        };
+        match chained {
+            Some(u) => Turning::with(graph, alpha, u),
+            None => Turning::of(graph, omega, alpha),
+        }
+    });
     let across = apply3(graph, &before.u, link.position);
     let a = add3(graph, before.a, across);
     let mut a = link.from_parent_axes(graph, a);
@@ -160,19 +202,76 @@ fn outward(
         a = add3(graph, a, coriolis);
     }
     let a = add3(graph, a, change.1);
-    // One of the two: equal expressions are computed as the first of them says.
-    let u = match tensors {
-        Tensors::Each => None,
-        Tensors::Chained => chained(graph, link, before, omega_before, (xi, xi_dot)),
-    };
+    let Turning {
+        alpha,
+        u,
+        differences,
+    } = turning;
     LinkMotion {
         omega,
         alpha,
         a,
-        u: u.unwrap_or_else(|| tensor(graph, omega, alpha)),
+        u,
+        differences,
         from_parent,
         relative,
     }
+}
+
+/// How a link turns: α and U, computed in one way.
+pub(crate) struct Turning {
+    alpha: Vec3,
+    /// α̂ + ω̂ ω̂ = α̂ + ω ωᵀ − |ω|² I.
+    pub(crate) u: Mat3,
+    /// Of its diagonal, as in the motion of a link.
+    pub(crate) differences: Vec3,
+}
+
+impl Turning {
+    pub(crate) fn of(graph: &mut Graph, omega: Vec3, alpha: Vec3) -> Self {
+        let square = omega.map(|w| graph.mul(w, w));
+        let mut differences = zero3(graph);
+        let mut u = [zero3(graph); 3];
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            differences[i] = graph.sub(square[k], square[j]);
+            u[i][i] = -graph.add(square[j], square[k]);
+            let product = graph.mul(omega[j], omega[k]);
+            u[j][k] = graph.sub(product, alpha[i]);
+            u[k][j] = graph.add(product, alpha[i]);
+        }
+        Turning {
+            alpha,
+            u,
+            differences,
+        }
+    }
+
+    fn with(graph: &mut Graph, alpha: Vec3, u: Mat3) -> Self {
+        let difference = |i: usize| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            graph.sub(u[k][k], u[j][j])
+        };
+        Turning {
+            alpha,
+            u,
+            differences: [0, 1, 2].map(difference),
+        }
+    }
+}
+
+/// The axes of the link before in those of a link on a hinge about its third one, where only signs and order are others.
+fn kept_axes(graph: &mut Graph, link: &Link) -> Option<Mat3> {
+    let (zero, one) = (graph.zero(), graph.one());
+    let [freedom] = link.freedoms.as_slice() else {
+        return None;
+    };
+    if freedom.angular != [zero, zero, one] || freedom.linear != zero3(graph) {
+        return None;
+    }
+    let axes = identity3(graph).map(|axis| link.from_parent_axes(graph, axis));
+    let is_kept = |entry: &Edge| *entry == zero || entry.abs() == one;
+    axes.iter().flatten().all(is_kept).then_some(axes)
 }
 
 /// U of a link on a hinge from U₀ of the link before: U₀ + θ̈ ẑ + 2 θ̇ ω̂₀ ẑ + θ̇² ẑ ẑ, whose third column is that of U₀,
@@ -184,20 +283,12 @@ fn chained(
     [x, y, z]: Vec3,
     (xi, xi_dot): (&[Edge], &[Edge]),
 ) -> Option<Mat3> {
-    let (zero, one) = (graph.zero(), graph.one());
+    let axes = kept_axes(graph, link)?;
     let [freedom] = link.freedoms.as_slice() else {
         return None;
     };
-    if freedom.angular != [zero, zero, one] || freedom.linear != zero3(graph) {
-        return None;
-    }
-    let turn = identity3(graph).map(|axis| link.from_parent_axes(graph, axis));
-    let is_kept = |entry: &Edge| *entry == zero || entry.abs() == one;
-    if !turn.iter().flatten().all(is_kept) {
-        return None;
-    }
-    let mut u = multiply3(graph, &before.u, &turn);
-    u = multiply3(graph, &transpose3(&turn), &u);
+    let mut u = multiply3(graph, &before.u, &axes);
+    u = multiply3(graph, &transpose3(&axes), &u);
     let (rate, acceleration) = (freedom.rate_of(graph, xi), freedom.rate_of(graph, xi_dot));
     let twice = graph.add(rate, rate);
     let (along_x, along_y) = (graph.mul(twice, x), graph.mul(twice, y));
@@ -215,18 +306,74 @@ fn chained(
     Some(u)
 }
 
-/// α̂ + ω̂ ω̂ = α̂ + ω ωᵀ − |ω|² I.
-pub(crate) fn tensor(graph: &mut Graph, omega: Vec3, alpha: Vec3) -> Mat3 {
-    let square = omega.map(|w| graph.mul(w, w));
-    let mut u = [zero3(graph); 3];
-    for i in 0..3 {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        u[i][i] = -graph.add(square[j], square[k]);
-        let product = graph.mul(omega[j], omega[k]);
-        u[j][k] = graph.sub(product, alpha[i]);
-        u[k][j] = graph.add(product, alpha[i]);
+/// α and U of a link on a hinge about its axis h, which is an axis of the link before, too, by U h, ω and α·h; `None` for others.
+/// Whether a link behind needs α decides what is cheaper.
+fn carried(
+    graph: &mut Graph,
+    link: &Link,
+    before: &LinkMotion,
+    (omega, along): (Vec3, Vec3),
+    passes: bool,
+) -> Option<Turning> {
+    let zero = zero3(graph);
+    let [freedom] = link.freedoms.as_slice() else {
+        return None;
+    };
+    if freedom.linear != zero || link.velocity_product.0 != zero {
+        return None;
     }
-    u
+    let units = identity3(graph);
+    let is_unit = |v: Vec3| units.contains(&v.map(Edge::abs));
+    let h = (0..3).find(|&h| freedom.angular.map(Edge::abs) == units[h])?;
+    let (j, l) = ((h + 1) % 3, (h + 2) % 3);
+    let axis = link.to_parent_axes(graph, units[h]);
+    if !is_unit(axis) {
+        return None;
+    }
+    let column = apply3(graph, &before.u, axis);
+    let column = link.from_parent_axes(graph, column);
+    let mut u = [zero; 3];
+    for k in 0..3 {
+        u[k][h] = column[k];
+    }
+    // The row: U_hk + U_kh = 2 ω_h ω_k.
+    if !passes {
+        let twice = graph.add(omega[h], omega[h]);
+        for k in [j, l] {
+            let both = graph.mul(twice, omega[k]);
+            u[h][k] = graph.sub(both, u[k][h]);
+        }
+    }
+    let (hj, hl) = (graph.mul(omega[h], omega[j]), graph.mul(omega[h], omega[l]));
+    let mut alpha = along;
+    alpha[j] = graph.sub(hl, u[l][h]);
+    alpha[l] = graph.sub(u[j][h], hj);
+    if passes {
+        u[h][l] = graph.add(hl, alpha[j]);
+        u[h][j] = graph.sub(hj, alpha[l]);
+    }
+    let product = graph.mul(omega[j], omega[l]);
+    u[j][l] = graph.sub(product, alpha[h]);
+    u[l][j] = graph.add(product, alpha[h]);
+    // The diagonal: U_hh is known, and U_jj − U_hh = ω_j² − ω_h².
+    let (hh, jj) = (graph.mul(omega[h], omega[h]), graph.mul(omega[j], omega[j]));
+    let mut differences = zero;
+    differences[l] = graph.sub(jj, hh);
+    u[j][j] = graph.add(u[h][h], differences[l]);
+    u[l][l] = -graph.add(hh, jj);
+    // Behind a first hinge U_hh is the square of its rate, which nothing else may need.
+    let is_plane = before.omega.iter().filter(|w| **w == graph.zero()).count() == 2;
+    (differences[h], differences[j]) = if is_plane {
+        let ll = graph.mul(omega[l], omega[l]);
+        (graph.sub(ll, jj), graph.sub(hh, ll))
+    } else {
+        (graph.sub(u[l][l], u[j][j]), graph.sub(u[h][h], u[l][l]))
+    };
+    Some(Turning {
+        alpha,
+        u,
+        differences,
+    })
 }
 
 pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &LinkMotion) -> Wrench {
@@ -237,7 +384,7 @@ pub(super) fn wrench(graph: &mut Graph, mass: &Mass, motion: &LinkMotion) -> Wre
     let lever = cross(graph, mass.first, *a);
     let spin: Vec3 = std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        let difference = graph.sub(u[k][k], u[j][j]);
+        let difference = motion.difference(k, j);
         let terms = [
             graph.mul(u[k][j], s[j][j]),
             -graph.mul(u[j][k], s[k][k]),

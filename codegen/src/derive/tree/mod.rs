@@ -25,7 +25,7 @@ use super::calculus::Calculus;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Vec3, apply_transposed};
 use crate::model::Model;
-use inverse::Wrench;
+use inverse::{Tensors, Wrench};
 use mass::Mass;
 use turn::Turn;
 
@@ -121,6 +121,8 @@ pub struct Tree {
     pub links: Vec<Link>,
     /// Armatures: J of the force J ξ̇ⁱ that a velocity needs besides.
     pub armature: Vec<Edge>,
+    /// How U of its links is computed.
+    pub tensors: Tensors,
 }
 
 /// Where the frames of links are put.
@@ -151,6 +153,7 @@ impl Tree {
         let tree = Tree {
             links: links.collect(),
             armature: model.armature.clone(),
+            tensors: Tensors::Each,
         };
         Some(match placement {
             Placement::Parallel => tree.sharing_axes(&mut model.graph).0,
@@ -181,6 +184,7 @@ impl Tree {
         let tree = Tree {
             links: links.collect(),
             armature: model.armature.clone(),
+            tensors: Tensors::Each,
         };
         Some((tree, carriers))
     }

@@ -48,6 +48,7 @@ impl Tree {
         let tree = Tree {
             links,
             armature: self.armature.clone(),
+            tensors: self.tensors,
         };
         (tree, lags.iter().map(|lag| lag.map(Plane::turn)).collect())
     }
