@@ -203,9 +203,9 @@ fn drives_cost_no_more_than_what_they_replace() {
     };
     let inverse = flops(&robot.run("ops", &["--format", "json"]), "inverse_dynamics");
     for (name, driven, expected) in [
-        ("base", ["shoulder_pan_joint", "shoulder_lift_joint"], 219),
-        ("middle", ["shoulder_lift_joint", "elbow_joint"], 248),
-        ("wrist", ["wrist_2_joint", "wrist_3_joint"], 306),
+        ("base", ["shoulder_pan_joint", "shoulder_lift_joint"], 206),
+        ("middle", ["shoulder_lift_joint", "elbow_joint"], 240),
+        ("wrist", ["wrist_2_joint", "wrist_3_joint"], 298),
     ] {
         let file = robot.driven(name, &driven);
         let output = hamel(&["ops", &file, "--format", "json"], "");

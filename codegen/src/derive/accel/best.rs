@@ -37,6 +37,30 @@ pub struct Acceleration {
 }
 
 impl Acceleration {
+    /// A candidate, counted.
+    pub(super) fn counted(
+        graph: Graph,
+        xi_dot: Vec<Edge>,
+        pivots: Vec<Edge>,
+        route: String,
+    ) -> Self {
+        let mut roots = xi_dot.clone();
+        roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
+        Acceleration {
+            other: None,
+            count: count(&graph, &roots),
+            depth: depth(&graph, &roots),
+            graph,
+            xi_dot,
+            pivots,
+            twist: false,
+            multipliers: Vec::new(),
+            projections: None,
+            loss: 0,
+            route,
+        }
+    }
+
     /// None, where no ξ̇ is wanted; in a graph of the model's symbols.
     pub fn none(graph: Graph) -> Self {
         Acceleration {

@@ -13,19 +13,17 @@ use crate::algebra::transplant::map_symbols;
 use crate::derive::calculus::Calculus;
 use crate::derive::care::Care;
 use crate::derive::loads;
-use crate::derive::tree::inverse::{TENSORS, Tensors, Wrench, inverse, wrenches};
+use crate::derive::tree::inverse::{
+    Motion, TENSORS, Tensors, WITH_ALPHA, Wrench, inverse, wrenches,
+};
 use crate::derive::tree::momentum::{columns, quadratic_rate, total};
 use crate::derive::tree::slopes::{Slopes, slopes};
 use crate::derive::tree::uniform::Uniform;
 use crate::derive::tree::{Placement, Tree, articulated, composite};
 use crate::model::Model;
-use crate::program::count::{count, depth};
 
 /// Trees with more links are not tried by other routes.
 const SHORT: usize = 3;
-
-/// Ways of computing U that have α of all links, too, which slopes need.
-const WITH_ALPHA: [Tensors; 2] = [Tensors::Each, Tensors::Carried];
 
 /// A model whose inertia is that of links.
 pub struct Recursion {
@@ -92,30 +90,12 @@ impl Recursion {
         })
     }
 
-    /// The tree with U of its links computed as M ξ̇ + Γ ξ ξ + ∂V costs least in a graph.
-    fn cheapest(&self, graph: &Graph, xi: &[Edge], xi_dot: &[Edge], gravity: Vec3) -> Tree {
-        self.cheapest_of(&TENSORS, graph, (xi, xi_dot, gravity))
-    }
-
-    /// The same of some ways; from ω and α of each link where digits come first.
-    fn cheapest_of(
-        &self,
-        ways: &[Tensors],
-        graph: &Graph,
-        (xi, xi_dot, gravity): (&[Edge], &[Edge], Vec3),
-    ) -> Tree {
-        let with = |&tensors: &Tensors| Tree {
-            tensors,
-            ..self.tree.clone()
-        };
-        let cost = |tree: &Tree| {
-            let mut graph = graph.clone();
-            let forces = inverse(&mut graph, tree, xi, xi_dot, gravity);
-            count(&graph, &forces).weight()
-        };
-        let ways = ways.iter().filter(|_| !self.careful);
-        let cheapest = ways.map(with).min_by_key(cost);
-        cheapest.unwrap_or_else(|| self.tree.clone())
+    /// The tree with U of its links by the cheapest of some ways; from ω and α of each where digits come first.
+    fn cheapest(&self, ways: &[Tensors], graph: &Graph, motion: Motion) -> Tree {
+        match self.careful {
+            true => self.tree.clone(),
+            false => self.tree.cheapest(ways, graph, motion),
+        }
     }
 
     /// Whether the tree is so long that the recursion is certainly cheapest.
@@ -186,7 +166,7 @@ impl Recursion {
         // Where the time gives velocities, other functions need ω of links more than ξ̇ gains.
         let tree = match self.free {
             Some(_) => self.tree.clone(),
-            None => self.cheapest(&self.model.graph, xi, &rates, gravity),
+            None => self.cheapest(&TENSORS, &self.model.graph, (xi, &rates, gravity)),
         };
         if self.tree.is_plain(&self.model.graph, n, &given) {
             let mut graph = self.model.graph.clone();
@@ -199,7 +179,7 @@ impl Recursion {
                 let xi_dot = self.driven(&active, |i| xi_dot[i]);
                 let pivots = active.iter().map(|&i| pivots[i]).collect();
                 let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
-                let candidate = candidate(graph, xi_dot, pivots, route);
+                let candidate = Acceleration::counted(graph, xi_dot, pivots, route);
                 best.keep(Family::Links, candidate);
             }
         }
@@ -240,7 +220,7 @@ impl Recursion {
                     .map(|&i| place(i).map_or(one, |at| pivots[at]));
                 let pivots = pivots.collect();
                 let (graph, [xi_dot, pivots]) = self.leave(graph, [xi_dot, pivots]);
-                let candidate = candidate(graph, xi_dot, pivots, route);
+                let candidate = Acceleration::counted(graph, xi_dot, pivots, route);
                 best.keep(Family::Links, candidate);
             }
         }
@@ -253,13 +233,13 @@ impl Recursion {
         let (active, _) = self.places();
         let (xi, gravity) = (&self.model.xi, self.model.gravity);
         let (still, weightless) = (vec![graph.zero(); n], zero3(&graph));
-        let tree = self.cheapest(&graph, xi, &self.model.xi_dot, gravity);
+        let tree = self.cheapest(&TENSORS, &graph, (xi, &self.model.xi_dot, gravity));
         let force = inverse(&mut graph, &tree, xi, &self.model.xi_dot, gravity);
         let inverse_dynamics = (active.iter())
             .map(|&i| graph.sub(force[i], self.elastic[i]))
             .collect();
         let rates = self.given_rates();
-        let tree = self.cheapest(&graph, xi, &rates, weightless);
+        let tree = self.cheapest(&TENSORS, &graph, (xi, &rates, weightless));
         let bias = inverse(&mut graph, &tree, xi, &rates, weightless);
         let weight = inverse(&mut graph, &self.tree, &still, &still, gravity);
         let momentum = inverse(&mut graph, &self.tree, &still, xi, weightless);
@@ -313,7 +293,7 @@ impl Recursion {
     pub fn residuals(&self, velocities: &[usize]) -> (Graph, Vec<Edge>) {
         let mut graph = self.model.graph.clone();
         let (xi, xi_dot) = (&self.model.xi, &self.model.xi_dot);
-        let tree = self.cheapest(&graph, xi, xi_dot, self.model.gravity);
+        let tree = self.cheapest(&TENSORS, &graph, (xi, xi_dot, self.model.gravity));
         let force = inverse(&mut graph, &tree, xi, xi_dot, self.model.gravity);
         let load = self.load(&mut graph);
         let rows = velocities.iter().map(|&i| graph.sub(force[i], load[i]));
@@ -392,7 +372,7 @@ impl Recursion {
             gravity,
             ..
         } = &self.model;
-        let tree = self.cheapest_of(&WITH_ALPHA, &graph, (xi, xi_dot, *gravity));
+        let tree = self.cheapest(&WITH_ALPHA, &graph, (xi, xi_dot, *gravity));
         let found = slopes(&mut graph, &tree, xi, xi_dot, *gravity)?;
         let mut columns = self.changes(&self.elastic, &mut graph, &found);
         columns.truncate(2 * self.model.n());
@@ -411,8 +391,7 @@ impl Recursion {
         let mut graph = model.graph.clone();
         let load = self.load(&mut graph);
         let rates = self.given_rates();
-        let motion = (&model.xi[..], &rates[..], model.gravity);
-        let tree = &self.cheapest_of(&WITH_ALPHA, &graph, motion);
+        let tree = &self.cheapest(&WITH_ALPHA, &graph, (&model.xi, &rates, model.gravity));
         let free = tree.uniform(&mut graph, &model.xi, model.gravity);
         let (proper, gravity) = match &free {
             Some(uniform) => (&uniform.xi, zero3(&graph)),
@@ -505,23 +484,4 @@ pub struct RatesAndSlopes {
     pub pivots: Vec<Edge>,
     /// n rows of 2 n + m.
     pub rows: Vec<Vec<Edge>>,
-}
-
-/// A candidate, counted.
-fn candidate(graph: Graph, xi_dot: Vec<Edge>, pivots: Vec<Edge>, route: String) -> Acceleration {
-    let mut roots = xi_dot.clone();
-    roots.extend(pivots.iter().filter(|pivot| !graph.is_free(pivot.node())));
-    Acceleration {
-        other: None,
-        count: count(&graph, &roots),
-        depth: depth(&graph, &roots),
-        graph,
-        xi_dot,
-        pivots,
-        twist: false,
-        multipliers: Vec::new(),
-        projections: None,
-        loss: 0,
-        route,
-    }
 }

@@ -11,6 +11,7 @@ use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{
     Mat3, Vec3, add3, apply3, cross, identity3, multiply3, scale3, transpose3, zero3,
 };
+use crate::program::count::count;
 
 /// Force and torque about the origin of a link, in its axes.
 #[derive(Clone, Copy, Debug)]
@@ -99,6 +100,29 @@ pub enum Tensors {
 
 /// All of them, the plainest first.
 pub(crate) const TENSORS: [Tensors; 3] = [Tensors::Each, Tensors::Carried, Tensors::Chained];
+/// Those by which α of every link is there, too.
+pub(crate) const WITH_ALPHA: [Tensors; 2] = [Tensors::Each, Tensors::Carried];
+
+/// ξ, ξ̇ and gravity.
+pub(crate) type Motion<'a> = (&'a [Edge], &'a [Edge], Vec3);
+
+impl Tree {
+    /// The tree with U of its links computed as M ξ̇ + Γ ξ ξ + ∂V of a motion costs least in a graph.
+    pub(crate) fn cheapest(&self, ways: &[Tensors], graph: &Graph, motion: Motion) -> Tree {
+        let with = |&tensors: &Tensors| Tree {
+            tensors,
+            ..self.clone()
+        };
+        let cost = |tree: &Tree| {
+            let mut graph = graph.clone();
+            let (xi, xi_dot, gravity) = motion;
+            let forces = inverse(&mut graph, tree, xi, xi_dot, gravity);
+            count(&graph, &forces).weight()
+        };
+        let cheapest = ways.iter().map(with).min_by_key(cost);
+        cheapest.unwrap_or_else(|| self.clone())
+    }
+}
 
 /// The motion of every link.
 pub(crate) fn motions(
