@@ -169,6 +169,14 @@ const BRICARD: Twice = Twice {
 
 const ALL: [Twice; 5] = [CRANKS, LEVEL, BENNETT, SARRUS, BRICARD];
 
+/// The first ones of a list, and all of it with `HAMEL_ATTACK`: linearisations of six-bar loops take seconds.
+fn first<T>(some: usize, all: &[T]) -> &[T] {
+    match std::env::var_os("HAMEL_ATTACK") {
+        Some(_) => all,
+        None => &all[..some],
+    }
+}
+
 impl Twice {
     /// Both descriptions at an angle and at rates of it and of the base, with loads that both have.
     fn described(&self, q: f64, [rate, spin]: [f64; 2], loads: &str) -> [String; 2] {
@@ -222,8 +230,8 @@ fn slopes_of_redundant_loops_are_those_in_one_coordinate() {
         (-0.21, [-2.1, 0.9]),
         (0.17, [0.7, -1.5]),
     ];
-    for mechanism in &ALL {
-        for (angle, rates) in states {
+    for mechanism in first(3, &ALL) {
+        for &(angle, rates) in first(2, &states) {
             let both = mechanism.described(mechanism.amid + angle, rates, loads);
             let [tree, single] = both.map(|description| linearized(&description));
             assert_eq!(tree["states"].as_array().map(Vec::len), Some(4));
@@ -248,7 +256,7 @@ fn slopes_of_redundant_loops_are_those_in_one_coordinate() {
 /// or decays, and the loops swing as fast as they do in one coordinate.
 #[test]
 fn conservative_redundant_loops_have_imaginary_eigenvalues() {
-    for mechanism in &ALL {
+    for mechanism in first(3, &ALL) {
         let amid = mechanism.amid;
         let at = |force: f64| {
             let loads = format!(

@@ -1,4 +1,4 @@
-//! Generated C against the interpreter: every second model, awkward names, and random descriptions, compiled by gcc as C99
+//! Generated C against the interpreter: every third model, awkward names, and random descriptions, compiled by gcc as C99
 //! without a warning; `double` within 1e-13 of scale, `float` within what its rounding makes. With `HAMEL_ATTACK=more`, as in
 //! `cargo xtask ci`, there are all models and 20 random descriptions instead of 5, gcc optimises, and g++ reads all as C++17 and
 //! clang as both, where they are installed; `HAMEL_ATTACK=full` has 300.
