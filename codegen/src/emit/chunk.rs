@@ -3,6 +3,11 @@
 //! rustc nests one debug scope in each `let` and overflows its stack at about 3,000 of them; code
 //! that keeps all values in memory compiles slowly. So a long body is cut in parts of plain
 //! `let`s, and only values that are read in a later part go through an array of slots.
+//!
+//! A function that is larger than the cache of instructions takes as long as its code takes to come from the next one,
+//! so that the shortest code is the fastest. Where most values are read far from where they are computed, as in the
+//! slopes of a robot with legs, that is code in short parts: a long one would read a value from its slot, soon put it
+//! on the stack for want of registers, and read it from there again.
 
 use crate::algebra::graph::{Edge, NodeId};
 use crate::program::places::{Place, Places, Time};
@@ -13,6 +18,15 @@ use std::ops::Range;
 
 /// The fewest `let`s that a part is allowed: one statement with its numbers has to fit.
 const SMALLEST: usize = 8;
+
+/// Parts of longer bodies are never inlined: the compiler is then fastest, and the call costs little beside the part.
+pub const LONG: usize = 2000;
+
+/// The most `let`s of a short part.
+const SHORT: usize = 70;
+
+/// Parts are short where this many values for so many statements cross them.
+const MANY: (usize, usize) = (6, 5);
 
 /// A run of statements that becomes one function.
 #[derive(Clone, Debug)]
@@ -34,10 +48,59 @@ pub struct Plan {
     pub slots: FxHashMap<NodeId, usize>,
     /// Number of slots.
     pub size: usize,
+    /// The results that later parts read where they were written, by their place. In short parts that is the case of
+    /// all: neighbours in a row are then often computed from neighbours, which processors do at once.
+    pub results: FxHashMap<NodeId, usize>,
 }
 
 /// Cuts a body in parts of at most `limit` `let`s: statements, numbers, and the constants' name.
 pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
+    let plan = cut(body, places, time, limit, &FxHashMap::default());
+    if plan.whole || body.statements.len() <= LONG {
+        return plan;
+    }
+    let results = body.outputs.iter().map(|edge| edge.node()).enumerate();
+    let computed = results.filter(|&(_, node)| places.of(node, time) == Place::Temporary);
+    // Of equal ones the first.
+    let results = computed.map(|(place, node)| (node, place)).rev().collect();
+    let short = cut(body, places, time, limit.min(SHORT), &results);
+    let (values, statements) = MANY;
+    match statements * crossings(body, &short.parts) < values * body.statements.len() {
+        true => plan,
+        false => Plan { results, ..short },
+    }
+}
+
+/// How many values parts read that others computed, counted for each part that reads them, and once for the one that
+/// computes them.
+fn crossings(body: &Body, parts: &[Part]) -> usize {
+    let mut home: FxHashMap<NodeId, usize> = FxHashMap::default();
+    for (index, part) in parts.iter().enumerate() {
+        let statements = &body.statements[part.statements.clone()];
+        let defined = statements.iter().flat_map(|statement| statement.defined());
+        home.extend(defined.map(|node| (node, index)));
+    }
+    let mut crossing: FxHashSet<NodeId> = FxHashSet::default();
+    let mut reads = 0;
+    for (index, part) in parts.iter().enumerate() {
+        let statements = &body.statements[part.statements.clone()];
+        let operands = statements.iter().flat_map(|s| s.operation.operands());
+        let foreign = |node: &NodeId| home.get(node).is_some_and(|&home| home != index);
+        let read: FxHashSet<NodeId> = operands.map(Edge::node).filter(foreign).collect();
+        reads += read.len();
+        crossing.extend(read);
+    }
+    reads + crossing.len()
+}
+
+/// The parts, and slots for all values that cross them and are not among the results.
+fn cut(
+    body: &Body,
+    places: &Places,
+    time: Time,
+    limit: usize,
+    results: &FxHashMap<NodeId, usize>,
+) -> Plan {
     let limit = limit.max(SMALLEST);
     let is_number = |edge: &Edge| places.of(edge.node(), time) == Place::Number;
     let mut parts = Vec::new();
@@ -86,17 +149,22 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
             numbers,
         });
     }
-    let (slots, size) = slots(body, &parts);
+    let (slots, size) = slots(body, &parts, results);
     Plan {
         whole,
         parts,
         slots,
         size,
+        results: FxHashMap::default(),
     }
 }
 
 /// Slots by liveness: one is used again after the last part that reads its value.
-fn slots(body: &Body, parts: &[Part]) -> (FxHashMap<NodeId, usize>, usize) {
+fn slots(
+    body: &Body,
+    parts: &[Part],
+    results: &FxHashMap<NodeId, usize>,
+) -> (FxHashMap<NodeId, usize>, usize) {
     let mut last: FxHashMap<NodeId, usize> = FxHashMap::default();
     for (index, part) in parts.iter().enumerate() {
         for statement in &body.statements[part.statements.clone()] {
@@ -112,7 +180,10 @@ fn slots(body: &Body, parts: &[Part]) -> (FxHashMap<NodeId, usize>, usize) {
     for (index, part) in parts.iter().enumerate() {
         let statements = &body.statements[part.statements.clone()];
         for node in statements.iter().flat_map(|statement| statement.defined()) {
-            let Some(&end) = last.get(&node).filter(|&&end| end > index) else {
+            let Some(&end) = last
+                .get(&node)
+                .filter(|&&end| end > index && !results.contains_key(&node))
+            else {
                 continue;
             };
             let slot = free.pop_first().unwrap_or_else(|| {

@@ -4,13 +4,13 @@ use super::chunk::{Part, Plan, plan};
 use super::docs;
 use super::language::{Language, Rust};
 use super::locals::Locals;
-use super::print::{Printer, Used};
+use super::print::{Printer, Used, Written};
 use super::{Emitter, names};
 use crate::algebra::graph::{Edge, NodeId};
 use crate::program::places::Time;
 use crate::program::statements::{Body, Operation};
 use crate::program::{Argument, Cause, Program, Shape, tape};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The argument to which slopes are written besides a result.
 pub const SLOPES: &str = "slopes";
@@ -39,6 +39,17 @@ pub struct Spec<'a> {
     pub nodes: Vec<NodeId>,
     /// When it runs.
     pub time: Time,
+}
+
+impl Spec<'_> {
+    /// A result as it is read from its place.
+    fn written(&self, edge: Edge, place: usize) -> Written {
+        Written {
+            text: super::parts::target(self, place, true),
+            negative: edge.is_negative(),
+            besides: place >= self.shape.entries(),
+        }
+    }
 }
 
 /// The statements of a function, and the names that the user gave to values of it.
@@ -90,6 +101,8 @@ pub fn draw(
     let numbers = read.chain(body.outputs.iter().copied()).map(Edge::node);
     locals.fill(&body.statements, numbers, &emitter.places);
     let plan = plan(&body, &emitter.places, spec.time, emitter.chunk);
+    let places = plan.results.iter();
+    let written = places.map(|(&node, &place)| (node, spec.written(body.outputs[place], place)));
     text(&Drawing {
         emitter,
         spec,
@@ -97,6 +110,7 @@ pub fn draw(
         locals: &locals,
         body: &body,
         plan: &plan,
+        written: &written.collect(),
         parameters,
     })
 }
@@ -124,6 +138,8 @@ pub struct Drawing<'a> {
     pub body: &'a Body,
     /// How it is cut.
     pub plan: &'a Plan,
+    /// Results that are read where they were written.
+    pub written: &'a FxHashMap<NodeId, Written>,
     /// The parameters as expressions.
     pub parameters: &'a [String],
 }
@@ -141,6 +157,7 @@ impl Drawing<'_> {
             parameters: self.parameters,
             externals: &self.emitter.names.externals,
             slots: &self.plan.slots,
+            written: self.written,
             here: FxHashSet::default(),
             used: Used::default(),
         }

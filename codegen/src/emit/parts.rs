@@ -1,23 +1,20 @@
 //! A long function as a row of calls: its parts share one array of slots and write the results.
 
+use super::chunk::LONG;
 use super::function::{Drawing, SLOPES, Spec, shape_type, statements, zeros};
 use super::names;
-use super::print::Used;
+use super::print::{Access, Used};
 use crate::algebra::graph::NodeId;
 use crate::program::Shape;
 use crate::program::places::Place;
 use rustc_hash::FxHashMap;
-
-/// Above this number of statements the parts of a function are never inlined: the compiler is then
-/// fastest, and the call costs little beside the part.
-const INLINE: usize = 2000;
 
 impl Drawing<'_> {
     /// The parts, then the function that calls them.
     pub fn split(&self) -> String {
         let Spec { name, .. } = self.spec;
         let entries = self.spec.shape.entries();
-        let inline = if self.body.statements.len() > INLINE {
+        let inline = if self.body.statements.len() > LONG {
             "#[inline(never)]\n"
         } else {
             "#[inline]\n"
@@ -38,8 +35,12 @@ impl Drawing<'_> {
                 let indices = targets.get(&node).map_or(&[][..], Vec::as_slice);
                 let (own, besides): (Vec<usize>, Vec<usize>) =
                     indices.iter().partition(|&&index| index < entries);
-                printer.used.out |= !own.is_empty();
-                printer.used.besides |= !besides.is_empty();
+                if !own.is_empty() {
+                    printer.used.out = Access::Written;
+                }
+                if !besides.is_empty() {
+                    printer.used.besides = Access::Written;
+                }
                 let writes = indices.iter().map(|&index| {
                     let value = printer.signed(self.body.outputs[index]);
                     format!("{} = {value};\n", target(self.spec, index, true))
@@ -119,12 +120,18 @@ impl Drawing<'_> {
             arguments.push(format!("slots: &{mutable}[S; {}]", self.plan.size));
             values.push(format!("&{mutable}slots"));
         }
-        if used.out {
-            arguments.push(format!("out: &mut {}", shape_type(self.spec.shape)));
-            values.push("&mut out".into());
+        let mutable = |access: Access| match access {
+            Access::None => None,
+            Access::Read => Some(""),
+            Access::Written => Some("mut "),
+        };
+        if let Some(mutable) = mutable(used.out) {
+            let shape = shape_type(self.spec.shape);
+            arguments.push(format!("out: &{mutable}{shape}"));
+            values.push(format!("&{mutable}out"));
         }
-        if let Some(shape) = self.spec.beside.filter(|_| used.besides) {
-            arguments.push(format!("{SLOPES}: &mut {}", shape_type(shape)));
+        if let (Some(mutable), Some(shape)) = (mutable(used.besides), self.spec.beside) {
+            arguments.push(format!("{SLOPES}: &{mutable}{}", shape_type(shape)));
             values.push(SLOPES.into());
         }
         (arguments.join(", "), values.join(", "))
@@ -132,7 +139,7 @@ impl Drawing<'_> {
 }
 
 /// The place of a result, behind a reference or not.
-fn target(spec: &Spec, index: usize, reference: bool) -> String {
+pub fn target(spec: &Spec, index: usize, reference: bool) -> String {
     let entries = spec.shape.entries();
     let (out, shape, index) = match spec.beside.filter(|_| index >= entries) {
         Some(shape) => (SLOPES, shape, index - entries),

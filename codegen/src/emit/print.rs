@@ -21,12 +21,34 @@ pub struct Used {
     pub reads: bool,
     /// Whether slots are written.
     pub writes: bool,
-    /// Whether results are written.
-    pub out: bool,
-    /// Whether something is written besides.
-    pub besides: bool,
+    /// What becomes of results.
+    pub out: Access,
+    /// What becomes of what is written besides.
+    pub besides: Access,
     /// Whether it can return an error.
     pub checks: bool,
+}
+
+/// What a text does with an array.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Access {
+    /// Nothing.
+    #[default]
+    None,
+    /// It reads entries.
+    Read,
+    /// It writes entries.
+    Written,
+}
+
+/// A result that is read where it was written.
+pub struct Written {
+    /// Its place.
+    pub text: String,
+    /// Whether it is the negative of the value.
+    pub negative: bool,
+    /// Whether it is among what is written besides.
+    pub besides: bool,
 }
 
 /// Prints the statements of one function or part.
@@ -49,6 +71,8 @@ pub struct Printer<'a> {
     pub externals: &'a ExternalNames,
     /// Slots of values that cross parts.
     pub slots: &'a FxHashMap<NodeId, usize>,
+    /// Results that are read where they were written.
+    pub written: &'a FxHashMap<NodeId, Written>,
     /// Values computed by statements printed so far.
     pub here: FxHashSet<NodeId>,
     /// What was used so far.
@@ -91,18 +115,28 @@ impl Printer<'_> {
 
     /// A value with its sign, as an operand.
     pub fn signed(&mut self, edge: Edge) -> String {
-        let value = self.value(edge.node());
-        if edge.is_negative() {
-            format!("-{value}")
-        } else {
-            value
-        }
+        self.operand(edge).signed()
     }
 
     fn operand(&mut self, edge: Edge) -> Operand {
-        Operand {
-            value: self.value(edge.node()),
-            negative: edge.is_negative(),
+        let node = edge.node();
+        let negative = edge.is_negative();
+        match self.written.get(&node).filter(|_| !self.here.contains(&node)) {
+            Some(written) => {
+                let access = match written.besides {
+                    true => &mut self.used.besides,
+                    false => &mut self.used.out,
+                };
+                *access = Access::Read.max(*access);
+                Operand {
+                    value: written.text.clone(),
+                    negative: negative != written.negative,
+                }
+            }
+            None => Operand {
+                value: self.value(node),
+                negative,
+            },
         }
     }
 
@@ -179,12 +213,13 @@ impl Printer<'_> {
 
     fn expression(&mut self, operation: &Operation) -> String {
         match *operation {
-            Operation::Add(a, b) if a.is_negative() && !b.is_negative() => {
-                self.expression(&Operation::Add(b, a))
-            }
             Operation::Add(a, b) => {
-                let sign = if b.is_negative() { "-" } else { "+" };
-                format!("{} {sign} {}", self.signed(a), self.value(b.node()))
+                let [mut a, mut b] = [a, b].map(|edge| self.operand(edge));
+                if a.negative && !b.negative {
+                    std::mem::swap(&mut a, &mut b);
+                }
+                let sign = if b.negative { "-" } else { "+" };
+                format!("{} {sign} {}", a.signed(), b.value)
             }
             Operation::Multiply(a, b) => format!("{} * {}", self.signed(a), self.signed(b)),
             Operation::Divide(a, b) => format!("{} / {}", self.signed(a), self.signed(b)),
