@@ -7,7 +7,7 @@
 //! way has a column; ratios are those of the fastest.
 //!
 //! The functions are not quite the same ones:
-//! - `slopes` are [A B], written in place with ξ̇ beside them: besides ∂ξ̇/∂h, ∂ξ̇/∂ξ and ∂ξ̇/∂u, which
+//! - `slopes` are [A B], written to the same place each time with ξ̇ beside them: besides ∂ξ̇/∂h, ∂ξ̇/∂ξ and ∂ξ̇/∂u, which
 //!   `computeABADerivatives` gives as well, the rows of ∂ḣ/∂h and ∂ḣ/∂ξ.
 //! - `regressor` has a column for each base parameter, `computeJointTorqueRegressor` ten for each body. What has to agree
 //!   is therefore the force, Y β and Y π.
@@ -29,6 +29,7 @@ use libloading::Library;
 use measure::INPUTS;
 use peer::{Description, Peer};
 use robots::Robot;
+use std::cell::RefCell;
 use std::error::Error;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -163,7 +164,7 @@ fn vector(peer: &Peer, name: &str, k: usize) -> Result<Vec<Vec<f64>>, Box<dyn Er
 }
 
 /// Runs a function over all points, behind a pointer.
-fn runs<S, P, T>(system: &S, points: &[P], function: fn(&S, &P) -> T) -> impl Fn(u32) {
+fn runs<S, P, T>(system: &S, points: &[P], function: &dyn Fn(&S, &P) -> T) -> impl Fn(u32) {
     move |count| {
         let (system, function) = (black_box(system), black_box(function));
         for _ in 0..count {
@@ -213,7 +214,7 @@ macro_rules! robot {
             &["pin_rnea"],
             &vector,
             &|k| vec![inverse(system, &points[k]).to_vec()],
-            &runs(system, points, inverse),
+            &runs(system, points, &inverse),
         )?;
         let forward = |system: &Model, at: &Point<Model>| system.accel(&at.x, &at.xi, &at.u);
         sides.row(
@@ -224,13 +225,15 @@ macro_rules! robot {
                 let found = forward(system, &points[k]);
                 found.map(|found| vec![found.to_vec()]).unwrap_or_default()
             },
-            &runs(system, points, forward),
+            &runs(system, points, &forward),
         )?;
         let slopes = |system: &Model, at: &Point<Model>| system.linearize(&at.x, &at.xi, &at.u);
+        // Written to the same place each time, as Pinocchio's are.
+        let place = RefCell::new(<Model as Tangent>::Slopes::zero());
         let slopes_in_place = |system: &Model, at: &Point<Model>| {
-            let mut slopes = <Model as Tangent>::Slopes::zero();
-            let rates = system.slopes(&at.x, &at.xi, &at.u, &mut slopes);
-            black_box(&slopes);
+            let mut place = place.borrow_mut();
+            let rates = system.slopes(&at.x, &at.xi, &at.u, &mut place);
+            black_box(&*place);
             rates
         };
         sides.row(
@@ -249,7 +252,7 @@ macro_rules! robot {
                     found.map(|found| [0, N, 2 * N].map(|first| block::<Model>(&found, first, N)));
                 parts.map(|parts| parts.to_vec()).unwrap_or_default()
             },
-            &runs(system, points, slopes_in_place),
+            &runs(system, points, &slopes_in_place),
         )?;
         let regressor =
             |system: &Model, at: &Point<Model>| system.regressor(&at.x, &at.xi, &at.xi_dot);
@@ -274,7 +277,7 @@ macro_rules! robot {
                     .map(|row| row.iter().zip(&beta).map(|(a, b)| a * b).sum());
                 vec![force.to_vec()]
             },
-            &runs(system, points, regressor),
+            &runs(system, points, &regressor),
         )?;
         let jacobian = |link: &Link, at: &Point<Model>| link.$jacobian(&at.x);
         sides.row(
@@ -285,7 +288,7 @@ macro_rules! robot {
                 let rows = jacobian(link, &points[k]);
                 vec![(0..N).flat_map(|j| rows.map(|row| row[j])).collect()]
             },
-            &runs(link, points, jacobian),
+            &runs(link, points, &jacobian),
         )?;
     }};
 }

@@ -13,6 +13,7 @@ use crate::algebra::graph::{Edge, NodeId};
 use crate::program::places::{Place, Places, Time};
 use crate::program::statements::Body;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -65,9 +66,14 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
     let results = computed.map(|(place, node)| (node, place)).rev().collect();
     let short = cut(body, places, time, limit.min(SHORT), &results);
     let (values, statements) = MANY;
-    match statements * crossings(body, &short.parts) < values * body.statements.len() {
-        true => plan,
-        false => Plan { results, ..short },
+    if statements * crossings(body, &short.parts) < values * body.statements.len() {
+        return plan;
+    }
+    let slots = most_used_first(body, &short);
+    Plan {
+        slots,
+        results,
+        ..short
     }
 }
 
@@ -196,4 +202,28 @@ fn slots(
         free.extend(ends[index].drain(..));
     }
     (slots, size)
+}
+
+/// Slots numbered by how many parts use them: the offsets of the first are shorter, and they are next to one another.
+fn most_used_first(body: &Body, plan: &Plan) -> FxHashMap<NodeId, usize> {
+    let mut uses = vec![0_usize; plan.size];
+    for part in &plan.parts {
+        let statements = &body.statements[part.statements.clone()];
+        let values = statements.iter().flat_map(|statement| {
+            let operands = statement.operation.operands().map(Edge::node);
+            operands.chain(statement.defined())
+        });
+        let here: FxHashSet<NodeId> = values.collect();
+        for &slot in here.iter().filter_map(|node| plan.slots.get(node)) {
+            uses[slot] += 1;
+        }
+    }
+    let mut order: Vec<usize> = (0..plan.size).collect();
+    order.sort_by_key(|&slot| Reverse(uses[slot]));
+    let mut places = vec![0; plan.size];
+    for (place, &slot) in order.iter().enumerate() {
+        places[slot] = place;
+    }
+    let slots = plan.slots.iter();
+    slots.map(|(&node, &slot)| (node, places[slot])).collect()
 }

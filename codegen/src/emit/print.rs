@@ -121,7 +121,11 @@ impl Printer<'_> {
     fn operand(&mut self, edge: Edge) -> Operand {
         let node = edge.node();
         let negative = edge.is_negative();
-        match self.written.get(&node).filter(|_| !self.here.contains(&node)) {
+        match self
+            .written
+            .get(&node)
+            .filter(|_| !self.here.contains(&node))
+        {
             Some(written) => {
                 let access = match written.besides {
                     true => &mut self.used.besides,
