@@ -27,10 +27,10 @@ pub const LONG: usize = 2000;
 const SHORT: usize = 70;
 
 /// Parts are short where this many values for so many statements cross them.
-const MANY: (usize, usize) = (6, 5);
+const MANY: (usize, usize) = (23, 20);
 
 /// A run of statements that becomes one function.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Part {
     /// Its statements.
     pub statements: Range<usize>,
@@ -109,51 +109,32 @@ fn cut(
 ) -> Plan {
     let limit = limit.max(SMALLEST);
     let is_number = |edge: &Edge| places.of(edge.node(), time) == Place::Number;
-    let mut parts = Vec::new();
+    let mut parts: Vec<Part> = Vec::new();
     let mut start = 0;
-    let mut numbers: Vec<NodeId> = Vec::new();
-    let mut seen: FxHashSet<NodeId> = FxHashSet::default();
-    let mut lets = 1;
-    for (index, statement) in body.statements.iter().enumerate() {
-        let fresh = |seen: &FxHashSet<NodeId>| -> BTreeSet<NodeId> {
-            let read = statement.operation.operands().filter(is_number);
-            read.map(Edge::node)
-                .filter(|node| !seen.contains(node))
-                .collect()
-        };
-        let mut new = fresh(&seen);
-        let cost = usize::from(statement.is_let());
-        if lets + cost + new.len() > limit {
-            let numbers = std::mem::take(&mut numbers);
-            parts.push(Part {
-                statements: start..index,
-                numbers,
-            });
-            seen.clear();
-            (start, lets, new) = (index, 1, fresh(&seen));
-        }
-        lets += cost + new.len();
-        seen.extend(&new);
-        numbers.extend(new);
+    while start < body.statements.len() {
+        let part = longest(body, start, limit, is_number, results);
+        start = part.statements.end;
+        parts.push(part);
     }
-    let end = body.statements.len();
-    let mut whole = parts.is_empty();
+    let mut whole = parts.len() <= 1;
     if whole {
+        let mut part = parts.pop().unwrap_or_default();
+        let lets = body.statements.iter().filter(|s| s.is_let()).count();
         // A single body binds the numbers among its results too.
-        let results = body
-            .outputs
-            .iter()
-            .filter(|edge| is_number(edge))
-            .map(|edge| edge.node());
-        let results: Vec<NodeId> = results.filter(|&node| seen.insert(node)).collect();
-        whole = lets + results.len() <= limit;
-        numbers.extend(results.into_iter().filter(|_| whole));
-    }
-    if whole || start < end {
-        parts.push(Part {
-            statements: start..end,
-            numbers,
-        });
+        let read = part.numbers.len();
+        let outputs = body.outputs.iter().filter(|edge| is_number(edge));
+        for node in outputs.map(|edge| edge.node()) {
+            if !part.numbers.contains(&node) {
+                part.numbers.push(node);
+            }
+        }
+        whole = 1 + lets + part.numbers.len() <= limit;
+        if !whole {
+            part.numbers.truncate(read);
+        }
+        if whole || !part.statements.is_empty() {
+            parts.push(part);
+        }
     }
     let (slots, size) = slots(body, &parts, results);
     Plan {
@@ -162,6 +143,45 @@ fn cut(
         slots,
         size,
         results: FxHashMap::default(),
+    }
+}
+
+/// The longest part that begins with a statement. It ends behind one of the results that later parts read, if half of
+/// it still does: neighbours in a row are then more often computed together.
+fn longest(
+    body: &Body,
+    start: usize,
+    limit: usize,
+    is_number: impl Fn(&Edge) -> bool,
+    results: &FxHashMap<NodeId, usize>,
+) -> Part {
+    let mut numbers: Vec<NodeId> = Vec::new();
+    let mut seen: FxHashSet<NodeId> = FxHashSet::default();
+    let (mut end, mut lets) = (start, 1);
+    let mut behind_result = (start, 0);
+    for statement in &body.statements[start..] {
+        let read = statement.operation.operands().filter(&is_number);
+        let read = read.map(Edge::node).filter(|node| !seen.contains(node));
+        let new: BTreeSet<NodeId> = read.collect();
+        lets += usize::from(statement.is_let()) + new.len();
+        if lets > limit && end > start {
+            let (earlier, count) = behind_result;
+            if 2 * (earlier - start) >= end - start {
+                end = earlier;
+                numbers.truncate(count);
+            }
+            break;
+        }
+        seen.extend(&new);
+        numbers.extend(new);
+        end += 1;
+        if statement.defined().any(|node| results.contains_key(&node)) {
+            behind_result = (end, numbers.len());
+        }
+    }
+    Part {
+        statements: start..end,
+        numbers,
     }
 }
 

@@ -83,7 +83,7 @@ impl Drawing<'_> {
         };
         text.push_str(&format!("let {mutable}out = {};\n", zeros(self.spec.shape)));
         if let Some(shape) = self.spec.beside {
-            text.push_str(&format!("*{SLOPES} = {};\n", zeros(shape)));
+            text.push_str(&self.cleared(shape));
         }
         text.push_str(&calls);
         for index in rest
@@ -96,6 +96,32 @@ impl Drawing<'_> {
         let kept = self.bind_kept(&main.used);
         let body = format!("{kept}{text}{}", self.value("out"));
         parts + &self.head(&main.used, &body)
+    }
+
+    /// Zeros in what is written besides. A function in short parts has them only where nothing else comes, which is
+    /// more code, but less to write.
+    fn cleared(&self, shape: Shape) -> String {
+        let columns = match shape {
+            Shape::Matrix(_, columns) if !self.written.is_empty() => columns,
+            _ => return format!("*{SLOPES} = {};\n", zeros(shape)),
+        };
+        let (_, besides) = self.body.outputs.split_at(self.spec.shape.entries());
+        let zero = self.emitter.program.graph.zero();
+        let rows = besides
+            .chunks(columns.max(1))
+            .enumerate()
+            .map(|(row, entries)| {
+                let zeros = (0..columns).filter(|&column| entries[column] == zero);
+                let zeros: Vec<usize> = zeros.collect();
+                if 2 * zeros.len() >= columns {
+                    return format!("{SLOPES}[{row}] = [S::default(); {columns}];\n");
+                }
+                let entries = zeros.iter();
+                let entries =
+                    entries.map(|column| format!("{SLOPES}[{row}][{column}] = S::default();\n"));
+                entries.collect()
+            });
+        rows.collect()
     }
 
     /// Parameters of a part with their types, and what is given for them.
