@@ -1,13 +1,16 @@
 //! Text that parses, names that are legal, parts of bounded size.
 
+mod evaluate;
 mod sample;
 mod sketch;
 
 use super::names::{Names, snake, type_name};
 use super::{Options, rust, statements, tokens};
 use crate::program::Shape;
+use crate::program::interpret::Interpreter;
 use crate::syntax::ast::ShapeKind;
-use sample::{everything, pendulum, random};
+use evaluate::Values;
+use sample::{everything, pendulum, random, reaching};
 use sketch::{Declared, function, sketch};
 use std::collections::HashSet;
 
@@ -270,23 +273,60 @@ fn names_of_parameters_do_not_depend_on_what_is_generated() {
     assert_eq!(names.accessors, ["energy_2"]);
 }
 
+/// Where values are read far from where they are computed parts are short, elsewhere long; both are worth what the
+/// program is.
 #[test]
 fn long_functions_are_cut() {
-    let program = random(3000, 5);
-    assert!(statements(&program) > 3000);
-    let file = parse(&program, &Options::default());
-    let sizes: Vec<usize> = methods(&file).into_iter().map(lets).collect();
-    assert!(sizes.iter().all(|&size| size <= 500), "{sizes:?}");
-    assert!(
-        sizes.iter().filter(|&&size| size > 450).count() >= 6,
-        "{sizes:?}"
-    );
-    let text = rust(&program, &Options::default());
-    assert!(
-        text.contains("#[inline(never)]")
-            && text.contains("fn accel_part1(")
-            && text.contains("?;\n")
-    );
+    for (program, limit) in [(random(3000, 5), 70), (reaching(3000, 5, 12), 500)] {
+        assert!(statements(&program) > 3000);
+        let file = parse(&program, &Options::default());
+        let methods = methods(&file);
+        let parts = methods.iter().filter(|method| {
+            let name = method.sig.ident.to_string();
+            name.starts_with("accel_part")
+        });
+        let sizes: Vec<usize> = parts.map(|part| lets(part)).collect();
+        assert!(sizes.iter().all(|&size| size <= limit), "{sizes:?}");
+        let full = sizes.iter().filter(|&&size| 10 * size > 9 * limit);
+        assert!(4 * full.count() > 3 * (sizes.len() - 1), "{sizes:?}");
+        let text = rust(&program, &Options::default());
+        assert!(text.contains("#[inline(never)]") && text.contains("?;\n"));
+
+        let arguments = [("x", 8, 0.9), ("xi", 8, -0.7), ("u", 4, 0.4), ("p", 4, 0.3)];
+        let numbers = arguments.map(|(_, length, first)| -> Vec<f64> {
+            let numbers = (0..length).map(|place| first + 0.01 * f64::from(place));
+            numbers.collect()
+        });
+        let mut values = Values::default();
+        for ((name, ..), numbers) in arguments.iter().zip(&numbers) {
+            values.array(name, numbers);
+        }
+        values.run(&methods, "constants");
+        let kept = methods
+            .iter()
+            .find(|method| method.sig.ident == "constants");
+        let syn::ReturnType::Type(_, kept) = &kept.expect("constants").sig.output else {
+            panic!("constants have a type")
+        };
+        let syn::Type::Array(kept) = &**kept else {
+            panic!("constants are an array")
+        };
+        let kept = quote::ToTokens::to_token_stream(&kept.len).to_string();
+        let kept = values.of("out", 1, kept.parse().expect("a length"));
+        values.array("k", &kept);
+        values.run(&methods, "accel");
+        let [x, xi, u, p] = &numbers;
+        let accel = program.function("accel").expect("it is there");
+        let wanted = Interpreter::new(&program, accel, p).call(x, xi, u, &[]);
+        let wanted = wanted.expect("all pivots are positive");
+        let found = values.of("out", 3, 4);
+        for (a, b) in found.iter().zip(&wanted) {
+            assert!(
+                (a - b).abs() <= 1e-9 * b.abs().max(1.0),
+                "{found:?} {wanted:?}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -187,6 +187,11 @@ pub fn everything() -> Program {
 
 /// A random program of about `size` statements, all of them live; `pivots` of them are guards.
 pub fn random(size: usize, pivots: usize) -> Program {
+    reaching(size, pivots, size)
+}
+
+/// The same, in which no value is read after more than `reach` others, but in one sum of all.
+pub fn reaching(size: usize, pivots: usize, reach: usize) -> Program {
     let s = ShapeKind::Vector(4);
     let (mut program, [p, x, xi, u, _]) = sketch(
         "Random",
@@ -220,8 +225,9 @@ pub fn random(size: usize, pivots: usize) -> Program {
     let one = graph.one();
     while pool.len() < size {
         // Mostly recent values, so that everything stays live; squashed now and then.
-        let near = pool.len() - draw(40.min(pool.len())) - 1;
-        let (a, b) = (pool[near], pool[draw(pool.len())]);
+        let near = pool.len() - draw(reach.min(40).min(pool.len())) - 1;
+        let far = pool.len() - draw(reach.min(pool.len())) - 1;
+        let (a, b) = (pool[near], pool[far]);
         let next = match draw(12) {
             0..4 => graph.add(a, b),
             4..6 => graph.sub(a, b),
@@ -246,6 +252,9 @@ pub fn random(size: usize, pivots: usize) -> Program {
         }
     }
     let mut outputs = pool.split_off(pool.len() - 12);
+    // Results that are read again, one as its negative.
+    outputs[9] = pool[pool.len() / 3];
+    outputs[10] = -pool[pool.len() / 2];
     let rest = graph.sum(&pool);
     outputs[3] = -graph.apply(Elementary::Sin, rest);
     outputs[5] = x[2];
