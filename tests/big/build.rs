@@ -1,5 +1,5 @@
-//! Writes descriptions of a chain of 16 links and of a tree of the size of a humanoid robot, and generates
-//! their code: that of the chain with its derivatives.
+//! Writes descriptions of a chain of 16 links, of a tree of the size of a humanoid robot, and of a robot with four legs,
+//! and generates their code: that of the chain and of the legs with derivatives.
 
 use common::Random;
 use std::path::PathBuf;
@@ -8,6 +8,8 @@ use std::path::PathBuf;
 mod chain;
 #[path = "../../codegen/tests/suite/common/mod.rs"]
 mod common;
+#[path = "src/quadruped.rs"]
+mod quadruped;
 #[path = "../../codegen/tests/suite/common/tree/mod.rs"]
 mod tree;
 
@@ -19,7 +21,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let humanoid = tree::text(&tree::humanoid(), "accel, inverse_dynamics");
     let humanoid = humanoid.replacen("system Tree", "/// 38 freedoms.\npub system Humanoid", 1);
     let mut builder = hamel_codegen::Builder::new();
-    for (name, text) in [("chain", chain), ("humanoid", humanoid)] {
+    let texts = [
+        ("chain", chain),
+        ("humanoid", humanoid),
+        ("quadruped", quadruped::quadruped()),
+    ];
+    for (name, text) in texts {
         let path = folder.join(name).with_extension("eom");
         std::fs::write(&path, text)?;
         builder = builder.file(path);

@@ -20,14 +20,14 @@ use std::ops::Range;
 /// The fewest `let`s that a part is allowed: one statement with its numbers has to fit.
 const SMALLEST: usize = 8;
 
-/// Parts of longer bodies are never inlined: the compiler is then fastest, and the call costs little beside the part.
-pub const LONG: usize = 2000;
-
 /// The most `let`s of a short part.
 const SHORT: usize = 70;
 
-/// Parts are short where this many values for so many statements cross them.
-const MANY: (usize, usize) = (23, 20);
+/// A function of at most this many statements fits in the cache of instructions, 32 KB on most machines.
+const FITS: usize = 3000;
+
+/// Parts are short where more than this many values for so many statements cross them.
+const MANY: (usize, usize) = (21, 20);
 
 /// A run of statements that becomes one function.
 #[derive(Clone, Debug, Default)]
@@ -57,7 +57,7 @@ pub struct Plan {
 /// Cuts a body in parts of at most `limit` `let`s: statements, numbers, and the constants' name.
 pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
     let plan = cut(body, places, time, limit, &FxHashMap::default());
-    if plan.whole || body.statements.len() <= LONG {
+    if plan.whole || body.statements.len() <= FITS {
         return plan;
     }
     let results = body.outputs.iter().map(|edge| edge.node()).enumerate();
@@ -66,7 +66,7 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
     let results = computed.map(|(place, node)| (node, place)).rev().collect();
     let short = cut(body, places, time, limit.min(SHORT), &results);
     let (values, statements) = MANY;
-    if statements * crossings(body, &short.parts) < values * body.statements.len() {
+    if statements * crossings(body, &short.parts) <= values * body.statements.len() {
         return plan;
     }
     let slots = most_used_first(body, &short);

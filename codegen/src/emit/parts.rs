@@ -1,6 +1,5 @@
 //! A long function as a row of calls: its parts share one array of slots and write the results.
 
-use super::chunk::LONG;
 use super::function::{Drawing, SLOPES, Spec, shape_type, statements, zeros};
 use super::names;
 use super::print::{Access, Used};
@@ -9,12 +8,16 @@ use crate::program::Shape;
 use crate::program::places::Place;
 use rustc_hash::FxHashMap;
 
+/// Above this number of statements the parts of a function are never inlined: the compiler is then
+/// fastest, and the call costs little beside the part.
+const INLINE: usize = 2000;
+
 impl Drawing<'_> {
     /// The parts, then the function that calls them.
     pub fn split(&self) -> String {
         let Spec { name, .. } = self.spec;
         let entries = self.spec.shape.entries();
-        let inline = if self.body.statements.len() > LONG {
+        let inline = if self.body.statements.len() > INLINE {
             "#[inline(never)]\n"
         } else {
             "#[inline]\n"

@@ -4,6 +4,11 @@
 
 include!(concat!(env!("OUT_DIR"), "/chain.rs"));
 
+/// A floating trunk with four legs, whose slopes are computed in short parts.
+pub mod quadruped {
+    include!(concat!(env!("OUT_DIR"), "/quadruped.rs"));
+}
+
 /// A floating trunk with a waist, two legs, two arms and a head.
 pub mod humanoid {
     include!(concat!(env!("OUT_DIR"), "/humanoid.rs"));
