@@ -4,7 +4,8 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 bash tests/robots/install.sh
-robots=$(find "$PWD/${CARGO_TARGET_DIR:-target}/robots" -type d -path '*example-robot-data/robots' | head -n 1)
+target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
+robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
 export HAMEL_ROBOTS="$robots"
 export RUSTFLAGS="-C target-cpu=native"
 cargo build --release --manifest-path bench/native/Cargo.toml --target-dir target/bench-native --bin hamel-bench-native

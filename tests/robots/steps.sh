@@ -5,6 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 bash tests/robots/install.sh
-robots=$(find "$PWD/${CARGO_TARGET_DIR:-target}/robots" -type d -path '*example-robot-data/robots' | head -n 1)
+target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
+robots=$(find "$target/robots" -type d -path '*example-robot-data/robots' | head -n 1)
 export HAMEL_ROBOTS="$robots" HAMEL_CONTROL_REFERENCE="${HAMEL_CONTROL_REFERENCE:-$PWD/tests/reference/control}"
 cargo test --manifest-path tests/robots/steps/Cargo.toml --locked
