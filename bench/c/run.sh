@@ -15,9 +15,9 @@ export RUSTFLAGS="-C target-cpu=native"
 cargo build --release --manifest-path bench/c/Cargo.toml --target-dir "$out/rust"
 # One core, where the system can say so.
 pin=$(command -v taskset || true)
-# gcc schedules before it allocates registers where it is told to: functions of a thousand operations gain a tenth. Its
-# schedules for single processors are longer than the general one.
-gcc="gcc -fschedule-insns -fsched-pressure -frename-registers -mtune=generic"
+# gcc is fastest where it is told to schedule before it allocates registers, and not after, and not to put what stands
+# side by side into vectors, which takes more moves than it saves.
+gcc="gcc -fno-tree-slp-vectorize -fschedule-insns -fno-schedule-insns2 -fsched-pressure -frename-registers"
 ended=0
 for compiler in clang "$gcc"; do
     library="$out/lib${compiler%% *}.so"
