@@ -44,8 +44,12 @@ pub struct Spec<'a> {
 impl Spec<'_> {
     /// A result as it is read from its place.
     fn written(&self, edge: Edge, place: usize) -> Written {
+        let text = super::parts::target(self, place, true);
         Written {
-            text: super::parts::target(self, place, true),
+            text: match self.shape {
+                Shape::Scalar => format!("({text})"),
+                _ => text,
+            },
             negative: edge.is_negative(),
             besides: place >= self.shape.entries(),
         }
