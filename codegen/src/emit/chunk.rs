@@ -54,17 +54,33 @@ pub struct Plan {
     pub results: FxHashMap<NodeId, usize>,
 }
 
-/// Cuts a body in parts of at most `limit` `let`s: statements, numbers, and the constants' name.
-pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
-    let plan = cut(body, places, time, limit, &FxHashMap::default());
-    if plan.whole || body.statements.len() <= FITS {
+/// Cuts a body in parts of at most `limit` `let`s: statements, numbers, and the constants' name. Parts write results at
+/// once, those `first` too, which are known before the last pivot is; where these are not to be written before, they are
+/// in slots at the end.
+pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, first: First) -> Plan {
+    let none = FxHashMap::default();
+    let plan = cut(body, places, time, limit, &none, &FxHashSet::default());
+    if body.statements.len() <= FITS {
         return plan;
     }
     let results = body.outputs.iter().map(|edge| edge.node()).enumerate();
     let computed = results.filter(|&(_, node)| places.of(node, time) == Place::Temporary);
     // Of equal ones the first.
-    let results = computed.map(|(place, node)| (node, place)).rev().collect();
-    let short = cut(body, places, time, limit.min(SHORT), &results);
+    let mut results: FxHashMap<NodeId, usize> =
+        computed.map(|(place, node)| (node, place)).rev().collect();
+    let mut last = FxHashSet::default();
+    if first == First::Kept {
+        let pivot = body
+            .statements
+            .iter()
+            .rposition(|statement| !statement.is_let());
+        let before = &body.statements[..pivot.unwrap_or(0)];
+        let known = before.iter().flat_map(|statement| statement.defined());
+        last = known
+            .filter(|node| results.remove(node).is_some())
+            .collect();
+    }
+    let short = cut(body, places, time, limit.min(SHORT), &results, &last);
     let (values, statements) = MANY;
     if statements * crossings(body, &short.parts) <= values * body.statements.len() {
         return plan;
@@ -75,6 +91,15 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize) -> Plan {
         results,
         ..short
     }
+}
+
+/// What becomes of results that are known before the last pivot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum First {
+    /// They are written at once.
+    Written,
+    /// They are kept in slots: nothing is written where a pivot is not positive.
+    Kept,
 }
 
 /// How many values parts read that others computed, counted for each part that reads them, and once for the one that
@@ -99,13 +124,15 @@ fn crossings(body: &Body, parts: &[Part]) -> usize {
     reads + crossing.len()
 }
 
-/// The parts, and slots for all values that cross them and are not among the results.
+/// The parts, and slots for all values that cross them and are not among the results, and for those read `last`, behind
+/// all of them.
 fn cut(
     body: &Body,
     places: &Places,
     time: Time,
     limit: usize,
     results: &FxHashMap<NodeId, usize>,
+    last: &FxHashSet<NodeId>,
 ) -> Plan {
     let limit = limit.max(SMALLEST);
     let is_number = |edge: &Edge| places.of(edge.node(), time) == Place::Number;
@@ -136,7 +163,7 @@ fn cut(
             parts.push(part);
         }
     }
-    let (slots, size) = slots(body, &parts, results);
+    let (slots, size) = slots(body, &parts, results, last);
     Plan {
         whole,
         parts,
@@ -190,6 +217,7 @@ fn slots(
     body: &Body,
     parts: &[Part],
     results: &FxHashMap<NodeId, usize>,
+    at_the_end: &FxHashSet<NodeId>,
 ) -> (FxHashMap<NodeId, usize>, usize) {
     let mut last: FxHashMap<NodeId, usize> = FxHashMap::default();
     for (index, part) in parts.iter().enumerate() {
@@ -199,10 +227,11 @@ fn slots(
             }
         }
     }
+    last.extend(at_the_end.iter().map(|&node| (node, parts.len())));
     let mut slots = FxHashMap::default();
     let mut size = 0;
     let mut free: BTreeSet<usize> = BTreeSet::new();
-    let mut ends: Vec<Vec<usize>> = vec![Vec::new(); parts.len()];
+    let mut ends: Vec<Vec<usize>> = vec![Vec::new(); parts.len() + 1];
     for (index, part) in parts.iter().enumerate() {
         let statements = &body.statements[part.statements.clone()];
         for node in statements.iter().flat_map(|statement| statement.defined()) {

@@ -42,16 +42,12 @@ pub struct Spec<'a> {
 }
 
 impl Spec<'_> {
-    /// A result as it is read from its place.
-    fn written(&self, edge: Edge, place: usize) -> Written {
-        let text = super::parts::target(self, place, true);
-        Written {
-            text: match self.shape {
-                Shape::Scalar => format!("({text})"),
-                _ => text,
-            },
-            negative: edge.is_negative(),
-            besides: place >= self.shape.entries(),
+    /// The array with a result, its shape, and the place there.
+    pub fn place(&self, result: usize) -> (&'static str, Shape, usize) {
+        let entries = self.shape.entries();
+        match self.beside.filter(|_| result >= entries) {
+            Some(shape) => (SLOPES, shape, result - entries),
+            None => ("out", self.shape, result),
         }
     }
 }
@@ -104,9 +100,18 @@ pub fn draw(
         .flat_map(|statement| statement.operation.operands());
     let numbers = read.chain(body.outputs.iter().copied()).map(Edge::node);
     locals.fill(&body.statements, numbers, &emitter.places);
-    let plan = plan(&body, &emitter.places, spec.time, emitter.chunk);
+    let first = language.first();
+    let plan = plan(&body, &emitter.places, spec.time, emitter.chunk, first);
     let places = plan.results.iter();
-    let written = places.map(|(&node, &place)| (node, spec.written(body.outputs[place], place)));
+    let written = places.map(|(&node, &place)| {
+        let (array, shape, entry) = spec.place(place);
+        let written = Written {
+            text: language.entry(array, shape, entry),
+            negative: body.outputs[place].is_negative(),
+            besides: place >= spec.shape.entries(),
+        };
+        (node, written)
+    });
     text(&Drawing {
         emitter,
         spec,

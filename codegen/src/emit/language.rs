@@ -1,8 +1,9 @@
 //! What statements are spelled by: what Rust and C write differently.
 
+use super::chunk::First;
 use super::number;
 use crate::algebra::graph::{Function, Graph, NodeId};
-use crate::program::{Cause, Program};
+use crate::program::{Cause, Program, Shape};
 
 /// A value that an operation reads.
 pub struct Operand {
@@ -30,6 +31,10 @@ impl Operand {
 
 /// A language that functions are printed in.
 pub trait Language {
+    /// What becomes of results that are known before the last pivot.
+    fn first(&self) -> First;
+    /// An entry of an array of results where a part reads it, by its place.
+    fn entry(&self, array: &str, shape: Shape, place: usize) -> String;
     /// A number by its digits.
     fn literal(&self, graph: &Graph, node: NodeId) -> String;
     /// A number where it is read; `name` is that of its binding.
@@ -59,6 +64,21 @@ pub trait Language {
 pub struct Rust;
 
 impl Language for Rust {
+    fn first(&self) -> First {
+        First::Written
+    }
+
+    fn entry(&self, array: &str, shape: Shape, place: usize) -> String {
+        match shape {
+            Shape::Scalar => format!("(*{array})"),
+            Shape::Vector(_) => format!("{array}[{place}]"),
+            Shape::Matrix(_, columns) => {
+                let columns = columns.max(1);
+                format!("{array}[{}][{}]", place / columns, place % columns)
+            }
+        }
+    }
+
     fn literal(&self, graph: &Graph, node: NodeId) -> String {
         number::of(graph, node)
     }

@@ -1,6 +1,7 @@
 //! A long function as a row of calls: its parts share one array of slots and write the results.
 
 use super::function::{Drawing, SLOPES, Spec, shape_type, statements, zeros};
+use super::language::{Language, Rust};
 use super::names;
 use super::print::{Access, Used};
 use crate::algebra::graph::NodeId;
@@ -167,20 +168,11 @@ impl Drawing<'_> {
     }
 }
 
-/// The place of a result, behind a reference or not.
-pub fn target(spec: &Spec, index: usize, reference: bool) -> String {
-    let entries = spec.shape.entries();
-    let (out, shape, index) = match spec.beside.filter(|_| index >= entries) {
-        Some(shape) => (SLOPES, shape, index - entries),
-        None => ("out", spec.shape, index),
-    };
-    match shape {
-        Shape::Scalar if reference => "*out".into(),
-        Shape::Scalar => out.into(),
-        Shape::Vector(_) => format!("{out}[{index}]"),
-        Shape::Matrix(_, columns) => {
-            let columns = columns.max(1);
-            format!("{out}[{}][{}]", index / columns, index % columns)
-        }
+/// A result that is written, behind a reference or not.
+fn target(spec: &Spec, index: usize, reference: bool) -> String {
+    match spec.place(index) {
+        (array, Shape::Scalar, _) if reference => format!("*{array}"),
+        (array, Shape::Scalar, _) => array.into(),
+        (array, shape, place) => Rust.entry(array, shape, place),
     }
 }

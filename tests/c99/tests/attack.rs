@@ -15,6 +15,8 @@ mod describe;
 mod models;
 #[path = "c99/names.rs"]
 mod names;
+#[path = "../../big/src/quadruped.rs"]
+mod quadruped;
 #[path = "../../../codegen/tests/suite/common/some.rs"]
 mod some;
 
@@ -23,7 +25,7 @@ use common::{Random, size};
 use compile::{STRICT, folder, run};
 use hamel_codegen::Builder;
 use hamel_codegen::diagnostics::Diagnostic;
-use hamel_codegen::emit::c::Precision;
+use hamel_codegen::emit::c::{self, Precision};
 use hamel_codegen::generate::{Generated, from_file, from_text};
 use hamel_codegen::render::render;
 use rayon::prelude::*;
@@ -89,6 +91,15 @@ fn models_give_what_the_interpreter_gives() {
         })
         .collect();
     attack("models", cases);
+}
+
+/// A function that is cut in parts.
+#[test]
+fn a_quadruped_gives_what_the_interpreter_gives() {
+    let generated = from_text(&quadruped::quadruped()).expect("it is right");
+    let files = c::files(&generated.program, &c::Options::default());
+    assert!(files.source.matches("\nPART ").count() > 100);
+    attack("quadruped", vec![Case::new(generated, None, 1.0)]);
 }
 
 /// Functions that models have only where they are asked for.

@@ -14,6 +14,16 @@ const FUSED: &str = "\
 #endif
 ";
 
+/// What compilers are told of parts of long functions, undefined again by [`END`].
+const PART: &str = "\
+/* A part of a long function. It stays by itself: what is short is read in short time. */
+#if defined(__GNUC__)
+#define PART static __attribute__((noinline))
+#else
+#define PART static
+#endif
+";
+
 /// What is of numbers; `@FAST` tells whether `fma` is one instruction, which compilers say in different ways.
 const DOUBLE: &[(&str, &str)] = &[
     (
@@ -57,7 +67,11 @@ const HINTS: &str = "\
 ";
 
 /// What follows the functions, where they need it.
-const END: [&str; 2] = ["#undef FUSED\n", "#undef INLINE\n#undef RARE\n"];
+const END: [&str; 3] = [
+    "#undef FUSED\n",
+    "#undef INLINE\n#undef RARE\n",
+    "#undef PART\n",
+];
 
 /// Name and text of the others; `@_` stands for the prefix, `@REAL` for the type of numbers, `@F` for what literals and
 /// functions of `<math.h>` end in. Those further up are called by those further down.
@@ -261,9 +275,13 @@ pub fn around(functions: &str, names: &Identifiers, precision: Precision) -> [St
     }
     let mut after = String::new();
     let uses = |before: &str, word: &str| functions.contains(word) || before.contains(word);
+    if functions.contains("\nPART ") {
+        before = format!("{PART}\n{before}");
+        after = END[2].into();
+    }
     if uses(&before, "INLINE ") {
         before = format!("{}\n{before}", spelled(HINTS));
-        after = END[1].into();
+        after = format!("{}{after}", END[1]);
     }
     if uses(&before, "FUSED(") {
         before = format!("{}\n{before}", spelled(FUSED));

@@ -2,8 +2,9 @@
 
 use super::names::Identifiers;
 use crate::algebra::graph::{Function, Graph, Node, NodeId};
+use crate::emit::chunk::First;
 use crate::emit::language::{Language, Operand};
-use crate::program::{Cause, Program};
+use crate::program::{Cause, Program, Shape};
 use num_traits::ToPrimitive;
 use std::fmt;
 use std::str::FromStr;
@@ -82,6 +83,14 @@ pub struct C<'a> {
 }
 
 impl Language for C<'_> {
+    fn first(&self) -> First {
+        First::Kept
+    }
+
+    fn entry(&self, array: &str, _: Shape, place: usize) -> String {
+        format!("{array}[{place}]")
+    }
+
     fn literal(&self, graph: &Graph, node: NodeId) -> String {
         let value = match graph.node(node) {
             Node::Constant(index) => graph.constant(index).to_f64().unwrap_or(f64::NAN),
