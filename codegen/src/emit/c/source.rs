@@ -88,7 +88,7 @@ fn body(texts: &Texts, drawing: &Drawing, spec: &Spec) -> String {
         text.push_str(&statements(&mut printer, &body, part, |_, _| String::new()));
     }
     let all = results(texts, &mut printer, drawing, spec, |_| true);
-    around(texts, &printer.used, spec, &format!("{text}{all}"))
+    around(texts, &printer.used, spec, false, &format!("{text}{all}"))
 }
 
 /// What returns the results, or writes those of some places.
@@ -115,11 +115,11 @@ fn results(
     results
 }
 
-/// A body with what it begins with.
-fn around(texts: &Texts, used: &Used, spec: &Spec, all: &str) -> String {
+/// A body with what it begins with; it may pass the system on.
+fn around(texts: &Texts, used: &Used, spec: &Spec, passes: bool, all: &str) -> String {
     let number = returns_number(spec.shape, spec.fallible);
     let mut unused = Vec::new();
-    if !used.kept && !all.contains("system->") && !all.contains("(system") {
+    if !used.kept && !passes && !all.contains("system->") {
         unused.push("system");
     }
     let arguments = spec.arguments.iter();
@@ -157,7 +157,8 @@ fn split(texts: &Texts, drawing: &Drawing, spec: &Spec) -> (String, String) {
         }
     }
     let mut main = drawing.printer();
-    let (mut parts, mut calls, mut checks) = (String::new(), String::new(), false);
+    let (mut parts, mut calls) = (String::new(), String::new());
+    let (mut checks, mut passes) = (false, false);
     for (index, part) in drawing.plan.parts.iter().enumerate() {
         let mut printer = drawing.printer();
         let mut writes = String::new();
@@ -183,6 +184,7 @@ fn split(texts: &Texts, drawing: &Drawing, spec: &Spec) -> (String, String) {
         let mut given: Vec<&str> = Vec::new();
         let mut taken = Vec::new();
         if text.contains("system->") {
+            passes = true;
             given.push("system");
             taken.push(format!("const {} *{restrict} system", names.own("system")));
         }
@@ -241,7 +243,7 @@ fn split(texts: &Texts, drawing: &Drawing, spec: &Spec) -> (String, String) {
         !written(&outputs[index])
     });
     let all = format!("{text}{calls}{rest}");
-    (parts, around(texts, &main.used, spec, &all))
+    (parts, around(texts, &main.used, spec, passes, &all))
 }
 
 /// `parameters->m = 1.3;` and so on.
