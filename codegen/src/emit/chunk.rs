@@ -55,12 +55,12 @@ pub struct Plan {
 }
 
 /// Cuts a body in parts of at most `limit` `let`s: statements, numbers, and the constants' name. Parts write results at
-/// once, those `first` too, which are known before the last pivot is; where these are not to be written before, they are
-/// in slots at the end.
-pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, first: First) -> Plan {
+/// once, or leave them in slots.
+pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, when: When) -> Plan {
     let none = FxHashMap::default();
     let plan = cut(body, places, time, limit, &none, &FxHashSet::default());
-    if body.statements.len() <= FITS {
+    // What depends on parameters alone is computed once.
+    if time != Time::Call || body.statements.len() <= FITS {
         return plan;
     }
     let results = body.outputs.iter().map(|edge| edge.node()).enumerate();
@@ -68,18 +68,19 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, first: First
     // Of equal ones the first.
     let mut results: FxHashMap<NodeId, usize> =
         computed.map(|(place, node)| (node, place)).rev().collect();
-    let mut last = FxHashSet::default();
-    if first == First::Kept {
-        let pivot = body
-            .statements
-            .iter()
-            .rposition(|statement| !statement.is_let());
-        let before = &body.statements[..pivot.unwrap_or(0)];
-        let known = before.iter().flat_map(|statement| statement.defined());
-        last = known
-            .filter(|node| results.remove(node).is_some())
-            .collect();
-    }
+    let kept = match when {
+        When::AtOnce => 0,
+        When::BehindPivots => {
+            let pivot = body.statements.iter().rposition(|s| !s.is_let());
+            pivot.unwrap_or(0)
+        }
+        When::AtTheEnd => body.statements.len(),
+    };
+    let kept = body.statements[..kept].iter();
+    let known = kept.flat_map(|statement| statement.defined());
+    let last = known
+        .filter(|node| results.remove(node).is_some())
+        .collect();
     let short = cut(body, places, time, limit.min(SHORT), &results, &last);
     let (values, statements) = MANY;
     if statements * crossings(body, &short.parts) <= values * body.statements.len() {
@@ -93,13 +94,15 @@ pub fn plan(body: &Body, places: &Places, time: Time, limit: usize, first: First
     }
 }
 
-/// What becomes of results that are known before the last pivot.
+/// When parts write results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum First {
-    /// They are written at once.
-    Written,
-    /// They are kept in slots: nothing is written where a pivot is not positive.
-    Kept,
+pub enum When {
+    /// Where they are computed.
+    AtOnce,
+    /// Those that are known before the last pivot is behind all parts: nothing is written where it is not positive.
+    BehindPivots,
+    /// All behind all parts.
+    AtTheEnd,
 }
 
 /// How many values parts read that others computed, counted for each part that reads them, and once for the one that

@@ -100,8 +100,8 @@ pub fn draw(
         .flat_map(|statement| statement.operation.operands());
     let numbers = read.chain(body.outputs.iter().copied()).map(Edge::node);
     locals.fill(&body.statements, numbers, &emitter.places);
-    let first = language.first();
-    let plan = plan(&body, &emitter.places, spec.time, emitter.chunk, first);
+    let when = language.when(spec.shape, spec.fallible);
+    let plan = plan(&body, &emitter.places, spec.time, emitter.chunk, when);
     let places = plan.results.iter();
     let written = places.map(|(&node, &place)| {
         let (array, shape, entry) = spec.place(place);

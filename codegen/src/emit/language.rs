@@ -1,6 +1,6 @@
 //! What statements are spelled by: what Rust and C write differently.
 
-use super::chunk::First;
+use super::chunk::When;
 use super::number;
 use crate::algebra::graph::{Function, Graph, NodeId};
 use crate::program::{Cause, Program, Shape};
@@ -31,8 +31,8 @@ impl Operand {
 
 /// A language that functions are printed in.
 pub trait Language {
-    /// What becomes of results that are known before the last pivot.
-    fn first(&self) -> First;
+    /// When parts of a function with such a result write it.
+    fn when(&self, shape: Shape, fallible: bool) -> When;
     /// An entry of an array of results where a part reads it, by its place.
     fn entry(&self, array: &str, shape: Shape, place: usize) -> String;
     /// A number by its digits.
@@ -64,8 +64,8 @@ pub trait Language {
 pub struct Rust;
 
 impl Language for Rust {
-    fn first(&self) -> First {
-        First::Written
+    fn when(&self, _: Shape, _: bool) -> When {
+        When::AtOnce
     }
 
     fn entry(&self, array: &str, shape: Shape, place: usize) -> String {

@@ -1,8 +1,9 @@
 //! How C spells statements and numbers.
 
 use super::names::Identifiers;
+use super::returns_number;
 use crate::algebra::graph::{Function, Graph, Node, NodeId};
-use crate::emit::chunk::First;
+use crate::emit::chunk::When;
 use crate::emit::language::{Language, Operand};
 use crate::program::{Cause, Program, Shape};
 use num_traits::ToPrimitive;
@@ -83,8 +84,11 @@ pub struct C<'a> {
 }
 
 impl Language for C<'_> {
-    fn first(&self) -> First {
-        First::Kept
+    fn when(&self, shape: Shape, fallible: bool) -> When {
+        match returns_number(shape, fallible) {
+            true => When::AtTheEnd,
+            false => When::BehindPivots,
+        }
     }
 
     fn entry(&self, array: &str, _: Shape, place: usize) -> String {

@@ -148,9 +148,8 @@ fn split(texts: &Texts, drawing: &Drawing, spec: &Spec) -> (String, String) {
     let names = &texts.names;
     let (real, status, done) = (names.real(), names.own("status"), names.done());
     let restrict = format!("{}_RESTRICT", names.capitals);
-    let number = returns_number(spec.shape, spec.fallible);
     let mut targets: FxHashMap<NodeId, Vec<usize>> = FxHashMap::default();
-    let written = |edge: &Edge| drawing.plan.results.contains_key(&edge.node()) && !number;
+    let written = |edge: &Edge| drawing.plan.results.contains_key(&edge.node());
     for (index, edge) in drawing.body.outputs.iter().enumerate() {
         if written(edge) {
             targets.entry(edge.node()).or_default().push(index);

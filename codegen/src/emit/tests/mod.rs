@@ -4,10 +4,13 @@ mod evaluate;
 mod sample;
 mod sketch;
 
+use super::chunk::{When, plan};
+use super::function::lower;
 use super::names::{Names, snake, type_name};
-use super::{Options, rust, statements, tokens};
+use super::{Emitter, Options, rust, statements, tokens};
 use crate::program::Shape;
 use crate::program::interpret::Interpreter;
+use crate::program::places::Time;
 use crate::syntax::ast::ShapeKind;
 use evaluate::Values;
 use sample::{everything, pendulum, random, reaching};
@@ -327,6 +330,32 @@ fn long_functions_are_cut() {
             );
         }
     }
+}
+
+/// In C a number is returned, and what a function returns it reads from where it is: there is no `out`.
+#[test]
+fn numbers_of_long_functions_are_returned_in_c() {
+    let files = super::c::files(&random(3000, 0), &super::c::Options::default());
+    let (_, parts) = files
+        .rest
+        .split_once("of `energy`.")
+        .expect("energy is in parts");
+    let (_, energy) = parts.split_once("random_energy(").expect("the function");
+    let (energy, _) = energy.split_once("\n}\n").expect("its end");
+    assert!(energy.contains("return -slots["), "{energy}");
+    assert!(!parts.contains("out["), "{energy}");
+}
+
+/// What depends on parameters alone is computed once, and is one function in C, however long it is.
+#[test]
+fn only_what_is_called_often_is_in_short_parts() {
+    let program = random(3000, 0);
+    let emitter = Emitter::new(&program, usize::MAX);
+    let spec = emitter.function(0, &program.functions[0]);
+    let (_, body) = lower(&emitter, &spec);
+    let parts = |time| plan(&body, &emitter.places, time, usize::MAX, When::AtTheEnd).parts;
+    assert!(parts(Time::Call).len() > 30);
+    assert_eq!(parts(Time::Parameters).len(), 1);
 }
 
 #[test]
