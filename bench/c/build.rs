@@ -1,10 +1,11 @@
-//! Generates Rust for this crate, and C into the folder `HAMEL_C`: a free body, and two robots below `HAMEL_ROBOTS`.
+//! Generates Rust for this crate, and C into the folder `HAMEL_C`: a free body, and two robots below `HAMEL_ROBOTS`, each
+//! with its linearisation.
 
 use hamel_codegen::Builder;
 use hamel_codegen::emit::c::Precision;
 use hamel_codegen::urdf::Options;
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-env-changed=HAMEL_C");
@@ -15,18 +16,44 @@ fn main() -> Result<(), Box<dyn Error>> {
             .ok_or(format!("{name} is not set: start this by bench/c/run.sh"))
     };
     let robots = folder("HAMEL_ROBOTS")?;
-    let floating = Options {
-        floating: true,
-        ..Options::default()
-    };
-    Builder::new()
-        .file("../../tests/models/free_body.eom")
-        .urdf(
-            robots.join("ur_description/urdf/ur5_robot.urdf"),
-            Options::default(),
-        )
-        .urdf(robots.join("solo_description/robots/solo12.urdf"), floating)
+    let out = PathBuf::from(std::env::var_os("OUT_DIR").ok_or("no folder")?);
+    let free_body = "../../tests/models/free_body.eom";
+    println!("cargo:rerun-if-changed={free_body}");
+    let mut builder = Builder::new();
+    for (name, description) in [
+        ("free_body", std::fs::read_to_string(free_body)?),
+        (
+            "ur5",
+            imported(&robots.join("ur_description/urdf/ur5_robot.urdf"), false)?,
+        ),
+        (
+            "solo12",
+            imported(&robots.join("solo_description/robots/solo12.urdf"), true)?,
+        ),
+    ] {
+        let file = out.join(format!("{name}.eom"));
+        std::fs::write(&file, with_linearisation(&description)?)?;
+        builder = builder.file(file);
+    }
+    builder
         .c_files(folder("HAMEL_C")?, Precision::Double)
         .generate()?;
     Ok(())
+}
+
+/// The description of a robot.
+fn imported(robot: &Path, floating: bool) -> Result<String, Box<dyn Error>> {
+    let options = Options {
+        floating,
+        ..Options::default()
+    };
+    let text = std::fs::read_to_string(robot)?;
+    let imported = hamel_codegen::urdf::import(&text, &options, &robot.to_string_lossy(), false)?;
+    Ok(imported.text)
+}
+
+/// A description that asks for its linearisation, too.
+fn with_linearisation(description: &str) -> Result<String, Box<dyn Error>> {
+    let body = description.trim_end().strip_suffix('}').ok_or("no end")?;
+    Ok(format!("{body}    generate all, linearize;\n}}\n"))
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compares generated C with generated Rust, by clang and by gcc; needs both, cargo, and the robots of
-# tests/robots/install.sh. Ends with 1 where the C of one of them takes more than 1.05 times as long as the Rust.
+# Compares generated C with generated Rust, forward dynamics and their slopes, by clang and by gcc; needs both, cargo, and
+# the robots of tests/robots/install.sh. Ends with 1 where the C of one of them takes more than 1.05 times as long as the Rust.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 

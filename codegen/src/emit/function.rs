@@ -2,7 +2,7 @@
 
 use super::chunk::{Part, Plan, plan};
 use super::docs;
-use super::language::{Language, Rust};
+use super::language::{Array, Language, Rust};
 use super::locals::Locals;
 use super::print::{Printer, Used, Written};
 use super::{Emitter, names};
@@ -13,7 +13,7 @@ use crate::program::{Argument, Cause, Program, Shape, tape};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The argument to which slopes are written besides a result.
-pub const SLOPES: &str = "slopes";
+pub const SLOPES: &str = Array::Slopes.name();
 
 /// What a function is.
 pub struct Spec<'a> {
@@ -43,11 +43,11 @@ pub struct Spec<'a> {
 
 impl Spec<'_> {
     /// The array with a result, its shape, and the place there.
-    pub fn place(&self, result: usize) -> (&'static str, Shape, usize) {
+    pub fn place(&self, result: usize) -> (Array, Shape, usize) {
         let entries = self.shape.entries();
         match self.beside.filter(|_| result >= entries) {
-            Some(shape) => (SLOPES, shape, result - entries),
-            None => ("out", self.shape, result),
+            Some(shape) => (Array::Slopes, shape, result - entries),
+            None => (Array::Out, self.shape, result),
         }
     }
 }
@@ -104,11 +104,9 @@ pub fn draw(
     let plan = plan(&body, &emitter.places, spec.time, emitter.chunk, when);
     let places = plan.results.iter();
     let written = places.map(|(&node, &place)| {
-        let (array, shape, entry) = spec.place(place);
         let written = Written {
-            text: language.entry(array, shape, entry),
+            place: spec.place(place),
             negative: body.outputs[place].is_negative(),
-            besides: place >= spec.shape.entries(),
         };
         (node, written)
     });

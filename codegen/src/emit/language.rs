@@ -29,12 +29,34 @@ impl Operand {
     }
 }
 
+/// An array that the parts of a function share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Array {
+    /// Values that are read in later parts.
+    Slots,
+    /// Results.
+    Out,
+    /// Slopes that are written besides a result.
+    Slopes,
+}
+
+impl Array {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Array::Slots => "slots",
+            Array::Out => "out",
+            Array::Slopes => "slopes",
+        }
+    }
+}
+
 /// A language that functions are printed in.
 pub trait Language {
     /// When parts of a function with such a result write it.
     fn when(&self, shape: Shape, fallible: bool) -> When;
-    /// An entry of an array of results where a part reads it, by its place.
-    fn entry(&self, array: &str, shape: Shape, place: usize) -> String;
+    /// An entry of an array of this shape in a part, by its place.
+    fn entry(&self, array: Array, shape: Shape, place: usize) -> String;
     /// A number by its digits.
     fn literal(&self, graph: &Graph, node: NodeId) -> String;
     /// A number where it is read; `name` is that of its binding.
@@ -68,7 +90,8 @@ impl Language for Rust {
         When::AtOnce
     }
 
-    fn entry(&self, array: &str, shape: Shape, place: usize) -> String {
+    fn entry(&self, array: Array, shape: Shape, place: usize) -> String {
+        let array = array.name();
         match shape {
             Shape::Scalar => format!("(*{array})"),
             Shape::Vector(_) => format!("{array}[{place}]"),

@@ -1,7 +1,7 @@
 //! A long function as a row of calls: its parts share one array of slots and write the results.
 
 use super::function::{Drawing, SLOPES, Spec, shape_type, statements, zeros};
-use super::language::{Language, Rust};
+use super::language::{Array, Language, Rust};
 use super::names;
 use super::print::{Access, Used};
 use crate::algebra::graph::NodeId;
@@ -33,19 +33,14 @@ impl Drawing<'_> {
         }
         let mut main = self.printer();
         let (mut parts, mut calls) = (String::new(), String::new());
+        let mut crossing = false;
         for (index, part) in self.plan.parts.iter().enumerate() {
             let mut printer = self.printer();
             let text = statements(&mut printer, self.body, part, |printer, node| {
                 let indices = targets.get(&node).map_or(&[][..], Vec::as_slice);
-                let (own, besides): (Vec<usize>, Vec<usize>) =
-                    indices.iter().partition(|&&index| index < entries);
-                if !own.is_empty() {
-                    printer.used.out = Access::Written;
-                }
-                if !besides.is_empty() {
-                    printer.used.besides = Access::Written;
-                }
                 let writes = indices.iter().map(|&index| {
+                    let (array, _, place) = self.spec.place(index);
+                    printer.used.touch(array, place, Access::Written);
                     let value = printer.signed(self.body.outputs[index]);
                     format!("{} = {value};\n", target(self.spec, index, true))
                 });
@@ -53,7 +48,7 @@ impl Drawing<'_> {
             });
             let used = printer.used;
             main.used.arguments.extend(&used.arguments);
-            main.used.reads |= used.reads || used.writes;
+            crossing |= used.access(Array::Slots) > Access::None;
             let part_name = self.emitter.names.part(name, index + 1);
             let (arguments, values) = self.part_arguments(&used);
             let (result, end) = match used.checks {
@@ -73,7 +68,7 @@ impl Drawing<'_> {
             calls.push_str(&format!("self.{part_name}({values}){question};\n"));
         }
         let mut text = String::new();
-        if main.used.reads {
+        if crossing {
             text.push_str(&format!(
                 "let mut slots = [S::default(); {}];\n",
                 self.plan.size
@@ -145,22 +140,21 @@ impl Drawing<'_> {
             ));
             values.push(name.to_string());
         }
-        if used.reads || used.writes {
-            let mutable = if used.writes { "mut " } else { "" };
-            arguments.push(format!("slots: &{mutable}[S; {}]", self.plan.size));
-            values.push(format!("&{mutable}slots"));
-        }
-        let mutable = |access: Access| match access {
+        let mutable = |array: Array| match used.access(array) {
             Access::None => None,
             Access::Read => Some(""),
             Access::Written => Some("mut "),
         };
-        if let Some(mutable) = mutable(used.out) {
+        if let Some(mutable) = mutable(Array::Slots) {
+            arguments.push(format!("slots: &{mutable}[S; {}]", self.plan.size));
+            values.push(format!("&{mutable}slots"));
+        }
+        if let Some(mutable) = mutable(Array::Out) {
             let shape = shape_type(self.spec.shape);
             arguments.push(format!("out: &{mutable}{shape}"));
             values.push(format!("&{mutable}out"));
         }
-        if let (Some(mutable), Some(shape)) = (mutable(used.besides), self.spec.beside) {
+        if let (Some(mutable), Some(shape)) = (mutable(Array::Slopes), self.spec.beside) {
             arguments.push(format!("{SLOPES}: &{mutable}{}", shape_type(shape)));
             values.push(SLOPES.into());
         }
@@ -171,8 +165,8 @@ impl Drawing<'_> {
 /// A result that is written, behind a reference or not.
 fn target(spec: &Spec, index: usize, reference: bool) -> String {
     match spec.place(index) {
-        (array, Shape::Scalar, _) if reference => format!("*{array}"),
-        (array, Shape::Scalar, _) => array.into(),
+        (array, Shape::Scalar, _) if reference => format!("*{}", array.name()),
+        (array, Shape::Scalar, _) => array.name().into(),
         (array, shape, place) => Rust.entry(array, shape, place),
     }
 }

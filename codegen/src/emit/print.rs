@@ -1,14 +1,14 @@
 //! Statements as text: what all languages share, where values are found, and signs.
 
-use super::language::{Language, Operand};
+use super::language::{Array, Language, Operand};
 use super::locals::Locals;
 use super::names::{self, ExternalNames};
 use crate::algebra::graph::{Edge, NodeId};
 use crate::program::places::{Place, Places, Time};
 use crate::program::statements::{Call, Operation, Statement};
-use crate::program::{Argument, Program};
+use crate::program::{Argument, Program, Shape};
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What a text reads and writes beyond its own values.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,16 +17,26 @@ pub struct Used {
     pub arguments: BTreeSet<Argument>,
     /// Whether kept constants are read.
     pub kept: bool,
-    /// Whether slots are read.
-    pub reads: bool,
-    /// Whether slots are written.
-    pub writes: bool,
-    /// What becomes of results.
-    pub out: Access,
-    /// What becomes of what is written besides.
-    pub besides: Access,
+    /// Entries of arrays that are read or written, as often as they are.
+    pub entries: Vec<(Array, usize)>,
+    /// What becomes of arrays.
+    access: BTreeMap<Array, Access>,
     /// Whether it can return an error.
     pub checks: bool,
+}
+
+impl Used {
+    /// What becomes of an array.
+    pub fn access(&self, array: Array) -> Access {
+        self.access.get(&array).copied().unwrap_or_default()
+    }
+
+    /// Notes that an entry is read or written.
+    pub fn touch(&mut self, array: Array, place: usize, access: Access) {
+        self.entries.push((array, place));
+        let known = self.access.entry(array).or_default();
+        *known = access.max(*known);
+    }
 }
 
 /// What a text does with an array.
@@ -43,12 +53,10 @@ pub enum Access {
 
 /// A result that is read where it was written.
 pub struct Written {
-    /// Its place.
-    pub text: String,
+    /// Its place, in an array of some shape.
+    pub place: (Array, Shape, usize),
     /// Whether it is the negative of the value.
     pub negative: bool,
-    /// Whether it is among what is written besides.
-    pub besides: bool,
 }
 
 /// Prints the statements of one function or part.
@@ -103,14 +111,18 @@ impl Printer<'_> {
             }
             Place::Temporary if self.here.contains(&node) => self.locals.name(node).into(),
             Place::Temporary => match self.slots.get(&node) {
-                Some(slot) => {
-                    self.used.reads = true;
-                    format!("slots[{slot}]")
-                }
+                Some(&slot) => self.slot(slot, Access::Read),
                 // No text of any language, so that it never leaves the generator.
                 None => format!("no value for node {node}"),
             },
         }
+    }
+
+    /// The slot of a value that is read or written there.
+    fn slot(&mut self, slot: usize, access: Access) -> String {
+        self.used.touch(Array::Slots, slot, access);
+        let shape = Shape::Vector(self.slots.len());
+        self.language.entry(Array::Slots, shape, slot)
     }
 
     /// A value with its sign, as an operand.
@@ -127,13 +139,10 @@ impl Printer<'_> {
             .filter(|_| !self.here.contains(&node))
         {
             Some(written) => {
-                let access = match written.besides {
-                    true => &mut self.used.besides,
-                    false => &mut self.used.out,
-                };
-                *access = Access::Read.max(*access);
+                let (array, shape, place) = written.place;
+                self.used.touch(array, place, Access::Read);
                 Operand {
-                    value: written.text.clone(),
+                    value: self.language.entry(array, shape, place),
                     negative: negative != written.negative,
                 }
             }
@@ -189,9 +198,9 @@ impl Printer<'_> {
         };
         for node in statement.defined() {
             self.here.insert(node);
-            if let Some(slot) = self.slots.get(&node) {
-                self.used.writes = true;
-                text.push_str(&format!("slots[{slot}] = {};\n", self.locals.name(node)));
+            if let Some(&slot) = self.slots.get(&node) {
+                let slot = self.slot(slot, Access::Written);
+                text.push_str(&format!("{slot} = {};\n", self.locals.name(node)));
             }
         }
         text

@@ -4,7 +4,7 @@ use super::names::Identifiers;
 use super::returns_number;
 use crate::algebra::graph::{Function, Graph, Node, NodeId};
 use crate::emit::chunk::When;
-use crate::emit::language::{Language, Operand};
+use crate::emit::language::{Array, Language, Operand};
 use crate::program::{Cause, Program, Shape};
 use num_traits::ToPrimitive;
 use std::fmt;
@@ -26,6 +26,14 @@ impl Precision {
         match self {
             Precision::Double => "double",
             Precision::Float => "float",
+        }
+    }
+
+    /// Bytes of a number.
+    pub(super) fn bytes(self) -> usize {
+        match self {
+            Precision::Double => 8,
+            Precision::Float => 4,
         }
     }
 
@@ -81,6 +89,27 @@ pub struct C<'a> {
     pub names: &'a Identifiers,
     /// Its numbers.
     pub precision: Precision,
+    /// What places of arrays are counted from.
+    pub origins: Origins,
+}
+
+/// The places that arrays are given to a part from.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Origins {
+    /// Of values that cross parts.
+    pub slots: usize,
+    /// Of results.
+    pub out: usize,
+}
+
+impl Origins {
+    /// Of an array.
+    pub fn of(self, array: Array) -> usize {
+        match array {
+            Array::Slots => self.slots,
+            Array::Out | Array::Slopes => self.out,
+        }
+    }
 }
 
 impl Language for C<'_> {
@@ -91,8 +120,12 @@ impl Language for C<'_> {
         }
     }
 
-    fn entry(&self, array: &str, _: Shape, place: usize) -> String {
-        format!("{array}[{place}]")
+    fn entry(&self, array: Array, _: Shape, place: usize) -> String {
+        let (origin, array) = (self.origins.of(array), array.name());
+        match place.checked_sub(origin) {
+            Some(behind) => format!("{array}[{behind}]"),
+            None => format!("{array}[-{}]", origin - place),
+        }
     }
 
     fn literal(&self, graph: &Graph, node: NodeId) -> String {

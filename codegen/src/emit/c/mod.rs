@@ -13,6 +13,7 @@
 //! function reads and writes are its arguments, numbers in arrays as in Rust, matrices by rows. Statements, their
 //! order, and names are those of Rust.
 
+mod body;
 mod comment;
 mod header;
 mod helpers;

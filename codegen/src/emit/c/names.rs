@@ -34,8 +34,8 @@ const RESERVED: &[&str] = &[
     "math_errhandling modf nan nearbyint nextafter nexttoward pow pow10 remainder remquo rint",
     "round scalb scalbln scalbn signbit signgam significand sin sincos sinh sinpi sqrt tan",
     "tanh tgamma trunc y0 y1 yn",
-    // Macros of other headers and of systems.
-    "errno far huge i386 interface linux near small stderr stdin stdout unix",
+    // Other headers, and macros of theirs and of systems.
+    "errno far huge i386 interface linux memcpy near small stderr stdin stdout unix",
 ];
 
 /// Local names that a function may use besides those of its values.
@@ -71,6 +71,7 @@ const OWN: &[&str] = &[
     "raised",
     "is_positive",
     "far",
+    "zeros",
 ];
 
 /// Another name in the place of a reserved one.

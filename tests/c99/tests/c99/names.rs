@@ -6,7 +6,7 @@ const NAMES: &str = "
     y0 y1 j0 j1 jn gamma lgamma lgamma_r remainder sinf fabs fma fmax isnan isinf signbit round floor pow
     INFINITY NAN HUGE_VAL DBL_MAX FLT_MAX M_PI NULL EOF FP_FAST_FMA FUSED errno stdin double_t float_t
     real parameters system status set_parameters default_parameters sin_cos select inverse_of_length raised constants
-    none next k x xi u out slots main printf size_t uint32_t int32_t memcpy abort exit t1 c1
+    none next k x xi u out slots main printf size_t uint32_t int32_t memcpy zeros abort exit t1 c1
     sin1 cos1 _a a__b θ ω̇ é 名 SHOUT camelCase E I
 ";
 
