@@ -1,7 +1,16 @@
 //! `hamel`: equations of motion from a description, on the command line.
 
+use std::panic::resume_unwind;
 use std::process::ExitCode;
 
+/// Bytes of stack: enough for what nests as deep as is allowed. Windows gives the main thread 1 MB.
+const STACK: usize = 8 << 20;
+
 fn main() -> ExitCode {
-    ExitCode::from(hamel_cli::command(std::env::args_os()))
+    let command = || hamel_cli::command(std::env::args_os());
+    let deep = std::thread::Builder::new().stack_size(STACK);
+    ExitCode::from(match deep.spawn(command) {
+        Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+        Err(_) => command(),
+    })
 }

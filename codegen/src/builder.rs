@@ -16,6 +16,7 @@ use crate::render::{render, warnings};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::io::{self, Write};
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 
 /// Generates files in a build script.
@@ -44,6 +45,10 @@ impl fmt::Display for BuildError {
         write!(f, "{}", self.0)
     }
 }
+
+/// Bytes of stack: enough for what nests as deep as is allowed in a build that optimises nothing. Windows gives the main thread
+/// 1 MB.
+const STACK: usize = 8 << 20;
 
 // A build script that returns the error prints its `Debug` form: that must be readable too.
 impl fmt::Debug for BuildError {
@@ -100,6 +105,16 @@ impl Builder {
     /// before anything is written; files whose bytes would not change are not touched, and none that was read is
     /// written over. What a description declares and does not use becomes a warning of the package.
     pub fn generate(self) -> Result<(), BuildError> {
+        std::thread::scope(|scope| {
+            let deep = std::thread::Builder::new().stack_size(STACK);
+            match deep.spawn_scoped(scope, || self.generate_here()) {
+                Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+                Err(_) => self.generate_here(),
+            }
+        })
+    }
+
+    fn generate_here(&self) -> Result<(), BuildError> {
         let out_dir = match self
             .out_dir
             .clone()

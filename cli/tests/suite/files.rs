@@ -75,6 +75,23 @@ fn under(limit: &str, arguments: &[String]) -> Output {
     spawn(shell.stdout(Stdio::piped()))
 }
 
+/// A sum of as many operands as are allowed needs more stack than Windows gives the main thread, 1 MB.
+#[test]
+fn deep_descriptions_need_no_stack_of_the_system() {
+    let sum: Vec<String> = (1..500).map(|k| format!("sin({k} * x)")).collect();
+    let folder = folder("deep");
+    let [file, out] = ["deep.eom", "deep.rs"].map(|name| folder.join(name));
+    let description = format!(
+        "system Deep {{ coord x; velocity v; rate x = v; kinetic v^2; potential {}; }}",
+        sum.join(" + ")
+    );
+    fs::write(&file, description).expect("a file");
+    let [file, out] = [file, out].map(|path| path.display().to_string());
+    let line = ["emit", &file, "-o", &out].map(str::to_string);
+    let output = under("ulimit -s 1024", &line);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
+
 /// The disk is full after the first byte: writes fail, or the system ends the process within one.
 #[test]
 fn a_full_disk_and_a_kill_leave_the_old_file() {

@@ -70,6 +70,8 @@ fn script(test: &str, folder: &Path, builder: impl FnOnce() -> Builder) -> Optio
     let script = std::process::Command::new(this)
         .args(["--exact", "--nocapture", &format!("doors::{test}")])
         .env(own, "1")
+        // What the main thread has on Windows.
+        .env("RUST_MIN_STACK", (1 << 20).to_string())
         .env("OUT_DIR", folder)
         .output()
         .expect("it runs");
@@ -125,6 +127,22 @@ fn descriptions_that_a_script_writes_are_not_watched() {
     assert!(watches(&said, &out.join("../part.eom")), "{said}");
     for stem in ["given", "written"] {
         assert!(out.join(stem).with_extension("rs").is_file());
+    }
+}
+
+/// A sum of as many operands as are allowed, and brackets as deep, need more stack than some threads have.
+#[test]
+fn deep_descriptions_need_no_stack_of_the_script() {
+    let sum: Vec<String> = (1..500).map(|k| format!("sin({k} * x)")).collect();
+    let deep = format!("{}x{}", "sin(".repeat(60), ")".repeat(60));
+    let potential = format!("potential {deep} + {}; kinetic", sum.join(" + "));
+    let described = BLOCK.replace("kinetic", &potential);
+    let folder = folder("deep", &[("block.eom", described.as_str())]);
+    let out = folder.join("out");
+    let test = "deep_descriptions_need_no_stack_of_the_script";
+    let builder = || Builder::new().file(folder.join("block.eom"));
+    if let Some([_, wrong]) = script(test, &out, builder) {
+        assert!(out.join("block.rs").is_file(), "{wrong}");
     }
 }
 
