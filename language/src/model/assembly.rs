@@ -350,7 +350,7 @@ mod tests {
     fn the_nearest_point_of_a_circle_is_found() {
         let mut random = crate::algebra::fp::Random::new(11);
         let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-        for _ in 0..200 {
+        for _ in 0..50 {
             let circle = Circle {
                 radius: 0.3 + number().abs(),
                 guess: [2.0 * number(), 2.0 * number()],
@@ -358,14 +358,14 @@ mod tests {
             };
             let x = nearest(&circle, &circle.guess).expect("a point");
             let distance = |x: &[f64]| circle.apart(x).0.iter().map(|e| e * e).sum::<f64>().sqrt();
-            let least = (0..20_000)
+            let least = (0..5_000)
                 .map(|k| {
-                    let angle = k as f64 * std::f64::consts::TAU / 20_000.0;
+                    let angle = k as f64 * std::f64::consts::TAU / 5_000.0;
                     distance(&[circle.radius * angle.cos(), circle.radius * angle.sin()])
                 })
                 .fold(f64::INFINITY, f64::min);
             assert!(circle.residuals(&x)[0].abs() < 1e-11);
-            // The points are 3e-4 apart.
+            // The points are 1e-3 apart, and the distance is flat at the least.
             assert!(distance(&x) < least + 1e-7, "{} {least}", distance(&x));
             // The distance does not change along the circle.
             let (apart, slopes) = circle.apart(&x);

@@ -2,7 +2,7 @@
 //! and what is added so that they can be solved has to be seen by numbers of either length.
 
 use hamel::Scalar;
-use hamel_codegen::generate::from_text;
+use hamel_codegen::generate::{Generated, from_text};
 use hamel_codegen::program::FunctionId;
 use hamel_native::{Compiled, Tapes, evaluate_in};
 
@@ -49,8 +49,7 @@ fn reference(angle: f64, rate: f64) -> [f64; 3] {
 }
 
 /// The largest errors of ξ̇ and of its slopes along the motion, as parts of the largest that there are without damping.
-fn errors<S: Scalar>() -> Result<[f64; 2], String> {
-    let found = from_text(PLATFORM).map_err(|why| format!("{why:?}"))?;
+fn errors<S: Scalar>(found: &Generated) -> Result<[f64; 2], String> {
     let program = &found.program;
     let named = |id: FunctionId| program.function(id.name()).ok_or("no such function");
     let functions = [named(FunctionId::Accel)?, named(FunctionId::Linearize)?];
@@ -93,13 +92,14 @@ fn errors<S: Scalar>() -> Result<[f64; 2], String> {
 /// rows nearly depend on one another without the last, as where the cranks are level: elimination begins with these.
 #[test]
 fn what_the_diagonal_is_raised_by_costs_no_digits() -> Result<(), String> {
-    fn holds<S: Scalar>() -> Result<(), String> {
-        let [accelerations, slopes] = errors::<S>()?;
+    fn holds<S: Scalar>(found: &Generated) -> Result<(), String> {
+        let [accelerations, slopes] = errors::<S>(found)?;
         println!("{accelerations:.1e} {slopes:.1e}");
         assert!(accelerations < 1e3 * S::EPSILON, "{accelerations}");
         assert!(slopes < 4e3 * S::EPSILON, "{slopes}");
         Ok(())
     }
-    holds::<f64>()?;
-    holds::<f32>()
+    let found = from_text(PLATFORM).map_err(|why| format!("{why:?}"))?;
+    holds::<f64>(&found)?;
+    holds::<f32>(&found)
 }

@@ -122,7 +122,7 @@ fn everything() -> bool {
 
 #[test]
 fn code_gives_the_bits_of_tapes() {
-    let tapes = size(if everything() { 2_500 } else { 400 }, 100_000) as usize;
+    let tapes = size(if everything() { 2_500 } else { 250 }, 100_000) as usize;
     let halves = std::thread::scope(|scope| {
         let halves = [42, 43].map(|seed| scope.spawn(move || Met::by(seed, tapes as u64 / 2)));
         halves.map(|half| half.join().expect("every tape gives its bits"))

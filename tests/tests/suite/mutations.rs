@@ -19,9 +19,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Cases that go through the parser, and at full size.
-const PARSED: [u64; 2] = [25_000, 1_000_000];
+const PARSED: [u64; 2] = [10_000, 1_000_000];
 /// Cases that go through all stages, and at full size, unless `HAMEL_FUZZ_CASES` says otherwise.
-const GENERATED: [u64; 2] = [1_000, 100_000];
+const GENERATED: [u64; 2] = [500, 100_000];
 /// Time for one case, generous: the machine may be busy with other tests.
 const PATIENCE: Duration = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 10 });
 /// Threads need as much stack as a program's main thread has.
