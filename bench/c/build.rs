@@ -1,11 +1,14 @@
 //! Generates Rust for this crate, and C into the folder `HAMEL_C`: a free body, and two robots below `HAMEL_ROBOTS`, each
 //! with its linearisation.
 
+#[path = "../steps/described.rs"]
+mod described;
+
+use described::{imported, linearised};
 use hamel_codegen::Builder;
 use hamel_codegen::emit::c::Precision;
-use hamel_codegen::urdf::Options;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-env-changed=HAMEL_C");
@@ -32,28 +35,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ),
     ] {
         let file = out.join(format!("{name}.eom"));
-        std::fs::write(&file, with_linearisation(&description)?)?;
+        std::fs::write(&file, linearised(&description)?)?;
         builder = builder.file(file);
     }
     builder
         .c_files(folder("HAMEL_C")?, Precision::Double)
         .generate()?;
     Ok(())
-}
-
-/// The description of a robot.
-fn imported(robot: &Path, floating: bool) -> Result<String, Box<dyn Error>> {
-    let options = Options {
-        floating,
-        ..Options::default()
-    };
-    let text = std::fs::read_to_string(robot)?;
-    let imported = hamel_codegen::urdf::import(&text, &options, &robot.to_string_lossy(), false)?;
-    Ok(imported.text)
-}
-
-/// A description that asks for its linearisation, too.
-fn with_linearisation(description: &str) -> Result<String, Box<dyn Error>> {
-    let body = description.trim_end().strip_suffix('}').ok_or("no end")?;
-    Ok(format!("{body}    generate all, linearize;\n}}\n"))
 }

@@ -1,9 +1,11 @@
 //! Generates two robots below `HAMEL_ROBOTS` with their linearisation.
 
+mod described;
+
+use described::{imported, linearised};
 use hamel_codegen::Builder;
-use hamel_codegen::urdf::Options;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-env-changed=HAMEL_ROBOTS");
@@ -16,21 +18,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("solo_description/robots/solo12.urdf", "solo12", true),
     ] {
         let file = folder.join(format!("{name}.eom"));
-        std::fs::write(&file, described(&robots.join(robot), floating)?)?;
+        let description = imported(&robots.join(robot), floating)?;
+        std::fs::write(&file, linearised(&description)?)?;
         builder = builder.file(file);
     }
     builder.generate()?;
     Ok(())
-}
-
-/// The robot as a description that asks for its linearisation, too.
-fn described(robot: &Path, floating: bool) -> Result<String, Box<dyn Error>> {
-    let options = Options {
-        floating,
-        ..Options::default()
-    };
-    let text = std::fs::read_to_string(robot)?;
-    let imported = hamel_codegen::urdf::import(&text, &options, &robot.to_string_lossy(), false)?;
-    let body = imported.text.trim_end().strip_suffix('}').ok_or("no end")?;
-    Ok(format!("{body}    generate all, linearize;\n}}\n"))
 }

@@ -14,9 +14,9 @@ const FUSED: &str = "\
 #endif
 ";
 
-/// Zeros that results are written from, several at once, and how many of them. Compilers make a loop of more, or call a
-/// function, and write less than eight bytes at once where zeros are assigned one by one.
+/// Zeros that results are copied from, several at once: gcc writes zeros that are assigned one by one.
 pub const ZEROS: &str = "zeros";
+/// The most of them: compilers make a loop of more, or call a function.
 pub const MOST_ZEROS: usize = 4;
 
 /// What compilers are told of parts of long functions, undefined again by [`END`].

@@ -1,0 +1,22 @@
+//! Descriptions that ask for their linearisation, for build scripts of benches.
+
+use hamel_codegen::urdf::Options;
+use std::error::Error;
+use std::path::Path;
+
+/// The description of a robot.
+pub fn imported(robot: &Path, floating: bool) -> Result<String, Box<dyn Error>> {
+    let options = Options {
+        floating,
+        ..Options::default()
+    };
+    let text = std::fs::read_to_string(robot)?;
+    let imported = hamel_codegen::urdf::import(&text, &options, &robot.to_string_lossy(), false)?;
+    Ok(imported.text)
+}
+
+/// A description that asks for its linearisation, too.
+pub fn linearised(description: &str) -> Result<String, Box<dyn Error>> {
+    let body = description.trim_end().strip_suffix('}').ok_or("no end")?;
+    Ok(format!("{body}    generate all, linearize;\n}}\n"))
+}
