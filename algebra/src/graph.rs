@@ -472,16 +472,21 @@ impl Graph {
 
     /// All nodes that the roots are made of, children before parents.
     pub fn reachable(&self, roots: &[Edge]) -> Vec<NodeId> {
-        let mut seen = vec![false; self.nodes.len()];
-        let mut stack: Vec<NodeId> = roots.iter().map(|root| root.node()).collect();
-        while let Some(id) = stack.pop() {
-            if !std::mem::replace(&mut seen[id as usize], true) {
-                stack.extend(self.nodes[id as usize].children().map(Edge::node));
+        let ends = roots.iter().map(|root| root.node());
+        let count = ends.clone().max().map_or(0, |last| last + 1);
+        let mut seen = vec![false; count as usize];
+        for id in ends {
+            seen[id as usize] = true;
+        }
+        // Children are older than what they are in.
+        for id in (0..count as usize).rev() {
+            if seen[id] {
+                for child in self.nodes[id].children() {
+                    seen[child.node() as usize] = true;
+                }
             }
         }
-        (0..self.nodes.len() as NodeId)
-            .filter(|&id| seen[id as usize])
-            .collect()
+        (0..count).filter(|&id| seen[id as usize]).collect()
     }
 }
 

@@ -11,6 +11,7 @@ use super::poly::monomial::Var;
 use super::poly::polynomial::Poly;
 use num_rational::BigRational;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::borrow::Cow;
 
 /// Variables from here on are nodes that are no polynomials themselves.
 pub const OPAQUE: Var = 1 << 24;
@@ -75,7 +76,7 @@ impl Expander {
                 self.memo.insert(id, polynomial);
             }
         }
-        self.signed(edge)
+        self.signed(edge).map(Cow::into_owned)
     }
 
     /// Finds the linear forms whose powers are kept. What was expanded before them is expanded anew.
@@ -102,12 +103,12 @@ impl Expander {
         self.bases = Some(bases);
     }
 
-    fn signed(&self, edge: Edge) -> Option<Poly<BigRational>> {
+    fn signed(&self, edge: Edge) -> Option<Cow<'_, Poly<BigRational>>> {
         let polynomial = self.memo.get(&edge.node())?.as_ref()?;
         Some(if edge.is_negative() {
-            polynomial.neg()
+            Cow::Owned(polynomial.neg())
         } else {
-            polynomial.clone()
+            Cow::Borrowed(polynomial)
         })
     }
 
@@ -132,10 +133,14 @@ impl Expander {
             Node::Constant(index) => Some(Poly::constant(graph.constant(index).clone())),
             Node::Symbol(index) => Some(Poly::var(index)),
             Node::Add(a, b) => {
-                let sum = self.signed(a)?.add(&self.signed(b)?);
+                let (a, b) = (self.signed(a)?, self.signed(b)?);
+                let sum = a.add(&b);
                 (sum.terms().len() <= MOST_TERMS).then_some(sum)
             }
-            Node::Mul(a, b) => product(&self.signed(a)?, &self.signed(b)?),
+            Node::Mul(a, b) => {
+                let (a, b) = (self.signed(a)?, self.signed(b)?);
+                product(&a, &b)
+            }
             _ => Some(Poly::var(OPAQUE + id)),
         }
     }

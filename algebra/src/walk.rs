@@ -11,10 +11,12 @@ pub fn evaluate<C: Numbers>(
     roots: &[Edge],
     numbers: &mut C,
 ) -> Option<Vec<C::Number>> {
-    let mut values = vec![numbers.make(Step::Whole(0))?; graph.len()];
+    let order = graph.reachable(roots);
+    let count = order.last().map_or(0, |&last| last as usize + 1);
+    let mut values = vec![numbers.make(Step::Whole(0))?; count.max(2)];
     // The number 1 is the atom of constant angles.
     values[1] = numbers.make(Step::Whole(1))?;
-    for id in graph.reachable(roots) {
+    for id in order {
         let form = || {
             let value = |(atom, c): (NodeId, BigRational)| (values[atom as usize].clone(), c);
             let atoms = match graph.node(id) {

@@ -5,8 +5,9 @@
 
 use crate::fp::Fp;
 use crate::prime::Residue;
+use num_integer::Integer;
 use num_rational::BigRational;
-use num_traits::{One, Zero};
+use num_traits::{One, ToPrimitive, Zero};
 use std::fmt::Debug;
 
 /// A field with exact equality.
@@ -41,6 +42,43 @@ pub trait Field: Clone + PartialEq + Debug {
     }
 }
 
+/// Numerator and denominator, where both fit into a word: most coefficients are small, and their arithmetic needs none of
+/// the memory that big integers take.
+fn words(value: &BigRational) -> Option<(i64, i64)> {
+    Some((value.numer().to_i64()?, value.denom().to_i64()?))
+}
+
+/// a/b + c/d for small numbers; `None` where a part of it is no small number.
+fn small_sum(one: &BigRational, other: &BigRational) -> Option<BigRational> {
+    let ((a, b), (c, d)) = (words(one)?, words(other)?);
+    let (numer, denom) = match b == d {
+        true => (a.checked_add(c)?, b),
+        false => {
+            let numer = a.checked_mul(d)?.checked_add(c.checked_mul(b)?)?;
+            (numer, b.checked_mul(d)?)
+        }
+    };
+    let common = match denom {
+        1 => 1,
+        _ => numer.checked_abs()?.gcd(&denom),
+    };
+    let reduced = (numer / common, denom / common);
+    Some(BigRational::new_raw(reduced.0.into(), reduced.1.into()))
+}
+
+/// (a/b) (c/d) for small numbers.
+fn small_product(one: &BigRational, other: &BigRational) -> Option<BigRational> {
+    let ((a, b), (c, d)) = (words(one)?, words(other)?);
+    let common = |numer: i64, denom: i64| match denom {
+        1 => Some(1),
+        _ => Some(numer.checked_abs()?.gcd(&denom)),
+    };
+    let (left, right) = (common(a, d)?, common(c, b)?);
+    let numer = (a / left).checked_mul(c / right)?;
+    let denom = (b / right).checked_mul(d / left)?;
+    Some(BigRational::new_raw(numer.into(), denom.into()))
+}
+
 impl Field for BigRational {
     fn zero() -> Self {
         Zero::zero()
@@ -55,13 +93,13 @@ impl Field for BigRational {
         Some(value.clone())
     }
     fn add(&self, other: &Self) -> Self {
-        self + other
+        small_sum(self, other).unwrap_or_else(|| self + other)
     }
     fn sub(&self, other: &Self) -> Self {
         self - other
     }
     fn mul(&self, other: &Self) -> Self {
-        self * other
+        small_product(self, other).unwrap_or_else(|| self * other)
     }
     fn neg(&self) -> Self {
         -self.clone()

@@ -1,29 +1,33 @@
 //! A monomial x^a = Π x_i^{a_i}, as the sparse list of its non-zero exponents.
 
+use smallvec::SmallVec;
 use std::cmp::Ordering;
 
 /// The index of an indeterminate.
 pub type Var = u32;
 
+/// Powers that are held without memory of their own, as those of most monomials are.
+const FEW: usize = 6;
+
 /// A product of powers of variables. Its derived `Ord` is a fixed total order for use as a map key,
 /// not a monomial order; see [`super::order::Order`].
 #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
-pub struct Monomial(Vec<(Var, u32)>);
+pub struct Monomial(SmallVec<[(Var, u32); FEW]>);
 
 impl Monomial {
     /// 1.
     pub fn one() -> Self {
-        Monomial(Vec::new())
+        Monomial(SmallVec::new())
     }
 
     /// x_v.
     pub fn var(variable: Var) -> Self {
-        Monomial(vec![(variable, 1)])
+        Monomial(SmallVec::from_slice(&[(variable, 1)]))
     }
 
     /// The product of the given powers, in any order; repeated variables multiply.
     pub fn from_powers(powers: impl IntoIterator<Item = (Var, u32)>) -> Self {
-        let mut list: Vec<(Var, u32)> = powers.into_iter().filter(|power| power.1 > 0).collect();
+        let mut list: SmallVec<[_; FEW]> = powers.into_iter().filter(|power| power.1 > 0).collect();
         list.sort_unstable_by_key(|power| power.0);
         list.dedup_by(|next, kept| {
             let same = next.0 == kept.0;
@@ -112,7 +116,7 @@ impl Monomial {
 
     /// The exponents f(a_i, b_i) over the variables of either.
     fn merge(&self, other: &Self, f: impl Fn(u32, u32) -> u32) -> Self {
-        let mut result = Vec::with_capacity(self.0.len() + other.0.len());
+        let mut result: SmallVec<[_; FEW]> = SmallVec::with_capacity(self.0.len() + other.0.len());
         let (mut i, mut j) = (0, 0);
         loop {
             let (variable, a, b) = match (self.0.get(i), other.0.get(j)) {

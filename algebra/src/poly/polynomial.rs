@@ -3,6 +3,7 @@
 use super::field::Field;
 use super::monomial::{Monomial, Var};
 use super::order::Order;
+use std::cmp::Ordering;
 
 /// A polynomial: its non-zero terms, descending in its order. Arithmetic keeps the order of the
 /// left operand; equality ignores the order.
@@ -109,9 +110,10 @@ impl<F: Field> Poly<F> {
 
     /// f + g.
     pub fn add(&self, other: &Self) -> Self {
-        let mut terms = self.terms.clone();
-        terms.extend(other.terms.iter().cloned());
-        Self::from_terms(self.order, terms)
+        if self.order != other.order {
+            return self.add(&other.with_order(self.order));
+        }
+        Self::from_sorted(self.order, united(self.order, &self.terms, &other.terms))
     }
 
     /// −f.
@@ -188,6 +190,31 @@ impl<F: Field> Poly<F> {
         collect(self.order, &mut terms);
         (terms.len() <= most).then_some(Self::from_sorted(self.order, terms))
     }
+}
+
+/// The sum of two descending lists.
+fn united<F: Field>(
+    order: Order,
+    one: &[(Monomial, F)],
+    other: &[(Monomial, F)],
+) -> Vec<(Monomial, F)> {
+    let mut terms = Vec::with_capacity(one.len() + other.len());
+    let (mut one, mut other) = (one.iter().peekable(), other.iter().peekable());
+    while let (Some((a, c)), Some((b, d))) = (one.peek(), other.peek()) {
+        match order.compare(a, b) {
+            Ordering::Greater => terms.extend(one.next().cloned()),
+            Ordering::Less => terms.extend(other.next().cloned()),
+            Ordering::Equal => {
+                let sum = c.add(d);
+                if !sum.is_zero() {
+                    terms.push((a.clone(), sum));
+                }
+                (one.next(), other.next());
+            }
+        }
+    }
+    terms.extend(one.chain(other).cloned());
+    terms
 }
 
 /// Sorts descending, adds equal monomials up, and drops zeros.
