@@ -116,7 +116,7 @@ impl Monomial {
 
     /// The exponents f(a_i, b_i) over the variables of either.
     fn merge(&self, other: &Self, f: impl Fn(u32, u32) -> u32) -> Self {
-        let mut result: SmallVec<[_; FEW]> = SmallVec::with_capacity(self.0.len() + other.0.len());
+        let mut result: SmallVec<[_; FEW]> = SmallVec::new();
         let (mut i, mut j) = (0, 0);
         loop {
             let (variable, a, b) = match (self.0.get(i), other.0.get(j)) {

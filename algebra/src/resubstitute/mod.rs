@@ -5,6 +5,7 @@
 //! value n − x, n + x or n / x is looked up. Sums that are only multiplied are done without where that adds
 //! nothing else. So the count can only fall.
 
+mod sieve;
 mod spread;
 
 use crate::fp::Fp;
@@ -13,6 +14,7 @@ use crate::node::{Edge, Node, NodeId};
 use crate::shadow::Shadow;
 use crate::transplant::{merged, read, rebuild};
 use rustc_hash::FxHashMap;
+use sieve::Sieve;
 use spread::{Spread, spreads};
 
 /// Larger expressions are left as they are.
@@ -54,6 +56,7 @@ struct Network<'a> {
     inverses: Vec<Option<Fp>>,
     /// The nodes of each value or its negative.
     by_value: FxHashMap<Fp, Vec<NodeId>>,
+    sieve: Sieve,
 }
 
 impl<'a> Network<'a> {
@@ -81,6 +84,7 @@ impl<'a> Network<'a> {
             graph,
             roots,
             shadow: graph.sampled(&nodes),
+            sieve: Sieve::new(nodes.iter().map(value)),
             inverses,
             by_value,
             definitions,
@@ -234,16 +238,21 @@ impl<'a> Network<'a> {
         usable.iter().find_map(|&x| {
             let inverse = self.inverses[x as usize]?;
             let value = self.value(x);
-            let difference = target - value;
-            if let Some(y) = signed(difference) {
+            let may_be = |part| self.sieve.passes(part);
+            if may_be(target.0 - value.0)
+                && let Some(y) = signed(target - value)
+            {
                 return Some(Node::Add(Edge::of(x), y)).filter(agrees);
             }
-            let sum = target + value;
-            if let Some(y) = signed(sum) {
+            if may_be(target.0 + value.0)
+                && let Some(y) = signed(target + value)
+            {
                 return Some(Node::Add(-Edge::of(x), y)).filter(agrees);
             }
-            let quotient = target * inverse;
-            let y = signed(quotient).filter(|y| !y.is_negative())?;
+            if !may_be(target.0 * inverse.0) {
+                return None;
+            }
+            let y = signed(target * inverse).filter(|y| !y.is_negative())?;
             Some(Node::Mul(Edge::of(x), y)).filter(agrees)
         })
     }

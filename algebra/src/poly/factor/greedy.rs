@@ -2,7 +2,7 @@
 
 use super::divisor::{Divisor, Occurrence, Strategy};
 use super::network::{Network, Node};
-use super::system::{Literal, System};
+use super::system::{Literal, Literals, System};
 use std::cmp::Reverse;
 
 /// The system after extraction, and the work it took. Stops early beyond a bound on work.
@@ -115,14 +115,14 @@ impl Network {
         let nodes = self.cubes[cube].nodes.clone();
         let bare = |&&node: &&usize| {
             let node: &Node = &self.nodes[node];
-            node.literals == [a, b] && !node.negative && self.sums[node.sum].len() == 1
+            node.literals[..] == [a, b] && !node.negative && self.sums[node.sum].len() == 1
         };
         let known = nodes.iter().find(bare).copied();
         let definition = match known {
             Some(node) => self.nodes[node].sum,
             None => {
                 let sum = self.new_sum();
-                self.insert(sum, false, vec![a, b]);
+                self.insert(sum, false, Literals::from_slice(&[a, b]));
                 sum
             }
         };
@@ -149,8 +149,8 @@ impl Network {
     }
 
     /// Cofactor m and parts c₁, c₂ of an occurrence.
-    fn divided(&self, o: Occurrence) -> (Vec<Literal>, Vec<Literal>, Vec<Literal>) {
-        let (mut m, mut first) = (Vec::new(), Vec::new());
+    fn divided(&self, o: Occurrence) -> (Literals, Literals, Literals) {
+        let (mut m, mut first) = (Literals::new(), Literals::new());
         let mut second = self.nodes[o.second].literals.clone();
         for &literal in &self.nodes[o.first].literals {
             match second.binary_search(&literal) {

@@ -1,7 +1,7 @@
 //! The products of a system under rewriting, with an index of all divisors in them.
 
 use super::divisor::{Cube, Divisor, Kernel, Occurrence, Strategy, common, mix, multiplications};
-use super::system::{Literal, Product, System};
+use super::system::{Literal, Literals, Product, System};
 use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 pub(super) struct Node {
     pub(super) sum: usize,
     pub(super) negative: bool,
-    pub(super) literals: Vec<Literal>,
+    pub(super) literals: Literals,
     hash: u64,
     pub(super) alive: bool,
 }
@@ -90,7 +90,7 @@ impl Network {
     }
 
     /// Adds a product to a sum, and its divisors to the index.
-    pub(super) fn insert(&mut self, sum: usize, negative: bool, mut literals: Vec<Literal>) {
+    pub(super) fn insert(&mut self, sum: usize, negative: bool, mut literals: Literals) {
         literals.sort_unstable();
         let hash = literals
             .iter()

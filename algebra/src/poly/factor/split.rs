@@ -1,7 +1,7 @@
 //! Sums too long to look at all pairs of products: f = Σ_l l q_l + r, by their most frequent
 //! literals l, until every sum is short.
 
-use super::system::{Literal, Product, System};
+use super::system::{Literal, Literals, Product, System};
 use std::collections::BTreeMap;
 
 /// Pairs of products in all sums together that are affordable.
@@ -23,7 +23,7 @@ pub(super) fn split(mut system: System) -> System {
         while system.sums[index].len() > most {
             let (part, literal) = take_part(&mut system.sums[index], most);
             let new = (system.inputs.len() + system.sums.len()) as Literal;
-            let mut literals = vec![new];
+            let mut literals = Literals::from_slice(&[new]);
             literals.extend(literal);
             literals.sort_unstable();
             system.sums[index].push(Product {

@@ -2,16 +2,20 @@
 //! or a variable) or the value of another sum.
 
 use super::program::{Builder, Operand, Program, Value};
+use smallvec::SmallVec;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An input, or `inputs.len()` + the index of a sum.
 pub(super) type Literal = u32;
 
+/// The literals of a product: as many as most have take no memory of their own.
+pub(super) type Literals = SmallVec<[Literal; 8]>;
+
 /// ± Π literals, ascending, repeated for powers.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Product {
     pub(super) negative: bool,
-    pub(super) literals: Vec<Literal>,
+    pub(super) literals: Literals,
 }
 
 /// Sums of products. The first sums are the outputs; no sum depends on itself.
@@ -97,7 +101,7 @@ impl System {
             sums[sum] = cancelled(products.flat_map(|product| {
                 let mut result = vec![Product {
                     negative: product.negative,
-                    literals: Vec::new(),
+                    literals: Literals::new(),
                 }];
                 for &literal in &product.literals {
                     let inner = self.sum_of(literal).filter(|inner| chosen.contains(inner));
@@ -133,7 +137,7 @@ impl System {
                 Some(sum) => (self.inputs.len() + renamed[sum]) as Literal,
                 None => literal,
             });
-            let mut literals: Vec<Literal> = literals.collect();
+            let mut literals: Literals = literals.collect();
             literals.sort_unstable();
             Product {
                 literals,
@@ -155,7 +159,7 @@ fn multiply(a: &[Product], b: &[Product]) -> Vec<Product> {
     let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     let product = |(p, q): (&Product, &Product)| Product {
         negative: p.negative != q.negative,
-        literals: [p.literals.as_slice(), &q.literals].concat(),
+        literals: p.literals.iter().chain(&q.literals).copied().collect(),
     };
     pairs.map(product).collect()
 }
@@ -163,7 +167,7 @@ fn multiply(a: &[Product], b: &[Product]) -> Vec<Product> {
 /// The products in their order, with sorted literals, without pairs of opposite ones.
 pub(super) fn cancelled(products: impl Iterator<Item = Product>) -> Vec<Product> {
     let mut result: Vec<Product> = Vec::new();
-    let mut open: BTreeMap<(Vec<Literal>, bool), Vec<usize>> = BTreeMap::new();
+    let mut open: BTreeMap<(Literals, bool), Vec<usize>> = BTreeMap::new();
     let mut dropped = BTreeSet::new();
     for mut product in products {
         product.literals.sort_unstable();
