@@ -95,13 +95,9 @@ fn assert_same_basis(generators: &[Poly<Q>], variables: u32, order: Order) -> Ba
 
 #[test]
 fn rotations_have_twenty_quadrics() {
-    let start = std::time::Instant::now();
     let so3 = basis::<Q>(&rotation(R), Order::Grevlex);
-    let time = start.elapsed();
-    println!("SO(3) over Q: {time:?}");
     assert_eq!(so3.polynomials().len(), 20);
     assert!(so3.polynomials().all(|f| f.degree() == 2));
-    assert!(cfg!(debug_assertions) || time.as_millis() < 20);
 }
 
 #[test]
