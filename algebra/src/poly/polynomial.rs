@@ -209,7 +209,8 @@ fn united<F: Field>(
                 if !sum.is_zero() {
                     terms.push((a.clone(), sum));
                 }
-                (one.next(), other.next());
+                one.next();
+                other.next();
             }
         }
     }

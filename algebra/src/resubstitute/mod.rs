@@ -16,6 +16,7 @@ use crate::transplant::{merged, read, rebuild};
 use rustc_hash::FxHashMap;
 use sieve::Sieve;
 use spread::{Spread, spreads};
+use std::cell::OnceCell;
 
 /// Larger expressions are left as they are.
 const LARGEST: usize = 400;
@@ -57,6 +58,9 @@ struct Network<'a> {
     /// The nodes of each value or its negative.
     by_value: FxHashMap<Fp, Vec<NodeId>>,
     sieve: Sieve,
+    nodes: Vec<NodeId>,
+    /// Pairs of nodes whose sum, difference or product each node is, once they have been looked for.
+    pairs: Vec<OnceCell<Vec<(NodeId, NodeId)>>>,
 }
 
 impl<'a> Network<'a> {
@@ -88,7 +92,43 @@ impl<'a> Network<'a> {
             inverses,
             by_value,
             definitions,
+            pairs: vec![OnceCell::new(); graph.len()],
+            nodes,
         }
+    }
+
+    /// The pairs (x, y) with x + y, y − x or x y of the value of a node, up to signs. Values do not depend on
+    /// definitions, so that they are looked for once.
+    fn pairs(&self, id: NodeId) -> &[(NodeId, NodeId)] {
+        self.pairs[id as usize].get_or_init(|| {
+            let target = self.value(id);
+            let mut pairs = Vec::new();
+            for &x in &self.nodes {
+                let Some(inverse) = self.inverses[x as usize] else {
+                    continue;
+                };
+                let value = self.value(x);
+                let mut look = |part, whole: &dyn Fn() -> Fp| {
+                    if self.sieve.passes(part)
+                        && let Some(found) = self.by_value.get(&canonical(whole()).0)
+                    {
+                        pairs.extend(found.iter().map(|&y| (x, y)));
+                    }
+                };
+                look(target.0 - value.0, &|| target - value);
+                look(target.0 + value.0, &|| target + value);
+                look(target.0 * inverse.0, &|| target * inverse);
+            }
+            pairs
+        })
+    }
+
+    /// Whether a node is a sum or product of others than those that it is made of.
+    fn may_be_other(&self, id: NodeId) -> bool {
+        let mut children = self.children(id);
+        let own = (children.next(), children.next());
+        let mut pairs = self.pairs(id).iter();
+        pairs.any(|&(x, y)| own != (Some(x), Some(y)) && own != (Some(y), Some(x)))
     }
 
     fn children(&self, id: NodeId) -> impl Iterator<Item = NodeId> + use<> {
@@ -158,6 +198,7 @@ impl<'a> Network<'a> {
                 if self.graph.is_free(id)
                     || !operation
                     || !self.children(id).any(|child| uses.get(&child) == Some(&1))
+                    || !self.may_be_other(id)
                 {
                     return None;
                 }
@@ -231,28 +272,27 @@ impl<'a> Network<'a> {
             (places[*last as usize] > 0).then_some(edge)
         };
         let target = self.value(id);
+        let pairs = self.pairs(id);
         let agrees = |node: &Node| {
             let refused = self.shadow.as_ref().map(|shadow| shadow.refuses(id, *node));
             !refused.unwrap_or(false)
         };
-        usable.iter().find_map(|&x| {
+        let paired = usable
+            .iter()
+            .filter(|&&x| pairs.iter().any(|pair| pair.0 == x));
+        paired.copied().find_map(|x| {
             let inverse = self.inverses[x as usize]?;
             let value = self.value(x);
-            let may_be = |part| self.sieve.passes(part);
-            if may_be(target.0 - value.0)
-                && let Some(y) = signed(target - value)
-            {
+            let difference = target - value;
+            if let Some(y) = signed(difference) {
                 return Some(Node::Add(Edge::of(x), y)).filter(agrees);
             }
-            if may_be(target.0 + value.0)
-                && let Some(y) = signed(target + value)
-            {
+            let sum = target + value;
+            if let Some(y) = signed(sum) {
                 return Some(Node::Add(-Edge::of(x), y)).filter(agrees);
             }
-            if !may_be(target.0 * inverse.0) {
-                return None;
-            }
-            let y = signed(target * inverse).filter(|y| !y.is_negative())?;
+            let quotient = target * inverse;
+            let y = signed(quotient).filter(|y| !y.is_negative())?;
             Some(Node::Mul(Edge::of(x), y)).filter(agrees)
         })
     }
