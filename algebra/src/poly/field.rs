@@ -177,6 +177,28 @@ mod tests {
         assert!(F::zero().is_zero() && F::one().is_one() && !b.is_zero());
     }
 
+    /// Against the operators of `num_rational`, to the last digit and in lowest terms.
+    #[test]
+    fn rationals_of_any_size_are_those_of_big_integers() {
+        let ends = [0, 1, -1, 6, -35, 1 << 31, i64::MAX, i64::MIN, i64::MIN + 1];
+        let mut numbers = Vec::new();
+        for numer in ends {
+            for denom in ends.iter().filter(|&&denom| denom != 0) {
+                numbers.push(BigRational::new(numer.into(), (*denom).into()));
+            }
+        }
+        numbers.extend([1, -15].map(|n| BigRational::new(n.into(), (1i128 << 70).into())));
+        for a in &numbers {
+            for b in &numbers {
+                for (ours, theirs) in [(Field::add(a, b), a + b), (Field::mul(a, b), a * b)] {
+                    let parts =
+                        |value: &BigRational| (value.numer().clone(), value.denom().clone());
+                    assert_eq!(parts(&ours), parts(&theirs), "{a} {b}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn all_fields_obey_the_laws() {
         laws::<BigRational>();
