@@ -42,8 +42,8 @@ pub trait Field: Clone + PartialEq + Debug {
     }
 }
 
-/// Numerator and denominator, where both fit into a word: most coefficients are small, and their arithmetic needs none of
-/// the memory that big integers take.
+/// Numerator and denominator, where both fit into a word, as those of most coefficients do: big integers would take memory
+/// in every step of a sum or product.
 fn words(value: &BigRational) -> Option<(i64, i64)> {
     Some((value.numer().to_i64()?, value.denom().to_i64()?))
 }
