@@ -31,7 +31,8 @@ fn place(part: Residue<0>) -> usize {
     let [real, imaginary] = part
         .parts()
         .map(|part| part.min(Residue::<0>::P.wrapping_sub(part)));
-    (real ^ imaginary.rotate_left(7)).wrapping_mul(0x9e37_79b9_7f4a_7c15) as usize >> (64 - BITS)
+    let mixed = (real ^ imaginary.rotate_left(7)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    (mixed >> (64 - BITS)) as usize
 }
 
 #[cfg(test)]
