@@ -6,9 +6,6 @@
 //! then whole systems with one. A determinant that varies is divided by only where it does not
 //! vanish at the start. What no block solves is solved by MᵀM, which is singular only where M is.
 
-#[cfg(test)]
-mod tests;
-
 use super::graph::{Edge, Graph};
 use super::linear::{multiply, solve_symmetric, transpose};
 use super::numeric::rank;

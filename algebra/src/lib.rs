@@ -26,15 +26,13 @@ pub mod poly;
 pub mod prime;
 pub mod reals;
 pub mod resubstitute;
-mod roots;
+pub mod roots;
 pub mod rounding;
 mod shadow;
 pub mod sizes;
 pub mod slopes;
 pub mod tangent;
 pub mod tape;
-#[cfg(test)]
-mod tests;
 pub mod text;
 pub mod topoly;
 pub mod transplant;

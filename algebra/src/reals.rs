@@ -15,8 +15,10 @@ pub const SAMPLES: usize = 8;
 /// none, such as a root of −1; any other error that it is not known.
 #[derive(Clone, Copy, Debug)]
 pub struct Real {
-    value: f64,
-    error: f64,
+    /// The number.
+    pub value: f64,
+    /// It is off by at most this.
+    pub error: f64,
 }
 
 /// A real number at each sample.
@@ -216,75 +218,4 @@ impl Real {
 /// Whether b cannot stand for a at a sample.
 pub fn contradict(a: &[Real], b: &[Real]) -> bool {
     a.iter().zip(b).any(|(a, b)| a.differs(*b))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Real;
-    use crate::function::Slope;
-    use crate::graph::Function;
-    use crate::tests::functions;
-
-    fn exact(value: f64) -> Real {
-        Real::new(value, 0.0)
-    }
-
-    #[test]
-    fn equal_numbers_agree_and_others_differ() {
-        let root = |n: f64| exact(n).apply(Function::Sqrt);
-        let (two, three) = (root(2.0), root(3.0));
-        // √3 − √2 = √(5 − 2√6), and its negative is another number.
-        let difference = three.plus(two.signed(true));
-        let nested = exact(5.0)
-            .plus(exact(-2.0).times(root(6.0)))
-            .apply(Function::Sqrt);
-        assert!(!difference.differs(nested) && difference.signed(true).differs(nested));
-        assert!(!two.times(three).differs(root(6.0)));
-        // What cancels is 0 within its error, and not another small number.
-        let zero = root(6.0).plus(two.times(three).signed(true));
-        assert!(!zero.differs(exact(0.0)) && zero.differs(exact(1e-12)));
-    }
-
-    #[test]
-    fn what_has_no_value_contradicts_nothing() {
-        let unknown = [
-            Real::UNKNOWN,
-            exact(1.0).over(Real::new(0.0, 1e-16)),
-            exact(0.0).apply(Function::Log),
-            Real::new(0.0, 1e-16).atan2(exact(-1.0)),
-        ];
-        for value in unknown {
-            assert!(!value.differs(exact(3.0)) && !exact(3.0).differs(value.plus(exact(1.0))));
-        }
-    }
-
-    /// √x √x may become x, but not the other way round where x < 0.
-    #[test]
-    fn what_has_no_value_stands_for_nothing_that_has_one() {
-        let none = exact(-1.0).apply(Function::Sqrt);
-        assert!(exact(-1.0).differs(none.times(none)) && !none.times(none).differs(exact(-1.0)));
-        assert!(!none.differs(none.plus(exact(1.0))));
-        let blurred = Real::new(-1e-17, 1e-16).apply(Function::Sqrt);
-        assert!(!exact(1e-9).differs(blurred) && exact(1.0).differs(blurred));
-        assert!(exact(2.0).differs(exact(-1.0).apply(Function::Log)));
-    }
-
-    #[test]
-    fn errors_bound_what_a_perturbation_does() {
-        let (a, b, h) = (0.8, 1.7, 1e-7);
-        let one = |of: &dyn Fn(Real) -> Real| {
-            let (blurred, moved) = (of(Real::new(a, h)), of(exact(a + h)));
-            let change = (blurred.value - moved.value).abs();
-            assert!(change > 0.0 && change <= blurred.error * (1.0 + 1e-6));
-        };
-        let moving = |function: &Function| function.row().slope != Slope::Nothing;
-        for function in functions().filter(moving) {
-            one(&|x| x.apply(function));
-        }
-        one(&|x| x.times(exact(b)));
-        one(&|x| exact(b).over(x));
-        one(&|x| x.over(exact(b)));
-        one(&|x| x.atan2(exact(b)));
-        one(&|x| x.plus(exact(b)));
-    }
 }

@@ -14,7 +14,7 @@ type Task = &'static [&'static str];
 /// Seconds once everything is built: format, and what the stages say of themselves.
 const QUICK: Task = &[
     "cargo fmt --all --check",
-    "cargo test --locked -p hamel-algebra -p hamel-language -p hamel-codegen --lib",
+    "cargo test --locked -p hamel-algebra -p hamel-language --test suite",
     "cargo test --locked -p hamel-tests --test layers --test wrong",
 ];
 
@@ -37,6 +37,8 @@ const CI: Task = &[
     "bash tests/c99/install.sh",
     // The README's test command, with attacks of four times the size.
     "HAMEL_ATTACK=more cargo test --workspace --locked",
+    // What is no mathematics: pages and the gallery, the table of the report, Python's module.
+    "HAMEL_ATTACK=more cargo test --workspace --locked --test commands --test complete --test counts --test gallery --test book --test built",
     // The packages as they would be published; `attack` builds each from what it contains.
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --no-verify --allow-dirty --locked",
     // Generated systems in the stiff solvers of another crate.
@@ -114,7 +116,7 @@ const TASKS: [(&str, Task, &str); 6] = [
     (
         "quick",
         QUICK,
-        "format, unit tests and the shape of the repository: seconds once built",
+        "format, tests of the algebra and the language, and the shape of the repository: seconds once built",
     ),
     (
         "ci",

@@ -40,7 +40,7 @@ impl Interval {
     }
 
     /// The angle of (x, y), in (−π, π]; `None` where it is not certain on which side of the cut it is.
-    pub(crate) fn atan2(&self, x: &Interval) -> Option<Self> {
+    pub fn atan2(&self, x: &Interval) -> Option<Self> {
         let half = Interval::pi().scaled(-1);
         match (self.side(), x.side()) {
             (_, Some(Ordering::Greater)) => self.times(&x.inverse()?).arctan(),
@@ -104,101 +104,5 @@ impl Interval {
             exponent: self.exponent + exponent,
             ..self
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::function::Function;
-
-    fn number(n: i64, d: i64) -> Interval {
-        Interval::rational(&BigRational::new(n.into(), d.into()))
-    }
-
-    /// That the bounds are narrower than 2^−280.
-    fn is_narrow(a: &Interval) -> bool {
-        let width = &a.hi - &a.lo;
-        width.bits() as i64 + a.exponent < -280
-    }
-
-    #[test]
-    fn they_have_the_values_of_floating_arithmetic() {
-        for (n, d) in [
-            (1, 3),
-            (2, 1),
-            (7, 5),
-            (1_000_000_007, 3),
-            (1, 1_000_000_007),
-            (999, 1000),
-        ] {
-            let found = number(n, d).log().expect("positive");
-            let expected = (n as f64 / d as f64).ln();
-            assert!(
-                (found.to_f64() - expected).abs() <= 1e-15 * expected.abs().max(1e-3),
-                "{n}/{d}"
-            );
-            assert!(is_narrow(&found), "{n}/{d}");
-        }
-        for y in -5..=5i64 {
-            for x in -5..=5i64 {
-                let found = number(y, 3).atan2(&number(x, 7));
-                if (x, y) == (0, 0) {
-                    assert_eq!(found, None);
-                    continue;
-                }
-                let found = found.expect("a direction");
-                let expected = (y as f64 / 3.0).atan2(x as f64 / 7.0);
-                assert!((found.to_f64() - expected).abs() < 1e-15, "{y} {x}");
-                assert!(is_narrow(&found), "{y} {x}");
-            }
-        }
-    }
-
-    /// Laws that do not know the series: exp log a = a, log a + log b = log a b, tangents of angles,
-    /// Machin's formula.
-    #[test]
-    fn they_invert_what_they_should() {
-        let one = number(1, 1);
-        for k in 1..40i64 {
-            let a = number(k * k * k + 1, 7 * k);
-            let log = a.log().expect("positive");
-            let back = log.apply(Function::Exp).expect("a value");
-            assert!(!back.differs(&a), "{k}");
-            assert!(log.differs(&a.plus(&number(1, 1 << 62)).log().expect("positive")));
-            let product = a.times(&number(k, 3)).log().expect("positive");
-            assert!(!product.differs(&log.plus(&number(k, 3).log().expect("positive"))));
-            let (y, x) = (number(k - 20, 3), number(2 * k - 41, 5));
-            let angle = y.atan2(&x).expect("a direction");
-            let (c, s) = (angle.apply(Function::Cos), angle.apply(Function::Sin));
-            let (c, s) = (c.expect("a value"), s.expect("a value"));
-            assert!(
-                !s.times(&x).differs(&c.times(&y)) && is_narrow(&angle),
-                "{k}"
-            );
-            let along = c.times(&x).plus(&s.times(&y));
-            assert_eq!(along.side(), Some(Ordering::Greater), "{k}");
-        }
-        let (fifth, last) = (number(1, 5).atan2(&one), number(1, 239).atan2(&one));
-        let sum = fifth.map(|a| a.scaled(4)).zip(last.map(|a| a.scaled(2)));
-        let (fifth, last) = sum.expect("angles");
-        assert!(!fifth.plus(&last.signed(true)).differs(&Interval::pi()));
-    }
-
-    #[test]
-    fn what_is_not_certain_is_none() {
-        let about_zero = number(2, 1).apply(Function::Sqrt).map(|root| {
-            let square = root.times(&root);
-            square.plus(&number(-2, 1))
-        });
-        let about_zero = about_zero.expect("a number");
-        assert_eq!(about_zero.log(), None);
-        assert_eq!(about_zero.atan2(&number(-1, 1)), None);
-        assert!(about_zero.atan2(&number(1, 1)).is_some());
-        assert_eq!(number(-1, 1).log(), None);
-        let huge = Interval::rational(&BigRational::from_integer(BigInt::from(10).pow(600)));
-        let (log, ten) = (huge.log().expect("positive"), number(10, 1).log());
-        let ten = ten.expect("positive").times(&number(600, 1));
-        assert!(!log.differs(&ten) && huge.atan2(&huge).is_some());
     }
 }

@@ -11,7 +11,7 @@ use crate::fp::Random;
 use crate::prime::Residue;
 
 /// Those of the given variables that are free one at a time, in the given order.
-pub(super) fn free_variables<const K: usize>(
+pub fn free_variables<const K: usize>(
     system: &[Poly<Residue<K>>],
     variables: &[Var],
     random: &mut Random,
@@ -30,23 +30,4 @@ pub(super) fn free_variables<const K: usize>(
     };
     let free = (0..variables.len()).filter(|&column| !fixed(column));
     free.map(|column| variables[column]).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    type Fp = Residue<0>;
-
-    #[test]
-    fn constraints_take_freedom() {
-        let (x, y, z): (Poly<Fp>, _, _) = (Poly::var(0), Poly::var(1), Poly::var(2));
-        let mut random = Random::new(1);
-        let mut free = |system: &[Poly<Fp>]| free_variables(system, &[2, 0, 1], &mut random);
-        assert_eq!(free(&[]), [2, 0, 1]);
-        assert_eq!(free(&[x.mul(&x).add(&y)]), [2, 0, 1]);
-        assert_eq!(free(&[x.mul(&x).add(&y), x.sub(&y)]), [2]);
-        assert_eq!(free(&[z.pow(2), x.sub(&y)]), [0, 1]);
-        assert_eq!(free(&[x.add(&z), x.sub(&y), y.mul(&z)]), Vec::<u32>::new());
-    }
 }

@@ -5,7 +5,7 @@
 //! | `field` | coefficients: Q and F_p |
 //! | `monomial`, `order` | x^a, and which of two is bigger |
 //! | `polynomial`, `evaluation` | Σ c_a x^a, its values, derivatives and substitutions |
-//! | `normal_form`, `buchberger` | remainder by a basis, reduced Gröbner basis |
+//! | `normal_form`, `sums`, `buchberger` | remainder by a basis, sums of sorted terms, reduced Gröbner basis |
 //! | `ideals` | generators of circle, S³, SO(3) |
 //! | `elimination` | minimal polynomial of a variable modulo an ideal |
 //! | `jacobian` | variables that a system leaves free |
@@ -18,13 +18,11 @@ mod evaluation;
 pub mod factor;
 pub mod field;
 pub mod ideals;
-mod jacobian;
+pub mod jacobian;
 pub mod monomial;
 pub mod normal_form;
 pub mod order;
 pub mod polynomial;
 pub mod solve;
+mod sums;
 pub mod univariate;
-
-#[cfg(test)]
-mod oracle;

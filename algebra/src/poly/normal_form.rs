@@ -6,7 +6,7 @@ use super::field::Field;
 use super::monomial::Monomial;
 use super::order::Order;
 use super::polynomial::Poly;
-use std::cmp::Ordering;
+use super::sums::{merged, placed};
 
 /// A monic divisor with the mask of its leading monomial.
 #[derive(Clone, Debug)]
@@ -126,95 +126,4 @@ fn subtract<F: Field>(
     };
     *budget = budget.checked_sub(work)?;
     Some(result)
-}
-
-/// The sum of an ascending list and of few terms that descend: what lies below all of them is not looked at.
-fn placed<F: Field>(
-    order: Order,
-    mut list: Vec<(Monomial, F)>,
-    terms: impl Iterator<Item = (Monomial, F)>,
-) -> Vec<(Monomial, F)> {
-    let mut above = list.len();
-    for (monomial, value) in terms {
-        let found = list[..above].binary_search_by(|known| order.compare(&known.0, &monomial));
-        let (Ok(place) | Err(place)) = found;
-        above = place;
-        let sum = match found {
-            Ok(_) => list[place].1.add(&value),
-            Err(_) => value,
-        };
-        match (found, sum.is_zero()) {
-            (Ok(_), false) => list[place].1 = sum,
-            (Ok(_), true) => drop(list.remove(place)),
-            (Err(_), false) => list.insert(place, (monomial, sum)),
-            (Err(_), true) => {}
-        }
-    }
-    list
-}
-
-/// The sum of an ascending list and of so many terms that ascend.
-fn merged<F: Field>(
-    order: Order,
-    list: Vec<(Monomial, F)>,
-    terms: impl Iterator<Item = (Monomial, F)>,
-    count: usize,
-) -> Vec<(Monomial, F)> {
-    let mut result = Vec::with_capacity(list.len() + count);
-    let mut list = list.into_iter().peekable();
-    for (monomial, value) in terms {
-        let mut same = None;
-        while let Some(next) = list.peek() {
-            match order.compare(&next.0, &monomial) {
-                Ordering::Greater => break,
-                Ordering::Less => result.extend(list.next()),
-                Ordering::Equal => {
-                    same = list.next();
-                    break;
-                }
-            }
-        }
-        let sum = match same {
-            Some((_, old)) => old.add(&value),
-            None => value,
-        };
-        if !sum.is_zero() {
-            result.push((monomial, sum));
-        }
-    }
-    result.extend(list);
-    result
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use num_rational::BigRational as Rational;
-
-    /// Terms of many sizes, some of which cancel, put into their places and merged.
-    #[test]
-    fn terms_in_their_places_are_terms_merged() {
-        let order = Order::Grevlex;
-        let term = |k: u32, value: i64| {
-            let powers = [(0, k % 3), (1, k / 3 % 4), (2, k / 12)];
-            (
-                Monomial::from_powers(powers),
-                <Rational as Field>::integer(value),
-            )
-        };
-        let sorted = |mut list: Vec<(Monomial, Rational)>| {
-            list.sort_by(|a, b| order.compare(&a.0, &b.0));
-            list
-        };
-        let list = sorted((0..40).map(|k| term(k, i64::from(k) - 50)).collect());
-        for first in 0..20 {
-            let terms = (first..60).step_by(7);
-            let cancelling = |k: u32| [50 - i64::from(k), 3][k as usize % 2];
-            let terms = sorted(terms.map(|k| term(k, cancelling(k))).collect());
-            let down = placed(order, list.clone(), terms.iter().rev().cloned());
-            let up = merged(order, list.clone(), terms.iter().cloned(), terms.len());
-            assert_eq!(down, up);
-            assert!(up.len() < list.len() + terms.len());
-        }
-    }
 }

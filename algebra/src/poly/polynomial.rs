@@ -230,6 +230,3 @@ fn collect<F: Field>(order: Order, terms: &mut Vec<(Monomial, F)>) {
     });
     terms.retain(|term| !term.1.is_zero());
 }
-
-#[cfg(test)]
-mod tests;

@@ -8,8 +8,6 @@
 //! Gröbner bases: a random value of a free variable leaves a consistent system.
 
 mod structure;
-#[cfg(test)]
-mod tests;
 
 use super::buchberger::{Limits, groebner_within};
 use super::elimination::minimal_polynomial;

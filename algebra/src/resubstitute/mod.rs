@@ -11,6 +11,7 @@ mod spread;
 use crate::fp::Fp;
 use crate::graph::{Graph, canonical};
 use crate::node::{Edge, Node, NodeId};
+use crate::prime::Residue;
 use crate::shadow::Shadow;
 use crate::transplant::{merged, read, rebuild};
 use rustc_hash::FxHashMap;
@@ -323,67 +324,5 @@ impl<'a> Network<'a> {
             };
         }
         self.roots.iter().map(|&root| read(&image, root)).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fp::Random;
-
-    /// x (a + b) + c beside x a + c is x b more than that: a + b, which serves nothing else, goes.
-    #[test]
-    fn a_sum_that_is_only_multiplied_is_spread() {
-        let mut graph = Graph::new(3, 1);
-        let mut random = Random::new(5);
-        let [a, b, c, d, x, y] = ["a", "b", "c", "d", "x", "y"].map(|name| {
-            let value = random.element();
-            graph.symbol(name, 2, value)
-        });
-        let base = graph.clone();
-        let sum = graph.add(a, b);
-        let mut roots = Vec::new();
-        for (factor, more, negative) in [(x, c, false), (y, d, true)] {
-            for summand in [a, sum] {
-                let product = graph.mul(factor, summand);
-                roots.push(graph.add(product.signed(negative), more));
-            }
-        }
-        let (better, edges) = resubstitute(&graph, &roots, &base).expect("one operation less");
-        let cost = |graph: &Graph, roots: &[Edge]| {
-            Network::new(graph, roots, &[]).cost(&graph.reachable(roots))
-        };
-        assert_eq!((cost(&graph, &roots), cost(&better, &edges)), (9, 8));
-        for (old, new) in roots.iter().zip(&edges) {
-            assert_eq!(graph.value(*old), better.value(*new));
-        }
-    }
-
-    /// (a b + c) and (a b + c + d), the second built from scratch as ((a b + d) + c): resubstitution
-    /// finds that it is the first plus d.
-    #[test]
-    fn a_sum_that_is_there_is_used() {
-        let mut graph = Graph::new(3, 1);
-        let mut random = Random::new(4);
-        let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| {
-            let value = random.element();
-            graph.symbol(name, 2, value)
-        });
-        let base = graph.clone();
-        let product = graph.mul(a, b);
-        let first = graph.add(product, c);
-        let other = graph.add(product, d);
-        let second = graph.add(other, c);
-        // d has to be there for something else too.
-        let third = graph.mul(c, d);
-        let roots = [first, second, third];
-        let (better, edges) = resubstitute(&graph, &roots, &base).expect("one operation less");
-        let cost = |graph: &Graph, roots: &[Edge]| {
-            Network::new(graph, roots, &[]).cost(&graph.reachable(roots))
-        };
-        assert_eq!((cost(&graph, &roots), cost(&better, &edges)), (5, 4));
-        for (old, new) in roots.iter().zip(&edges) {
-            assert_eq!(graph.value(*old), better.value(*new));
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! Which values there may be among many: nearly all that are asked for are not there, as one bit of their part modulo p says.
 
-use crate::fp::Fp;
-use crate::prime::Residue;
+use super::{Fp, Residue};
 
 /// So many bits, 2 KB, for the values of some hundred nodes.
 const BITS: u32 = 14;
@@ -33,28 +32,4 @@ fn place(part: Residue<0>) -> usize {
         .map(|part| part.min(Residue::<0>::P.wrapping_sub(part)));
     let mixed = (real ^ imaginary.rotate_left(7)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     (mixed >> (64 - BITS)) as usize
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fp::Random;
-
-    #[test]
-    fn what_is_there_passes_with_either_sign_and_little_else_does() {
-        let mut random = Random::new(3);
-        let there: Vec<Fp> = (0..400).map(|_| random.element()).collect();
-        let i = Fp(Residue::I, Residue::I);
-        let all = there.iter().flat_map(|&value| [value, value * i]);
-        let sieve = Sieve::new(all.clone().chain([Fp::ZERO]));
-        assert!(
-            all.clone()
-                .all(|value| sieve.passes(value.0) && sieve.passes((-value).0))
-        );
-        assert!(sieve.passes(Residue::ZERO));
-        let others = (0..1000)
-            .filter(|_| sieve.passes(random.element().0))
-            .count();
-        assert!(others < 100, "{others}");
-    }
 }

@@ -4,6 +4,7 @@
 //! is put together again with care: the description's own frames are candidates too, long expansions
 //! are not, and of two candidates the one that keeps more digits is taken before the cheaper one.
 
+use super::norms::{greatest, inverse, norm};
 use super::tree::Placement;
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::matrix;
@@ -126,65 +127,4 @@ fn condition_digits(model: &Model, program: &Program, mass: &[Vec<Edge>]) -> f64
         most = greatest(of.into_iter());
     }
     most.log10()
-}
-
-fn norm(rows: &[Vec<f64>]) -> f64 {
-    greatest(rows.iter().map(|row| row.iter().map(|e| e.abs()).sum()))
-}
-
-/// The greatest of numbers that are not negative; infinite where one is none.
-fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
-    numbers.fold(0.0, |most, number| match number.is_nan() {
-        true => f64::INFINITY,
-        false => most.max(number),
-    })
-}
-
-/// By Gauss and Jordan without exchange: M is positive definite.
-fn inverse(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let n = rows.len();
-    for k in 0..n {
-        let pivot = std::mem::replace(&mut rows[k][k], 1.0);
-        rows[k].iter_mut().for_each(|entry| *entry /= pivot);
-        let own = rows[k].clone();
-        for row in (0..n).filter(|&row| row != k) {
-            let factor = std::mem::replace(&mut rows[row][k], 0.0);
-            for (entry, other) in rows[row].iter_mut().zip(&own) {
-                *entry -= factor * other;
-            }
-        }
-    }
-    rows
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{greatest, inverse, norm};
-
-    #[test]
-    fn inverses_and_norms() {
-        let rows = vec![
-            vec![4.0, 1.0, 0.0],
-            vec![1.0, 3.0, -1.0],
-            vec![0.0, -1.0, 2.0],
-        ];
-        let inverted = inverse(rows.clone());
-        for i in 0..3 {
-            for j in 0..3 {
-                let entry: f64 = (0..3).map(|k| rows[i][k] * inverted[k][j]).sum();
-                let unit = if i == j { 1.0 } else { 0.0 };
-                assert!((entry - unit).abs() < 1e-15);
-            }
-        }
-        assert_eq!(norm(&rows), 5.0);
-    }
-
-    /// M that has no number at a state says nothing of its condition: it counts as any number.
-    #[test]
-    fn what_is_no_number_is_no_small_one() {
-        assert_eq!(greatest([f64::NAN, 2.0].into_iter()), f64::INFINITY);
-        assert_eq!(greatest([2.0, f64::NAN].into_iter()), f64::INFINITY);
-        assert_eq!(norm(&[vec![1.0, f64::NAN], vec![0.0, 1.0]]), f64::INFINITY);
-        assert_eq!(greatest(std::iter::empty()), 0.0);
-    }
 }

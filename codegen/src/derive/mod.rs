@@ -48,6 +48,7 @@ pub(crate) mod loads;
 pub(crate) mod momentum;
 pub(crate) mod multipliers;
 pub(crate) mod normal;
+mod norms;
 mod program;
 pub(crate) mod quantity;
 mod reactions;

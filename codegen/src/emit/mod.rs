@@ -50,8 +50,6 @@ mod plain;
 mod print;
 mod structure;
 mod system;
-#[cfg(test)]
-mod tests;
 mod together;
 mod views;
 

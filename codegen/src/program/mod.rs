@@ -5,6 +5,7 @@ pub mod interpret;
 pub(crate) mod places;
 pub mod rounding;
 pub mod schedule;
+mod seeds;
 pub(crate) mod sparsity;
 pub(crate) mod statements;
 pub mod structure;

@@ -7,6 +7,7 @@
 
 use std::collections::BTreeSet;
 
+use super::seeds::seeds;
 use super::{FunctionId, Program, Shape};
 use crate::algebra::graph::{Edge, Node};
 use crate::model::layout::Block;
@@ -110,61 +111,5 @@ impl Sparsity {
     /// How many directions there are.
     pub fn directions(&self) -> usize {
         1 + self.seeds.iter().max().copied().unwrap_or_default()
-    }
-}
-
-/// Directions for a pattern: entries that most rows meet come first, each takes the lowest that is free in these rows.
-fn seeds(rows: &[Vec<usize>], entries: usize) -> Vec<usize> {
-    let meeting: Vec<Vec<usize>> = (0..entries)
-        .map(|entry| {
-            (0..rows.len())
-                .filter(|&i| rows[i].contains(&entry))
-                .collect()
-        })
-        .collect();
-    let mut order: Vec<usize> = (0..entries)
-        .filter(|&entry| !meeting[entry].is_empty())
-        .collect();
-    order.sort_by_key(|&entry| usize::MAX - meeting[entry].len());
-    let mut taken = vec![BTreeSet::new(); rows.len()];
-    let mut seeds = vec![0; entries];
-    for entry in order {
-        let free = |direction: &usize| {
-            meeting[entry]
-                .iter()
-                .all(|&i| !taken[i].contains(direction))
-        };
-        let direction = (0..entries).find(free).unwrap_or_default();
-        for &i in &meeting[entry] {
-            taken[i].insert(direction);
-        }
-        seeds[entry] = direction;
-    }
-    seeds
-}
-
-#[cfg(test)]
-mod tests {
-    use super::seeds;
-
-    /// Entries of one row differ in direction, and no more directions are taken than the longest row needs where no row
-    /// forces them.
-    #[test]
-    fn entries_of_a_row_have_directions_of_their_own() {
-        let hull = [0, 1, 2, 3, 4, 5, 8, 9, 10];
-        let attitude = [3, 4, 5, 11, 12, 13];
-        let mut rows = vec![hull.to_vec(), hull.to_vec(), hull.to_vec()];
-        rows.extend([attitude.to_vec(), attitude.to_vec(), attitude.to_vec()]);
-        rows.extend([vec![6, 14], vec![7, 15]]);
-        let seeds = seeds(&rows, 17);
-        for row in &rows {
-            let mut own: Vec<usize> = row.iter().map(|&entry| seeds[entry]).collect();
-            own.sort_unstable();
-            own.dedup();
-            assert_eq!(own.len(), row.len(), "{row:?}: {seeds:?}");
-        }
-        assert_eq!(seeds.iter().max(), Some(&8));
-        // Entry 16 moves nothing.
-        assert_eq!(seeds[16], 0);
     }
 }

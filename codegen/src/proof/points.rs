@@ -7,7 +7,7 @@ pub const POINTS: u64 = 4;
 /// Points tried: roots have values at some of them only.
 const TRIES: u64 = 400;
 /// Points that are nowhere to be found, each looked for thousands of times, after which there are none.
-const MISSING: u64 = 2;
+pub const MISSING: u64 = 2;
 
 /// Why a comparison said nothing or ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,33 +43,4 @@ pub fn at_fresh_points<E>(
         }
     }
     Err(Unequal::Nowhere)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{MISSING, POINTS, Unequal, at_fresh_points};
-    use crate::algebra::lane::Lane;
-
-    #[test]
-    fn too_few_points_are_no_agreement() {
-        let lane = |number| Some(Lane::new(number));
-        let some = |most: u64| move |_: &Lane, number| (number <= most).then_some(Ok::<(), ()>(()));
-        assert_eq!(at_fresh_points(lane, some(POINTS)), Ok(()));
-        assert_eq!(
-            at_fresh_points(lane, some(POINTS - 1)),
-            Err(Unequal::Nowhere)
-        );
-        let looked = std::cell::Cell::new(0);
-        let nowhere = |number| {
-            looked.set(number);
-            None
-        };
-        assert_eq!(
-            at_fresh_points(nowhere, some(POINTS)),
-            Err(Unequal::Nowhere)
-        );
-        assert_eq!(looked.get(), MISSING);
-        let last = |_: &Lane, number| Some(if number < POINTS { Ok(()) } else { Err(number) });
-        assert_eq!(at_fresh_points(lane, last), Err(Unequal::Differs(POINTS)));
-    }
 }

@@ -11,26 +11,35 @@ mod constrained;
 mod continuous;
 mod coordinates;
 mod degenerate;
+mod emit;
 mod entries;
 mod expressions;
 mod externals;
 mod fixtures;
+mod format;
 mod functions;
 mod headers;
 mod include;
 mod inerter;
 mod joints;
+mod language;
 mod loops;
 #[path = "common/models.rs"]
 mod models;
 mod mounts;
+mod nearest;
+mod norms;
+mod notation;
 mod observed;
+mod plain;
+mod points;
 mod powers;
 #[path = "common/precise.rs"]
 mod precise;
 mod prescribed;
 mod proofs;
 mod proved;
+mod recognise;
 mod recursions;
 mod regressions;
 mod reuse;
@@ -38,14 +47,19 @@ mod roots;
 mod rounding;
 mod said;
 mod scene;
+mod seeds;
 #[path = "common/some.rs"]
 mod some;
+mod tetrahedron;
 #[path = "common/tree/mod.rs"]
 mod tree;
 mod trees;
 mod unsaid;
 #[cfg(feature = "urdf")]
 mod urdf;
+mod words;
 mod work;
 
 use common::Random;
+// By this name included files have it.
+use hamel_codegen::algebra;

@@ -28,6 +28,9 @@ mod frames;
 mod functions;
 mod ground;
 mod independent;
+// Open to tests, which compare shapes with values.
+#[doc(hidden)]
+pub mod inspect;
 mod invariants;
 mod joints;
 mod kinematics;
@@ -50,8 +53,6 @@ mod states;
 mod staying;
 mod strange;
 mod tangency;
-#[cfg(test)]
-mod tests;
 mod time;
 mod unused;
 mod variety;

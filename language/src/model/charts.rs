@@ -94,35 +94,3 @@ pub fn jacobian(
         .collect();
     rows.iter().map(|row| rebuild(&free, graph, row)).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::algebra::fp::Random;
-    use crate::model::layout::{chart_rate, sample};
-
-    /// C K = I on X for every kind.
-    #[test]
-    fn canonical_velocities_of_the_tangents_are_units() {
-        for block in [
-            Block::Flat(2),
-            Block::Circle,
-            Block::Quaternion,
-            Block::Rotation,
-        ] {
-            let mut random = Random::new(7);
-            let mut graph = Graph::new(7, 1);
-            let point = sample(block, &mut random);
-            let x: Vec<Edge> = (0..block.len())
-                .map(|i| graph.symbol("x", 2, point[i]))
-                .collect();
-            for (k, column) in tangents(&mut graph, block, &x).iter().enumerate() {
-                let rates = chart_rate(&mut graph, block, &x, column);
-                for (i, rate) in rates.into_iter().enumerate() {
-                    let unit = if i == k { graph.one() } else { graph.zero() };
-                    assert_eq!(rate, unit, "{block:?}: entry {i} of column {k}");
-                }
-            }
-        }
-    }
-}

@@ -22,6 +22,7 @@ pub mod samples;
 pub mod states;
 pub mod twists;
 pub mod value;
+mod way;
 
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, Vec3};

@@ -47,9 +47,6 @@ mod tokens;
 mod words;
 pub mod written;
 
-#[cfg(all(test, feature = "files"))]
-mod tests;
-
 pub use files::read_files;
 pub use tokens::Places;
 

@@ -14,9 +14,6 @@ mod program;
 mod split;
 mod system;
 
-#[cfg(test)]
-mod tests;
-
 pub use program::{Operand, Program, Step, Value};
 
 use super::monomial::Monomial;

@@ -8,6 +8,7 @@
 
 use super::constant::resting;
 use super::rates::Part;
+use super::tetrahedron::{matrix, tetrahedron};
 use crate::algebra::graph::{Edge, Graph};
 use crate::algebra::linear::{Mat3, dot_mat3};
 use crate::algebra::transplant::substitute;
@@ -22,40 +23,6 @@ pub struct Shift {
     pub offset: Vec<Edge>,
     /// ẏ − ẋ per unit of each rate, n rows of n: rows of plain coordinates, columns of turning ones.
     pub rate: Vec<Vec<Edge>>,
-}
-
-/// The rotations of the tetrahedron as unit quaternions, twice.
-fn tetrahedron() -> Vec<[i64; 4]> {
-    let mut twice: Vec<[i64; 4]> = (0..4)
-        .map(|axis| std::array::from_fn(|i| if i == axis { 2 } else { 0 }))
-        .collect();
-    twice.extend((0..8).map(|bits| {
-        let sign = |bit: i64| if bits >> bit & 1 == 1 { -1 } else { 1 };
-        [1, sign(0), sign(1), sign(2)]
-    }));
-    twice
-}
-
-/// The rotation matrix of half of a quaternion, which for those above has entries 0, 1, −1.
-fn matrix([w, x, y, z]: [i64; 4]) -> [[i64; 3]; 3] {
-    let rows = [
-        [
-            w * w + x * x - y * y - z * z,
-            2 * (x * y - w * z),
-            2 * (x * z + w * y),
-        ],
-        [
-            2 * (x * y + w * z),
-            w * w - x * x + y * y - z * z,
-            2 * (y * z - w * x),
-        ],
-        [
-            2 * (x * z - w * y),
-            2 * (y * z + w * x),
-            w * w - x * x - y * y + z * z,
-        ],
-    ];
-    rows.map(|row| row.map(|entry| entry / 4))
 }
 
 /// The shift that K asks for, `coupling[f][c]` for plain rate f and turning rate c; `None` in a row
@@ -188,30 +155,5 @@ pub fn matrix_of(graph: &mut Graph, part: &Part, x: &[Edge]) -> Option<Mat3> {
             }))
         }
         _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The twelve matrices are rotations, and average products of entries to δ/3.
-    #[test]
-    fn the_tetrahedron_averages() {
-        let all: Vec<_> = tetrahedron().into_iter().map(matrix).collect();
-        assert_eq!(all.len(), 12);
-        for (a, b) in (0..9).flat_map(|a| (0..9).map(move |b| (a, b))) {
-            let sum: i64 = all.iter().map(|r| r[a / 3][a % 3] * r[b / 3][b % 3]).sum();
-            assert_eq!(sum, if a == b { 4 } else { 0 });
-        }
-        for r in all {
-            let [a, b, c] = r;
-            let cross = [
-                a[1] * b[2] - a[2] * b[1],
-                a[2] * b[0] - a[0] * b[2],
-                a[0] * b[1] - a[1] * b[0],
-            ];
-            assert_eq!(cross, c);
-        }
     }
 }

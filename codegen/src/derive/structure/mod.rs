@@ -6,7 +6,7 @@
 //! | `variation` | on what expressions depend, modulo p |
 //! | `rates` | the rates of the coordinates, w = B ξ, ξ = N w |
 //! | `constant` | constant expressions, written without coordinates |
-//! | `centre` | the shift to centres of mass |
+//! | `centre`, `tetrahedron` | the shift to centres of mass |
 //! | `inertia` | what is left of inertia after it: rotors, and one constant block |
 //! | `forces` | what makes forces depend on velocities |
 //! | `functions` | centre, momenta, velocities, kicks as functions |
@@ -24,6 +24,7 @@ mod functions;
 mod inertia;
 pub mod rates;
 mod setting;
+mod tetrahedron;
 mod variation;
 
 pub(super) use functions::Functions;

@@ -1,6 +1,7 @@
 //! The statements of a function in C: one after the other, or in parts that are functions of their own.
 
 use super::language::{C, Origins};
+use super::nearest::nearest;
 use super::{Texts, comment, helpers, returns_number};
 use crate::algebra::graph::NodeId;
 use crate::emit::chunk::Part;
@@ -10,7 +11,7 @@ use crate::emit::names::argument;
 use crate::emit::print::{Access, Printer, Used};
 use crate::program::statements::Body;
 use rustc_hash::FxHashMap;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 /// Instructions are short where they read within so many bytes before and behind what a pointer points to.
 const NEAR: usize = 128;
@@ -297,42 +298,5 @@ impl Printed {
             taken.push(format!("{constant}{real} *{restrict} {name}"));
         }
         Passed { given, taken }
-    }
-}
-
-/// From where in an array most of these places are near, so many before or behind: 0 where no other is better.
-fn nearest(places: impl Iterator<Item = usize>, near: usize, length: usize) -> usize {
-    let mut count: BTreeMap<usize, usize> = BTreeMap::new();
-    for place in places {
-        *count.entry(place).or_default() += 1;
-    }
-    let within = |origin: usize| -> usize {
-        let places = count.range(origin.saturating_sub(near)..origin + near);
-        places.map(|(_, count)| count).sum()
-    };
-    let mut best = (within(0), 0);
-    for origin in count.keys().map(|first| (first + near).min(length)) {
-        let found = within(origin);
-        if found > best.0 {
-            best = (found, origin);
-        }
-    }
-    best.1
-}
-
-#[cfg(test)]
-mod tests {
-    use super::nearest;
-
-    #[test]
-    fn arrays_are_given_from_where_most_is_near() {
-        let from = |places: &[usize]| nearest(places.iter().copied(), 16, 100);
-        assert_eq!(from(&[]), 0);
-        assert_eq!(from(&[0, 5, 15, 40]), 0);
-        // 0 to 31 are near 16.
-        assert_eq!(from(&[0, 5, 15, 31, 40]), 16);
-        assert_eq!(from(&[3, 60, 61, 75]), 76);
-        // Within the array, and one behind it at most.
-        assert_eq!(from(&[3, 97, 98, 99]), 100);
     }
 }

@@ -47,19 +47,3 @@ fn tame(line: &str) -> String {
     }
     text
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{documentation, tame};
-
-    #[test]
-    fn nothing_leaves_a_comment() {
-        assert_eq!(tame("a */ b /* c"), "a * / b / * c");
-        assert_eq!(tame("what??/"), "what? ?/");
-        assert_eq!(tame("a\u{0}b\u{202e}"), "ab\\u{202e}");
-        assert_eq!(
-            documentation(&["a\nb".into(), String::new()], 2),
-            "  /**\n   * a\n   * b\n   *\n   */\n"
-        );
-    }
-}

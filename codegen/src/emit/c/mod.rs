@@ -2,8 +2,10 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `names` | identifiers, and words that C and C++ want for themselves |
+//! | `names` | identifiers |
+//! | `words` | words that C and C++ want for themselves |
 //! | `language` | statements, numbers, `double` or `float` |
+//! | `nearest` | from where arrays are given to parts |
 //! | `helpers` | functions that `<math.h>` does not have |
 //! | `comment` | comments |
 //! | `header` | `name.h`: sizes, places by name, types, prototypes |
@@ -19,7 +21,9 @@ mod header;
 mod helpers;
 mod language;
 mod names;
+mod nearest;
 mod source;
+mod words;
 
 use super::function::{Spec, draw};
 use super::{Emitter, docs};

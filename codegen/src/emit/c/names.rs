@@ -10,33 +10,9 @@
 //! The prefix is the name of the system in snake case. A word that C, C++, their headers or Rust want for
 //! themselves gets `_`, whether it would do harm in its place or not: so a name depends on nothing but itself.
 
+use super::words::legal;
 use crate::emit::names::{Names, Unique, Words, snake};
 use crate::program::{Cause, Program};
-
-/// Keywords of C up to C23 and of C++ up to C++20 beyond those of Rust, names of the headers that generated text
-/// includes, and what common systems define as macros; in lines of words.
-const RESERVED: &[&str] = &[
-    // Keywords.
-    "alignas alignof and and_eq asm auto bitand bitor bool case catch char char16_t char32_t",
-    "char8_t class co_await co_return co_yield compl concept const_cast consteval constexpr",
-    "constinit decltype default delete double dynamic_cast explicit export extern float",
-    "fortran friend goto inline int long mutable namespace new noexcept not not_eq nullptr",
-    "operator or or_eq private protected public register reinterpret_cast requires restrict",
-    "short signed sizeof static_assert static_cast switch template this thread_local throw",
-    "typedef typeid typename typeof_unqual union unsigned using void volatile wchar_t xor",
-    "xor_eq",
-    // <math.h>, with what systems add to it.
-    "acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh cospi double_t drem",
-    "erf erfc exp exp10 exp2 expm1 fabs fdim finite float_t floor fma fmax fmin fmod",
-    "fpclassify frexp gamma gamma_r hypot ilogb isfinite isgreater isgreaterequal isinf",
-    "isless islessequal islessgreater isnan isnormal isunordered j0 j1 jn ldexp lgamma",
-    "lgamma_r lgammaf_r lgammal_r llrint llround log log10 log1p log2 logb lrint lround",
-    "math_errhandling modf nan nearbyint nextafter nexttoward pow pow10 remainder remquo rint",
-    "round scalb scalbln scalbn signbit signgam significand sin sincos sinh sinpi sqrt tan",
-    "tanh tgamma trunc y0 y1 yn",
-    // Other headers, and macros of theirs and of systems.
-    "errno far huge i386 interface linux memcpy near small stderr stdin stdout unix",
-];
 
 /// Local names that a function may use besides those of its values.
 const LOCALS: &[&str] = &[
@@ -73,20 +49,6 @@ const OWN: &[&str] = &[
     "far",
     "zeros",
 ];
-
-/// Another name in the place of a reserved one.
-fn legal(name: String) -> String {
-    let is_reserved = |wanted: &str| {
-        let mut words = RESERVED.iter().flat_map(|line| line.split(' '));
-        words.any(|word| word == wanted)
-    };
-    // `sinf` beside `sin`.
-    let of_float = name.strip_suffix('f').is_some_and(is_reserved);
-    match is_reserved(&name) || of_float {
-        true => format!("{name}_"),
-        false => name,
-    }
-}
 
 /// The identifiers of a program.
 pub struct Identifiers {
@@ -156,20 +118,5 @@ impl Identifiers {
     /// The status of a function that has a value.
     pub fn done(&self) -> String {
         format!("{}_STATUS_OK", self.capitals)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::legal;
-
-    #[test]
-    fn words_of_c_and_of_its_headers_are_left_to_them() {
-        for word in ["int", "y0", "sin", "sinf", "linux", "xor", "gamma"] {
-            assert_eq!(legal(word.into()), format!("{word}_"));
-        }
-        for word in ["of", "f", "sine", "m", "k", "infinity"] {
-            assert_eq!(legal(word.into()), word);
-        }
     }
 }

@@ -1,0 +1,57 @@
+//! Rows of second derivatives, run backwards: those of hyper-dual numbers.
+
+use crate::common::functions;
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::graph::Graph;
+use hamel_algebra::jets::Seeds;
+use hamel_algebra::lane::Lane;
+use hamel_algebra::tape::Tape;
+
+#[test]
+fn rows_are_the_mixed_derivatives_of_jets() {
+    let mut random = Random::new(11);
+    let mut graph = Graph::new(1, 0);
+    let mut symbol = |graph: &mut Graph, name: &str| {
+        let value = random.element();
+        graph.symbol(name, 2, value)
+    };
+    let symbols: Vec<_> = ["a", "b", "c"].map(|name| symbol(&mut graph, name)).into();
+    let [a, b, c] = symbols[..] else {
+        unreachable!("three symbols")
+    };
+    let product = graph.mul(a, b);
+    let mut sum = graph.sub(c, product);
+    for function in functions() {
+        let value = graph.apply(function, sum);
+        let quotient = graph.div(value, product).expect("not 0");
+        sum = graph.add(sum, quotient);
+    }
+    let angle = graph.atan2(sum, a);
+    let root = graph.mul(angle, sum);
+    let tape = Tape::new(&graph, &[root]).expect("has a tape");
+    let first = graph.symbols().len() - 3;
+    let unit = |k: usize| -> Vec<Fp> {
+        (0..first + 3)
+            .map(|i| if i == first + k { Fp::ONE } else { Fp::ZERO })
+            .collect()
+    };
+    let mut found = 0;
+    for seed in 0..60 {
+        let mut lane = Lane::new(seed);
+        (0..first + 3).for_each(|_| lane.push_symbol(random.element()));
+        for k in 0..3 {
+            let seeds = Seeds {
+                along: unit(k),
+                across: (0..3).map(unit).collect(),
+                mixed: Vec::new(),
+            };
+            let Some(jets) = tape.jets(&lane, &seeds) else {
+                continue;
+            };
+            let row = tape.bend(&lane, &unit(k)).expect("has a value there, too");
+            assert_eq!(row[first..], jets[0].mixed[..]);
+            found += 1;
+        }
+    }
+    assert!(found > 10, "{found} points had values");
+}

@@ -1,0 +1,48 @@
+//! Laws of polynomial arithmetic.
+
+use hamel_algebra::fp::{Fp, Random};
+use hamel_algebra::poly::monomial::{Monomial, Var};
+use hamel_algebra::poly::order::Order;
+use hamel_algebra::poly::polynomial::Poly;
+use proptest::prelude::*;
+
+fn polynomial() -> impl Strategy<Value = Poly<Fp>> {
+    let powers = prop::collection::vec((0u32..4, 0u32..3), 0..3);
+    let terms = prop::collection::vec((powers, -5i64..6), 0..6);
+    terms.prop_map(|terms| {
+        let terms = terms
+            .into_iter()
+            .map(|(powers, c)| (Monomial::from_powers(powers), Fp::from_i64(c)));
+        Poly::from_terms(Order::Grevlex, terms.collect())
+    })
+}
+
+proptest! {
+    #[test]
+    fn evaluation_is_a_homomorphism(f in polynomial(), g in polynomial(), seed: u64) {
+        let mut random = Random::new(seed);
+        let x: Vec<Fp> = (0..4).map(|_| random.element()).collect();
+        let at = |v: Var| x[v as usize];
+        prop_assert_eq!(f.add(&g).eval(&at), f.eval(&at) + g.eval(&at));
+        prop_assert_eq!(f.sub(&g).eval(&at), f.eval(&at) - g.eval(&at));
+        prop_assert_eq!(f.mul(&g).eval(&at), f.eval(&at) * g.eval(&at));
+        prop_assert_eq!(f.pow(3).eval(&at), f.eval(&at) * f.eval(&at) * f.eval(&at));
+        let shifted = |v: Var| if v == 1 { g.eval(&at) } else { at(v) };
+        prop_assert_eq!(f.substitute(1, &g).eval(&at), f.eval(&shifted));
+        let half = f.specialize(&|v| (v < 2).then(|| at(v)));
+        prop_assert_eq!(half.eval(&at), f.eval(&at));
+        prop_assert_eq!(f.with_order(Order::Lex), f.clone());
+        // Leibniz: ∂(f g) = f ∂g + ∂f g.
+        let rule = f.mul(&g.derivative(2)).add(&f.derivative(2).mul(&g));
+        prop_assert_eq!(f.mul(&g).derivative(2), rule);
+    }
+}
+
+#[test]
+fn expansion_is_bounded() {
+    let sum = (0..10).fold(Poly::<Fp>::zero(), |sum, v| sum.add(&Poly::var(v)));
+    assert_eq!(sum.pow_limited(2, 55).map(|f| f.terms().len()), Some(55));
+    assert!(sum.pow_limited(2, 54).is_none());
+    assert!(sum.pow_limited(30, 500).is_none());
+    assert!(sum.pow(2).substitute_limited(0, &sum.pow(2), 100).is_none());
+}

@@ -1,0 +1,24 @@
+//! Sizes of equations: a circle is as large as its radius.
+
+use hamel_algebra::fp::Random;
+use hamel_algebra::graph::Graph;
+use hamel_algebra::sizes::{relative, sizes};
+
+/// x² + z² = r² has terms of r², and changes by 2 x and 2 z.
+#[test]
+fn a_circle_is_as_large_as_its_radius() {
+    let mut random = Random::new(5);
+    let mut graph = Graph::new(1, 1);
+    graph.symbol("pi", 0, hamel_algebra::fp::Fp::PI);
+    let [r, x, z] = ["r", "x", "z"].map(|name| graph.symbol(name, 2, random.element()));
+    let squares = [x, z, r].map(|a| graph.mul(a, a));
+    let sum = graph.add(squares[0], squares[1]);
+    let circle = graph.sub(sum, squares[2]);
+    for r in [1e-6, 1.0, 1e4] {
+        let numbers = [0.0, r, 0.6 * r, 0.8 * r];
+        let size = sizes(&graph, &[circle], &numbers, 2..4)[0];
+        assert!((size / (2.8 * r + 2.0 * r * r) - 1.0).abs() < 1e-12);
+        assert!(relative(&graph, &[circle], &numbers, 2..4)[0].abs() < 1e-15);
+    }
+    assert_eq!(sizes(&graph, &[circle], &[0.0; 4], 2..4), [0.0]);
+}

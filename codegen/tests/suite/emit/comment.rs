@@ -1,0 +1,30 @@
+//! Comments of C, whatever stands in them.
+
+use super::sample::pendulum;
+use hamel_codegen::emit::c;
+
+/// The header of a program whose first function has this documentation.
+fn header(docs: &[&str]) -> String {
+    let mut program = pendulum();
+    program.functions[0].docs = docs.iter().map(|&line| line.into()).collect();
+    c::files(&program, &c::Options::default()).header
+}
+
+/// A line of documentation as it stands in a comment.
+fn tame(line: &str) -> String {
+    let header = header(&["This is the line:", line]);
+    let (_, rest) = header.split_once(" * This is the line:\n").expect("it");
+    let (line, _) = rest.split_once('\n').expect("its end");
+    line.strip_prefix(" * ").expect("a line").to_owned()
+}
+
+#[test]
+fn nothing_leaves_a_comment() {
+    assert_eq!(tame("a */ b /* c"), "a * / b / * c");
+    assert_eq!(tame("what??/"), "what? ?/");
+    assert_eq!(tame("a\u{0}b\u{202e}"), "ab\\u{202e}");
+    let header = header(&["a\nb", ""]);
+    assert!(header.contains("\n/**\n * a\n * b\n *\n"), "{header}");
+    // Set in.
+    assert!(header.contains("\n    /**\n     * "), "{header}");
+}

@@ -1,0 +1,17 @@
+//! Words that C wants for itself are not given to anything else.
+
+use included::legal;
+
+// In a program other rules may change a name before this one.
+#[path = "../../src/emit/c/words.rs"]
+mod included;
+
+#[test]
+fn words_of_c_and_of_its_headers_are_left_to_them() {
+    for word in ["int", "y0", "sin", "sinf", "linux", "xor", "gamma"] {
+        assert_eq!(legal(word.into()), format!("{word}_"));
+    }
+    for word in ["of", "f", "sine", "m", "k", "infinity"] {
+        assert_eq!(legal(word.into()), word);
+    }
+}

@@ -1,0 +1,104 @@
+//! Expressions one at a time: what the text says of their shapes, and what they are in a graph.
+
+use super::declare::declare;
+use super::expression::Evaluator;
+use super::motion::TimeDerivative;
+use super::names::Names;
+use super::scope::Scope;
+use super::{joints, time};
+use crate::algebra::fp::Random;
+use crate::algebra::graph::{Edge, Graph};
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::value::Value;
+use crate::model::{class, samples};
+use crate::syntax::ast::{Expr, System};
+use crate::{reuse, shapes, symbols};
+use num_rational::BigRational;
+
+pub use super::axes::CALLS;
+
+/// What is found about one expression.
+#[derive(Debug)]
+pub struct Found {
+    /// What the text says: its shape in words, and its numbers where they are known; `None` where something is wrong.
+    pub inferred: Option<(String, Option<Vec<BigRational>>)>,
+    /// Whether the text says that something is wrong.
+    pub refused: bool,
+    /// What the graph says, with the entries that are numbers.
+    pub value: Option<(Value, Vec<Option<BigRational>>)>,
+    /// Whether there is a mathematical reason against a value.
+    pub failed: bool,
+}
+
+/// Looks at expressions in a description, whose joints and time are written out for that: the closure is given that
+/// description, and what finds out about an expression.
+pub fn inspect<R>(
+    system: &System,
+    look: impl FnOnce(&System, &dyn Fn(&Expr) -> Found) -> R,
+) -> Result<R, Vec<Diagnostic>> {
+    let written = reuse::expand(system)?;
+    let mut report = Report::new();
+    let system = joints::expand(&written.system, &mut report);
+    let system = time::expand(&system, &mut report);
+    let names = symbols::resolve(&system, &mut report);
+    shapes::check(&system, &names, &mut report);
+    report.finish()?;
+    let setting = Setting::new(&system, &names)?;
+    Ok(look(&system, &|expr| setting.find(expr)))
+}
+
+/// A description with a graph in which all that its expressions can mention has a value.
+struct Setting<'a> {
+    system: &'a System,
+    names: &'a symbols::Resolved<'a>,
+    graph: Graph,
+    scope: Scope<'a>,
+}
+
+impl<'a> Setting<'a> {
+    fn new(system: &'a System, names: &'a symbols::Resolved<'a>) -> Result<Self, Vec<Diagnostic>> {
+        let mut random = Random::new(7);
+        let mut graph = Graph::new(7, class::PARAM);
+        let mut scope = Scope::new(system, &names.symbols, true);
+        let mut report = Report::new();
+        let mut next = |_: &mut Graph| random.element();
+        let declared = declare(system, &mut graph, &mut next, &mut scope, &mut report);
+        let x_dot = declared.x.iter();
+        let x_dot = x_dot.map(|_| graph.symbol("x_dot", class::VELOCITY, random.element()));
+        let x_dot: Vec<Edge> = x_dot.collect();
+        graph.set_reals(samples::anywhere(graph.symbols().len(), 7));
+        let (x, xi, xi_dot) = (&declared.x, &declared.xi, &declared.xi_dot);
+        scope.motion = Some(TimeDerivative::new(x, &x_dot, xi, xi_dot));
+        let mut values = Names::default();
+        let order = &names.order;
+        values.read(&order.before, &mut graph, &mut scope, &mut report);
+        values.read(&order.after, &mut graph, &mut scope, &mut report);
+        report.finish()?;
+        Ok(Setting {
+            system,
+            names,
+            graph,
+            scope,
+        })
+    }
+
+    fn find(&self, expr: &Expr) -> Found {
+        let mut inference = shapes::read(self.system, self.names);
+        inference.report = Report::new();
+        let inferred = inference.of(expr);
+        self.scope.calls.set(0);
+        let (mut graph, mut report) = (self.graph.clone(), Report::new());
+        let value = Evaluator::new(&mut graph, &self.scope, &mut report).value(expr);
+        let value = value.map(|value| {
+            let entries = value.entries().into_iter();
+            let entries = entries.map(|edge| graph.as_rational(edge)).collect();
+            (value, entries)
+        });
+        Found {
+            inferred: inferred.map(|found| (found.shape.describe(), found.numbers)),
+            refused: !inference.report.is_empty(),
+            value,
+            failed: !report.is_empty(),
+        }
+    }
+}

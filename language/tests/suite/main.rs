@@ -1,0 +1,14 @@
+//! Laws of the language, one module for each file of `src`; a module alone: `cargo test -p hamel-language --test suite syntax::`.
+
+mod assembly;
+mod axes;
+mod charts;
+mod functions;
+mod nearest;
+mod number;
+mod shapes;
+mod suggest;
+mod syntax;
+mod unused;
+mod way;
+mod written;
