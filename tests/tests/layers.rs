@@ -357,7 +357,8 @@ fn every_dependency_is_used() {
             .split(|letter: char| !letter.is_alphanumeric() && letter != '_')
             .collect();
         // What a package takes from the sources of another one is not looked through.
-        let names = match text.contains("#[path = \"../") {
+        let foreign = |line: &str| line.contains("#[path = \"../") && !line.contains("../src/");
+        let names = match text.lines().any(foreign) {
             true => Vec::new(),
             false => dependencies(&manifest),
         };
@@ -443,9 +444,8 @@ fn no_test_is_left_out() {
             let untested = section.starts_with("lib]") && says("test = false");
             without += usize::from(untested);
             for (path, text) in sources(&format!("{folder}/src")) {
-                let mark = ["#[test]", "cfg(test)"].into_iter();
-                let mark = mark.filter(|_| untested).find(|mark| text.contains(mark));
-                assert!(mark.is_none(), "{}: {mark:?}", path.display());
+                let found = untested && text.contains("#[test]");
+                assert!(!found, "{}: a test", path.display());
                 // Programs in documentation, which a fence without a language opens.
                 let fences = text
                     .lines()
@@ -456,15 +456,14 @@ fn no_test_is_left_out() {
             }
             if section.starts_with("[test]]") && says("test = false") {
                 let name = section.split('"').nth(1).expect("a name");
-                assert!(
-                    stages.contains(&format!("--test {name} ")),
-                    "{folder}: {name}"
-                );
+                let named = [' ', '"'].map(|end| format!("--test {name}{end}"));
+                let named = named.iter().any(|named| stages.contains(named));
+                assert!(named, "{folder}: {name}");
                 later += 1;
             }
         }
     }
-    assert_eq!((without, later), (10, 6));
+    assert_eq!((without, later), (11, 6));
 }
 
 /// What nobody can read again is no review: snapshots stay below 25,000 lines.
