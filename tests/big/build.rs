@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let texts = [
         ("chain", chain),
         ("humanoid", humanoid),
-        ("quadruped", quadruped::quadruped(4)),
+        ("quadruped", quadruped::quadruped()),
     ];
     for (name, text) in texts {
         let path = folder.join(name).with_extension("eom");

@@ -1,18 +1,17 @@
-//! The description of a robot with up to four legs.
+//! The description of a robot with four legs.
 
-/// A floating trunk with some of four legs of three hinges each, mounted at odd angles, and a torque at each hinge. Slopes
+/// A floating trunk with four legs of three hinges each, mounted at odd angles, and a torque at each hinge. Slopes
 /// are asked for.
-pub fn quadruped(legs: usize) -> String {
-    let legs = ["lf", "rf", "lh", "rh"].into_iter().take(legs);
+pub fn quadruped() -> String {
+    let legs = ["lf", "rf", "lh", "rh"];
     let joints = legs.map(|leg| ["hip", "thigh", "shank"].map(|part| format!("{leg}_{part}")));
-    let joints: Vec<[String; 3]> = joints.collect();
     let torques: Vec<String> = joints
         .iter()
         .flatten()
         .map(|joint| format!("{joint}_torque"))
         .collect();
     let mut text = format!(
-        "/// A trunk with legs.\npub system Quadruped {{\n    gravity [0, 0, -9.81];\n    input {};\n    \
+        "/// A trunk with four legs.\npub system Quadruped {{\n    gravity [0, 0, -9.81];\n    input {};\n    \
          joint base: free moves trunk;\n    \
          body on trunk {{ mass 12; com [0.02, -0.01, 0.03]; inertia diag(0.2, 0.5, 0.6) about com; }}\n",
         torques.join(", ")

@@ -37,7 +37,7 @@ fn slopes_are_those_of_dual_numbers() {
         parts > 50 && statements > 10_000,
         "{parts} parts, {statements} statements"
     );
-    let blocks = generated(&quadruped::quadruped(4)).program.blocks;
+    let blocks = generated(&quadruped::quadruped()).program.blocks;
     let system = Quadruped::<f64>::new().expect("masses are positive");
     let dual = Quadruped::<Slope>::new().expect("masses are positive");
     let mut random = Random::new(0x4e6);

@@ -10,8 +10,7 @@ use std::sync::LazyLock;
 pub const STRICT: &str = "-Wall -Wextra -Wpedantic -Wconversion -Werror";
 
 /// Whether all compilers read everything, and gcc looks for what it sees where it optimises.
-pub static EVERYTHING: LazyLock<bool> =
-    LazyLock::new(|| std::env::var_os("HAMEL_ATTACK").is_some());
+static EVERYTHING: LazyLock<bool> = LazyLock::new(|| std::env::var_os("HAMEL_ATTACK").is_some());
 
 /// A folder of its own for the files of a test.
 pub fn folder(name: &str) -> PathBuf {
