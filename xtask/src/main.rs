@@ -23,6 +23,8 @@ const CI: Task = &[
     "cargo fmt --all --check",
     // Clippy, as `.ci/rustc` says.
     "HAMEL_LINT=1 cargo check --workspace --all-targets --locked",
+    // `--all-targets` passes over the tests that `cargo test --workspace` leaves out.
+    "HAMEL_LINT=1 cargo check --workspace --locked --test commands --test complete --test counts --test gallery --test book --test built",
     // As docs.rs has them. With examples asked for, features are those of the tests, and nothing is checked again.
     "RUSTDOC=.ci/rustdoc cargo doc --workspace --no-deps --lib --bins --examples --locked",
     // The runtime without std, and generated code in a crate without std.

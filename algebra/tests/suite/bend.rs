@@ -11,14 +11,7 @@ use hamel_algebra::tape::Tape;
 fn rows_are_the_mixed_derivatives_of_jets() {
     let mut random = Random::new(11);
     let mut graph = Graph::new(1, 0);
-    let mut symbol = |graph: &mut Graph, name: &str| {
-        let value = random.element();
-        graph.symbol(name, 2, value)
-    };
-    let symbols: Vec<_> = ["a", "b", "c"].map(|name| symbol(&mut graph, name)).into();
-    let [a, b, c] = symbols[..] else {
-        unreachable!("three symbols")
-    };
+    let [a, b, c] = ["a", "b", "c"].map(|name| graph.symbol(name, 2, random.element()));
     let product = graph.mul(a, b);
     let mut sum = graph.sub(c, product);
     for function in functions() {

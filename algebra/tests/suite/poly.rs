@@ -11,3 +11,24 @@ mod order;
 mod polynomial;
 mod solve;
 mod univariate;
+
+use hamel_algebra::fp::Fp;
+use hamel_algebra::poly::monomial::Monomial;
+use hamel_algebra::poly::order::Order;
+use hamel_algebra::poly::polynomial::Poly;
+use proptest::prelude::*;
+use std::ops::Range;
+
+/// Polynomials of so many terms, each with powers of variables and a coefficient.
+fn polynomials(
+    powers: impl Strategy<Value = Vec<(u32, u32)>>,
+    coefficients: Range<i64>,
+    terms: Range<usize>,
+) -> impl Strategy<Value = Poly<Fp>> {
+    prop::collection::vec((powers, coefficients), terms).prop_map(|terms| {
+        let terms = terms
+            .into_iter()
+            .map(|(powers, c)| (Monomial::from_powers(powers), Fp::from_i64(c)));
+        Poly::from_terms(Order::Grevlex, terms.collect())
+    })
+}

@@ -11,11 +11,7 @@ use hamel_algebra::slopes::slopes;
 fn slopes_are_the_numbers_of_symbolic_derivatives() {
     let mut random = Random::new(7);
     let mut graph = Graph::new(1, 0);
-    let mut symbol = |graph: &mut Graph, name: &str| {
-        let value = random.element();
-        graph.symbol(name, 2, value)
-    };
-    let (a, b) = (symbol(&mut graph, "a"), symbol(&mut graph, "b"));
+    let [a, b] = ["a", "b"].map(|name| graph.symbol(name, 2, random.element()));
     let product = graph.mul(a, b);
     let sum = graph.sub(product, b);
     let mut roots = vec![-product];

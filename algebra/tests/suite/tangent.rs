@@ -12,11 +12,7 @@ use hamel_algebra::tangent::tangent_at;
 fn slopes_are_those_of_the_symbolic_derivative() {
     let mut random = Random::new(3);
     let mut graph = Graph::new(1, 0);
-    let mut symbol = |graph: &mut Graph, name: &str| {
-        let value = random.element();
-        graph.symbol(name, 2, value)
-    };
-    let (a, b) = (symbol(&mut graph, "a"), symbol(&mut graph, "b"));
+    let [a, b] = ["a", "b"].map(|name| graph.symbol(name, 2, random.element()));
     let product = graph.mul(a, b);
     let sum = graph.add(product, b);
     let mut roots = quotients(&mut graph, sum, a);

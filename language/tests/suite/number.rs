@@ -2,7 +2,7 @@
 
 use included::value;
 
-// No token is empty.
+// An empty literal never comes out of the text of a description.
 #[path = "../../src/syntax/number.rs"]
 mod included;
 

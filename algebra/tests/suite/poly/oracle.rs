@@ -1,5 +1,6 @@
 //! Tests of bases and normal forms: against an independent implementation, and by their laws.
 
+use super::polynomials;
 use groebner as independent;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::poly::buchberger::{LimitExceeded, Limits, groebner};
@@ -214,12 +215,7 @@ fn rotation_point(random: &mut Random) -> Vec<Fp> {
 
 fn polynomial() -> impl Strategy<Value = Poly<Fp>> {
     let powers = prop::collection::vec((0u32..9, 1u32..3), 0..4);
-    prop::collection::vec((powers, -9i64..10), 1..6).prop_map(|terms| {
-        let terms = terms
-            .into_iter()
-            .map(|(powers, c)| (Monomial::from_powers(powers), Fp::from_i64(c)));
-        Poly::from_terms(Order::Grevlex, terms.collect())
-    })
+    polynomials(powers, -9..10, 1..6)
 }
 
 proptest! {

@@ -1,5 +1,6 @@
 //! Laws of polynomial arithmetic.
 
+use super::polynomials;
 use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::poly::monomial::{Monomial, Var};
 use hamel_algebra::poly::order::Order;
@@ -8,13 +9,7 @@ use proptest::prelude::*;
 
 fn polynomial() -> impl Strategy<Value = Poly<Fp>> {
     let powers = prop::collection::vec((0u32..4, 0u32..3), 0..3);
-    let terms = prop::collection::vec((powers, -5i64..6), 0..6);
-    terms.prop_map(|terms| {
-        let terms = terms
-            .into_iter()
-            .map(|(powers, c)| (Monomial::from_powers(powers), Fp::from_i64(c)));
-        Poly::from_terms(Order::Grevlex, terms.collect())
-    })
+    polynomials(powers, -5..6, 0..6)
 }
 
 proptest! {

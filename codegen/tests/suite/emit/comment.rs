@@ -25,6 +25,12 @@ fn nothing_leaves_a_comment() {
     assert_eq!(tame("a\u{0}b\u{202e}"), "ab\\u{202e}");
     let header = header(&["a\nb", ""]);
     assert!(header.contains("\n/**\n * a\n * b\n *\n"), "{header}");
-    // Set in.
-    assert!(header.contains("\n    /**\n     * "), "{header}");
+    // Set in, each line of it.
+    let (_, rest) = header.split_once("\n    /**\n").expect("one");
+    let (lines, _) = rest.split_once("\n     */\n").expect("its end");
+    for line in lines.lines() {
+        let rest = line.strip_prefix("     *").expect(line);
+        let set = rest.is_empty() || rest.starts_with(' ') && rest.trim() == &rest[1..];
+        assert!(set, "{line:?}");
+    }
 }

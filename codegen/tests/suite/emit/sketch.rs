@@ -130,15 +130,9 @@ pub fn sketch(name: &str, declared: &Declared) -> (Program, [Vec<Edge>; 5]) {
 
 /// A function with a line of documentation.
 pub fn function(name: &str, arguments: &[Argument], shape: Shape, outputs: Vec<Edge>) -> Function {
+    let docs = format!("The {name} of a sample.");
     Function {
         id: hamel_codegen::program::FunctionId::named(name),
-        name: name.into(),
-        docs: vec![format!("The {name} of a sample.")],
-        arguments: arguments.to_vec(),
-        shape,
-        outputs,
-        guards: Vec::new(),
-        fallible: false,
-        rates: Vec::new(),
+        ..Function::described(name, docs, arguments, shape, outputs)
     }
 }
