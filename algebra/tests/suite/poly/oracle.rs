@@ -6,7 +6,7 @@ use hamel_algebra::fp::{Fp, Random};
 use hamel_algebra::poly::buchberger::{LimitExceeded, Limits, groebner};
 use hamel_algebra::poly::field::Field;
 use hamel_algebra::poly::ideals::{circle, quaternion, rotation};
-use hamel_algebra::poly::monomial::{Monomial, Var};
+use hamel_algebra::poly::monomial::Var;
 use hamel_algebra::poly::normal_form::Basis;
 use hamel_algebra::poly::order::Order;
 use hamel_algebra::poly::polynomial::Poly;

@@ -2,7 +2,7 @@
 
 use super::polynomials;
 use hamel_algebra::fp::{Fp, Random};
-use hamel_algebra::poly::monomial::{Monomial, Var};
+use hamel_algebra::poly::monomial::Var;
 use hamel_algebra::poly::order::Order;
 use hamel_algebra::poly::polynomial::Poly;
 use proptest::prelude::*;
