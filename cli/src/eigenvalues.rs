@@ -199,7 +199,7 @@ mod tests {
         let rounds = match std::env::var("HAMEL_ATTACK").as_deref() {
             Ok("full") => 400,
             Ok(_) => 20,
-            Err(_) => 5,
+            Err(_) => 3,
         };
         let mut signed = numbers(7u64);
         let mut number = || (1.0 + signed()) / 2.0;
@@ -249,7 +249,7 @@ mod tests {
         let mut number = numbers(9u64);
         let rounds = match std::env::var("HAMEL_ATTACK") {
             Ok(_) => 1000,
-            Err(_) => 200,
+            Err(_) => 100,
         };
         let in_their_own = Tries {
             looser: &LOOSER,

@@ -236,7 +236,7 @@ mod tests {
                 let system = Instance::new(&generated, &start, &source.text).expect("a system");
                 let long = std::env::var_os("HAMEL_ATTACK").is_some();
                 let stepping = Stepping {
-                    until: if long { 20.0 } else { 8.0 },
+                    until: if long { 20.0 } else { 4.0 },
                     step: Some(1.3e-3),
                     method: method.into(),
                     tol: None,

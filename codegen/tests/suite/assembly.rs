@@ -1,6 +1,7 @@
 //! Starts by guesses: the branch in which a loop is assembled, against the intersections of two circles in closed form,
 //! and the distance from the guesses against all of them.
 
+use crate::common::size;
 use hamel_codegen::algebra::fp::Random;
 use hamel_codegen::lower::build;
 use hamel_codegen::syntax::parse_text;
@@ -104,7 +105,7 @@ fn guesses_choose_between_both_ways_to_assemble_a_five_bar() {
 fn what_is_found_is_the_nearest_of_all_assemblies() {
     let mut random = Random::new(0x5ba2);
     let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-    for _ in 0..150 {
+    for _ in 0..size(40, 160) {
         let (q1, q2) = (1.6 + 0.6 * number(), 1.2 + 0.6 * number());
         let guess = [2.5 * number(), 2.5 * number()];
         let away = |angles: [f64; 2]| {
@@ -357,7 +358,7 @@ fn redundant_loops_without_mass_are_led_back_to() {
 fn starts_that_loops_have_moved_keep_constraints() {
     let mut random = Random::new(0x9_4a1);
     let mut number = || (random.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-    for _ in 0..40 {
+    for _ in 0..size(10, 40) {
         let (angle, a, lean) = (3.0 * number(), 2.0 * number(), 0.4 * number());
         let text = format!(
             "system Bead {{

@@ -1,6 +1,7 @@
 //! What is conserved, what can be undone, and what fails in a typed way.
 
 use crate::common::{Pendulum, QuaternionTop, Reference, Top, distance, run, slopes};
+use crate::size::size;
 use hamel::methods::General;
 use hamel::{Block, Monitor, Singular, State, StepError, System, integrate, so3};
 
@@ -69,7 +70,7 @@ fn rotations_stay_orthonormal() -> Result<(), StepError> {
     let top = Top(body.clone());
     let quaternion = QuaternionTop(body);
     let (mut matrix, mut unit) = (State::start(&top), State::start(&quaternion));
-    for _ in 0..100_000 {
+    for _ in 0..size(25_000, 100_000) {
         hamel::step(&top, General::Rkmk4, &mut matrix, 1.0, &|_, _, _| [])?;
         hamel::step(&quaternion, General::Rkmk4, &mut unit, 1.0, &|_, _, _| [])?;
         assert!(top.constraint_norm(&matrix.x) <= 2e-15);

@@ -108,19 +108,24 @@ fn chart(blocks: &[Block], mut x: &[f64], mut dx: &[f64]) -> Vec<f64> {
     all
 }
 
+/// A step of a method, at inputs.
+type Step<'a, Sys> = dyn Fn(&mut State<Sys>, &<Sys as System>::Inputs) + 'a;
+
+/// A method of one system: what does not depend on the method is compiled once a system.
+struct Steps<'a, Sys: Tangent<Scalar = f64>> {
+    step: &'a Step<'a, Sys>,
+    slopes: &'a dyn Fn(&Sys::Inputs) -> (State<Sys>, Sys::Slopes),
+    slopes_into: &'a dyn Fn(&Sys::Inputs, &mut Sys::Slopes) -> State<Sys>,
+}
+
 /// (x⁺, ξ⁺) of a step from a state moved along A η and by δξ, at inputs moved by δu.
-fn moved<Sys, M>(
-    method: &M,
+fn moved<Sys: Tangent<Scalar = f64>>(
+    step: &Step<Sys>,
     system: &Sys,
     start: &State<Sys>,
     u: &[f64],
-    h: f64,
     by: &[f64],
-) -> Vec<f64>
-where
-    Sys: Tangent<Scalar = f64>,
-    M: Method<Sys>,
-{
+) -> Vec<f64> {
     let frame = system.frame(&start.x);
     let velocities = start.xi.as_ref().len();
     let displacements = by.len() - velocities - u.len();
@@ -139,7 +144,7 @@ where
         .iter_mut()
         .zip(u.iter().zip(&by[displacements + velocities..]));
     pushed.for_each(|(input, (u, by))| *input = u + by);
-    step(system, method, &mut state, h, &|_, _, _| inputs.clone()).expect("a step");
+    step(&mut state, &inputs);
     state
         .x
         .as_ref()
@@ -150,7 +155,7 @@ where
 }
 
 /// d/ds of a function of s at 0, by Richardson's extrapolation of central differences.
-fn slope(of: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
+fn slope(of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let mut table: Vec<Vec<f64>> = Vec::new();
     for level in 0..6 {
         let s = 2.0_f64.powi(-4 - level);
@@ -180,20 +185,36 @@ where
     Sys: Tangent<Scalar = f64>,
     M: Method<Sys> + Method<TangentSystem<Sys>> + InChart,
 {
+    let steps = Steps {
+        step: &|state, inputs| {
+            step(system, method, state, h, &|_, _, _| inputs.clone()).expect("a step");
+        },
+        slopes: &|inputs| step_slopes(method, system, start, inputs, h).expect("a step"),
+        slopes_into: &|inputs, table| {
+            let tangent = TangentSystem::new(system);
+            step_slopes_into(method, &tangent, start, inputs, h, table).expect("a step")
+        },
+    };
+    compared(name, &steps, system, start, u);
+}
+
+fn compared<Sys>(name: &str, steps: &Steps<Sys>, system: &Sys, start: &State<Sys>, u: &[f64])
+where
+    Sys: Tangent<Scalar = f64>,
+{
     let exact = !name.ends_with("backward-euler");
     let close = if exact { DIFFERENCE } else { ITERATED };
     let mut inputs = system.zero_inputs();
     inputs.as_mut().copy_from_slice(u);
-    let (end, slopes) = step_slopes(method, system, start, &inputs, h).expect("a step");
+    let (end, slopes) = (steps.slopes)(&inputs);
     // A table of the caller's is written all over, whatever was in it.
     let mut table = slopes.clone();
     (0..table.rows()).for_each(|i| table.row_mut(i).fill(f64::NAN));
-    let tangent = TangentSystem::new(system);
-    let again = step_slopes_into(method, &tangent, start, &inputs, h, &mut table).expect("a step");
+    let again = (steps.slopes_into)(&inputs, &mut table);
     assert_eq!(rows(&table), rows(&slopes), "{name}");
     assert_eq!(again.xi.as_ref(), end.xi.as_ref(), "{name}");
     let mut alone = start.clone();
-    step(system, method, &mut alone, h, &|_, _, _| inputs.clone()).expect("a step");
+    (steps.step)(&mut alone, &inputs);
     // Explicit methods add up in another order; implicit ones go on until slopes have converged, too.
     let numbers = |state: &State<Sys>| [state.x.as_ref(), state.xi.as_ref()].concat();
     for (found, expected) in numbers(&end).iter().zip(numbers(&alone)) {
@@ -208,10 +229,10 @@ where
     let coframe = system.coframe(&end.x);
     let nu = start.x.as_ref().len();
     for column in 0..columns {
-        let differences = slope(|s| {
+        let differences = slope(&|s| {
             let mut by = vec![0.0; columns];
             by[column] = s;
-            moved(method, system, start, u, h, &by)
+            moved(steps.step, system, start, u, &by)
         });
         let expected = (0..slopes.rows()).map(|row| match row.checked_sub(displacements) {
             None => coframe
@@ -460,6 +481,9 @@ fn slopes_of_two_steps_are_a_product() {
     let (middle, first) = step_slopes(&Rkmk4, &drone, &start, &u, 0.05).expect("a step");
     let (_, second) = step_slopes(&Rkmk4, &drone, &middle, &u, 0.05).expect("a step");
     let states = first.len();
+    let by_step = |state: &mut State<_>, inputs: &[f64; 4]| {
+        step(&drone, Rkmk4, state, 0.05, &|_, _, _| *inputs).expect("a step");
+    };
     let square = |table: &Rows| {
         table
             .iter()
@@ -469,21 +493,14 @@ fn slopes_of_two_steps_are_a_product() {
     let chained = product(&square(&rows(&second)), &square(&rows(&first)));
     for column in 0..states {
         let frame = drone.frame(&start.x);
-        let differences = slope(|s| {
+        let differences = slope(&|s| {
             let mut by = vec![0.0; states + u.len()];
             by[column] = s;
-            let once = moved(&Rkmk4, &drone, &start, &u, 0.05, &by);
+            let once = moved(&by_step, &drone, &start, &u, &by);
             let mut state = start.clone();
             state.x.copy_from_slice(&once[..frame.len()]);
             state.xi.copy_from_slice(&once[frame.len()..]);
-            moved(
-                &Rkmk4,
-                &drone,
-                &state,
-                &u,
-                0.05,
-                &vec![0.0; states + u.len()],
-            )
+            moved(&by_step, &drone, &state, &u, &vec![0.0; states + u.len()])
         });
         // Of the velocities alone: displacements are read elsewhere.
         for (row, expected) in differences[frame.len()..].iter().enumerate() {
