@@ -25,6 +25,7 @@ const CI: Task = &[
     "HAMEL_LINT=1 cargo check --workspace --all-targets --locked",
     // `--all-targets` passes over the tests that `cargo test --workspace` leaves out.
     "HAMEL_LINT=1 cargo check --workspace --locked --test commands --test complete --test counts --test gallery --test book --test built",
+    "HAMEL_LINT=1 cargo check --workspace --locked --bins --profile test",
     // As docs.rs has them. With examples asked for, features are those of the tests, and nothing is checked again.
     "RUSTDOC=.ci/rustdoc cargo doc --workspace --no-deps --lib --bins --examples --locked",
     // The runtime without std, and generated code in a crate without std.
@@ -39,8 +40,8 @@ const CI: Task = &[
     "bash tests/c99/install.sh",
     // The README's test command, with attacks of four times the size.
     "HAMEL_ATTACK=more cargo test --workspace --locked",
-    // What is no mathematics: pages and the gallery, the table of the report, Python's module.
-    "HAMEL_ATTACK=more cargo test --workspace --locked --test commands --test complete --test counts --test gallery --test book --test built",
+    // What is no mathematics: pages and the gallery, the table of the report, Python's module; and examples of control.
+    "HAMEL_ATTACK=more cargo test --workspace --locked --bins --test commands --test complete --test counts --test gallery --test book --test built",
     // The packages as they would be published; `attack` builds each from what it contains.
     "CARGO_TARGET_DIR=target/publish cargo publish --workspace --dry-run --no-verify --allow-dirty --locked",
     // Generated systems in the stiff solvers of another crate.
