@@ -14,7 +14,7 @@ type Task = &'static [&'static str];
 /// Seconds once everything is built: format, and what the stages say of themselves.
 const QUICK: Task = &[
     "cargo fmt --all --check",
-    "cargo test --locked -p hamel-algebra -p hamel-language --test suite",
+    "cargo test --locked -p hamel-algebra-tests -p hamel-language-tests",
     "cargo test --locked -p hamel-tests --test layers --test wrong",
 ];
 
@@ -72,7 +72,7 @@ const CI: Task = &[
 
 /// The random attacks at full size: some two hours.
 const ATTACK: Task = &[
-    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen --test suite -- expressions:: mounts:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
+    "HAMEL_ATTACK=full cargo test --release --locked -p hamel-codegen-tests -- expressions:: mounts:: rounding:: constrained:: prescribed:: trees:: work:: observed:: built::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-tests --test suite -- functions:: mutations::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel-native --test suite random::",
     "HAMEL_ATTACK=full cargo test --release --locked -p hamel --test suite -- free_rotation:: stiff::",

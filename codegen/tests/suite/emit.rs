@@ -116,7 +116,6 @@ fn text_is_the_same_every_time() {
     );
 }
 
-#[cfg(feature = "files")]
 #[test]
 fn all_doors_give_the_same_functions() {
     let options = Options {

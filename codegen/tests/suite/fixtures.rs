@@ -12,7 +12,7 @@ const CLOSE: f64 = 1e-11;
 const STATES: usize = 5;
 
 fn text(path: &str) -> String {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/models/");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/models/");
     std::fs::read_to_string(format!("{folder}{path}.eom")).expect("it is in the repository")
 }
 

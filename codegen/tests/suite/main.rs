@@ -55,7 +55,6 @@ mod tetrahedron;
 mod tree;
 mod trees;
 mod unsaid;
-#[cfg(feature = "urdf")]
 mod urdf;
 mod words;
 mod work;

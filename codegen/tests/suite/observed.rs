@@ -14,7 +14,7 @@ use hamel_codegen::syntax::{parse_text, read_files};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/models");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/models");
 /// Step of differences that are extrapolated to fourth order.
 const STEP: f64 = 2e-4;
 /// Of the largest entry: h⁴ with what derivatives there are, and roundings over h.

@@ -51,7 +51,7 @@ fn unnoticed(generated: &Generated) -> (Vec<String>, usize) {
 
 #[test]
 fn a_wrong_sign_in_any_function_is_refused() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/models");
     // Each is changed in more than thirty places: every ninth, and all with `HAMEL_ATTACK`.
     let all: Vec<(String, Vec<String>, usize)> = (some(some(models(&folder))).par_iter())
         .map(|path| {

@@ -12,7 +12,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 fn models() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/models")
 }
 
 /// A description with the files that it includes.
@@ -491,7 +491,7 @@ fn names_stay_when_something_is_added() {
 /// What the book shows is right.
 #[test]
 fn the_book_shows_a_description() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/book/src/mechanisms.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book/src/mechanisms.md");
     let page = std::fs::read_to_string(path).expect("a page");
     let mut blocks = page.split("```eom\n").skip(1);
     let block = blocks

@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// All descriptions of the repository that are right.
 fn descriptions() -> Vec<(String, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folders = [
         "tests/models",
         "tests/models/reuse",

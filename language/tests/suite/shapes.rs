@@ -80,7 +80,7 @@ fn expressions(system: &System) -> Vec<Expr> {
 
 #[test]
 fn the_shapes_of_all_descriptions_are_those_of_their_values() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folders = [
         "tests/models",
         "tests/models/reuse",
