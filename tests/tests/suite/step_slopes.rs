@@ -111,11 +111,19 @@ fn chart(blocks: &[Block], mut x: &[f64], mut dx: &[f64]) -> Vec<f64> {
 /// A step of a method, at inputs.
 type Step<'a, Sys> = dyn Fn(&mut State<Sys>, &<Sys as System>::Inputs) + 'a;
 
+/// A step from the start with its slopes, at inputs.
+type Slopes<'a, Sys> = dyn Fn(&<Sys as System>::Inputs) -> Sloped<Sys> + 'a;
+type Sloped<Sys> = (State<Sys>, <Sys as Tangent>::Slopes);
+
+/// The same, with the slopes in a table of the caller's.
+type SlopesInto<'a, Sys> =
+    dyn Fn(&<Sys as System>::Inputs, &mut <Sys as Tangent>::Slopes) -> State<Sys> + 'a;
+
 /// A method of one system: what does not depend on the method is compiled once a system.
 struct Steps<'a, Sys: Tangent<Scalar = f64>> {
     step: &'a Step<'a, Sys>,
-    slopes: &'a dyn Fn(&Sys::Inputs) -> (State<Sys>, Sys::Slopes),
-    slopes_into: &'a dyn Fn(&Sys::Inputs, &mut Sys::Slopes) -> State<Sys>,
+    slopes: &'a Slopes<'a, Sys>,
+    slopes_into: &'a SlopesInto<'a, Sys>,
 }
 
 /// (x⁺, ξ⁺) of a step from a state moved along A η and by δξ, at inputs moved by δu.
