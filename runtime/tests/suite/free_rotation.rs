@@ -265,7 +265,7 @@ fn long_times_are_many_short_ones_wherever_the_motion_starts() -> Result<(), Ste
             .wrapping_add(1442695040888963407);
         (state >> 33) as f64 / (1u64 << 31) as f64
     };
-    for round in 0..size(30, 20_000) as usize {
+    for round in 0..size(60, 20_000) as usize {
         let spread = if round % 2 == 0 { 1.0 } else { 4.0 };
         let moments: [f64; 3] = std::array::from_fn(|_| 10f64.powf(spread * (number() - 0.5)));
         let mut w0: [f64; 3] = std::array::from_fn(|_| 2.0 * number() - 1.0);
