@@ -185,14 +185,9 @@ impl Code {
         let mut flags = builder();
         for (name, value) in [
             ("opt_level", "none"),
-            // Slower, but tests see what is wrong before it runs.
             (
                 "enable_verifier",
-                if cfg!(debug_assertions) {
-                    "true"
-                } else {
-                    "false"
-                },
+                if target.verified { "true" } else { "false" },
             ),
             ("use_colocated_libcalls", "false"),
             ("is_pic", "false"),

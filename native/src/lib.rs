@@ -75,6 +75,7 @@ struct Parts {
     numbers: Vec<f64>,
     code: Result<Code, String>,
     fused: bool,
+    verified: bool,
 }
 
 /// Parameters, and what depends on them alone: what a function is called with besides its arguments.
@@ -99,10 +100,21 @@ impl Compiled {
 
     /// The functions of tapes.
     pub fn of(tapes: Tapes) -> Self {
+        Compiled::made(tapes, false)
+    }
+
+    /// The same for tests of this crate: Cranelift verifies what it is given, which takes as long as making code of it, and
+    /// says what is wrong where the code would only compute something else.
+    pub fn verified(tapes: Tapes) -> Self {
+        Compiled::made(tapes, true)
+    }
+
+    fn made(tapes: Tapes, verified: bool) -> Self {
         let fused = code::is_fused();
         let target = Target {
             fused,
             paired: false,
+            verified,
         };
         let (code, numbers) = match Code::new(&tapes, target) {
             Ok((code, numbers)) => (Ok(code), numbers),
@@ -113,6 +125,7 @@ impl Compiled {
             numbers,
             code,
             fused,
+            verified,
         }))
     }
 
@@ -123,6 +136,7 @@ impl Compiled {
             numbers: Vec::new(),
             code: Err("not asked for".into()),
             fused: code::is_fused(),
+            verified: false,
         }))
     }
 

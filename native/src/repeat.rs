@@ -59,6 +59,7 @@ impl Paired {
         let target = Target {
             fused: compiled.is_fused(),
             paired: true,
+            verified: compiled.0.verified,
         };
         compiled.interpreted_because().is_none().then_some(())?;
         let (code, numbers) = Code::new(tapes, target).ok()?;

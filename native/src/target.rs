@@ -11,6 +11,8 @@ pub struct Target {
     pub fused: bool,
     /// Whether there are two lanes.
     pub paired: bool,
+    /// Whether Cranelift looks at what it is given before it makes code of it.
+    pub verified: bool,
 }
 
 impl Target {
