@@ -6,7 +6,7 @@
 
 use super::places::{Place, Places, Time};
 use super::statements::{Operation, Statement};
-use crate::algebra::graph::{Edge, Node, NodeId};
+use crate::algebra::graph::{Edge, Graph, Node, NodeId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The sums of a body.
@@ -41,9 +41,11 @@ pub fn sums<'a>(
     for edge in children.chain(roots.copied()) {
         *uses.entry(edge.node()).or_default() += 1;
     }
-    let single = |id: NodeId| {
-        places.of(id, time) == Place::Temporary && uses.get(&id) == Some(&1) && !named.contains(&id)
+    let once = |id: &NodeId| {
+        places.of(*id, time) == Place::Temporary && uses.get(id) == Some(&1) && !named.contains(id)
     };
+    let single: FxHashSet<NodeId> = nodes.iter().copied().filter(once).collect();
+    let whole = one_sign_each(graph, nodes, &single);
     let index: FxHashMap<NodeId, usize> =
         nodes.iter().enumerate().map(|(i, &id)| (id, i)).collect();
     let mut sums = Sums::default();
@@ -52,39 +54,32 @@ pub fn sums<'a>(
         if !matches!(graph.node(root), Node::Add(..)) || !sums.absorbed.insert(root) {
             continue;
         }
-        let flatten = |whole: bool| {
-            let (mut terms, mut names, mut absorbed) = (Vec::new(), vec![root], Vec::new());
-            let mut stack = vec![Edge::of(root)];
-            while let Some(edge) = stack.pop() {
-                let id = edge.node();
-                let at = index.get(&id).copied();
-                match graph.node(id) {
-                    Node::Add(a, b) if id == root || whole && single(id) => {
-                        if id != root {
-                            names.push(id);
-                        }
-                        absorbed.push(id);
-                        let sign = edge.is_negative();
-                        stack.extend([b.signed(sign), a.signed(sign)]);
+        // A difference of sums that share a term would add it and take it away again.
+        let whole = whole.contains(&root);
+        let (mut terms, mut names, mut absorbed) = (Vec::new(), vec![root], Vec::new());
+        let mut stack = vec![Edge::of(root)];
+        while let Some(edge) = stack.pop() {
+            let id = edge.node();
+            let at = index.get(&id).copied();
+            match graph.node(id) {
+                Node::Add(a, b) if id == root || whole && single.contains(&id) => {
+                    if id != root {
+                        names.push(id);
                     }
-                    Node::Mul(a, b) if single(id) => {
-                        absorbed.push(id);
-                        let product = Some([a.signed(edge.is_negative()), b]);
-                        terms.push(Term { edge, product, at });
-                    }
-                    _ => {
-                        let product = None;
-                        terms.push(Term { edge, product, at });
-                    }
+                    absorbed.push(id);
+                    let sign = edge.is_negative();
+                    stack.extend([b.signed(sign), a.signed(sign)]);
+                }
+                Node::Mul(a, b) if single.contains(&id) => {
+                    absorbed.push(id);
+                    let product = Some([a.signed(edge.is_negative()), b]);
+                    terms.push(Term { edge, product, at });
+                }
+                _ => {
+                    let product = None;
+                    terms.push(Term { edge, product, at });
                 }
             }
-            (terms, names, absorbed)
-        };
-        // A difference of sums that share a term would add it and take it away again.
-        let (mut terms, mut names, mut absorbed) = flatten(true);
-        let edges: FxHashSet<Edge> = terms.iter().map(|term| term.edge).collect();
-        if terms.iter().any(|term| edges.contains(&-term.edge)) {
-            (terms, names, absorbed) = flatten(false);
         }
         sums.absorbed.extend(absorbed);
         // What is read stands before its readers.
@@ -93,6 +88,44 @@ pub fn sums<'a>(
         }
     }
     sums
+}
+
+/// The sums in which, together with the sums that only they read, no term stands with both signs.
+fn one_sign_each(graph: &Graph, nodes: &[NodeId], single: &FxHashSet<NodeId>) -> FxHashSet<NodeId> {
+    let mut found = FxHashSet::default();
+    // The terms of sums that their reader has still to take over, with their signs, all of them opposite where `opposite`.
+    let mut signs: FxHashMap<NodeId, (FxHashMap<NodeId, bool>, bool)> = FxHashMap::default();
+    for &id in nodes {
+        let Node::Add(a, b) = graph.node(id) else {
+            continue;
+        };
+        let mut part = |edge: Edge| {
+            let (node, negative) = (edge.node(), edge.is_negative());
+            if single.contains(&node) && matches!(graph.node(node), Node::Add(..)) {
+                let (terms, opposite) = signs.remove(&node)?;
+                return Some((terms, opposite != negative));
+            }
+            Some((FxHashMap::from_iter([(node, negative)]), false))
+        };
+        let (Some(one), Some(other)) = (part(a), part(b)) else {
+            continue;
+        };
+        // The shorter list goes over to the longer one, so that no term moves often.
+        let (mut longer, shorter) = match one.0.len() < other.0.len() {
+            true => (other, one),
+            false => (one, other),
+        };
+        let turned = longer.1 != shorter.1;
+        let mut terms = shorter.0.into_iter();
+        if terms.all(|(node, sign)| {
+            let sign = sign != turned;
+            *longer.0.entry(node).or_insert(sign) == sign
+        }) {
+            found.insert(id);
+            signs.insert(id, longer);
+        }
+    }
+    found
 }
 
 /// The statements of a sum, each with the index of the node that it follows; the last gives the first of
